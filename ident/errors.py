@@ -1,0 +1,18 @@
+"""What the library raises for a user to read; anything else that escapes is a defect of the program."""
+
+from __future__ import annotations
+
+
+class Unusable(ValueError):
+    """Input that cannot be used: what is wrong, where, and the remedy, each a short phrase without a final stop.
+
+    `code` is a stable slug (``missing-unit``) by which programs tell the cases apart.
+    """
+
+    def __init__(self, code: str, what: str, where: str, remedy: str) -> None:
+        super().__init__(f"{where}: {what}; {remedy}")
+        self.code, self.what, self.where, self.remedy = code, what, where, remedy
+
+
+class Cancelled(Exception):
+    """Raised by a caller's progress report to stop long work; nothing is stored."""

@@ -1,0 +1,1 @@
+"""From a test matrix to identified parameters: search, polish, uncertainty, result."""

@@ -1,0 +1,125 @@
+"""What a fit found, in the contract's words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """One parameter: value, standard error (None where the data do not determine it), bounds, all in `unit`."""
+
+    value: float
+    unit: str
+    std_error: float | None
+    lower: float
+    upper: float
+    at_bound: bool
+    symbol: str = ""
+    meaning: str = ""
+    fixed: bool = False
+
+
+@dataclass(frozen=True)
+class Combination:
+    """A product of powers of parameters that the data determine although its factors may not be."""
+
+    expression: str
+    value: float
+    unit: str
+    std_error: float
+
+
+@dataclass(frozen=True)
+class Undetermined:
+    """A parameter that the data do not determine, and why."""
+
+    name: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class RunError:
+    """Eq. (17) of one run, and its offset (difference of means over the standard deviation)."""
+
+    id: str
+    use: str
+    error: float
+    offset: float
+
+
+@dataclass(frozen=True)
+class Generation:
+    """One generation of a search: errors are eq. (17), `population` holds one parameter vector a row."""
+
+    index: int
+    best: float
+    mean: float
+    population: tuple[tuple[float, ...], ...] = ()
+    errors: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class FitResult:
+    """A finished fit. Errors are eq. (17) averaged over the runs of a use, from the time domain; fractions, not %.
+
+    `evolution` belongs to the parameters `searched`, in that order.
+    """
+
+    model: str
+    effects: tuple[str, ...]
+    parameters: Mapping[str, Estimate]
+    correlation: Mapping[str, Mapping[str, float]]
+    determined: tuple[Combination, ...]
+    undetermined: tuple[Undetermined, ...]
+    error: Mapping[str, float | None]
+    offset: Mapping[str, float | None]
+    noise_floor: Mapping[str, float | None]
+    runs: tuple[RunError, ...]
+    method: str
+    seed: int
+    evaluations: int
+    seconds: float
+    version: str
+    data_hash: str
+    notes: tuple[str, ...] = ()
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    searched: tuple[str, ...] = ()
+    evolution: tuple[Generation, ...] = ()
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Parameter values by name, SI."""
+        return {name: estimate.value for name, estimate in self.parameters.items()}
+
+    def to_json(self) -> dict[str, Any]:
+        """As plain JSON data (no NaN, no infinity)."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> FitResult:
+        """The inverse of :meth:`to_json`."""
+        return cls(
+            **{
+                **data,
+                "effects": tuple(data["effects"]),
+                "parameters": {name: Estimate(**entry) for name, entry in data["parameters"].items()},
+                "determined": tuple(Combination(**entry) for entry in data["determined"]),
+                "undetermined": tuple(Undetermined(**entry) for entry in data["undetermined"]),
+                "runs": tuple(RunError(**entry) for entry in data["runs"]),
+                "notes": tuple(data.get("notes", ())),
+                "searched": tuple(data.get("searched", ())),
+                "evolution": tuple(
+                    Generation(
+                        **{
+                            **entry,
+                            "population": tuple(map(tuple, entry.get("population", ()))),
+                            "errors": tuple(entry.get("errors", ())),
+                        }
+                    )
+                    for entry in data.get("evolution", ())
+                ),
+            }
+        )

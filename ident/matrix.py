@@ -1,0 +1,121 @@
+"""A test matrix in SI: one actuator, its runs, and where they came from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Samples = NDArray[np.float64]
+
+KINDS = (
+    "blwn", "sweep", "sine", "multisine", "static", "frequency", "speed-levels", "speed-continuous", "other",
+)  # fmt: skip
+HOLDS = ("linear", "zoh")
+USES = ("fit", "verify")
+CHANNELS = (
+    "command", "displacement", "force", "drive_force", "load_pressure", "pressure_a", "pressure_b",
+    "supply_pressure", "spool", "current", "temperature",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Actuator:
+    """The machine under test; lengths in m, areas in m², pressures in Pa. What is not stated is None."""
+
+    serial: str
+    name: str = ""
+    batch: str = ""
+    piston_area: float | None = None
+    stroke: float | None = None
+    supply_pressure: float | None = None
+    servo_valve: str = ""
+    notes: str = ""
+
+
+@dataclass(frozen=True)
+class Specimen:
+    """What the actuator moves: mass mL in kg, stiffness k in N/m, damping cL in N·s/m."""
+
+    mass: float = 0.0
+    stiffness: float = 0.0
+    damping: float = 0.0
+
+
+@dataclass(frozen=True)
+class Controller:
+    """A position loop around a drive: kp in 1/s and kv in V·s/m."""
+
+    kp: float
+    kv: float
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One measured record in SI (or in the record's own units where the matrix says ``1``).
+
+    `channels` maps a channel's name to its samples, all of one length; `sample_rate` is in Hz, or in 1/sample where
+    `time_unit` is "sample". `units` holds the SI unit of each channel ("m", "N", "Pa", or "1").
+    """
+
+    id: str
+    file: str
+    sample_rate: float
+    channels: Mapping[str, Samples]
+    units: Mapping[str, str] = field(default_factory=dict)
+    time_unit: str = "s"
+    specimen: Specimen | None = None
+    gain: float | None = None
+    amplitude: float | None = None
+    kind: str = "other"
+    hold: str = "linear"
+    output: str = "displacement"
+    use: str = "fit"
+    position_range: tuple[float, float] | None = None
+    frequency: float | None = None
+    rated_current: float | None = None
+    clock_jitter: float = 0.0  # largest deviation of the time column from an even clock, in samples
+    gaps: int = 0  # samples missing from the time column
+
+    @property
+    def command(self) -> Samples:
+        """The command u (m), shape (n,)."""
+        return self.channels["command"]
+
+    @property
+    def measured(self) -> Samples:
+        """The channel that a model must reproduce, shape (n,)."""
+        return self.channels[self.output]
+
+    @property
+    def length(self) -> int:
+        """Number of samples n."""
+        return len(self.measured)
+
+    @property
+    def duration(self) -> float:
+        """Length of the record in s (or in samples)."""
+        return self.length / self.sample_rate
+
+    @property
+    def Kp(self) -> float:
+        """The loop gain; 1 where the matrix states none."""
+        return 1.0 if self.gain is None else self.gain
+
+
+@dataclass(frozen=True, eq=False)
+class Matrix:
+    """All runs of one actuator. `data_hash` is the SHA-256 of the description and every raw file, in order."""
+
+    actuator: Actuator
+    runs: tuple[Run, ...]
+    data_hash: str = ""
+    controller: Controller | None = None
+    limits: str | None = None
+    notices: tuple[str, ...] = ()  # what reading changed or assumed, in words
+
+    def of_use(self, use: str) -> tuple[Run, ...]:
+        """The runs of one use, "fit" or "verify"."""
+        return tuple(run for run in self.runs if run.use == use)

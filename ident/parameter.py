@@ -1,0 +1,44 @@
+"""A quantity that a fit may find: symbol, unit, bounds, off value, meaning."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from ident.errors import Unusable
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A model parameter in SI.
+
+    `name` is its identifier in equations, results and requests; `symbol` how it is written in the literature;
+    `lower` and `upper` are the physical bounds of the search; `value` is the default (for a strength: 0, off).
+    A range of more than two decades is searched on a logarithmic scale, any other on a linear one.
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    lower: float
+    upper: float
+    value: float
+    meaning: str
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.lower < self.upper:
+            raise Unusable(
+                "empty-bounds",
+                f"lower bound {self.lower:g} is not below upper bound {self.upper:g} {self.unit}",
+                f"parameter {self.name}",
+                "give bounds as NAME=LOWER:UPPER with LOWER < UPPER",
+            )
+
+    @property
+    def logarithmic(self) -> bool:
+        """True where the range spans more than two decades of one sign."""
+        return self.lower > 0 and self.upper > 100 * self.lower
+
+    def within(self, lower: float, upper: float) -> Parameter:
+        """The same parameter with other bounds."""
+        return replace(self, lower=lower, upper=upper)

@@ -1,0 +1,28 @@
+"""How long work tells its caller where it is, and how the caller stops it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Progress:
+    """One report of long work.
+
+    `stage` is a phrase for the user ("search", "polish"), `done` of `total` its steps, `error` the best value of
+    eq. (17) so far, where there is one.
+    """
+
+    stage: str
+    done: int
+    total: int
+    error: float | None = None
+
+
+Report = Callable[[Progress], None]
+"""Called at every step; it stops the work by raising :class:`ident.errors.Cancelled`."""
+
+
+def silent(progress: Progress) -> None:
+    """Report nothing."""
