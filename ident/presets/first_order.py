@@ -1,0 +1,31 @@
+"""The first-order closed-loop model k / (τ s + 1) of the hybrid-simulation paper: what a tracking filter follows."""
+
+from ident.chain import Chain
+from ident.parameter import Parameter
+from ident.presets.preset import Preset, Scale
+from ident.stages import IDEAL_SENSOR, Quantity
+from ident.stages.stage import stage
+
+TRACKING_LAG = stage(
+    "load",
+    (Quantity("x", "m", "position"),),
+    ("x' = (gain * u - x) / tau", "the closed loop follows its command like a single lag"),
+)
+
+FIRST_ORDER = Preset(
+    name="first_order",
+    title="First-order tracking",
+    citation=(
+        "S. Strano, M. Terzo et al.: servo-hydraulic hybrid simulation with an extended Kalman filter; "
+        "closed-loop model τyr y' + y = kyr r."
+    ),
+    chain=Chain(
+        stages=(TRACKING_LAG, IDEAL_SENSOR),
+        outputs={"displacement": "y", "load_pressure": "y", "force": "y"},
+    ),
+    parameters=(
+        Parameter("gain", "kyr", "1", 1e-2, 1e2, 1.0, "static gain from command to output"),
+        Parameter("tau", "τyr", "s", 1e-4, 1e1, 1e-2, "time constant of the closed loop"),
+    ),
+    scales=(Scale("gain", "1", 1e-2, 1e2), Scale("tau", "1 / W", 1e-3, 1e3)),
+)
