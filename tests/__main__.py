@@ -1,0 +1,39 @@
+"""`python3 -m tests`: set up what is needed, then run the tests; arguments go to pytest."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from app.environment import enter, say
+
+SYSTEM_PACKAGES = {"chromium": "usr/bin/chromium", "postgresql": "usr/lib/postgresql/*/bin/pg_ctl"}
+"""Debian packages that some tests need, and the program by which each is recognised."""
+
+
+def install_system_packages() -> None:
+    """Install what is missing, where this user may; the tests that need the rest skip and say why."""
+    missing = [name for name, program in SYSTEM_PACKAGES.items() if not any(Path("/").glob(program))]
+    if not missing:
+        return
+    if shutil.which("apt-get") is None or os.geteuid() != 0:
+        say(f"not installed: {', '.join(missing)} (this needs apt-get and root); tests that need it are skipped")
+        return
+    say(f"installing {', '.join(missing)} with apt-get")
+    environment = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
+    for command in (["apt-get", "update"], ["apt-get", "install", "-y", "--no-install-recommends", *missing]):
+        done = subprocess.run(
+            command, env=environment, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL
+        )
+        if done.returncode:
+            reason = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
+            say(f"{' '.join(command[:2])} failed: {reason}; tests that need {', '.join(missing)} are skipped")
+            return
+
+
+if __name__ == "__main__":
+    install_system_packages()
+    enter("requirements-tests.lock", ["-m", "pytest", *sys.argv[1:]])
