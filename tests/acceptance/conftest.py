@@ -1,0 +1,68 @@
+"""Matrices from the independent reference, in memory, for the program under test."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+import pytest
+import qian_reference as reference
+
+from ident.matrix import Actuator, Matrix, Run, Specimen
+
+NOISE = 0.005
+
+
+def as_run(record: reference.Record, hold: str) -> Run:
+    """A record of the reference as the program reads it."""
+    cell = record.trial.cell
+    return Run(
+        id=record.trial.id,
+        file="",
+        sample_rate=reference.SAMPLE_RATE,
+        channels={"command": record.command, "displacement": record.displacement},
+        units={"command": "m", "displacement": "m"},
+        specimen=Specimen(cell.mass, cell.stiffness, cell.damping),
+        gain=cell.gain,
+        amplitude=record.trial.amplitude,
+        kind="blwn",
+        hold=hold,
+        use=record.trial.use,
+    )
+
+
+def as_matrix(records: Sequence[reference.Record], hold: str) -> Matrix:
+    """A matrix of runs on the actuator of the paper."""
+    actuator = Actuator(serial="REFERENCE-1", piston_area=reference.Plant().A)
+    return Matrix(actuator, tuple(as_run(record, hold) for record in records), data_hash="0" * 64)
+
+
+@lru_cache(maxsize=2)
+def records_of(seconds: float, hold: str, seed: int = 1) -> tuple[reference.Record, ...]:
+    """The 63 + 21 runs at Table 4's parameters with 0.5 % noise."""
+    plant = reference.Plant()
+    return tuple(reference.measure_all(plant, reference.trials(), seconds=seconds, noise=NOISE, seed=seed, hold=hold))
+
+
+@pytest.fixture(params=["linear", "zoh"])
+def hold(request: pytest.FixtureRequest) -> str:
+    """What the command does between samples."""
+    return str(request.param)
+
+
+@pytest.fixture
+def seconds(full: bool) -> float:
+    """Length of a run: 30 s in the full form, 2 s in the short one."""
+    return 30.0 if full else 2.0
+
+
+@pytest.fixture
+def records(seconds: float, hold: str) -> tuple[reference.Record, ...]:
+    """The paper's 84 runs from the reference."""
+    return records_of(seconds, hold)
+
+
+@pytest.fixture
+def matrix(records: tuple[reference.Record, ...], hold: str) -> Matrix:
+    """The same runs as the program reads them."""
+    return as_matrix(records, hold)
