@@ -1,15 +1,13 @@
-"""What several test folders share: the independent reference, the measured data, the long forms of slow tests."""
+"""What several test folders share: the measured data, the long forms of slow tests."""
 
 from __future__ import annotations
 
 import os
-import sys
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "tests" / "reference"))  # so that any test may import qian_reference
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

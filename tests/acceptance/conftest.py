@@ -1,47 +1,12 @@
-"""Matrices from the independent reference, in memory, for the program under test."""
+"""The paper's matrix from the independent reference, for each kind of command."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import lru_cache
-
 import pytest
-import qian_reference as reference
 
-from ident.matrix import Actuator, Matrix, Run, Specimen
-
-NOISE = 0.005
-
-
-def as_run(record: reference.Record, hold: str) -> Run:
-    """A record of the reference as the program reads it."""
-    cell = record.trial.cell
-    return Run(
-        id=record.trial.id,
-        file="",
-        sample_rate=reference.SAMPLE_RATE,
-        channels={"command": record.command, "displacement": record.displacement},
-        units={"command": "m", "displacement": "m"},
-        specimen=Specimen(cell.mass, cell.stiffness, cell.damping),
-        gain=cell.gain,
-        amplitude=record.trial.amplitude,
-        kind="blwn",
-        hold=hold,
-        use=record.trial.use,
-    )
-
-
-def as_matrix(records: Sequence[reference.Record], hold: str) -> Matrix:
-    """A matrix of runs on the actuator of the paper."""
-    actuator = Actuator(serial="REFERENCE-1", piston_area=reference.Plant().A)
-    return Matrix(actuator, tuple(as_run(record, hold) for record in records), data_hash="0" * 64)
-
-
-@lru_cache(maxsize=2)
-def records_of(seconds: float, hold: str, seed: int = 1) -> tuple[reference.Record, ...]:
-    """The 63 + 21 runs at Table 4's parameters with 0.5 % noise."""
-    plant = reference.Plant()
-    return tuple(reference.measure_all(plant, reference.trials(), seconds=seconds, noise=NOISE, seed=seed, hold=hold))
+from ident.matrix import Matrix
+from tests.acceptance.matrices import as_matrix, records_of
+from tests.reference import qian_reference as reference
 
 
 @pytest.fixture(params=["linear", "zoh"])

@@ -8,12 +8,12 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-import qian_reference as reference
 
 from ident.chain import Chain
 from ident.expression import Equation
 from ident.presets import PRESETS
 from ident.simulate import discretise, respond
+from tests.reference import qian_reference as reference
 
 CHAIN = PRESETS["qian2014"].chain
 INCH = 0.0254

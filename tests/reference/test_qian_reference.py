@@ -10,8 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import qian_reference as reference
 from scipy.integrate import solve_ivp
+
+from tests.reference import qian_reference as reference
 
 SOURCE = Path(reference.__file__)
 PROJECT = {"ident", "app", "schemas", "migrations", "benchmarks", "tests"}

@@ -1,0 +1,1 @@
+"""What the program promises, held against the independent reference and measured data."""

@@ -1,0 +1,1 @@
+"""An independent judge: the whole model in one flat file, and its own tests."""
