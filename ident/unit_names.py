@@ -1,0 +1,84 @@
+"""The units that a test bench writes, as definitions for pint.
+
+pint's own list is not used: it reads ``Nm`` as number-metres, ``G`` as gauss, ``mil`` as an angle and ``ton`` as the
+US short ton. What is not here is unknown, and an unknown unit is an error, never a guess.
+"""
+
+PREFIXES = """
+pico- = 1e-12 = p-
+nano- = 1e-9 = n-
+micro- = 1e-6 = µ- = u-
+milli- = 1e-3 = m-
+centi- = 1e-2 = c-
+deci- = 1e-1 = d-
+deca- = 10 = da-
+hecto- = 100 = h-
+kilo- = 1e3 = k-
+mega- = 1e6 = M-
+giga- = 1e9 = G-
+"""
+
+BASE = """
+meter = [length] = m = metre = meters = metres
+kilogram = [mass] = kg = kilograms = Kg
+second = [time] = s = sec = seconds = secs
+ampere = [current] = A = amp = amps = amperes
+kelvin = [temperature]; offset: 0 = K
+degree_Celsius = kelvin; offset: 273.15 = degC = celsius
+degree_Fahrenheit = 5 / 9 * kelvin; offset: 233.15 + 200 / 9 = degF = fahrenheit
+sample = [sample] = samples = Sa
+"""
+
+DERIVED = """
+gram = 1e-3 * kilogram = g = grams
+tonne = 1000 * kilogram = t = metric_ton
+pound = 0.45359237 * kilogram = lb = lbs = lbm
+standard_gravity = 9.80665 * meter / second ** 2 = g_0 = g_n = gn
+newton = kilogram * meter / second ** 2 = N = newtons
+pound_force = pound * standard_gravity = lbf
+slug = pound_force * second ** 2 / foot
+kip = 1000 * pound_force = kips
+gram_force = gram * standard_gravity = gf
+kilogram_force = kilogram * standard_gravity = kgf = kilopond
+tonne_force = tonne * standard_gravity = tf = tonf
+inch = 0.0254 * meter = in = inches
+foot = 12 * inch = ft = feet
+mil = 1e-3 * inch = thou = mils
+micron = 1e-6 * meter
+liter = 1e-3 * meter ** 3 = l = L = litre = liters = litres
+cc = 1e-6 * meter ** 3
+gallon = 231 * inch ** 3 = gal
+minute = 60 * second = min = minutes
+hour = 3600 * second = h = hours
+hertz = 1 / second = Hz
+sps = 1 / second
+pascal = newton / meter ** 2 = Pa = pascals
+bar = 1e5 * pascal
+psi = pound_force / inch ** 2
+ksi = 1000 * psi
+atm = 101325 * pascal = atmosphere
+technical_atmosphere = kilogram_force / (1e-2 * meter) ** 2 = at
+mmHg = 133.322387415 * pascal
+joule = newton * meter = J
+watt = joule / second = W
+volt = watt / ampere = V = volts
+newton_meter = newton * meter = Nm
+lpm = liter / minute
+gpm = gallon / minute
+percent = 0.01
+radian = 1 = rad
+degree = 0.017453292519943295 = deg
+revolution = 6.283185307179586 = rev
+rpm = revolution / minute
+"""
+
+ANGLES = frozenset({"radian", "rad", "degree", "deg", "revolution", "rev", "rpm"})
+"""Dimensionless for pint, so that rad/s would pass for Hz and be wrong by 2π."""
+
+SPELLINGS = {
+    "%": "percent", "°C": "degC", "°F": "degF", '"': "inch", "hz": "Hz", "HZ": "Hz", "KHz": "kHz", "Khz": "kHz",
+    "khz": "kHz", "KN": "kN", "Kn": "kN", "MPA": "MPa", "Mpa": "MPa", "KPa": "kPa", "kpa": "kPa",
+    "KPA": "kPa", "PSI": "psi", "Psi": "psi", "KSI": "ksi", "KG": "kg", "IN": "in", "″": "inch", "μm": "µm",
+    "MM": "mm", "CM": "cm", "Bar": "bar", "BAR": "bar", "Volt": "V", "Volts": "V", "Newton": "N", "Pascal": "Pa",
+}  # fmt: skip
+"""Ways of writing that leave no doubt about what is meant."""
