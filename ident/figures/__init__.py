@@ -1,0 +1,84 @@
+"""Results in, charts out: one figure a file, one definition for page, SVG, PNG and PDF."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from ident.compare import Comparison, compare
+from ident.errors import Unusable
+from ident.figures.bode import bode, readable
+from ident.figures.choose import chosen, wish
+from ident.figures.evolution import evolution
+from ident.figures.look import Look, look
+from ident.figures.render import MEDIA, Chart, render
+from ident.figures.sensitivity import loaded, sensitivity
+from ident.figures.time import time, typical
+from ident.fit.result import FitResult
+from ident.matrix import Matrix, Run
+
+__all__ = ["FIGURES", "MEDIA", "Chart", "figure", "render"]
+
+
+def figure(name: str, matrix: Matrix, fit: FitResult, theme: str = "light", **options: Any) -> Chart:
+    """The chart of that name, "light" or "dark"; only what it shows is computed.
+
+    Options, all optional: bode takes run, kp, amplitude, specimen, use, axis; time takes run, start, seconds;
+    evolution takes x, y, generations; sensitivity takes run. Raises Unusable for an unknown name, theme or option.
+    """
+    if name not in FIGURES:
+        raise Unusable("unknown-figure", f"no figure {name!r}", "figure", f"use one of {', '.join(FIGURES)}")
+    draw, known = FIGURES[name]
+    for option in options:
+        if option not in known:
+            raise Unusable("unknown-option", f"no option {option!r}", f"figure {name}", f"use {', '.join(known)}")
+    return draw(matrix, fit, look(theme), options)
+
+
+def _bode(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) -> Chart:
+    filters = {name: value for name, value in options.items() if name != "axis"}
+    candidates = chosen(matrix, wish(**filters))
+    shown = _compared(matrix, fit, readable(candidates))
+    return bode(shown.runs, matrix.actuator, fit, of, axis=options.get("axis") or "log", candidates=len(candidates))
+
+
+def _time(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) -> Chart:
+    run = _one(matrix, options) or typical(matrix, fit)
+    (shown,) = _compared(matrix, fit, (run,)).runs
+    return time(shown, matrix.actuator, fit, of, start=_number(options, "start"), seconds=_number(options, "seconds"))
+
+
+def _evolution(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) -> Chart:
+    return evolution(matrix.actuator, fit, of, **options)
+
+
+def _sensitivity(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) -> Chart:
+    run = _one(matrix, options) or loaded(matrix.of_use("verify") or matrix.runs)
+    return sensitivity(run, matrix.actuator, fit, of)
+
+
+FIGURES: Mapping[str, tuple[Callable[[Matrix, FitResult, Look, Mapping[str, Any]], Chart], tuple[str, ...]]] = {
+    "bode": (_bode, ("run", "kp", "amplitude", "specimen", "use", "axis")),
+    "time": (_time, ("run", "start", "seconds")),
+    "evolution": (_evolution, ("x", "y", "generations")),
+    "sensitivity": (_sensitivity, ("run",)),
+}
+"""Figures by name, each with the options that it takes."""
+
+
+def _compared(matrix: Matrix, fit: FitResult, runs: tuple[Run, ...]) -> Comparison:
+    return compare(replace(matrix, runs=runs), fit)
+
+
+def _one(matrix: Matrix, options: Mapping[str, Any]) -> Run | None:
+    """The run that was asked for by its id."""
+    return None if not options.get("run") else chosen(matrix, wish(run=options["run"]))[0]
+
+
+def _number(options: Mapping[str, Any], name: str) -> float | None:
+    value = options.get(name)
+    try:
+        return None if value in (None, "") else float(value)
+    except (TypeError, ValueError):
+        raise Unusable("not-a-number", f"{name} is {value!r}", "figure option", "give a number") from None

@@ -1,0 +1,156 @@
+"""How the transfer function moves with specimen mass, stiffness and gain (the paper's Figs. 5 to 7)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import altair as alt
+import numpy as np
+
+from ident.compare import response
+from ident.figures import words
+from ident.figures.look import Look
+from ident.figures.render import Chart
+from ident.figures.thin import decade_ticks, excited_band, significant
+from ident.fit.result import FitResult
+from ident.matrix import Actuator, Run, Specimen
+
+MULTIPLES = tuple(float(value) for value in np.geomspace(0.1, 10, 11))
+POINTS = 90
+
+Varied = Callable[[Run, float], Run]
+
+
+def loaded(runs: Sequence[Run]) -> Run:
+    """The run with the middle specimen among those with mass and stiffness, or simply the middle run."""
+    able = [run for run in runs if run.specimen and run.specimen.mass > 0 and run.specimen.stiffness > 0]
+    ordered = sorted(able, key=lambda run: _of(run).stiffness / _of(run).mass) or list(runs)
+    return ordered[len(ordered) // 2]
+
+
+def sensitivity(run: Run, actuator: Actuator, fit: FitResult, look: Look) -> Chart:
+    """Magnitude (dB) and phase (degrees) of the fitted model as one quantity of `run` goes from 0.1 to 10 times.
+
+    A quantity that the run does not state, or that is 0, has no column.
+    """
+    lower, upper = excited_band(run.command, run.sample_rate)
+    frequency = np.geomspace(max(lower, upper / 400), 1.25 * upper, POINTS)
+    varied = _variations(run)
+    tables = {name: _rows(vary, run, fit, frequency) for name, (_, vary) in varied.items()}
+    axes = _Axes(tables)
+    columns = [
+        _column(name, text, axes, look, first=place == 0, width=640 // len(varied))
+        for place, (name, (text, _)) in enumerate(varied.items())
+    ]
+    title = alt.TitleParams(
+        words.headline(actuator, "sensitivity of the frequency response"),
+        subtitle=[words.verdict(fit), f"About {words.describe(run)}, which is drawn dashed"],
+    )
+    return (
+        alt.concat(
+            *(panel for row in zip(*columns, strict=True) for panel in row),
+            columns=len(varied),
+            spacing={"row": 12, "column": 22},
+            bounds="flush",
+            datasets=tables,
+            title=title,
+        )
+        .resolve_scale(color="shared")
+        .configure(**look.config())
+    )
+
+
+def _variations(run: Run) -> dict[str, tuple[str, Varied]]:
+    """What can be varied on this run: heading with the run's own value, and how."""
+    varied: dict[str, tuple[str, Varied]] = {}
+    specimen = run.specimen
+    if specimen is not None and specimen.mass > 0:
+        varied["mass"] = (f"Specimen mass, 1 × = {specimen.mass:.4g} kg", _with_mass)
+    if specimen is not None and specimen.stiffness > 0:
+        varied["stiffness"] = (f"Specimen stiffness, 1 × = {specimen.stiffness / 1000:.4g} kN/m", _with_stiffness)
+    stated = f"{run.Kp:g}" if run.gain is not None else "1 (not stated)"
+    varied["gain"] = (f"Gain Kp, 1 × = {stated}", _with_gain)
+    return varied
+
+
+def _of(run: Run) -> Specimen:
+    return run.specimen or Specimen()
+
+
+def _with_mass(run: Run, factor: float) -> Run:
+    return replace(run, specimen=replace(_of(run), mass=factor * _of(run).mass))
+
+
+def _with_stiffness(run: Run, factor: float) -> Run:
+    return replace(run, specimen=replace(_of(run), stiffness=factor * _of(run).stiffness))
+
+
+def _with_gain(run: Run, factor: float) -> Run:
+    return replace(run, gain=factor * run.Kp)
+
+
+def _rows(
+    vary: Varied, run: Run, fit: FitResult, frequency: np.ndarray[Any, np.dtype[np.float64]]
+) -> list[dict[str, Any]]:
+    """f frequency, a magnitude (dB), p phase (deg), x multiple."""
+    rows: list[dict[str, Any]] = []
+    for multiple in MULTIPLES:
+        answer = response(fit.model, fit.values, vary(run, multiple), frequency)
+        magnitude = significant(20 * np.log10(np.abs(answer)), 4)
+        phase = significant(np.degrees(np.unwrap(np.angle(answer))), 4)
+        x = float(f"{multiple:.3g}")
+        rows += [
+            {"f": f, "a": a, "p": p, "x": x}
+            for f, a, p in zip(significant(frequency, 4), magnitude, phase, strict=True)
+        ]
+    return rows
+
+
+class _Axes:
+    """Scales common to all columns, so that they can be compared."""
+
+    def __init__(self, tables: Mapping[str, list[dict[str, Any]]]) -> None:
+        rows = [row for table in tables.values() for row in table]
+        self.frequency = [rows[0]["f"], rows[-1]["f"]]
+        self.limits = {
+            field: [min(row[field] for row in rows), max(row[field] for row in rows)] for field in ("a", "p")
+        }
+
+    def x(self, named: bool) -> alt.X:
+        ticks = decade_ticks(*self.frequency)
+        axis = alt.Axis(labels=named, title="Frequency (Hz)" if named else None, values=ticks, format="~r")
+        return alt.X("f:Q", scale=alt.Scale(type="log", domain=self.frequency, nice=False), axis=axis)
+
+    def y(self, field: str, title: str, first: bool) -> alt.Y:
+        scale = alt.Scale(domain=self.limits[field], nice=True, zero=False)
+        return alt.Y(
+            f"{field}:Q", scale=scale, axis=alt.Axis(title=title if first else None, labels=first, tickCount=6)
+        )
+
+
+def _column(name: str, text: str, axes: _Axes, look: Look, *, first: bool, width: int) -> list[alt.LayerChart]:
+    data = alt.NamedData(name)
+    magnitude = _panel(data, axes.x(named=False), axes.y("a", "Magnitude (dB)", first), look, width)
+    phase = _panel(data, axes.x(named=True), axes.y("p", "Phase (°)", first), look, width)
+    return [magnitude.properties(title=alt.TitleParams(text, fontSize=12, offset=6, frame="group")), phase]
+
+
+def _panel(data: alt.NamedData, x: alt.X, y: alt.Y, look: Look, width: int) -> alt.LayerChart:
+    legend = alt.Legend(
+        title="× run's value", orient="right", values=[0.1, 0.3, 1, 3, 10], format="~g", gradientLength=180
+    )
+    scale = alt.Scale(type="log", domain=[0.1, 10], range=list(look.ramp))
+    lines = (
+        alt.Chart(data)
+        .mark_line(strokeWidth=1.3)
+        .encode(x=x, y=y, color=alt.Color("x:Q", scale=scale, legend=legend), detail="x:Q")
+    )
+    own = (
+        alt.Chart(data)
+        .transform_filter("datum.x == 1")
+        .mark_line(strokeWidth=2, color=look.ink, strokeDash=[5, 3])
+        .encode(x=x, y=y)
+    )
+    return (lines + own).properties(width=width, height=190)

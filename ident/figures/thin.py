@@ -1,0 +1,61 @@
+"""Fewer points with the same picture, so that a figure's data stay small."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+Places = NDArray[np.intp]
+
+
+def spread(frequency: Real, lower: float, upper: float, count: int, logarithmic: bool) -> Places:
+    """Indices of at most `count` of the given frequencies, evenly spaced on a logarithmic or linear axis."""
+    inside = np.flatnonzero((frequency >= lower) & (frequency <= upper) & (frequency > 0))
+    if len(inside) <= count:
+        return inside
+    first, last = frequency[inside[0]], frequency[inside[-1]]
+    wanted = np.geomspace(first, last, count) if logarithmic else np.linspace(first, last, count)
+    right = np.clip(np.searchsorted(frequency[inside], wanted), 1, len(inside) - 1)
+    nearer_left = wanted - frequency[inside[right - 1]] < frequency[inside[right]] - wanted
+    return np.unique(inside[right - nearer_left])
+
+
+def envelope(signal: Real, bins: int) -> Places:
+    """Indices of the extremes of each of `bins` equal stretches: peaks survive, shape (<= 2 bins + 2,)."""
+    n = len(signal)
+    if n <= 2 * bins:
+        return np.arange(n)
+    edges = np.linspace(0, n, bins + 1).astype(np.intp)
+    pairs = [
+        (start + int(np.argmin(signal[start:stop])), start + int(np.argmax(signal[start:stop])))
+        for start, stop in itertools.pairwise(edges)
+    ]
+    return np.unique(np.array([0, *(place for pair in pairs for place in pair), n - 1]))
+
+
+def significant(values: Real, digits: int = 5) -> list[float]:
+    """Values rounded to so many significant digits, as plain floats; what is not finite becomes NaN."""
+    return [float(f"{value:.{digits}g}") if np.isfinite(value) else float("nan") for value in values]
+
+
+def excited_band(command: Real, sample_rate: float) -> tuple[float, float]:
+    """(lowest, highest) frequency between which 99.8 % of the command's power lies, in the unit of `sample_rate`."""
+    power = np.abs(np.fft.rfft(command - command.mean())) ** 2
+    total = float(power.sum())
+    frequency = np.fft.rfftfreq(len(command), 1 / sample_rate)
+    if total == 0 or len(frequency) < 3:
+        return float(frequency[min(1, len(frequency) - 1)]), float(frequency[-1])
+    share = np.cumsum(power) / total
+    low, high = np.searchsorted(share, [0.001, 0.999])
+    return float(frequency[max(low, 1)]), float(frequency[min(high + 1, len(frequency) - 1)])
+
+
+def decade_ticks(lower: float, upper: float) -> list[float]:
+    """1, 2, 5, 10, ... between two positive frequencies."""
+    first, last = math.floor(math.log10(lower)), math.ceil(math.log10(upper))
+    steps = [float(f"{step}e{power}") for power in range(first, last + 1) for step in (1, 2, 5)]
+    return [step for step in steps if lower <= step <= upper]

@@ -1,0 +1,136 @@
+"""A stretch of one run in time: command, measured, model, and what is left (the paper's Fig. 15)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import altair as alt
+import numpy as np
+
+from ident.compare import RunComparison
+from ident.errors import Unusable
+from ident.figures import words
+from ident.figures.look import Look
+from ident.figures.render import Chart
+from ident.figures.thin import Real, envelope, significant
+from ident.fit.result import FitResult
+from ident.matrix import Actuator, Matrix, Run
+
+BINS = 350  # stretches of which smallest and largest sample are kept
+_DASHES = {"command": [2, 2], "measured": [1, 0], "model": [6, 3]}
+PERIODS = 12  # of the command's mean period, shown where no length is asked for
+
+
+def typical(matrix: Matrix, fit: FitResult) -> Run:
+    """The verify run (or, without one, the run) whose error is the middle one."""
+    runs = matrix.of_use("verify") or matrix.runs
+    errors = {entry.id: entry.error for entry in fit.runs}
+    ordered = sorted(runs, key=lambda run: errors.get(run.id, 0.0))
+    return ordered[len(ordered) // 2]
+
+
+def time(
+    compared: RunComparison,
+    actuator: Actuator,
+    fit: FitResult,
+    look: Look,
+    *,
+    start: float | None = None,
+    seconds: float | None = None,
+) -> Chart:
+    """Command, measured and model over time, the residual below on its own scale.
+
+    `start` and `seconds` are in s (or samples where the clock is unknown); by default twelve mean periods of the
+    command, a third into the record. Long stretches keep the extremes of each of 350 parts.
+    """
+    run = compared.run
+    window = _window(run, start, seconds)
+    unit = run.units.get(run.output, "m")
+    residual = run.measured - compared.modelled
+    factor, printed = words.engineering(run.measured[window], unit)
+    fine, small = words.engineering(residual[window], unit)
+    signals = {"measured": run.measured, "model": compared.modelled}
+    if run.units.get("command", "m") == unit:
+        signals = {"command": run.command} | signals
+    upper = _traces(tuple(signals), run, window, look, printed)
+    lower = _residual(run, window, look, small)
+    left = f"error {words.percent(compared.error)}, offset {words.percent(compared.offset)}"
+    title = alt.TitleParams(
+        words.headline(actuator, "time record, measured and model"),
+        subtitle=[words.verdict(fit), f"{words.describe(run)}: {left}"],
+    )
+    rows = {"traces": _table(signals, factor, run, window), "residual": _rows(fine * residual, run, window)}
+    return alt.vconcat(upper, lower, title=title, spacing=8, datasets=rows).configure(**look.config())
+
+
+def _window(run: Run, start: float | None, seconds: float | None) -> slice:
+    """The samples to show; raises Unusable for a stretch outside the record."""
+    length = seconds if seconds is not None else _twelve_periods(run)
+    first = start if start is not None else max(0.0, min(run.duration / 3, run.duration - length))
+    if not (0 <= first < run.duration and length > 0):
+        stretch = f"a stretch of {length:g} from {first:g}"
+        raise Unusable("outside-record", stretch, f"run {run.id}", f"stay within 0 to {run.duration:g}")
+    begin = round(first * run.sample_rate)
+    return slice(begin, min(run.length, begin + max(2, round(length * run.sample_rate))))
+
+
+def _twelve_periods(run: Run) -> float:
+    """Twelve mean periods of the command, from its crossings of the mean, on a 1-2-5 scale."""
+    signal = run.command - run.command.mean()
+    crossings = int(np.count_nonzero(np.diff(np.signbit(signal))))
+    length = min(PERIODS * 2 * run.duration / max(crossings, 1), run.duration)
+    decade = 10.0 ** np.floor(np.log10(length))
+    return float(decade * max(step for step in (1, 2, 5) if step * decade <= length * (1 + 1e-9)))
+
+
+def _rows(signal: Real, run: Run, window: slice, **more: str) -> list[dict[str, Any]]:
+    places = envelope(signal[window], BINS)
+    times = (window.start + places) / run.sample_rate
+    values = significant(signal[window][places], 5)
+    return [{"t": t, "y": y, **more} for t, y in zip(np.round(times, 6).tolist(), values, strict=True)]
+
+
+def _clock(run: Run, window: slice, title: bool) -> alt.X:
+    unit = "s" if run.time_unit == "s" else "samples"
+    ends = [window.start / run.sample_rate, (window.stop - 1) / run.sample_rate]
+    axis = alt.Axis(labels=title, title=f"Time ({unit})" if title else None, tickCount=8)
+    return alt.X("t:Q", scale=alt.Scale(domain=ends, nice=False), axis=axis)
+
+
+def _table(signals: Mapping[str, Real], factor: float, run: Run, window: slice) -> list[dict[str, Any]]:
+    return [row for name, signal in signals.items() for row in _rows(factor * signal, run, window, s=name)]
+
+
+def _traces(shown: Sequence[str], run: Run, window: slice, look: Look, unit: str) -> alt.Chart:
+    colours = {"command": look.faint, "measured": look.series[0], "model": look.series[1]}
+    colour = alt.Color(
+        "s:N",
+        scale=alt.Scale(domain=list(shown), range=[colours[name] for name in shown]),
+        legend=alt.Legend(title=None, orient="top", symbolType="stroke", symbolStrokeWidth=2, symbolSize=500, offset=4),
+    )
+    dashes = alt.StrokeDash(
+        "s:N", scale=alt.Scale(domain=list(shown), range=[_DASHES[name] for name in shown]), legend=None
+    )
+    name = run.output.replace("_", " ").capitalize()
+    return (
+        alt.Chart(alt.NamedData("traces"), width=720, height=240)
+        .mark_line(strokeWidth=1.5)
+        .encode(
+            x=_clock(run, window, title=False),
+            y=alt.Y("y:Q", title=words.axis(name, unit), scale=alt.Scale(zero=False)),
+            color=colour,
+            strokeDash=dashes,
+        )
+    )
+
+
+def _residual(run: Run, window: slice, look: Look, unit: str) -> alt.Chart:
+    return (
+        alt.Chart(alt.NamedData("residual"), width=720, height=110)
+        .mark_line(strokeWidth=1.1, color=look.series[2])
+        .encode(
+            x=_clock(run, window, title=True),
+            y=alt.Y("y:Q", title=words.axis("Measured − model", unit), axis=alt.Axis(tickCount=4)),
+        )
+    )

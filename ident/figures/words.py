@@ -1,0 +1,89 @@
+"""The numbers and names that figures print, each with its unit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from ident.fit.result import FitResult
+from ident.matrix import Actuator, Run, Specimen
+
+_TIDY = {"^3": "³", "^2": "²", "*": "·"}  # a raised 4 is missing from too many fonts
+
+
+def percent(fraction: float | None) -> str:
+    """0.0407 → "4.07 %"; three significant digits, "unknown" where there is none."""
+    return "unknown" if fraction is None or not math.isfinite(fraction) else f"{100 * fraction:.3g} %"
+
+
+def tidy_unit(unit: str) -> str:
+    """``m^3/(s*Pa)`` → m³/(s·Pa)."""
+    for plain, printed in _TIDY.items():
+        unit = unit.replace(plain, printed)
+    return unit
+
+
+def engineering(values: Iterable[float], unit: str) -> tuple[float, str]:
+    """(factor, unit) that bring the largest of `values` into a readable range: 2.6e-6 m^4/s → (1e6, "1e-6 m^4/s")."""
+    largest = max((abs(value) for value in values), default=0.0)
+    readable = largest == 0 or not math.isfinite(largest) or 0.1 <= largest < 1e4
+    power = 0 if readable else 3 * math.floor(math.log10(largest) / 3)
+    printed = tidy_unit(unit)
+    if power == 0:
+        return 1.0, printed
+    prefixed = {("m", -3): "mm", ("m", -6): "µm", ("s", -3): "ms", ("N", 3): "kN", ("Pa", 3): "kPa", ("Pa", 6): "MPa"}
+    scale = f"1e{power}"  # no raised minus: not every font has it
+    dimensionless = scale if unit in ("", "1") else f"{scale} {printed}"
+    return 10.0**-power, prefixed.get((unit, power), dimensionless)
+
+
+def axis(name: str, unit: str) -> str:
+    """An axis title: name and unit."""
+    return f"{name} ({unit})" if unit not in ("", "1") else f"{name} (–)"
+
+
+def specimen(of: Specimen | None) -> str:
+    """A specimen as legends print it."""
+    if of is None:
+        return "specimen not stated"
+    if of.mass == 0 and of.stiffness == 0:
+        return "no specimen"
+    return f"{of.mass:.4g} kg, {of.stiffness / 1000:.4g} kN/m"
+
+
+def amplitude(of: float | None, unit: str = "m") -> str:
+    """An RMS amplitude as legends print it."""
+    if of is None:
+        return "amplitude not stated"
+    return f"{1000 * of:.4g} mm" if unit == "m" else f"{of:.4g} {unit}"
+
+
+def gain(of: float | None) -> str:
+    """A loop gain as facets print it."""
+    return "Kp not stated" if of is None else f"Kp {of:g}"
+
+
+def headline(actuator: Actuator, what: str) -> str:
+    """A figure's title."""
+    return f"{actuator.serial} · {what}"
+
+
+def verdict(fit: FitResult) -> str:
+    """Model and errors in one line."""
+    model = " + ".join((fit.model, *fit.effects))
+    errors = ", ".join(
+        f"{percent(fit.error[use])} {use}" for use in ("fit", "verify") if fit.error.get(use) is not None
+    )
+    return f"Model {model}, error {errors or 'unknown'}"
+
+
+def describe(run: Run) -> str:
+    """A run in one line: id, gain, amplitude, specimen, as far as stated."""
+    parts = [f"run {run.id}"]
+    if run.gain is not None:
+        parts.append(gain(run.gain))
+    if run.amplitude is not None:
+        parts.append(f"{amplitude(run.amplitude, run.units.get('command', 'm'))} RMS")
+    if run.specimen is not None:
+        parts.append(specimen(run.specimen))
+    return ", ".join(parts)
