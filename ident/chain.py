@@ -46,32 +46,53 @@ def conditions(run: Run, actuator: Actuator) -> dict[str, float]:
 class LinearModel:
     """ẋ = A x + B u, y = C x + D u for a batch of parameter vectors and runs.
 
-    Shapes: A (..., n, n), B (..., n), C (..., n), D (...).
+    `system` is [[A, B], [C, D]], shape (n + 1, n + 1, ...), the batch last: one coefficient of the whole batch lies
+    together in memory. A (..., n, n), B (..., n), C (..., n) and D (...) are views of it.
     """
 
-    A: Array
-    B: Array
-    C: Array
-    D: Array
+    system: Array
+
+    @classmethod
+    def of(cls, A: Array, B: Array, C: Array, D: Array) -> LinearModel:
+        """From batches of matrices of the shapes above."""
+        top = np.concatenate([A, B[..., None]], axis=-1)
+        bottom = np.concatenate([C, D[..., None]], axis=-1)[..., None, :]
+        return cls(np.moveaxis(np.concatenate([top, bottom], axis=-2), (-2, -1), (0, 1)))
+
+    @property
+    def A(self) -> Array:
+        """System matrix (..., n, n)."""
+        return np.moveaxis(self.system[:-1, :-1], (0, 1), (-2, -1))
+
+    @property
+    def B(self) -> Array:
+        """Input vector (..., n)."""
+        return np.moveaxis(self.system[:-1, -1], 0, -1)
+
+    @property
+    def C(self) -> Array:
+        """Output vector (..., n)."""
+        return np.moveaxis(self.system[-1, :-1], 0, -1)
+
+    @property
+    def D(self) -> Array:
+        """Feed-through (...)."""
+        return self.system[-1, -1]
 
     def frequency_response(self, frequency: Array) -> NDArray[np.complex128]:
         """G(jω) = C (jωI − A)⁻¹ B + D at `frequency` in Hz, shape (f,) → (..., f).
 
         The states are scaled first: in SI they differ by ten decades, which would cost digits in the solution.
         """
-        scale = np.abs(np.linalg.solve(self.A, self.B[..., None])[..., 0]) if self._invertible else np.ones(1)
-        scale = np.where(scale > 0, scale, 1.0)
-        A = self.A * scale[..., None, :] / scale[..., :, None]
-        B, C = self.B / scale, self.C * scale
         s = 2j * np.pi * np.asarray(frequency)
+        A, B, C = self.A, self.B, self.C
+        scale = np.abs(np.linalg.solve(np.abs(s).max() * np.eye(A.shape[-1]) - 1j * A, B[..., None])[..., 0])
+        scale = np.where(scale > 0, scale, 1.0)
+        A, B, C = A * scale[..., None, :] / scale[..., :, None], B / scale, C * scale
         resolvent = s[:, None, None] * np.eye(A.shape[-1]) - A[..., None, :, :]
         states = np.linalg.solve(resolvent, np.broadcast_to(B[..., None, :, None], (*resolvent.shape[:-1], 1)))[..., 0]
         response: NDArray[np.complex128] = np.einsum("...fn,...n->...f", states, C) + self.D[..., None]
         return response
-
-    @property
-    def _invertible(self) -> bool:
-        return bool(np.all(np.linalg.cond(self.A) < 1e300))
 
 
 @dataclass(frozen=True)
@@ -144,11 +165,16 @@ class Chain:
             )
         n, signal = len(self.states), self.outputs[output]
         shape = np.broadcast_shapes(*(np.shape(values[name]) for name in self.symbols))
-        columns, readings = np.zeros((*shape, n, n + 1)), np.zeros((*shape, n + 1))
+        system = np.zeros((n + 1, n + 1, *shape))
         for j in range(n + 1):
             unit = [float(i == j) for i in range(n)]
             rates, signals = self.evaluate(float(j == n), unit, values)
             for i, rate in enumerate(rates):
-                columns[..., i, j] = rate
-            readings[..., j] = signals[signal]
-        return LinearModel(columns[..., :n], columns[..., n], readings[..., :n], readings[..., n])
+                system[i, j] = rate
+            system[n, j] = signals[signal]
+        return LinearModel(system)
+
+    def pattern(self, output: str) -> tuple[tuple[bool, ...], ...]:
+        """Which entries of the system matrix can be other than zero, found at generic values of every symbol."""
+        generic = {name: np.sqrt(2.0 + i) for i, name in enumerate(self.symbols)}
+        return tuple(tuple(bool(entry) for entry in row) for row in self.linearise(generic, output).system)

@@ -1,0 +1,199 @@
+"""A run, reduced once to what eq. (17) needs of it for every linear model.
+
+The response of a stable linear chain is a combination of the responses of a fixed set of rational filters (a
+generalised orthonormal basis; Heuberger, Van den Hof, Wahlberg 2005). Each run's command is filtered once, sample by
+sample from the start of the record, so that start and end are exact and nothing is periodic or windowed. What is kept
+is a small matrix: with g = [Re G(jω_i), Im G(jω_i)] at fixed nodes ω_i,
+
+    Σ_k (x_m − x)² = |W g − d|² + rest
+
+holds for any model whose G the filters can represent; :meth:`Basis.doubt` says how far one is from that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.signal
+from numpy.typing import NDArray
+
+from ident.chain import LinearModel
+from ident.matrix import Run
+from ident.simulate import LANES, Recursion, advance, discretise
+
+Array = NDArray[np.float64]
+
+# All in units of the band edge W. Poles on a line of real part −0.12, 0.07 apart, resolve poles of the model down to a
+# damping of about 0.06 W; three real poles take the slow and the fast ends. Found by scanning random models in the
+# bounds of Table 2: error of representation 2e-5 at Table 4, below 1e-3 everywhere (docs/accuracy.md).
+_PAIR_DAMPING, _PAIR_SPACING, _PAIR_REACH = 0.12, 0.07, 1.5
+_REAL = (0.03, 2.0, 5.0)
+_NODES, _NODE_REACH, _BEYOND_BAND = 44, 1.6, 0.1
+_CHECKS = 6
+_BLOCK = 2048
+
+
+@dataclass(frozen=True)
+class Basis:
+    """Filters and frequency nodes for commands with power up to `band` (rad/s)."""
+
+    band: float
+
+    @cached_property
+    def filters(self) -> LinearModel:
+        """m filters of two states: (s + σ)/D and ω/D for each pair, D = (s + σ)² + ω², and β/(s + β)."""
+        sigma = _PAIR_DAMPING * self.band
+        omega = np.arange(_PAIR_SPACING / 2, _PAIR_REACH, _PAIR_SPACING) * self.band
+        beta = np.array(_REAL) * self.band
+        pairs, m = 2 * len(omega), 2 * len(omega) + len(beta)
+        A, B, C = np.zeros((m, 2, 2)), np.zeros((m, 2)), np.zeros((m, 2))
+        A[:pairs, 0, 0] = A[:pairs, 1, 1] = -sigma
+        A[:pairs, 0, 1], A[:pairs, 1, 0] = np.repeat(omega, 2), -np.repeat(omega, 2)
+        B[:pairs, 0] = self.band
+        C[0:pairs:2, 0] = C[1:pairs:2, 1] = 1.0
+        A[pairs:, 0, 0], A[pairs:, 1, 1] = -beta, -self.band
+        B[pairs:, 0], C[pairs:, 0] = beta, 1.0
+        return LinearModel.of(A, B, C, np.zeros(m))
+
+    @cached_property
+    def nodes(self) -> Array:
+        """Frequencies (rad/s) at which a model is evaluated: those that represent it, then those that check it."""
+        fit = (np.arange(_NODES) + 0.5) / _NODES * _NODE_REACH
+        check = (np.arange(_CHECKS) + 0.4) / _CHECKS
+        return np.concatenate([fit, check]) * self.band
+
+    @cached_property
+    def _at_nodes(self) -> NDArray[np.complex128]:
+        return self.filters.frequency_response(self.nodes / (2 * np.pi)).T
+
+    @cached_property
+    def expansion(self) -> Array:
+        """The filters' coefficients from the values at the nodes, (m, 2·nodes): least squares, the band counts most."""
+        weight = np.where(self.nodes[:_NODES] <= self.band, 1.0, _BEYOND_BAND)
+        F = self._at_nodes[:_NODES] * weight[:, None]
+        inverse = np.linalg.pinv(np.vstack([F.real, F.imag]), rcond=1e-8) * np.tile(weight, 2)
+        full = np.zeros((len(inverse), 2, len(self.nodes)))
+        full[:, :, :_NODES] = inverse.reshape(-1, 2, _NODES)
+        return full.reshape(len(inverse), -1)
+
+    @cached_property
+    def _check(self) -> Array:
+        """Values of the expansion at the checking nodes minus the model's own: zero for a model it can represent."""
+        F = self._at_nodes[_NODES:]
+        total = len(self.nodes)
+        residual = np.vstack([F.real, F.imag]) @ self.expansion
+        rows = np.arange(_CHECKS)
+        residual[rows, _NODES + rows] -= 1.0
+        residual[_CHECKS + rows, total + _NODES + rows] -= 1.0
+        return residual
+
+    def doubt(self, g: Array) -> Array:
+        """How far models are from being represented, relative to their size: g (2·nodes, v) → (v,)."""
+        size = np.sqrt(np.mean(g**2, axis=0)) + 1e-300
+        return np.asarray(np.sqrt(np.mean((self._check @ g) ** 2, axis=0)) / size)
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """One run, reduced: W (r, 2·nodes), d (r,), `rest` and `total` = Σ (x_m − mean)², in the output's unit squared."""
+
+    W: Array
+    d: Array
+    rest: float
+    total: float
+
+    def error(self, g: Array) -> Array:
+        """Eq. (17) of models given by their values at the nodes: (2·nodes, v) → (v,)."""
+        residual = self.W @ g - self.d[:, None]
+        return np.asarray(np.sqrt((np.einsum("rv,rv->v", residual, residual) + self.rest) / self.total))
+
+
+def excited_band(runs: Sequence[Run]) -> float:
+    """The angular frequency (rad/s) below which every command has 99.9 % of its power."""
+    edges = [0.0]
+    for run in runs:
+        segment = min(run.length, max(256, run.length // 4), 16384)
+        frequency, power = scipy.signal.welch(run.command, run.sample_rate, nperseg=segment, detrend="linear")
+        total = np.cumsum(power)
+        edges.append(float(frequency[min(np.searchsorted(total, 0.999 * total[-1]) + 1, len(frequency) - 1)]))
+    nyquist = max(run.sample_rate for run in runs) / 2
+    return 2 * np.pi * min(max(edges), 0.9 * nyquist)
+
+
+def starts_at_rest(run: Run) -> bool:
+    """True where the measured output stands still at zero in the first samples, so that the model may start at rest.
+
+    A line is fitted to the first millisecond (at least 4 samples): a servo-hydraulic machine needs longer than that to
+    follow a jump of its command. Standing: value below 2 % of the record's standard
+    deviation and speed below 5 % of the typical speed, or either within 4 standard errors of zero; a record cut out of
+    a moving test passes by accident about once in a thousand.
+    """
+    n = min(run.length, max(4, round(0.001 * run.sample_rate)))
+    t = np.arange(n)
+    coefficients, covariance = np.polyfit(t, run.measured[:n], 1, cov="unscaled")
+    scatter = np.std(run.measured[:n] - np.polyval(coefficients, t), ddof=2) if n > 2 else 0.0
+    slope_error, value_error = 4 * scatter * np.sqrt(np.diag(covariance))
+    smooth = run.measured[: run.length // n * n].reshape(-1, n).mean(axis=1)
+    speed = np.std(np.diff(smooth)) / n if len(smooth) > 2 else 0.0
+    still = abs(coefficients[0]) <= max(0.05 * speed, slope_error)
+    return bool(still and abs(coefficients[1]) <= max(0.02 * np.std(run.measured), value_error))
+
+
+def spectrum(run: Run, basis: Basis) -> Spectrum:
+    """Reduce a run. What no model of the command can explain is projected out first: the mean and, in a record that
+    starts moving, the decay of whatever state it started in."""
+    columns = len(basis.filters.D)
+    gram = sum(block.T @ block for block in _blocks(run, basis))
+    kept, nuisance = slice(0, columns + 1), slice(columns + 1, None)
+    values, vectors = np.linalg.eigh(gram[nuisance, nuisance])
+    sound = values > 1e-12 * values[-1]
+    projection = gram[kept, nuisance] @ (vectors[:, sound] / np.sqrt(values[sound]))
+    mean_free = gram[columns, columns] - gram[columns, -1] ** 2 / gram[-1, -1]
+    gram = gram[kept, kept] - projection @ projection.T
+    values, vectors = np.linalg.eigh(gram[:columns, :columns])
+    sound = values > 1e-13 * values[-1]
+    root = np.sqrt(values[sound])
+    d = (vectors[:, sound].T @ gram[:columns, columns]) / root
+    # Rows of W that no model of ordinary size can make felt are dropped: their share of d is part of the rest.
+    left, strength, right = np.linalg.svd((vectors[:, sound] * root).T @ basis.expansion, full_matrices=False)
+    felt = strength > 1e-6 * strength[0]
+    d = left[:, felt].T @ d
+    W = strength[felt, None] * right[felt]
+    return Spectrum(np.ascontiguousarray(W), d, max(float(gram[columns, columns] - d @ d), 0.0), float(mean_free))
+
+
+def _blocks(run: Run, basis: Basis) -> Iterator[Array]:
+    """Blocks of rows [filtered command, measured, decays from a moving start, 1]."""
+    filters = discretise(basis.filters, run.sample_rate, run.hold)
+    groups = [filters]
+    if not starts_at_rest(run):
+        groups.append(_decays(filters))
+    packs = [(group, first) for group in groups for first in range(0, len(group.D), LANES)]
+    buffers = [group.part(first, first + LANES).packed(LANES) for group, first in packs]
+    widths = [min(LANES, len(group.D) - first) for group, first in packs]
+    m, kernel, lanes = len(filters.D), advance(2), np.empty(_BLOCK * LANES)
+    # The mean of a record would cost digits in the sums of squares, so it goes first; the model is blind to it anyway.
+    measured = run.measured - run.measured.mean()
+    for first in range(0, run.length, _BLOCK):
+        last = min(first + _BLOCK, run.length)
+        block = np.empty((last - first, sum(widths) + 2))
+        column = 0
+        for buffer, width in zip(buffers, widths, strict=True):
+            kernel(buffer, run.command, first, last, lanes)
+            column += column == m  # the measured column stands behind the filters
+            block[:, column : column + width] = lanes[: (last - first) * LANES].reshape(-1, LANES)[:, :width]
+            column += width
+        block[:, m] = measured[first:last]
+        block[:, -1] = 1.0
+        yield block
+
+
+def _decays(filters: Recursion) -> Recursion:
+    """The filters without input, released from their first state."""
+    start = np.zeros_like(filters.start)
+    start[:, 0] = 1.0
+    still = np.zeros_like(filters.gamma0)
+    return Recursion(filters.phi, still, still, filters.C, filters.D, start)
