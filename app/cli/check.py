@@ -1,0 +1,72 @@
+"""`servoident check`: what a matrix holds, and every physical doubt."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from app.cli.output import STANDARD_OUTPUT, write_json
+
+if TYPE_CHECKING:
+    from ident.matrix import Actuator, Matrix, Run
+
+
+def check(
+    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")],
+    json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the findings as JSON; - is stdout.")] = None,
+) -> None:
+    """Say what is in a matrix, and every doubt about it. Exit status 1 where it has a fault."""
+    from dataclasses import asdict
+
+    from ident.check import check as findings_of
+    from ident.readers import read_matrix
+
+    read = read_matrix(matrix)
+    findings = findings_of(read)
+    if json is not None:
+        write_json([asdict(finding) for finding in findings], json)
+    if json != STANDARD_OUTPUT:
+        print("\n".join(description(read)))
+        for finding in findings:
+            print(f"{finding.severity}: {f'run {finding.run}: ' if finding.run else ''}{finding.text} [{finding.code}]")
+        print(summary([finding.severity for finding in findings]))
+    if any(finding.severity == "fault" for finding in findings):
+        raise typer.Exit(1)
+
+
+def description(matrix: Matrix) -> list[str]:
+    """The actuator, the runs by use, and the notices of reading, a line each."""
+    lines = [actuator_line(matrix.actuator)]
+    for use in ("fit", "verify"):
+        runs = matrix.of_use(use)
+        lines.append(f"{use}: {runs_line(runs)}" if runs else f"{use}: no runs")
+    return lines + [f"notice: {notice}" for notice in matrix.notices]
+
+
+def actuator_line(actuator: Actuator) -> str:
+    """The machine in a line."""
+    area = "area not stated" if actuator.piston_area is None else f"piston area {1e6 * actuator.piston_area:.4g} mm²"
+    return ", ".join(part for part in (f"actuator {actuator.serial}", actuator.name, area) if part)
+
+
+def runs_line(runs: tuple[Run, ...]) -> str:
+    """Number, kinds, gains, specimens and total length of some runs."""
+    kinds = ", ".join(sorted({run.kind for run in runs}))
+    gains = ", ".join(f"{gain:g}" for gain in sorted({run.gain for run in runs if run.gain is not None}))
+    specimens = len({run.specimen for run in runs if run.specimen is not None})
+    unit = runs[0].time_unit.replace("sample", "samples")
+    parts = [
+        f"{len(runs)} runs ({kinds})",
+        f"Kp {gains}" if gains else "gain not stated",
+        f"{specimens} specimens" if specimens else "specimen not stated",
+        f"{sum(run.duration for run in runs):.4g} {unit} in all",
+    ]
+    return ", ".join(parts)
+
+
+def summary(severities: list[str]) -> str:
+    """How many findings of each severity."""
+    counts = {severity: severities.count(severity) for severity in ("fault", "doubt", "note")}
+    return ", ".join(f"{count} {severity}{'' if count == 1 else 's'}" for severity, count in counts.items())

@@ -1,0 +1,75 @@
+"""`servoident compare`: a fitted model against a matrix, in figures and a table."""
+
+from __future__ import annotations
+
+import json as json_format
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from app.cli.output import STANDARD_OUTPUT, write_bytes, write_json
+from ident.errors import Unusable
+
+if TYPE_CHECKING:
+    from ident.fit.result import FitResult
+    from ident.matrix import Matrix
+
+FORMATS = ("svg", "png", "pdf", "json")
+
+
+def compare(
+    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")],
+    fit: Annotated[Path, typer.Option(metavar="FIT.json", help="What `servoident fit --json` wrote.")],
+    json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the errors as JSON; - is stdout.")] = None,
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures: svg, png, pdf, json.")] = None,
+) -> None:
+    """Compare a fitted model with every run of a matrix."""
+    from ident.compare import compare as compared
+    from ident.readers import read_matrix
+
+    result, read = read_fit(fit), read_matrix(matrix)
+    comparison = compared(read, result)
+    rows = [(run.run.id, run.run.use, run.error, run.offset) for run in comparison.runs]
+    if json is not None:
+        runs = [dict(zip(("id", "use", "error", "offset"), row, strict=True)) for row in rows]
+        write_json({"error": dict(comparison.error), "offset": dict(comparison.offset), "runs": runs}, json)
+    if json != STANDARD_OUTPUT:
+        show(rows, comparison.error)
+    if out is not None:
+        draw(read, result, out)
+
+
+def read_fit(path: Path) -> FitResult:
+    """A fit from its JSON file; raises Unusable where it is not one."""
+    from ident.fit.result import FitResult
+
+    try:
+        return FitResult.from_json(json_format.loads(path.read_bytes()))
+    except (ValueError, TypeError, KeyError, AttributeError):
+        raise Unusable(
+            "bad-fit", "not the JSON of a fit", str(path), "give the file that `servoident fit --json FILE` wrote"
+        ) from None
+
+
+def show(rows: list[tuple[str, str, float, float]], error: Any) -> None:
+    """Print the error of every run and the means."""
+    from rich.console import Console
+
+    from app.cli.tables import percent, table
+
+    lines = [(name, use, percent(of_run), percent(offset)) for name, use, of_run, offset in rows]
+    lines += [("mean", use, percent(mean), "") for use, mean in error.items() if mean is not None]
+    Console(soft_wrap=True, highlight=False).print(table(("run", "use", "error", "offset"), lines))
+
+
+def draw(matrix: Matrix, fit: FitResult, out: Path) -> None:
+    """Write every figure in every format to the folder `out`."""
+    from ident.figures import FIGURES, figure, render
+
+    out.mkdir(parents=True, exist_ok=True)
+    for name in FIGURES:
+        chart = figure(name, matrix, fit)
+        for format_ in FORMATS:
+            write_bytes(render(chart, format_), out / f"{name}.{format_}")
+    print(f"wrote {', '.join(FIGURES)} to {out}")

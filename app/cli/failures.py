@@ -1,0 +1,60 @@
+"""Whatever goes wrong, as one line for the user and an exit status."""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from datetime import UTC, datetime
+from pathlib import Path
+
+from typer import TyperException
+
+from ident.errors import Cancelled, Unusable
+
+UNUSABLE = 2
+INTERRUPTED = 130
+DEFECT = 70  # EX_SOFTWARE of sysexits.h: neither the input nor the user is to blame
+
+
+def report(error: BaseException) -> int:
+    """Print `error` as one line on standard error; returns the exit status that belongs to it."""
+    status, text = explain(error)
+    print(f"servoident: {' '.join(text.split())}", file=sys.stderr)
+    return status
+
+
+def explain(error: BaseException) -> tuple[int, str]:
+    """The exit status of `error` and its line: what, where, and the remedy."""
+    match error:
+        case KeyboardInterrupt() | Cancelled():
+            return INTERRUPTED, "interrupted; nothing was written"
+        case Unusable():
+            return UNUSABLE, str(error)
+        case TyperException():
+            return UNUSABLE, f"{error.format_message().rstrip('.')}; `servoident --help` shows what there is"
+        case OSError() if error.filename is not None:
+            return UNUSABLE, f"{error.filename}: {error.strerror}; check the name, the permissions and the free space"
+        case MemoryError():
+            return UNUSABLE, "the machine has too little memory for this matrix; use fewer or shorter runs"
+        case _:
+            return DEFECT, f"unexpected error ({type(error).__name__}); a defect of the program, {kept(error)}"
+
+
+def kept(error: BaseException) -> str:
+    """Append the traceback to the error log; returns where it is, in words."""
+    log = error_log()
+    try:
+        log.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+        with log.open("a") as file:
+            print(datetime.now(UTC).isoformat(timespec="seconds"), *sys.argv, file=file)
+            traceback.print_exception(error, file=file)
+    except OSError as failure:
+        return f"and its log cannot be written to {log} ({failure.strerror})"
+    return f"details are in {log}"
+
+
+def error_log() -> Path:
+    """The file that keeps tracebacks, in the user's state folder."""
+    state = os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state"
+    return Path(state) / "servoident" / "errors.log"

@@ -1,0 +1,71 @@
+"""How long work shows itself: a bar on a terminal, plain lines elsewhere, always on standard error."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from ident.progress import Progress, Report
+
+SILENCE = 5.0  # s between two plain lines of one stage
+
+
+@contextmanager
+def shown() -> Iterator[Report]:
+    """A report to hand to long work, shown until the block ends."""
+    if sys.stderr.isatty():
+        with bar() as report:
+            yield report
+    else:
+        yield Lines()
+
+
+@contextmanager
+def bar() -> Iterator[Report]:
+    """A bar of rich for the stage that is under way."""
+    from rich import progress as rich
+    from rich.console import Console
+
+    columns = (
+        rich.TextColumn("{task.description:<12}"),
+        rich.BarColumn(),
+        rich.MofNCompleteColumn(),
+        rich.TextColumn("{task.fields[error]}"),
+        rich.TimeElapsedColumn(),
+    )
+    with rich.Progress(*columns, console=Console(stderr=True), transient=True) as display:
+        task = display.add_task("", error="")
+
+        def report(progress: Progress) -> None:
+            display.update(
+                task,
+                description=progress.stage,
+                completed=progress.done,
+                total=progress.total,
+                error=error_text(progress),
+            )
+
+        yield report
+
+
+class Lines:
+    """One line when a stage begins or ends, and every few seconds between."""
+
+    def __init__(self) -> None:
+        self.stage = ""
+        self.last = 0.0
+
+    def __call__(self, progress: Progress) -> None:
+        """Print a line where one is due."""
+        now = time.monotonic()
+        if progress.stage == self.stage and progress.done < progress.total and now - self.last < SILENCE:
+            return
+        self.stage, self.last = progress.stage, now
+        print(f"{progress.stage} {progress.done}/{progress.total} {error_text(progress)}".rstrip(), file=sys.stderr)
+
+
+def error_text(progress: Progress) -> str:
+    """The error so far, in per cent."""
+    return "" if progress.error is None else f"error {100 * progress.error:.3g} %"

@@ -1,0 +1,143 @@
+"""Write the reference pages from the program itself: `python docs/generate.py`. A test fails where they are stale."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from app.cli.program import program
+from ident.effects import EFFECTS
+from ident.expression import Equation
+from ident.parameter import Parameter
+from ident.presets import PRESETS, Preset
+
+DOCS = Path(__file__).resolve().parent
+SOURCES = ("ident", "app", "schemas")
+NOTE = "<!-- written by docs/generate.py -->"
+
+
+def pages() -> dict[str, str]:
+    """Every generated page by file name."""
+    return {"cli.md": command_line(), "models.md": models(), "errors.md": errors()}
+
+
+def command_line() -> str:
+    """The commands with their arguments and options."""
+    lines = ["# The command line", NOTE, "", str(program.info.help), "", str(program.info.epilog), ""]
+    group: Any = typer.main.get_command(program)
+    for name, command in group.commands.items():
+        arguments = " ".join(str(p.metavar) for p in command.params if is_argument(p))
+        lines += [f"## servoident {name} {arguments}".rstrip(), "", inspect.cleandoc(command.help or ""), ""]
+        rows = [row(option) for option in command.params if not is_argument(option) and option.name != "help"]
+        if rows:
+            lines += [*table(("option", "default", "meaning"), rows), ""]
+    return "\n".join(lines)
+
+
+def is_argument(parameter: object) -> bool:
+    """True for a positional argument."""
+    return getattr(parameter, "param_type_name", "") == "argument"
+
+
+def row(option: Any) -> tuple[str, str, str]:
+    """An option as a row of the table."""
+    metavar = f" {option.metavar}" if option.metavar else ""
+    default = (
+        "required"
+        if option.required
+        else ""
+        if option.default is None or option.default is False
+        else str(option.default)
+    )
+    return f"`{', '.join([*option.opts, *option.secondary_opts])}{metavar}`", default, str(option.help)
+
+
+def models() -> str:
+    """The models and the effects, with equations, units and bounds."""
+    lines = ["# Models and effects", NOTE, "", "All quantities are SI.", ""]
+    for preset in PRESETS.values():
+        lines += model(preset)
+    lines += ["# Effects", ""]
+    for effect in EFFECTS:
+        lines += [f"## {effect.name}", "", f"At the place *{effect.place}*. {effect.meaning}.", ""]
+        lines += [*equations(effect.equations), *parameters((effect.strength, *effect.shape))]
+    return "\n".join(lines if EFFECTS else [*lines, "The catalogue of this version is empty.", ""])
+
+
+def model(preset: Preset) -> list[str]:
+    """One model: citation, equations, parameters, notes."""
+    lines = [f"## {preset.name}: {preset.title}", "", preset.citation, "", *equations(preset.equations)]
+    return [*lines, *parameters(preset.parameters), *(f"{note}\n" for note in preset.notes)]
+
+
+def equations(of: Iterable[Equation]) -> list[str]:
+    """Equations as a table."""
+    rows = [(e.place, f"`{e.text}`", e.meaning) for e in of]
+    return [*table(("place", "equation", "what it says"), rows), ""]
+
+
+def parameters(of: Iterable[Parameter]) -> list[str]:
+    """Parameters as a table."""
+    rows = [(f"`{p.name}`", p.symbol, p.unit, f"{p.lower:g} … {p.upper:g}", f"{p.value:g}", p.meaning) for p in of]
+    return [*table(("name", "symbol", "unit", "bounds", "default", "meaning"), rows), ""]
+
+
+def errors() -> str:
+    """Every error code, with what it says and its remedy; {…} stands for what is filled in."""
+    rows = sorted({found for folder in SOURCES for file in source_files(folder) for found in codes(file)})
+    head = [
+        "# Errors",
+        NOTE,
+        "",
+        "Unusable input is refused with a code, and with what is wrong, where, and the remedy. The command line prints",
+        "them in one line and exits with 2; the service answers with problem+json whose `code` is this one.",
+        "In the table, … stands for what is filled in.",
+        "",
+    ]
+    return "\n".join([*head, *table(("code", "what", "remedy"), rows), ""])
+
+
+def source_files(folder: str) -> Iterator[Path]:
+    """The Python files of a package."""
+    return (DOCS.parent / folder).rglob("*.py")
+
+
+def codes(file: Path) -> Iterator[tuple[str, str, str]]:
+    """Code, what and remedy of every `Unusable(…)` in a file."""
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Unusable" and len(node.args) == 4:
+            code, what, _, remedy = map(words, node.args)
+            yield f"`{code}`", what, remedy
+
+
+def words(node: ast.expr) -> str:
+    """The text of a string in the source; … where something is filled in."""
+    match node:
+        case ast.Constant():
+            return str(node.value)
+        case ast.JoinedStr():
+            return "".join(words(part) for part in node.values)
+        case _:
+            return "…"
+
+
+def table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> list[str]:
+    """A Markdown table."""
+    header = tuple(header)
+    escaped = ([" ".join(cell.replace("|", "\\|").split()) for cell in cells] for cells in rows)
+    return [line(header), line("---" for _ in header), *map(line, escaped)]
+
+
+def line(cells: Iterable[str]) -> str:
+    """A row of a Markdown table."""
+    return f"| {' | '.join(cells)} |"
+
+
+if __name__ == "__main__":
+    for name, text in pages().items():
+        (DOCS / name).write_text(text, encoding="utf-8")

@@ -1,0 +1,138 @@
+"""Who may import whom: the house rules, read from the source."""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+OWN = {"ident", "app", "schemas", "migrations", "tests", "benchmarks"}
+STANDARD = set(sys.stdlib_module_names) | {"__future__"}
+
+
+def imports(file: Path) -> set[str]:
+    """Every module that a file imports anywhere, in full."""
+    found = set()
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{file}:{node.lineno}: relative import"
+            found |= {f"{node.module}.{alias.name}" for alias in node.names}
+    return found
+
+
+def files(*patterns: str) -> list[Path]:
+    """Source files by glob."""
+    return sorted(path for pattern in patterns for path in ROOT.glob(pattern))
+
+
+def offences(sources: list[Path], forbidden: set[str], allowed: set[str] = frozenset()) -> Iterator[str]:
+    """Each import of a forbidden module or package, but for the allowed ones below it."""
+    for file in sources:
+        for module in sorted(imports(file)):
+            if within(module, forbidden) and not within(module, allowed):
+                yield f"{file.relative_to(ROOT)} imports {module}"
+
+
+def within(module: str, packages: set[str]) -> bool:
+    """True where `module` is one of the packages or below one."""
+    return any(module == package or module.startswith(f"{package}.") for package in packages)
+
+
+WEB = {"fastapi", "starlette", "uvicorn", "pydantic", "sqlalchemy", "alembic", "dbos", "jinja2", "typer", "httpx"}
+
+
+def test_the_library_knows_no_web_no_database_and_no_service():
+    """`ident` can be used alone from a notebook."""
+    assert not list(offences(files("ident/**/*.py"), WEB | OWN - {"ident"}))
+
+
+def test_only_figures_draw():
+    """Altair and the renderer are imported below ident/figures and nowhere else."""
+    others = [file for file in files("ident/**/*.py", "app/**/*.py", "schemas/**/*.py") if "figures" not in file.parts]
+    assert not list(offences(others, {"altair", "vl_convert"}))
+
+
+def test_the_basic_words_know_nothing_above_them():
+    """Parameter, matrix, errors, progress and effect import only what stands below them."""
+    below = {
+        "errors": set(),
+        "progress": {"ident.errors"},
+        "parameter": {"ident.errors"},
+        "matrix": {"ident.errors"},
+        "expression": {"ident.errors"},
+        "effect": {"ident.errors", "ident.expression", "ident.parameter", "ident.stages"},
+    }
+    for name, allowed in below.items():
+        assert not list(offences([ROOT / "ident" / f"{name}.py"], OWN, allowed))
+
+
+def test_effects_never_import_each_other():
+    """An effect is one file; only the list of the catalogue names them all."""
+    own = [file for file in files("ident/effects/*.py") if file.name != "__init__.py"]
+    assert not list(offences(own, {"ident.effects"}))
+
+
+def test_stages_never_import_an_effect():
+    """The linear core of a place does not know what may be added to it."""
+    assert not list(offences(files("ident/stages/*.py"), {"ident.effects", "ident.effect"}))
+
+
+def test_schemas_import_pydantic_only():
+    """The contract's models can be used by a client without the service."""
+    for file in files("schemas/**/*.py"):
+        foreign = {m for m in imports(file) if m.split(".")[0] not in STANDARD | {"pydantic", "schemas"}}
+        assert not foreign, f"{file.relative_to(ROOT)} imports {sorted(foreign)}"
+
+
+@pytest.mark.parametrize("file", files("app/**/endpoints.py"), ids=lambda file: file.parent.name)
+def test_endpoints_import_only_their_service_and_schemas(file):
+    """An endpoint parses, calls and returns; what it does stands in its service."""
+    service = ".".join((*file.parent.relative_to(ROOT).parts, "service"))
+    assert not list(offences([file], OWN | {"sqlalchemy", "dbos"}, {"schemas", service}))
+
+
+def test_only_a_repository_builds_a_query():
+    """SQLAlchemy's query functions are imported in repositories, and its engine in app/database.py, only."""
+    allowed = {"repository.py", "database.py", "tables.py"}
+    others = [file for file in files("app/**/*.py") if file.name not in allowed]
+    assert not list(offences(others, {"sqlalchemy"}, {"sqlalchemy.exc"}))
+
+
+def test_only_the_jobs_file_knows_the_job_engine():
+    """DBOS can be exchanged in one file."""
+    others = [file for file in files("app/**/*.py", "ident/**/*.py") if file != ROOT / "app" / "jobs.py"]
+    assert not list(offences(others, {"dbos"}))
+
+
+def test_the_bootstrap_runs_in_a_bare_python():
+    """What the README's two commands run first imports the standard library only, and the packages' heads nothing."""
+    bare = [ROOT / name for name in ("app/environment.py", "app/__main__.py", "tests/__main__.py")]
+    for file in bare:
+        foreign = {m for m in imports(file) if m.split(".")[0] not in STANDARD and not within(m, {"app.environment"})}
+        assert not foreign, f"{file.relative_to(ROOT)} imports {sorted(foreign)}"
+    assert not imports(ROOT / "app" / "__init__.py") | imports(ROOT / "tests" / "__init__.py")
+
+
+def test_the_command_line_imports_nothing_heavy_before_a_command_runs():
+    """`servoident --help` answers at once, because numpy and the service are imported inside the commands."""
+    light = {"app.cli", "ident.errors", "ident.progress", "ident.fit.settings", "ident.fit.result"}
+    for file in files("app/cli/*.py"):
+        tree = ast.parse(file.read_text(encoding="utf-8"))
+        for node in tree.body:
+            if isinstance(node, ast.ImportFrom) and node.module and node.module.split(".")[0] in OWN:
+                assert within(node.module, light), f"{file.name}: import {node.module} inside the command"
+            if isinstance(node, ast.Import | ast.ImportFrom) and file.name != "tables.py":
+                names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else [str(node.module)]
+                assert not [name for name in names if name.split(".")[0] in {"numpy", "rich", "scipy", "httpx"}], file
+
+
+def test_no_file_is_named_after_nothing():
+    """A file is named after its one concept."""
+    vague = {"utils", "util", "helpers", "helper", "manager", "common", "misc"}
+    assert not [path for path in files("ident/**/*.py", "app/**/*.py", "schemas/**/*.py") if path.stem in vague]

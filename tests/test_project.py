@@ -1,0 +1,91 @@
+"""The gates of the whole project: lint, types, file sizes, what must not be in it."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+LONGEST = 350  # lines of a source file
+TEXT = {".py", ".md", ".toml", ".lock", ".yaml", ".yml", ".html", ".css", ".js", ".mjs", ".ini", ".mako", ""}
+
+
+def run(*arguments: str) -> None:
+    """Run a module of this Python in the checkout; fail with its output."""
+    done = subprocess.run([sys.executable, "-m", *arguments], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, f"{' '.join(arguments)}\n{done.stdout}{done.stderr}"
+
+
+def tracked() -> list[Path]:
+    """The files under version control, and new ones that are not ignored."""
+    listing = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
+    try:
+        done = subprocess.run(listing, cwd=ROOT, capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError):
+        pytest.skip("not a git checkout: its files cannot be listed")
+    return [path for line in done.stdout.splitlines() if (path := ROOT / line).is_file()]
+
+
+def test_lint():
+    """Ruff finds nothing."""
+    run("ruff", "check", "--quiet", ".")
+
+
+def test_format():
+    """Every file is laid out as `ruff format` lays it out."""
+    run("ruff", "format", "--check", "--quiet", ".")
+
+
+def test_types():
+    """Mypy in strict mode finds nothing in the packages."""
+    run("mypy")
+
+
+def test_source_files_are_short():
+    """No Python file is longer than what a reader holds in mind."""
+    lengths = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in tracked() if path.suffix == ".py"}
+    assert not {str(path.relative_to(ROOT)): n for path, n in lengths.items() if n > LONGEST}
+
+
+def test_nothing_names_the_machine_it_was_made_on():
+    """No text file holds a path of somebody's checkout or home folder."""
+    place = re.compile(r"(?<![\w./$}-])/(?:work|root|home/\w+|Users/\w+)/\w")
+    texts = [path for path in tracked() if path.suffix in TEXT and path != Path(__file__)]
+    found = [
+        f"{path.relative_to(ROOT)}:{number}: {line.strip()[:100]}"
+        for path in texts
+        for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1)
+        if place.search(line)
+    ]
+    assert not found
+
+
+def test_the_lock_files_name_no_host_and_every_package_has_hashes():
+    """Where packages come from is the choice of whoever installs them."""
+    for name in ("requirements.lock", "requirements-tests.lock"):
+        text = (ROOT / name).read_text()
+        assert "://" not in text
+        assert len(re.findall(r"^\S+==.*\\$", text, re.M)) == len(re.findall(r"^\S+==", text, re.M)) > 0
+
+
+def test_the_tests_run_with_the_versions_that_the_service_runs_with():
+    """Every pinned package of the service's lock file stands unchanged in the tests' lock file."""
+    service, tests = ((ROOT / name).read_text() for name in ("requirements.lock", "requirements-tests.lock"))
+    pinned = re.compile(r"^\S+==[^\\]+", re.M)
+    assert not set(pinned.findall(service)) - set(pinned.findall(tests))
+
+
+def test_the_lock_files_hold_what_the_project_asks_for():
+    """A dependency added to pyproject.toml is in the lock files too."""
+    import tomllib
+
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    for name, extras in (("requirements.lock", ("setup",)), ("requirements-tests.lock", ("setup", "tests"))):
+        locked = set(re.findall(r"^([\w.-]+)==", (ROOT / name).read_text(), re.M))
+        asked = [*project["dependencies"], *(one for e in extras for one in project["optional-dependencies"][e])]
+        wanted = {re.match(r"[\w.-]+", entry)[0].lower().replace("_", "-").replace(".", "-") for entry in asked}
+        assert not wanted - locked
