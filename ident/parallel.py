@@ -24,6 +24,11 @@ def _controller() -> ThreadpoolController:
     return ThreadpoolController()
 
 
+@lru_cache
+def _pool() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(cores(), thread_name_prefix="servoident")
+
+
 def each(function: Callable[[Item], Outcome], items: Iterable[Item]) -> list[Outcome]:
     """`function` of every item, in order; the compiled parts run side by side.
 
@@ -34,5 +39,4 @@ def each(function: Callable[[Item], Outcome], items: Iterable[Item]) -> list[Out
     with _controller().limit(limits=1, user_api="blas"):
         if cores() == 1 or len(todo) < 2:
             return [function(item) for item in todo]
-        with ThreadPoolExecutor(cores()) as pool:
-            return list(pool.map(function, todo))
+        return list(_pool().map(function, todo))

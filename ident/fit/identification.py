@@ -1,0 +1,184 @@
+"""A fit from start to end: prepare, search in blocks of generations, polish, say what was found and how surely."""
+
+from __future__ import annotations
+
+import time
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.effects import EFFECTS
+from ident.errors import Unusable
+from ident.fit import genetic
+from ident.fit.library_search import GENERATIONS, cma_es, differential_evolution
+from ident.fit.objective import Local, Objective
+from ident.fit.polish import polish
+from ident.fit.result import FitResult
+from ident.fit.settings import METHODS, Settings
+from ident.fit.space import search_space
+from ident.fit.summary import summarise
+from ident.matrix import Matrix
+from ident.presets import preset as preset_called
+from ident.progress import Progress, Report, silent
+from ident.spectra import Basis, excited_band
+
+Array = NDArray[np.float64]
+State = dict[str, Any]
+_CANDIDATES = 3  # distinct vectors of the last generation from which the polish starts
+
+
+class Identification:
+    """One fit of a matrix. Raises Unusable where the settings or the matrix do not allow it.
+
+    The search state is plain JSON data; with the same matrix and settings every cut of the search into blocks leads
+    to the same result, bit for bit, on any number of cores.
+    """
+
+    def __init__(self, matrix: Matrix, settings: Settings, report: Report = silent) -> None:
+        self.matrix, self.settings, self.report = matrix, settings, report
+        self.preset = preset_called(settings.model)
+        self._runs = matrix.of_use("fit")
+        _refuse(matrix, settings)
+        self.options = self._options()
+        band = excited_band(self._runs)
+        space = search_space(self.preset, matrix, settings, band)
+        self.objective = Objective(self.preset, matrix, self._runs, space, Basis(band))
+        self._started = time.monotonic()
+        if space.axes:
+            report(Progress("spectra", 0, 1))
+            self.objective.prepare()
+            report(Progress("spectra", 1, 1))
+
+    def _options(self) -> dict[str, float]:
+        known = {"ga": genetic.DEFAULT, "paper-ga": genetic.PAPER}.get(self.settings.method, {})
+        for name in self.settings.options:
+            if name not in known:
+                raise Unusable("unknown-option", f"method {self.settings.method} has no option {name!r}", "options",
+                               f"choose from {', '.join(known) or 'none'}")  # fmt: skip
+        return {**known, **self.settings.options}
+
+    @property
+    def generations(self) -> int:
+        """Upper bound of the search's generations."""
+        if not self.objective.space.axes:
+            return 0
+        if self.settings.method == "paper-ga":
+            shrink = self.options["survivors"] / self.options["population"]
+            return int(np.ceil(np.log(shrink) / np.log(self.options["keep"]))) + 2
+        if self.settings.method == "ga":
+            return int(self.options["generations"])
+        return GENERATIONS[self.settings.method]
+
+    def start(self) -> State:
+        """The state before the first generation."""
+        axes = len(self.objective.space.axes)
+        options = self.options if self.settings.method in ("ga", "paper-ga") else {"population": 1.0}
+        state = genetic.begin(axes, self.settings.seed, options)
+        return state | {"done": not axes, "best": [] if not axes else None}
+
+    def finished(self, state: State) -> bool:
+        """True when the search is over and only :meth:`finish` remains."""
+        return bool(state["done"])
+
+    def advance(self, state: State, generations: int) -> State:
+        """The state after at most `generations` more; the library searches run to their end at once."""
+        if self.settings.method in GENERATIONS and not state["done"]:
+            return self._library_search(state)
+        step = genetic.paper_step if self.settings.method == "paper-ga" else genetic.default_step
+        for _ in range(generations):
+            if state["done"]:
+                break
+            state = step(state, self.objective.errors, self.options)
+            done = len(state["history"])
+            self.report(Progress("search", done, self.generations, min(state["history"][-1]["errors"])))
+        return state
+
+    def _library_search(self, state: State) -> State:
+        count = 0
+
+        def errors(points: Array) -> Array:
+            nonlocal count
+            cost = self.objective.errors(points)
+            count += 1
+            self.report(Progress("search", min(count, self.generations), self.generations, float(cost.min())))
+            return cost
+
+        search = differential_evolution if self.settings.method == "differential-evolution" else cma_es
+        history = search(len(self.objective.space.axes), self.settings.seed, errors)
+        entries = [{"population": points.tolist(), "errors": cost.tolist()} for points, cost in history]
+        population, cost = min(history, key=lambda entry: float(entry[1].min()))
+        order = np.argsort(cost, kind="stable")
+        evaluated = sum(len(points) for points, _ in history)
+        return state | {
+            "population": population[order].tolist(), "best": population[order[0]].tolist(), "history": entries,
+            "evaluations": evaluated, "done": True,
+        }  # fmt: skip
+
+    def finish(self, state: State) -> FitResult:
+        """Polish (all methods but the paper's), errors of every run, uncertainty."""
+        objective = self.objective
+        if not objective.space.axes:
+            point, here = np.empty(0), objective.exact(np.empty(0))
+        elif self.settings.method == "paper-ga":
+            point = np.array(state["best"])
+            here = objective.exact(point)
+        else:
+            point, here = self._polished(state)
+        self.report(Progress("uncertainty", 0, 1, here.error))
+        seconds = time.monotonic() - self._started
+        result = summarise(objective, self.settings, point, here, state, seconds)
+        self.report(Progress("uncertainty", 1, 1, here.error))
+        return result
+
+    def _polished(self, state: State) -> tuple[Array, Local]:
+        population = np.array(state["population"])
+        starts = _distinct(np.concatenate([np.array(state["best"])[None], population]))
+
+        def progress(count: int, error: float) -> None:
+            self.report(Progress("polish", count, 40, error))
+
+        ends = [polish(self.objective.approximate, start, progress) for start in starts]
+        point, _ = min(ends, key=lambda end: end[1].error)
+        return polish(self.objective.exact, point, progress)
+
+
+def _distinct(points: Array) -> list[Array]:
+    """The first points that are at least a tenth of an axis apart."""
+    chosen: list[Array] = []
+    for point in points:
+        if all(np.abs(point - other).max() > 0.1 for other in chosen):
+            chosen.append(point)
+        if len(chosen) == _CANDIDATES:
+            break
+    return chosen
+
+
+def _refuse(matrix: Matrix, settings: Settings) -> None:
+    """Raise Unusable for what cannot be fitted."""
+    if settings.method not in METHODS:
+        raise Unusable("unknown-method", f"no method {settings.method!r}", "method", f"choose from {', '.join(METHODS)}")
+    known = [effect.name for effect in EFFECTS]
+    for name in settings.effects:
+        if name not in known:
+            raise Unusable("unknown-effect", f"no effect {name!r}", "effects", f"choose from {', '.join(known) or 'none'}")
+    if settings.load != "none":
+        raise Unusable("unknown-load", f"load {settings.load!r} is not known", "load", "use none")
+    if not matrix.of_use("fit"):
+        raise Unusable("no-fit-runs", "every run is to verify, none to fit", "runs", "mark at least one run use: fit")
+    for run in matrix.runs:
+        if "command" not in run.channels:
+            raise Unusable("missing-channel", "no command channel", f"run {run.id}", "name the column of the command")
+
+
+def identify(matrix: Matrix, settings: Settings, report: Report = silent) -> FitResult:
+    """The whole fit in one call."""
+    work = Identification(matrix, settings, report)
+    state = work.start()
+    while not work.finished(state):
+        state = work.advance(state, work.generations)
+    return work.finish(state)
+
+
+

@@ -1,0 +1,53 @@
+"""Searches by well-kept libraries, as cross-checks of the program's own: differential evolution and CMA-ES."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import differential_evolution as scipy_differential_evolution
+
+Array = NDArray[np.float64]
+Errors = Callable[[Array], Array]
+GENERATIONS = {"differential-evolution": 150, "cma-es": 150}
+
+
+def differential_evolution(axes: int, seed: int, errors: Errors) -> list[tuple[Array, Array]]:
+    """(population, errors) of each generation of SciPy's differential evolution."""
+    history: list[tuple[Array, Array]] = []
+
+    def vectorised(columns: Array) -> Array:
+        points = np.atleast_2d(columns.T)
+        cost = errors(points)
+        history.append((points.copy(), cost))
+        return cost
+
+    scipy_differential_evolution(
+        vectorised, [(0.0, 1.0)] * axes, maxiter=GENERATIONS["differential-evolution"], popsize=max(1, 120 // axes),
+        tol=1e-4, rng=np.random.default_rng(seed), polish=False, vectorized=True, updating="deferred",
+    )  # fmt: skip
+    return history
+
+
+def cma_es(axes: int, seed: int, errors: Errors) -> list[tuple[Array, Array]]:
+    """(population, errors) of each generation of CMA-ES (pycma), started in the middle of the cube."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        import cma  # noqa: PLC0415  slow to import, and seldom wanted
+
+    # One axis is beyond pycma, so a second one without effect is put beside it.
+    width = max(axes, 2)
+    options = {
+        "bounds": [0, 1], "popsize": 40, "seed": seed + 1, "verbose": -9, "maxiter": GENERATIONS["cma-es"], "tolfun": 1e-7,
+    }  # fmt: skip
+    strategy = cma.CMAEvolutionStrategy(width * [0.5], 0.25, options)
+    history: list[tuple[Array, Array]] = []
+    while not strategy.stop():
+        asked = strategy.ask()
+        points = np.array(asked)[:, :axes]
+        cost = errors(points)
+        strategy.tell(asked, cost.tolist())
+        history.append((points, cost))
+    return history

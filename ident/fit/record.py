@@ -1,0 +1,124 @@
+"""A run against a model in the time domain, exactly: residual and sensitivities of the whole record.
+
+For systems that run side by side, the first the model itself, the others each with one parameter moved by a step,
+the record yields the sums of products of [J, N, r]: J = ∂y/∂θ, r = x_m − y, N what is free in every record (its mean
+and, where it starts moving, the decay of its unknown first state).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.chain import LinearModel
+from ident.matrix import Run
+from ident.simulate import LANES, Recursion, advance, discretise
+from ident.spectra import starts_at_rest
+
+Array = NDArray[np.float64]
+_BLOCKS = 32  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
+
+
+@dataclass(frozen=True)
+class Moments:
+    """Σ of products of [J, r] with the nuisances projected out, (p+1, p+1), and the score JᵀR of each block, (b, p).
+
+    `total` is Σ (x_m − mean)²; `offset` the difference of means over the standard deviation.
+    """
+
+    gram: Array
+    scores: Array
+    total: float
+    offset: float
+
+    @property
+    def error(self) -> float:
+        """Eq. (17) of the run."""
+        value = float(np.sqrt(max(self.gram[-1, -1], 0.0) / self.total))
+        return value if np.isfinite(value) else np.inf
+
+
+def moments(run: Run, model: LinearModel, step: float = 1.0) -> Moments:
+    """The moments of a run for a batch of models (1 + p,): the model, and p neighbours one `step` away."""
+    systems = discretise(model, run.sample_rate, run.hold)
+    p = len(systems.D) - 1
+    if not starts_at_rest(run):
+        systems = _with_releases(systems)
+    blocks = _products(run, systems, p, step)
+    gram = blocks.sum(axis=0)
+    if not np.all(np.isfinite(gram)):
+        return Moments(np.full((p + 1, p + 1), np.inf), np.zeros((len(blocks), p)), 1.0, np.inf)
+    kept, free = [*range(p), gram.shape[0] - 1], slice(p, gram.shape[0] - 1)
+    values, vectors = np.linalg.eigh(gram[free, free])
+    sound = values > 1e-12 * values[-1]
+    solution = (vectors[:, sound] / values[sound]) @ (vectors[:, sound].T @ gram[free][:, kept])
+    remove = np.zeros((gram.shape[0], p + 1))  # columns: J and r with their share of the nuisances taken off
+    remove[kept, range(p + 1)] = 1.0
+    remove[free] = -solution
+    projected = remove.T @ gram @ remove
+    scores = np.einsum("ai,bac,c->bi", remove[:, :p], blocks, remove[:, -1])
+    total = float(np.sum((run.measured - run.measured.mean()) ** 2))
+    constant = solution[-1, -1] + run.measured.mean()  # r was taken from the mean-free record
+    return Moments(projected, scores, total, float(constant / np.sqrt(total / run.length)))
+
+
+def output(run: Run, model: LinearModel) -> Array:
+    """The model's output over the record, (n,), with the best first state where the record starts moving.
+
+    The offset between model and record is left in: it is a result of its own.
+    """
+    systems = discretise(model, run.sample_rate, run.hold)
+    if not starts_at_rest(run):
+        systems = _with_releases(systems)
+    y = np.concatenate([rows for rows, _, _ in _responses(run, systems, run.length)])
+    if y.shape[1] == 1:
+        return np.ascontiguousarray(y[:, 0])
+    free = np.column_stack([y[:, 1:], np.ones(run.length)])
+    coefficients = np.linalg.lstsq(free, run.measured - y[:, 0], rcond=1e-12)[0]
+    return np.asarray(y[:, 0] + y[:, 1:] @ coefficients[:-1])
+
+
+def _with_releases(systems: Recursion) -> Recursion:
+    """The batch and, behind it, the first system without input, released from each unit state."""
+    n = systems.C.shape[1]
+    scale = np.abs(systems.gamma0[0]) + np.abs(systems.gamma1[0])
+    scale = np.where(scale > 0, scale, scale.max())
+    still = np.zeros((n, n))
+    more = (np.repeat(systems.phi[:1], n, axis=0), still, still, np.repeat(systems.C[:1], n, axis=0), np.zeros(n))
+    parts = (systems.phi, systems.gamma0, systems.gamma1, systems.C, systems.D)
+    joined = [np.concatenate(pair) for pair in zip(parts, more, strict=True)]
+    return Recursion(*joined, np.concatenate([systems.start, np.diag(scale)]))
+
+
+def _responses(run: Run, systems: Recursion, length: int) -> Iterator[tuple[Array, int, int]]:
+    """Outputs of the batch in blocks of at most `length` samples: (rows (n, b), first, last)."""
+    kernel, batch = advance(systems.C.shape[1]), len(systems.D)
+    firsts = range(0, batch, LANES)
+    buffers = [systems.part(first, first + LANES).packed(LANES) for first in firsts]
+    lanes = np.empty(length * LANES)
+    for first in range(0, run.length, length):
+        last = min(first + length, run.length)
+        rows = np.empty((last - first, batch))
+        for column, buffer in zip(firsts, buffers, strict=True):
+            kernel(buffer, run.command, first, last, lanes)
+            width = min(LANES, batch - column)
+            rows[:, column : column + width] = lanes[: (last - first) * LANES].reshape(-1, LANES)[:, :width]
+        yield rows, first, last
+
+
+def _products(run: Run, systems: Recursion, p: int, step: float) -> Array:
+    """Sums of products of [J, releases, 1, r] for each block, (blocks, q, q)."""
+    length = max(16, -(-run.length // _BLOCKS))
+    mean = run.measured.mean()
+    out = []
+    for rows, first, last in _responses(run, systems, length):
+        z = np.empty((last - first, rows.shape[1] + 1))
+        z[:, :p] = (rows[:, 1 : p + 1] - rows[:, :1]) / step
+        z[:, p:-2] = rows[:, p + 1 :]
+        z[:, -2] = 1.0
+        z[:, -1] = run.measured[first:last] - mean - rows[:, 0]
+        out.append(z.T @ z)
+    return np.array(out)

@@ -1,0 +1,142 @@
+"""The space of a search: a unit cube, each axis one parameter between its bounds, and the way to SI values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.chain import conditions
+from ident.errors import Unusable
+from ident.expression import Equation
+from ident.fit.settings import Settings
+from ident.matrix import Matrix, Run
+from ident.presets import Preset
+
+Array = NDArray[np.float64]
+_SAME_AREA = 0.02  # relative difference of piston areas that still is the same machine
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One parameter's range: value = scale × ratio, the ratio between `lower` and `upper`."""
+
+    name: str
+    lower: float
+    upper: float
+    logarithmic: bool
+    scale: Equation | None = None  # None: the ratio is the value itself, in SI
+
+
+@dataclass(frozen=True)
+class Space:
+    """Axes searched, values held fixed, and what the axes' scales may read.
+
+    `convention` names a parameter that no run can determine (without a specimen of known mass only ratios to the mass
+    are seen): it is held at `fixed` and reported as undetermined.
+    """
+
+    axes: tuple[Axis, ...]
+    order: tuple[str, ...]
+    fixed: Mapping[str, float]
+    typical: Mapping[str, float]
+    convention: str | None = None
+    scale_free: bool = False
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the searched parameters, one an axis."""
+        return tuple(axis.name for axis in self.axes)
+
+    def values(self, points: Array) -> dict[str, Array]:
+        """SI values of every parameter at points of the unit cube: (v, p) → name: (v,)."""
+        known: dict[str, Array] = {name: np.full(len(points), value) for name, value in self.fixed.items()}
+        axes = {axis.name: (axis, points[:, i]) for i, axis in enumerate(self.axes)}
+        for name in self.order:
+            if name in axes:
+                axis, u = axes[name]
+                known[name] = _ratio(axis, u) * _scale(axis, known, self.typical)
+        return known
+
+    def point(self, values: Mapping[str, float]) -> Array:
+        """The point of the cube that has these values, (p,); outside the bounds it is clipped onto them."""
+        known = {name: np.array(value) for name, value in values.items()}
+        point = np.empty(len(self.axes))
+        for i, axis in enumerate(self.axes):
+            ratio = float(known[axis.name] / _scale(axis, known, self.typical))
+            if axis.logarithmic:
+                point[i] = np.log(ratio / axis.lower) / np.log(axis.upper / axis.lower)
+            else:
+                point[i] = (ratio - axis.lower) / (axis.upper - axis.lower)
+        return np.clip(point, 0.0, 1.0)
+
+    def bounds(self, values: Mapping[str, float]) -> dict[str, tuple[float, float]]:
+        """Lower and upper SI bound of each searched parameter, the others being at `values`."""
+        known = {name: np.array(value) for name, value in values.items()}
+        scales = {axis.name: float(_scale(axis, known, self.typical)) for axis in self.axes}
+        return {axis.name: (axis.lower * scales[axis.name], axis.upper * scales[axis.name]) for axis in self.axes}
+
+
+def _ratio(axis: Axis, u: Array) -> Array:
+    if axis.logarithmic:
+        return np.asarray(axis.lower * (axis.upper / axis.lower) ** u)
+    return np.asarray(axis.lower + (axis.upper - axis.lower) * u)
+
+
+def _scale(axis: Axis, known: Mapping[str, Array], typical: Mapping[str, float]) -> Array:
+    if axis.scale is None:
+        return np.array(1.0)
+    names = {name: known[name] if name in known else typical[name] for name in axis.scale.names}
+    return np.asarray(eval(axis.scale.python, {"__builtins__": {}}, names))  # own text, checked by the grammar
+
+
+def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float) -> Space:
+    """What to search for this machine.
+
+    The bounds of the preset hold for the machine they were stated for: the same piston area, with gain and specimen
+    of every run known. Any other machine is searched over scale-free ratios. Bounds and values of the user come first.
+    """
+    runs = matrix.of_use("fit")
+    given = {preset.parameter(name).name: bounds for name, bounds in settings.bounds.items()}
+    fixed = {preset.parameter(name).name: value for name, value in settings.fixed.items()}
+    area, known_for = matrix.actuator.piston_area, preset.bounds_hold_for
+    stated = all(run.gain is not None and run.specimen is not None for run in runs)
+    same = known_for is not None and area is not None and abs(area / known_for - 1) < _SAME_AREA and stated
+    typical = _typical(matrix, runs) | {"W": band}
+    convention = None
+    if not same and "m0" in {scale.name for scale in preset.scales} - fixed.keys() - given.keys() and not _loaded(runs):
+        convention, fixed["m0"] = "m0", typical["mL"]
+    axes = []
+    for scale in preset.scales:
+        if scale.name in fixed:
+            continue
+        if scale.name in given or same:
+            parameter = preset.parameter(scale.name)
+            lower, upper = given.get(scale.name, (parameter.lower, parameter.upper))
+            parameter = parameter.within(lower, upper)
+            axes.append(Axis(scale.name, lower, upper, parameter.logarithmic))
+        else:
+            axes.append(Axis(scale.name, scale.lower, scale.upper, logarithmic=True, scale=scale.equation))
+    _refuse_bad_values(fixed)
+    order = tuple(scale.name for scale in preset.scales)
+    return Space(tuple(axes), order, fixed, typical, convention, scale_free=not same)
+
+
+def _loaded(runs: tuple[Run, ...]) -> bool:
+    """True where a specimen's known mass, spring or damper gives forces a scale."""
+    return any(run.specimen and (run.specimen.mass or run.specimen.stiffness or run.specimen.damping) for run in runs)
+
+
+def _typical(matrix: Matrix, runs: tuple[Run, ...]) -> dict[str, float]:
+    each = [conditions(run, matrix.actuator) for run in runs]
+    mean = {name: float(np.mean([values[name] for values in each])) for name in each[0]}
+    mean["Kp"] = float(np.exp(np.mean([np.log(abs(values["Kp"])) for values in each])))
+    return mean | {"mL": mean["mL"] or 1.0}
+
+
+def _refuse_bad_values(fixed: Mapping[str, float]) -> None:
+    for name, value in fixed.items():
+        if not np.isfinite(value) or value <= 0:
+            raise Unusable("bad-value", f"{name} = {value:g}", "values held fixed", "give a positive finite value")

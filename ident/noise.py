@@ -1,0 +1,25 @@
+"""The noise floor: how small eq. (17) can become on a run, read off the record where the command has no power."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.signal
+
+from ident.matrix import Run
+
+_CLEAR = 1.6  # times the band edge: beyond it a Hann window lets less than 1e-6 of the band's power through
+_LEAST = 0.2  # of the Nyquist frequency must be left above that, to average over
+
+
+def noise_floor(run: Run, band: float) -> float | None:
+    """Standard deviation of white measurement noise over that of the measured output; None where it cannot be told.
+
+    The power density of the record above `band` (rad/s, where the command ends) is taken for the noise's at all
+    frequencies: exact for white noise, a lower bound for noise that lives in the band.
+    """
+    nyquist, clear = run.sample_rate / 2, _CLEAR * band / (2 * np.pi)
+    if clear > (1 - _LEAST) * nyquist or run.length < 256:
+        return None
+    frequency, power = scipy.signal.welch(run.measured, run.sample_rate, nperseg=min(run.length, 8192), detrend="linear")
+    density = float(np.mean(power[(frequency > clear) & (frequency < 0.98 * nyquist)]))
+    return float(np.sqrt(density * nyquist) / np.std(run.measured))
