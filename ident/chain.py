@@ -77,7 +77,7 @@ class LinearModel:
     @property
     def D(self) -> Array:
         """Feed-through (...)."""
-        return self.system[-1, -1]
+        return np.asarray(self.system[-1, -1])
 
     def frequency_response(self, frequency: Array) -> NDArray[np.complex128]:
         """G(jω) = C (jωI − A)⁻¹ B + D at `frequency` in Hz, shape (f,) → (..., f).

@@ -20,6 +20,7 @@ def noise_floor(run: Run, band: float) -> float | None:
     nyquist, clear = run.sample_rate / 2, _CLEAR * band / (2 * np.pi)
     if clear > (1 - _LEAST) * nyquist or run.length < 256:
         return None
-    frequency, power = scipy.signal.welch(run.measured, run.sample_rate, nperseg=min(run.length, 8192), detrend="linear")
+    segment = min(run.length, 8192)
+    frequency, power = scipy.signal.welch(run.measured, run.sample_rate, nperseg=segment, detrend="linear")
     density = float(np.mean(power[(frequency > clear) & (frequency < 0.98 * nyquist)]))
     return float(np.sqrt(density * nyquist) / np.std(run.measured))

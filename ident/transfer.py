@@ -8,7 +8,7 @@ without a branch, so that models run side by side in SIMD.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import lru_cache
 from typing import Any
 
@@ -24,15 +24,18 @@ Pattern = tuple[tuple[bool, ...], ...]
 
 def values_at(
     model: LinearModel, pattern: Pattern, nodes: Array, band: float
-) -> tuple[Array, NDArray[np.bool_]]:
-    """[Re G, Im G] of a batch (v,) at `nodes` (rad/s): (2·nodes, v), and which of the models are stable, (v,)."""
+) -> Iterator[tuple[Array, NDArray[np.bool_]]]:
+    """For each of r runs, of a batch (r, v): [Re G, Im G] at `nodes` (rad/s), (v, 2·nodes), and who is stable, (v,).
+
+    A run at a time, so that the values are still in the processor's cache when the caller uses them.
+    """
     n = len(pattern) - 1
-    batch = model.system.shape[2]
-    scaled = np.ascontiguousarray(model.system)
-    scaled = np.concatenate([scaled[:n] / band, scaled[n:]])
-    coefficients, out = np.empty((2 * n + 3, batch)), np.empty((batch, 2 * len(nodes)))
-    _kernel(pattern)(scaled.ravel(), nodes / band, coefficients.ravel(), out, batch)
-    return out.T, coefficients[-1] > 0
+    runs, count = model.system.shape[2:]
+    flat, kernel, scaled_nodes = model.system.reshape(-1), _kernel(pattern), nodes / band
+    for run in range(runs):
+        polynomials, out = np.empty((2 * n + 3) * count), np.empty((count, 2 * len(nodes)))
+        kernel(flat, scaled_nodes, 1.0 / band, polynomials, out, run * count, count, runs * count)
+        yield out, polynomials[-count:] > 0
 
 
 @lru_cache
@@ -59,7 +62,7 @@ def _kernel(pattern: Pattern) -> Callable[..., Any]:
 _SOURCE = """from numba import njit
 
 @njit(cache=True, fastmath=True, nogil=True)
-def transfer(x, w, p, out, batch):
+def transfer(x, w, unit, p, out, first, batch, stride):
     for v in range(batch):
         {recursion}
     count = len(w)
@@ -90,13 +93,12 @@ def _faddeev_leverrier(pattern: Pattern) -> list[str]:
     name = {
         (i, j): f"a{i}_{j}" for i in range(n + 1) for j in range(n + 1) if pattern[i][j]
     }  # row n holds C and D, column n holds B and D
-    lines = [f"{text} = x[{i * (n + 1) + j} * batch + v]" for (i, j), text in name.items()]
+    entry = "x[{} * stride + first + v]{}"  # A and B in the time unit of the band
+    lines = [f"{text} = {entry.format(i * (n + 1) + j, ' * unit' * (i < n))}" for (i, j), text in name.items()]
     lines += [f"den{n} = 1.0", f"num{n} = {name.get((n, n), '0.0')}"]
     M: dict[tuple[int, int], str] = {(i, i): "" for i in range(n)}  # "" stands for the factor 1
     for power in range(n - 1, -1, -1):
-        reading = [
-            _product(name[n, i], M[i, j], name[j, n]) for i, j in M if (n, i) in name and (j, n) in name
-        ]
+        reading = [_product(name[n, i], M[i, j], name[j, n]) for i, j in M if (n, i) in name and (j, n) in name]
         product: dict[tuple[int, int], str] = {}
         for i in range(n):
             for j in range(n):

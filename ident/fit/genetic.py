@@ -61,7 +61,8 @@ def default_step(state: State, errors: Errors, options: dict[str, float]) -> Sta
         return _next(state, population, cost, population[order], rng, best=elite[0], done=True)
     count = size - len(elite)
     draws = rng.integers(0, size, (2, 2, count))
-    parents = np.where((cost[draws[:, 0]] <= cost[draws[:, 1]])[..., None], population[draws[:, 0]], population[draws[:, 1]])
+    first, second = draws[:, 0], draws[:, 1]
+    parents = population[np.where(cost[first] <= cost[second], first, second)]
     blend = rng.uniform(-0.3, 1.3, (count, axes))
     children = parents[0] + blend * (parents[1] - parents[0])
     width = 0.2 * 0.02 ** (generation / last)
@@ -80,8 +81,9 @@ def _evaluated(state: State, errors: Errors) -> tuple[Array, Array, np.random.Ge
 
 
 def _next(
-    state: State, population: Array, cost: Array, children: Array, rng: np.random.Generator, best: Array, done: bool = False
-) -> State:
+    state: State, population: Array, cost: Array, children: Array, rng: np.random.Generator, best: Array,
+    done: bool = False,
+) -> State:  # fmt: skip
     entry = {"population": population.tolist(), "errors": cost.tolist()}
     return {
         "population": children.tolist(), "rng": rng.bit_generator.state, "history": [*state["history"], entry],

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-
 from typing import Any
 
 import numpy as np
@@ -158,11 +157,13 @@ def _distinct(points: Array) -> list[Array]:
 def _refuse(matrix: Matrix, settings: Settings) -> None:
     """Raise Unusable for what cannot be fitted."""
     if settings.method not in METHODS:
-        raise Unusable("unknown-method", f"no method {settings.method!r}", "method", f"choose from {', '.join(METHODS)}")
+        remedy = f"choose from {', '.join(METHODS)}"
+        raise Unusable("unknown-method", f"no method {settings.method!r}", "method", remedy)
     known = [effect.name for effect in EFFECTS]
     for name in settings.effects:
         if name not in known:
-            raise Unusable("unknown-effect", f"no effect {name!r}", "effects", f"choose from {', '.join(known) or 'none'}")
+            remedy = f"choose from {', '.join(known)}" if known else "leave it out"
+            raise Unusable("unknown-effect", f"no effect {name!r}", "effects", remedy)
     if settings.load != "none":
         raise Unusable("unknown-load", f"load {settings.load!r} is not known", "load", "use none")
     if not matrix.of_use("fit"):
@@ -179,6 +180,3 @@ def identify(matrix: Matrix, settings: Settings, report: Report = silent) -> Fit
     while not work.finished(state):
         state = work.advance(state, work.generations)
     return work.finish(state)
-
-
-

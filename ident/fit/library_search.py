@@ -40,7 +40,8 @@ def cma_es(axes: int, seed: int, errors: Errors) -> list[tuple[Array, Array]]:
     # One axis is beyond pycma, so a second one without effect is put beside it.
     width = max(axes, 2)
     options = {
-        "bounds": [0, 1], "popsize": 40, "seed": seed + 1, "verbose": -9, "maxiter": GENERATIONS["cma-es"], "tolfun": 1e-7,
+        "bounds": [0, 1], "popsize": 40, "seed": seed + 1, "verbose": -9, "maxiter": GENERATIONS["cma-es"],
+        "tolfun": 1e-7,
     }  # fmt: skip
     strategy = cma.CMAEvolutionStrategy(width * [0.5], 0.25, options)
     history: list[tuple[Array, Array]] = []

@@ -6,8 +6,11 @@ Fast: from the reduced runs (:mod:`ident.spectra`), for whole populations. Exact
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import chain
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +22,10 @@ from ident.matrix import Matrix, Run
 from ident.parallel import cores, each
 from ident.presets import Preset
 from ident.spectra import Basis, Spectrum, spectrum
-from ident.transfer import values_at
+from ident.transfer import Pattern, values_at
 
 Array = NDArray[np.float64]
+Outcome = TypeVar("Outcome")
 UNSTABLE = 1e3  # the error of a model that is unstable at some run: a cost, not a failure
 _TRUSTED = 0.05  # of the error: a doubt below this moves the error by less than 0.13 %
 STEP = 1e-5  # of an axis, for sensitivities by differences
@@ -50,7 +54,7 @@ def local(runs: Sequence[Moments]) -> Local:
 
 def weight_of(run: Moments) -> float:
     """1 / (|r| |x_m|): with it the sum of |r| / |x_m| has the gradient of a weighted least-squares problem."""
-    return 1.0 / np.sqrt(max(run.gram[-1, -1], 1e-24 * run.total) * run.total)
+    return float(1.0 / np.sqrt(max(run.gram[-1, -1], 1e-24 * run.total) * run.total))
 
 
 @dataclass
@@ -75,12 +79,6 @@ class Objective:
             _ = self.basis.expansion
             self._spectra = each(lambda run: spectrum(run, self.basis), self.runs)
 
-    def model(self, run: Run, values: Mapping[str, Array]) -> LinearModel:
-        """The linear models of a run for a batch of values, (v,)."""
-        count = len(next(iter(values.values())))
-        known = {name: np.full(count, value) for name, value in conditions(run, self.matrix.actuator).items()}
-        return self.preset.chain.linearise(known | dict(values), run.output)
-
     def errors(self, points: Array) -> Array:
         """Eq. (17) averaged over runs at points of the space, (v, p) → (v,), fast.
 
@@ -98,47 +96,64 @@ class Objective:
 
     def _fast(self, points: Array) -> tuple[Array, Array]:
         """Errors averaged over runs, and the largest doubt of a run."""
+
+        def measures(run: int, g: Array, stable: NDArray[np.bool_]) -> tuple[Array, Array]:
+            errors, doubt = self._spectra[run].errors(g, self.basis)
+            return np.where(stable, errors, np.inf), doubt
+
+        found = self._over_runs(points, measures)
+        by_run = np.array([errors for errors, _ in found])
+        errors = np.where(np.all(np.isfinite(by_run), axis=0), by_run.mean(axis=0), UNSTABLE)
+        return np.minimum(errors, UNSTABLE), np.max([doubt for _, doubt in found], axis=0)
+
+    def _over_runs(self, points: Array, measure: Callable[[int, Array, NDArray[np.bool_]], Outcome]) -> list[Outcome]:
+        """`measure`(run, values at the nodes, stable) of every run, in order; the runs are shared out to the cores."""
         self.prepare()
         values = self.space.values(points)
-        shares = np.array_split(np.arange(len(self.runs)), cores())
-        parts = each(lambda share: self._fast_runs(share, values), [share for share in shares if len(share)])
-        by_run = np.concatenate([part[0] for part in parts])
-        doubt = np.concatenate([part[1] for part in parts])
-        errors = np.where(np.all(np.isfinite(by_run), axis=0), by_run.mean(axis=0), UNSTABLE)
-        return np.minimum(errors, UNSTABLE), doubt.max(axis=0)
 
-    def _fast_runs(self, share: NDArray[np.int64], values: Mapping[str, Array]) -> tuple[Array, Array]:
-        count = len(next(iter(values.values())))
-        errors, doubt = np.empty((len(share), count)), np.empty((len(share), count))
-        patterns = {self.runs[i].output: self.preset.chain.pattern(self.runs[i].output) for i in share}
-        for row, i in enumerate(share):
-            run = self.runs[i]
-            g, stable = values_at(self.model(run, values), patterns[run.output], self.basis.nodes, self.basis.band)
-            errors[row] = np.where(stable, self._spectra[i].error(g), np.inf)
-            doubt[row] = self.basis.doubt(g)
-        return errors, doubt
+        def of_share(share: Array) -> list[Outcome]:
+            runs = [self.runs[i] for i in share]
+            model, pattern = self._models(runs, values), self._patterns[runs[0].output]
+            reduced = values_at(model, pattern, self.basis.nodes, self.basis.band)
+            return [measure(i, g, stable) for i, (g, stable) in zip(share, reduced, strict=True)]
+
+        shares = [
+            share
+            for output in self._patterns
+            for share in np.array_split([i for i, run in enumerate(self.runs) if run.output == output], cores())
+            if len(share)
+        ]
+        found = dict(zip(np.concatenate(shares), chain.from_iterable(each(of_share, shares)), strict=True))
+        return [found[i] for i in range(len(self.runs))]
+
+    def _models(self, runs: Sequence[Run], values: Mapping[str, Array]) -> LinearModel:
+        """Linear models of a batch (runs, vectors)."""
+        known = [conditions(run, self.matrix.actuator) for run in runs]
+        stacked = {name: np.array([entry[name] for entry in known])[:, None] for name in known[0]}
+        batch = stacked | {name: value[None] for name, value in values.items()}
+        return self.preset.chain.linearise(batch, runs[0].output)
+
+    @cached_property
+    def _patterns(self) -> dict[str, Pattern]:
+        return {run.output: self.preset.chain.pattern(run.output) for run in self.runs}
 
     def approximate(self, point: Array) -> Local:
         """The objective at one point from the reduced runs, with sensitivities by differences."""
+        p = len(point)
         signs = np.where(point + STEP > 1.0, -1.0, 1.0)
-        cloud = np.concatenate([point[None], point + STEP * np.diag(signs)])
-        values = self.space.values(cloud)
-        self.evaluations += len(cloud)
+        self.evaluations += p + 1
 
-        def one(pair: tuple[Run, Spectrum]) -> Moments:
-            run, reduced = pair
-            pattern = self.preset.chain.pattern(run.output)
-            g, stable = values_at(self.model(run, values), pattern, self.basis.nodes, self.basis.band)
-            p = len(point)
+        def measure(run: int, g: Array, stable: NDArray[np.bool_]) -> Moments:
             if not stable[0]:
                 return Moments(np.full((p + 1, p + 1), np.inf), np.zeros((0, p)), 1.0, 0.0)
-            y = reduced.W @ g
-            z = np.column_stack([(y[:, 1:] - y[:, :1]) / (STEP * signs), reduced.d - y[:, 0]])
-            gram = z.T @ z
+            reduced = self._spectra[run]
+            y = g @ reduced.W.T
+            z = np.vstack([(y[1:] - y[:1]) / (STEP * signs)[:, None], reduced.d - y[:1]])
+            gram = z @ z.T
             gram[-1, -1] += reduced.rest
             return Moments(gram, np.zeros((0, p)), reduced.total, 0.0)
 
-        return local(each(one, zip(self.runs, self._spectra, strict=True)))
+        return local(self._over_runs(np.concatenate([point[None], point + STEP * np.diag(signs)]), measure))
 
     def exact(self, point: Array, sensitivities: bool = True) -> Local:
         """The objective at one point from the time domain; infinite where the model is unstable."""
@@ -151,7 +166,8 @@ class Objective:
         flip = np.append(signs[: len(steps)], 1.0)
 
         def one(run: Run) -> Moments:
-            found = moments(run, self.model(run, values), STEP)
+            model = self._models([run], values)
+            found = moments(run, LinearModel(model.system[:, :, 0]), STEP)
             gram = found.gram * flip[:, None] * flip
             return Moments(gram, found.scores * flip[:-1], found.total, found.offset)
 

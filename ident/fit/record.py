@@ -89,8 +89,8 @@ def _with_releases(systems: Recursion) -> Recursion:
     still = np.zeros((n, n))
     more = (np.repeat(systems.phi[:1], n, axis=0), still, still, np.repeat(systems.C[:1], n, axis=0), np.zeros(n))
     parts = (systems.phi, systems.gamma0, systems.gamma1, systems.C, systems.D)
-    joined = [np.concatenate(pair) for pair in zip(parts, more, strict=True)]
-    return Recursion(*joined, np.concatenate([systems.start, np.diag(scale)]))
+    phi, gamma0, gamma1, C, D = (np.concatenate(pair) for pair in zip(parts, more, strict=True))
+    return Recursion(phi, gamma0, gamma1, C, D, np.concatenate([systems.start, np.diag(scale)]))
 
 
 def _responses(run: Run, systems: Recursion, length: int) -> Iterator[tuple[Array, int, int]]:

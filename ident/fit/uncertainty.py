@@ -39,12 +39,12 @@ class Covariance:
         """Correlations by name."""
         deviation = np.sqrt(np.maximum(np.diag(self.log), 1e-300))
         matrix = np.clip(self.log / deviation[:, None] / deviation, -1.0, 1.0)
-        return {
-            a: {b: float(matrix[i, j]) for j, b in enumerate(self.names)} for i, a in enumerate(self.names)
-        }
+        return {a: {b: float(matrix[i, j]) for j, b in enumerate(self.names)} for i, a in enumerate(self.names)}
 
 
-def covariance(here: Local, values: Callable[[Array], Mapping[str, Array]], point: Array, names: tuple[str, ...]) -> Covariance:
+def covariance(
+    here: Local, values: Callable[[Array], Mapping[str, Array]], point: Array, names: tuple[str, ...]
+) -> Covariance:
     """The covariance at the optimum, carried from the axes of the search to the logarithms of the parameters."""
     p = len(point)
     H, S = np.zeros((p, p)), np.zeros((p, p))
