@@ -1,0 +1,83 @@
+"""One channel of a run: where its samples are and how they become SI."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ident.errors import Unusable
+from ident.matrix import CHANNELS
+from ident.quantity import DIMENSIONS, Scale, parameter_value, shown, split, unit_scale
+from ident.readers.fields import Fields
+
+PRESSURE = ("pressure",)
+KINDS_OF_UNIT: dict[str, Sequence[str]] = {
+    "command": ("length", "current", "voltage", "force", "pressure"),
+    "displacement": ("length",), "force": ("force",), "drive_force": ("force",), "load_pressure": PRESSURE,
+    "pressure_a": PRESSURE, "pressure_b": PRESSURE, "supply_pressure": PRESSURE,
+    "spool": ("length", "voltage", "current"), "current": ("current", "voltage"), "temperature": ("temperature",),
+}  # fmt: skip
+"""What each channel may be measured in; ``1`` is allowed everywhere, for records in unknown units."""
+
+
+@dataclass(frozen=True)
+class ChannelDescription:
+    """SI value = ``scale.factor`` × raw + ``scale.offset``; `column` is a name or a 0-based number."""
+
+    column: str | int
+    scale: Scale
+
+
+def describe_channels(data: Any, where: str) -> dict[str, ChannelDescription]:
+    """Every channel of a run by name."""
+    fields = Fields(data, where, CHANNELS)
+    return {name: describe_channel(fields.data[name], name, f"{where}.{name}") for name in fields.data}
+
+
+def describe_channel(data: Any, name: str, where: str) -> ChannelDescription:
+    """One channel: ``unit × (scale × raw + offset)``, with ``invert`` of the opposite sign.
+
+    `scale` is a number (column units a raw unit), `offset` a number in the channel's unit or a quantity.
+    """
+    fields = Fields(data, where, ("column", "unit", "scale", "offset", "invert"))
+    column = fields.need("column", "name its column, or give the 0-based number")
+    if isinstance(column, list | dict) or (isinstance(column, int) and column < 0):
+        raise Unusable("missing-column", f"{shown(column)!r} is not a column", fields.place("column"), "write a name")
+    if "unit" not in fields:
+        remedy = f"add unit: {'mm' if 'length' in KINDS_OF_UNIT[name] else DIMENSIONS[KINDS_OF_UNIT[name][0]]}"
+        raise Unusable("missing-unit", "the channel has no unit", fields.place("unit"), remedy)
+    scale = channel_scale(fields.text("unit"), name, fields.place("unit"))
+    factor = fields.number("scale")
+    if factor == 0:
+        raise Unusable("zero-scale", "scale is 0, which erases the samples", fields.place("scale"), "correct it")
+    offset = channel_offset(fields, scale)
+    sign = -1.0 if fields.truth("invert") else 1.0
+    total = sign * scale.factor * (1.0 if factor is None else factor)
+    return ChannelDescription(column, Scale(total, sign * (scale.offset + offset), scale.unit))
+
+
+def channel_scale(unit: str, name: str, where: str) -> Scale:
+    """How a unit of any kind that the channel may have becomes SI.
+
+    Raises Unusable: ``unknown-unit``, ``wrong-dimension``.
+    """
+    allowed = (*KINDS_OF_UNIT[name], "dimensionless")
+    for dimension in allowed:
+        try:
+            return unit_scale(unit, dimension, where)
+        except Unusable as refused:
+            if refused.code != "wrong-dimension":
+                raise
+    wanted = " or ".join(KINDS_OF_UNIT[name])
+    remedy = f"give a unit of {wanted}, or 1 where it is unknown"
+    raise Unusable("wrong-dimension", f"{shown(unit)!r} does not measure {wanted}", where, remedy)
+
+
+def channel_offset(fields: Fields, scale: Scale) -> float:
+    """The offset in SI: a bare number counts in the channel's unit, as its scale does."""
+    if "offset" not in fields:
+        return 0.0
+    text, place = fields.data["offset"], fields.place("offset")
+    number, given = split(text, place)
+    return parameter_value(text, scale.unit, place) if given else number * scale.factor

@@ -1,0 +1,110 @@
+"""One mapping of the description: typed fields, and an error for every key that nobody asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
+from typing import Any
+
+from ident.errors import Unusable
+from ident.quantity import parameter_value, quantity, shown
+
+LONGEST_TEXT = 500
+
+
+class Fields:
+    """The keys of a mapping, `known` being the ones it may have.
+
+    Raises Unusable: ``not-a-mapping``, ``unknown-key``.
+    """
+
+    def __init__(self, data: Any, where: str, known: Sequence[str]) -> None:
+        if not isinstance(data, Mapping):
+            raise Unusable("not-a-mapping", f"{shown(data)!r} is not a list of key: value", where, "write {key: value}")
+        self.data, self.where = data, where
+        for key in data:
+            if key not in known:
+                near = get_close_matches(key, known, 1, 0.4)
+                remedy = f"did you mean {near[0]!r}?" if near else "known are " + ", ".join(known)
+                raise Unusable("unknown-key", f"unknown key {shown(key)!r}", where, remedy)
+
+    def __contains__(self, key: str) -> bool:
+        return self.data.get(key) is not None
+
+    def place(self, key: str) -> str:
+        """The field's name in messages."""
+        return f"{self.where} {key}"
+
+    def need(self, key: str, remedy: str) -> Any:
+        """A value that must be there. Raises Unusable: ``missing-field``."""
+        if key not in self:
+            raise Unusable("missing-field", f"{key!r} is missing", self.where, remedy)
+        return self.data[key]
+
+    def text(self, key: str, default: str = "") -> str:
+        """A line of text. Raises Unusable: ``not-text``."""
+        value = self.data.get(key)
+        if value is None:
+            return default
+        line = " ".join(str(value).split())
+        if not isinstance(value, str | int) or len(line) > LONGEST_TEXT or not line.isprintable():
+            raise Unusable("not-text", f"{shown(value)!r} is not a line of text", self.place(key), "write a short text")
+        return line
+
+    def choice(self, key: str, allowed: Sequence[str], default: str) -> str:
+        """One of the allowed words. Raises Unusable: ``unknown-KEY``."""
+        value = self.text(key, default)
+        if value not in allowed:
+            remedy = "use one of " + ", ".join(allowed)
+            raise Unusable(f"unknown-{key}", f"{shown(value)!r} is not a {key}", self.place(key), remedy)
+        return value
+
+    def whole(self, key: str, default: int = 0) -> int:
+        """A whole number, 0 or more. Raises Unusable: ``not-a-number``."""
+        value = self.data.get(key, default)
+        if not isinstance(value, int) or value < 0:
+            raise Unusable(
+                "not-a-number", f"{shown(value)!r} is not 0 or a whole number above", self.place(key), "write 6"
+            )
+        return value
+
+    def truth(self, key: str) -> bool:
+        """True or false. Raises Unusable: ``not-a-truth``."""
+        value = str(self.data.get(key, "false")).lower()
+        if value not in ("true", "false", "yes", "no"):
+            raise Unusable("not-a-truth", f"{shown(value)!r} is neither true nor false", self.place(key), "write true")
+        return value in ("true", "yes")
+
+    def quantity(self, key: str, dimension: str) -> float | None:
+        """A number with its unit, in SI; None where it is not given."""
+        return quantity(self.data[key], dimension, self.place(key)) if key in self else None
+
+    def number(self, key: str, unit: str = "1") -> float | None:
+        """A number that may carry a unit and without one is in `unit`; None where it is not given."""
+        return parameter_value(self.data[key], unit, self.place(key)) if key in self else None
+
+    def positive(self, key: str, dimension: str) -> float | None:
+        """As :meth:`quantity`, above 0. Raises Unusable: ``not-positive``."""
+        value = self.quantity(key, dimension)
+        if value is not None and value <= 0:
+            raise Unusable("not-positive", f"{shown(self.data[key])} is not above 0", self.place(key), "correct it")
+        return value
+
+    def not_negative(self, key: str, dimension: str) -> float | None:
+        """As :meth:`quantity`, 0 or above. Raises Unusable: ``negative-KEY``."""
+        value = self.quantity(key, dimension)
+        if value is not None and value < 0:
+            remedy = "give 0 or a positive value"
+            raise Unusable(f"negative-{key}", f"{shown(self.data[key])} is negative", self.place(key), remedy)
+        return value
+
+    def pair(self, key: str) -> tuple[Any, Any] | None:
+        """A list of two. Raises Unusable: ``not-a-pair``."""
+        value = self.data.get(key)
+        if value is None:
+            return None
+        if not isinstance(value, list) or len(value) != 2:
+            raise Unusable(
+                "not-a-pair", f"{shown(value)!r} is not a list of two", self.place(key), "write [first, end]"
+            )
+        return value[0], value[1]

@@ -1,0 +1,92 @@
+"""Columns of a file to a run in SI."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ident.errors import Unusable
+from ident.matrix import Run, Samples
+from ident.quantity import Scale, shown
+from ident.readers.clock import read_clock
+from ident.readers.run_description import RunDescription
+from ident.readers.table import Array, Table, numeric
+
+SHORTEST = 8  # samples; below, not even the straight line of the clock and a mean leave anything to fit
+LARGEST = 1e100  # SI; squares beyond overflow
+
+
+def read_run(described: RunDescription, table: Table) -> Run:
+    """The run with its samples, float64, contiguous, its own memory.
+
+    Raises Unusable: ``missing-column``, ``not-numeric``, ``unequal-lengths``, ``rows-outside``, ``too-short``,
+    ``not-finite``, ``zero-variance``, ``time-not-monotonic``.
+    """
+    labels = described.labels
+    places = {name: f"run {labels.id} channels.{name}" for name in described.channels}
+    wanted = {name: channel.column for name, channel in described.channels.items()}
+    if described.time is not None:
+        places["time"], wanted["time"] = f"run {labels.id} time", described.time.column
+    numbers = {name: table.number(column, places[name]) for name, column in wanted.items()}
+    raw = dict(zip(numbers, table.load(list(numbers.values())), strict=True))
+    check_lengths(raw, described)
+    channels = {
+        name: in_si(part(raw[name], described, places[name]), channel.scale, places[name])
+        for name, channel in described.channels.items()
+    }
+    for name in {"command", labels.output} & set(channels):
+        check_moves(channels[name], places[name])
+    if described.time is None:
+        return replace(labels, channels=channels)
+    scale = Scale(described.time.factor, 0.0, "s")
+    clock = read_clock(in_si(part(raw["time"], described, places["time"]), scale, places["time"]), places["time"])
+    return replace(labels, channels=channels, sample_rate=clock.rate, clock_jitter=clock.jitter, gaps=clock.gaps)
+
+
+def check_lengths(raw: dict[str, Array], described: RunDescription) -> None:
+    """All columns of one length, long enough, and as long as `rows` says."""
+    where = f"run {described.labels.id} file {described.labels.file}"
+    lengths = {name: len(column) for name, column in raw.items()}
+    count = min(lengths.values())
+    if max(lengths.values()) != count:
+        listed = ", ".join(f"{name} {length}" for name, length in lengths.items())
+        raise Unusable("unequal-lengths", f"columns differ in length: {listed}", where, "cut them to one length")
+    if described.rows is not None:
+        first, end = described.rows
+        if end > count:
+            what = f"rows [{first}, {end}) of a file of {count}"
+            raise Unusable("rows-outside", what, where, "correct rows")
+        count = end - first
+    if count == 0:
+        raise Unusable("empty-file", "the file has no samples", where, "give a record")
+    if count < SHORTEST:
+        remedy = f"give at least {SHORTEST}"
+        raise Unusable("too-short", f"{count} sample{'s' if count > 1 else ''}", where, remedy)
+
+
+def part(column: Array, described: RunDescription, where: str) -> Array:
+    """The rows of a column that the run asks for."""
+    numeric(column, where, where)
+    return column if described.rows is None else column[slice(*described.rows)]
+
+
+def in_si(raw: Array, scale: Scale, where: str) -> Samples:
+    """factor × raw + offset in new memory. Raises Unusable ``not-finite`` with the first bad sample."""
+    with np.errstate(all="ignore"):
+        values: Samples = np.multiply(raw, scale.factor, dtype=np.float64)
+        if scale.offset:
+            values += scale.offset
+    largest = max(-float(values.min()), float(values.max()))  # not a number where any sample is not
+    if not largest < LARGEST:
+        index = int(np.argmin(np.abs(values) < LARGEST))
+        what = f"sample {index} is {shown(raw[index])}, not a finite number of a usable size"
+        raise Unusable("not-finite", what, where, "cut the record there or repair the sample")
+    return values
+
+
+def check_moves(values: Samples, where: str) -> None:
+    """Raises Unusable: ``zero-variance`` for a channel that holds one value, but for rounding."""
+    lowest, highest = float(values.min()), float(values.max())
+    if highest - lowest <= 1e-12 * max(abs(lowest), abs(highest)):
+        raise Unusable("zero-variance", f"all samples are {lowest:g}", where, "check the column and the sensor")

@@ -1,0 +1,161 @@
+"""One entry of the list of runs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from ident.errors import Unusable
+from ident.matrix import HOLDS, KINDS, USES, Run, Specimen
+from ident.quantity import quantity, shown, split, unit_scale
+from ident.readers.channel_description import ChannelDescription, describe_channels
+from ident.readers.fields import Fields
+from ident.readers.source import inside
+
+RUN = (
+    "id", "file", "sample_rate", "time", "specimen", "gain", "amplitude", "kind", "hold", "output", "use", "skip_rows",
+    "rows", "channels", "position_range", "frequency", "rated_current",
+)  # fmt: skip
+WITHOUT_COMMAND = ("static", "frequency", "speed-levels", "speed-continuous")
+"""Kinds of bench records, whose input may be a current instead of a command."""
+
+
+@dataclass(frozen=True)
+class TimeColumn:
+    """The column that holds the time, `factor` s a unit."""
+
+    column: str | int
+    factor: float
+
+
+@dataclass(frozen=True)
+class RunDescription:
+    """A run before its samples are read. `labels` is the run without channels and, with a time column, without rate."""
+
+    labels: Run
+    channels: dict[str, ChannelDescription]
+    time: TimeColumn | None
+    skip_rows: int
+    rows: tuple[int, int] | None
+
+
+def describe_run(data: Any, where: str) -> RunDescription:
+    """Read one run. Raises Unusable with the run's id and the field."""
+    fields = Fields(data, where, RUN)
+    name = describe_id(fields)
+    fields = Fields(data, f"run {name}", RUN)
+    kind = fields.choice("kind", KINDS, "other")
+    channels = describe_channels(fields.need("channels", "describe command and displacement"), fields.place("channels"))
+    output = describe_output(fields, kind, channels)
+    time, rate, time_unit = describe_clock(fields)
+    units = {channel: described.scale.unit for channel, described in channels.items()}
+    fields.need("file", "add file: runs/NAME.csv")
+    labels = Run(
+        id=name,
+        file=inside(fields.text("file"), fields.place("file")),
+        sample_rate=rate,
+        channels={},
+        units=units,
+        time_unit=time_unit,
+        specimen=describe_specimen(fields),
+        gain=describe_gain(fields),
+        amplitude=fields.positive("amplitude", units.get("command", "m")),  # RMS of the command, in its kind of unit
+        kind=kind,
+        hold=fields.choice("hold", HOLDS, "linear"),
+        output=output,
+        use=fields.choice("use", USES, "fit"),
+        position_range=describe_range(fields, units.get("displacement", "m")),
+        frequency=fields.positive("frequency", "frequency" if time_unit == "s" else "per sample"),
+        rated_current=fields.positive("rated_current", units.get("current", "A")),
+    )
+    return RunDescription(labels, channels, time, fields.whole("skip_rows"), describe_rows(fields))
+
+
+def describe_id(fields: Fields) -> str:
+    """The id, which becomes a part of file names and addresses. Raises Unusable: ``bad-id``."""
+    fields.need("id", "give each run its own id")
+    name = fields.text("id")
+    if not name or name.startswith(".") or len(name) > 100 or any(sign in name for sign in '/\\:*?"<>|'):
+        raise Unusable(
+            "bad-id", f"{shown(name)!r} cannot name files", fields.place("id"), "use letters, digits, - and _"
+        )
+    return name
+
+
+def describe_output(fields: Fields, kind: str, channels: dict[str, ChannelDescription]) -> str:
+    """The channel that a model must reproduce; it and a command must be described."""
+    output = fields.text("output", "displacement")
+    if output not in channels:
+        remedy = "set output to one of " + ", ".join(channels)
+        raise Unusable(
+            "unknown-output", f"{shown(output)!r} is not a channel of this run", fields.place("output"), remedy
+        )
+    if "command" not in channels and not (kind in WITHOUT_COMMAND and "current" in channels):
+        raise Unusable("missing-command", "there is no command", fields.place("channels"), "describe the command")
+    if output == "command":
+        raise Unusable("unknown-output", "the command cannot be the output", fields.place("output"), "name a response")
+    return output
+
+
+def describe_clock(fields: Fields) -> tuple[TimeColumn | None, float, str]:
+    """Time column or sample rate; and whether time is in s or in samples."""
+    if ("time" in fields) == ("sample_rate" in fields):
+        what = "both time and sample_rate are given" if "time" in fields else "neither sample_rate nor time is given"
+        raise Unusable("clock", what, fields.where, "give sample_rate: 4096 Hz, or time: {column: t, unit: s}")
+    if "time" in fields:
+        clock = Fields(fields.data["time"], fields.place("time"), ("column", "unit"))
+        column = clock.need("column", "name the column that holds the time")
+        clock.need("unit", "add unit: s")
+        return TimeColumn(column, unit_scale(clock.text("unit"), "time", clock.place("unit")).factor), 0.0, "s"
+    text = fields.data["sample_rate"]
+    unit = split(text, fields.place("sample_rate"))[1].replace(" ", "")
+    dimension = "per sample" if unit in ("1/sample", "sample^-1") else "frequency"
+    if unit.endswith("/s") and unit[:-2] in ("S", "Sa", "sample", "samples"):
+        text = str(text).replace(unit, "Hz")
+    rate = quantity(text, dimension, fields.place("sample_rate"))
+    if rate <= 0:
+        remedy = "give the number of samples a second"
+        raise Unusable("not-positive", f"{shown(text)} is not above 0", fields.place("sample_rate"), remedy)
+    return None, rate, "sample" if dimension == "per sample" else "s"
+
+
+def describe_specimen(fields: Fields) -> Specimen | None:
+    """What the actuator moves; mass, stiffness and damping that are not stated are 0."""
+    if "specimen" not in fields:
+        return None
+    given = Fields(fields.data["specimen"], fields.place("specimen"), ("mass", "stiffness", "damping"))
+    values = {key: given.not_negative(key, key) for key in ("mass", "stiffness", "damping")}
+    return Specimen(**{key: value for key, value in values.items() if value is not None})
+
+
+def describe_gain(fields: Fields) -> float | None:
+    """Kp, a dial. Raises Unusable: ``zero-gain``, ``negative-gain``."""
+    gain = fields.number("gain")
+    if gain is not None and gain <= 0:
+        code, what = ("zero-gain", "is 0") if gain == 0 else ("negative-gain", "is negative")
+        raise Unusable(code, f"Kp {what}, and the loop is open", fields.place("gain"), "give the gain that was set")
+    return gain
+
+
+def describe_range(fields: Fields, unit: str) -> tuple[float, float] | None:
+    """The positions between which a bench record ran."""
+    pair = fields.pair("position_range")
+    if pair is None:
+        return None
+    place = fields.place("position_range")
+    low, high = (quantity(value, unit, place) for value in pair)
+    if not low < high:
+        raise Unusable("empty-range", "the first position is not below the second", place, "write [low, high]")
+    return low, high
+
+
+def describe_rows(fields: Fields) -> tuple[int, int] | None:
+    """The part [first, end) of the file."""
+    pair = fields.pair("rows")
+    if pair is None:
+        return None
+    first, end = pair
+    if not isinstance(first, int) or not isinstance(end, int) or not 0 <= first < end:
+        remedy = "write [first, end), 0 being the first sample"
+        raise Unusable("bad-rows", f"{shown(pair)} is not a part of a file", fields.place("rows"), remedy)
+    return first, end

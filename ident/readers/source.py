@@ -1,0 +1,65 @@
+"""Where the files of a matrix come from: a folder here, an archive in :mod:`ident.readers.archive`."""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path, PurePosixPath
+from typing import Protocol
+
+from ident.errors import Unusable
+from ident.readers.limits import LIMITS, Limits, check_size
+
+DESCRIPTION = "matrix.yaml"
+
+
+class Source(Protocol):
+    """Named files. Names are relative, with ``/``, and have passed :func:`inside`."""
+
+    def read(self, name: str, limit: int) -> bytes:
+        """The bytes of a file. Raises Unusable: ``missing-file``, ``too-large``, and what the source adds."""
+        ...
+
+
+def inside(name: str, where: str) -> str:
+    """A relative file name that stays in the matrix, as it is. Raises Unusable: ``outside-folder``."""
+    parts = PurePosixPath(name).parts
+    drive = len(name) > 1 and name[1] == ":"
+    if not parts or name.startswith("/") or ".." in parts or "\\" in name or drive or not name.isprintable():
+        raise Unusable(
+            "outside-folder", f"{name!r} does not stay in the matrix folder", where, "give a path below it, with /"
+        )
+    return str(PurePosixPath(name))
+
+
+class Folder:
+    """A matrix folder on disk."""
+
+    def __init__(self, folder: Path, limits: Limits = LIMITS) -> None:
+        self.folder, self.limits = folder, limits
+
+    def read(self, name: str, limit: int) -> bytes:
+        """The bytes of a file; no part of its path may be a symbolic link (``symbolic-link``)."""
+        path = self.folder
+        for part in PurePosixPath(inside(name, name)).parts:
+            path = path / part
+            if path.is_symlink():
+                raise Unusable("symbolic-link", f"{part!r} is a symbolic link", name, "put the file itself there")
+        return read_regular(path, name, limit)
+
+
+def read_regular(path: Path, name: str, limit: int) -> bytes:
+    """The bytes of a regular file, which is not a link, a pipe or a device. Raises Unusable."""
+    flags = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    try:
+        with os.fdopen(os.open(path, flags), "rb") as file:
+            status = os.fstat(file.fileno())
+            if not stat.S_ISREG(status.st_mode):
+                raise Unusable("not-a-file", "it is not a regular file", name, "put a file there")
+            check_size(status.st_size, limit, "the file", name)
+            return file.read(limit)
+    except FileNotFoundError:
+        raise Unusable("missing-file", "there is no such file", name, "add it or correct the name") from None
+    except OSError as error:
+        reason = error.strerror or "it cannot be opened"
+        raise Unusable("unreadable-file", reason, name, "make it a readable file") from None

@@ -1,0 +1,86 @@
+"""What every file type is read as: named columns, loaded when asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.errors import Unusable
+from ident.quantity import shown
+
+Array = NDArray[Any]
+NUMERIC = "iuf"  # dtype kinds: whole numbers and floats
+LISTED = 12
+
+
+@dataclass(frozen=True)
+class Table:
+    """The columns of one file. `load` returns the raw samples of the columns of the given numbers, each 1-D.
+
+    `notices` says in words what reading assumed. Loading checks declared sizes before it allocates.
+    """
+
+    names: tuple[str, ...]
+    load: Callable[[Sequence[int]], list[Array]]
+    notices: tuple[str, ...] = ()
+
+    def number(self, column: str | int, where: str) -> int:
+        """The number of a column given by name or by 0-based number.
+
+        A name may leave out the groups before it where only one column ends so. Raises Unusable: ``missing-column``,
+        ``ambiguous-column``.
+        """
+        if isinstance(column, int):
+            if not 0 <= column < len(self.names):
+                raise Unusable("missing-column", f"there is no column {column}", where, self.listed())
+            return column
+        found = self.named(column.strip())
+        if len(found) > 1:
+            what = f"{len(found)} columns are called {shown(column)!r}"
+            raise Unusable("ambiguous-column", what, where, "give the 0-based number of the column")
+        if found:
+            return found[0]
+        near = get_close_matches(column, self.names, 1, 0.6)
+        remedy = f"did you mean {near[0]!r}?" if near else self.listed()
+        raise Unusable("missing-column", f"there is no column {shown(column)!r}", where, remedy)
+
+    def named(self, column: str) -> list[int]:
+        """The columns of a name: exactly, or with ``.`` for ``/``, or without the groups before it."""
+        path = column.replace(".", "/")
+        exact = [number for number, name in enumerate(self.names) if name == column]
+        same = [number for number, name in enumerate(self.names) if name.replace(".", "/") == path]
+        ends = [number for number, name in enumerate(self.names) if name.replace(".", "/").endswith("/" + path)]
+        return exact or same or ends
+
+    def listed(self) -> str:
+        """What columns there are, in words."""
+        names = ", ".join(shown(name) for name in self.names[:LISTED])
+        more = f" and {len(self.names) - LISTED} more" if len(self.names) > LISTED else ""
+        return f"the file has {names}{more}" if names else "the file has no column of numbers"
+
+
+def numeric(array: Array, name: str, where: str) -> Array:
+    """The array, where it holds real numbers. Raises Unusable: ``not-numeric``."""
+    if array.dtype.kind not in NUMERIC:
+        what = f"column {shown(name)!r} holds {array.dtype} and not numbers"
+        raise Unusable("not-numeric", what, where, "save real numbers")
+    return array
+
+
+def split_columns(name: str, shape: tuple[int, ...]) -> list[str]:
+    """The columns that an array of the given shape is: one for a vector, ``name[0]`` and on for a matrix (n, m)."""
+    long = [length for length in shape if length != 1]
+    if len(long) <= 1:
+        return [name]
+    return [f"{name}[{number}]" for number in range(shape[1])] if len(shape) == 2 and shape[1] <= 1000 else []
+
+
+def column_of(array: Array, number: int) -> Array:
+    """Column `number` of what :func:`split_columns` made of an array."""
+    vector = sum(length != 1 for length in array.shape) <= 1
+    return np.ravel(array) if vector else array[:, number]
