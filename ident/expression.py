@@ -81,6 +81,12 @@ class Equation:
         called = {node.func.id for node in ast.walk(self.tree) if isinstance(node, ast.Call)}  # type: ignore[attr-defined]
         return frozenset(node.id for node in ast.walk(self.tree) if isinstance(node, ast.Name)) - called
 
+    def value(self, known: Mapping[str, Any]) -> Any:
+        """The right-hand side where every quantity it reads has a value: numbers or arrays that broadcast."""
+        namespace = {"__builtins__": {}, **FUNCTIONS}
+        # The tree passed the grammar, so nothing but arithmetic on `known` can happen here.
+        return eval(compile(ast.Expression(self.tree), "<equation>", "eval"), namespace, dict(known))
+
     @property
     def python(self) -> str:
         """The right-hand side as Python source, to be put into a generated function."""

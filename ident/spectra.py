@@ -142,36 +142,19 @@ def _distance(W, d, g):  # type: ignore[no-untyped-def]
 
 
 def excited_band(runs: Sequence[Run]) -> float:
-    """The angular frequency (rad/s) below which every command has 99.9 % of its power."""
-    edges = [0.0]
+    """The angular frequency (rad/s) up to which the commands excite the machine.
+
+    1.25 times that below which every command has 99 % of its power: the rest may be the recorder's own noise, spread
+    over all frequencies, and must not stretch the basis.
+    """
+    edges = []
     for run in runs:
         segment = min(run.length, max(256, run.length // 4), 16384)
         frequency, power = scipy.signal.welch(run.command, run.sample_rate, nperseg=segment, detrend="linear")
-        total = np.cumsum(power)
-        edges.append(float(frequency[min(np.searchsorted(total, 0.999 * total[-1]) + 1, len(frequency) - 1)]))
+        share = np.cumsum(power)
+        edges.append(float(frequency[max(1, np.searchsorted(share, 0.99 * share[-1]))]))
     nyquist = max(run.sample_rate for run in runs) / 2
-    return 2 * np.pi * min(max(edges), 0.9 * nyquist)
-
-
-def starts_at_rest(run: Run) -> bool:
-    """True where the measured output stands still at zero in the first samples, so that the model may start at rest.
-
-    A line is fitted to the first millisecond (at least 4 samples): a servo-hydraulic machine needs longer than that to
-    follow a jump of its command. Standing: value below 2 % of the record's standard
-    deviation and speed below 5 % of the typical speed, or either within 4 standard errors of zero; a record cut out of
-    a moving test passes by accident about once in a thousand.
-    """
-    n = min(run.length, max(4, round(0.001 * run.sample_rate)))
-    x = run.measured
-    slope, value = np.polyfit(np.arange(n), x[:n], 1)
-    # Differences of fourth order leave the noise of a well sampled record (their gain on white noise is √70).
-    noise = min(float(np.std(np.diff(x, 4))) / np.sqrt(70.0), 0.03 * float(np.std(x))) if len(x) > 8 else 0.0
-    spread = np.arange(n) - (n - 1) / 2
-    slope_error = noise / np.sqrt(np.sum(spread**2))
-    value_error = np.hypot(noise / np.sqrt(n), slope_error * (n - 1) / 2)
-    speed = float(np.std(x[n:] - x[:-n])) / n
-    still = abs(slope) <= max(0.05 * speed, 4 * slope_error)
-    return bool(still and abs(value) <= max(0.02 * float(np.std(x)), 4 * value_error))
+    return 2 * np.pi * min(1.25 * max(edges), 0.9 * nyquist)
 
 
 def spectrum(run: Run, basis: Basis) -> Spectrum:
@@ -203,7 +186,7 @@ def _blocks(run: Run, basis: Basis) -> Iterator[Array]:
     """Blocks of rows [filtered command, measured, decays from a moving start, 1]."""
     filters = discretise(basis.filters, run.sample_rate, run.hold)
     groups = [filters]
-    if not starts_at_rest(run):
+    if not run.starts_at_rest:
         groups.append(_decays(filters))
     packs = [(group, first) for group in groups for first in range(0, len(group.D), LANES)]
     buffers = [group.part(first, first + LANES).packed(LANES) for group, first in packs]

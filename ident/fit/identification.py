@@ -25,7 +25,7 @@ from ident.spectra import Basis, excited_band
 
 Array = NDArray[np.float64]
 State = dict[str, Any]
-_CANDIDATES = 3  # distinct vectors of the last generation from which the polish starts
+_CANDIDATES = 5  # distinct vectors of the last generation from which the polish starts
 
 
 class Identification:

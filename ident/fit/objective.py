@@ -45,6 +45,8 @@ def local(runs: Sequence[Moments]) -> Local:
     """Mean over runs of |r| / |x_m|: gradient −Jᵀr/(|r| |x_m|), curvature JᵀJ/(|r| |x_m|), averaged."""
     p = len(runs[0].gram) - 1
     gradient, curvature = np.zeros(p), np.zeros((p, p))
+    if not all(np.isfinite(run.error) for run in runs):
+        return Local(np.inf, gradient, curvature, tuple(runs))
     for run in runs:
         weight = weight_of(run) / len(runs)
         gradient -= weight * run.gram[:p, p]

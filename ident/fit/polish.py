@@ -25,14 +25,15 @@ def polish(
     point, here, damping = start.copy(), evaluate(start), 1e-4
     for count in range(_STEPS):
         report(count, here.error)
-        step = _step(point, here, damping)
-        trial = np.clip(point + step, 0.0, 1.0)
+        free_step = _step(point, here, damping)
+        trial = np.clip(point + free_step, 0.0, 1.0)
         step = trial - point
         promised = -(here.gradient @ step + 0.5 * step @ here.curvature @ step)
-        if not promised > _CONVERGED * here.error:
+        cut = bool(np.any(step != free_step))  # a step cut at a bound may promise nothing where a shorter one does
+        if not promised > _CONVERGED * here.error and not cut:
             break
-        there = evaluate(trial)
-        if there.error < here.error:
+        there = evaluate(trial) if promised > 0 else None
+        if there is not None and there.error < here.error:
             point, here, damping = trial, there, max(damping / 10, 1e-12)
         elif damping > 1e6:
             break

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from ident.chain import LinearModel
 from ident.matrix import Run
 from ident.simulate import LANES, Recursion, advance, discretise
-from ident.spectra import starts_at_rest
 
 Array = NDArray[np.float64]
 _BLOCKS = 32  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
@@ -45,7 +44,7 @@ def moments(run: Run, model: LinearModel, step: float = 1.0) -> Moments:
     """The moments of a run for a batch of models (1 + p,): the model, and p neighbours one `step` away."""
     systems = discretise(model, run.sample_rate, run.hold)
     p = len(systems.D) - 1
-    if not starts_at_rest(run):
+    if not run.starts_at_rest:
         systems = _with_releases(systems)
     blocks = _products(run, systems, p, step)
     gram = blocks.sum(axis=0)
@@ -71,7 +70,7 @@ def output(run: Run, model: LinearModel) -> Array:
     The offset between model and record is left in: it is a result of its own.
     """
     systems = discretise(model, run.sample_rate, run.hold)
-    if not starts_at_rest(run):
+    if not run.starts_at_rest:
         systems = _with_releases(systems)
     y = np.concatenate([rows for rows, _, _ in _responses(run, systems, run.length)])
     if y.shape[1] == 1:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
@@ -14,11 +14,14 @@ from ident.fit.objective import UNSTABLE, Local, Objective
 from ident.fit.record import Moments
 from ident.fit.result import Combination, Estimate, FitResult, Generation, RunError, Undetermined
 from ident.fit.settings import Settings
-from ident.fit.uncertainty import DETERMINED, Covariance, covariance, determined_combinations
+from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
 from ident.matrix import Run
 from ident.noise import noise_floor
+from ident.parallel import each
+from ident.presets.preset import Combined
 
 Array = NDArray[np.float64]
+_SHARE_SCALE = ("c0", "Ka", "Cl")  # without a known force (m0, c0) × s and (Ka, Cl) / s change nothing
 
 
 def summarise(
@@ -30,19 +33,20 @@ def summarise(
     verify_runs = matrix.of_use("verify")
     verify = replace(objective, runs=verify_runs).exact(point, sensitivities=False).runs if verify_runs else ()
     fit_errors, verify_errors = _run_errors(objective.runs, here.runs), _run_errors(verify_runs, verify)
-    found = covariance(here, space.values, point, space.names) if space.axes else Covariance((), np.empty((0, 0)))
-    weak = [name for name in space.names if found.relative({name: 1}) > DETERMINED]
+    found = covariance(here, point)
+    relative = {name: found.relative(_value(objective, name)) for name in space.names}
+    weak = [name for name in space.names if relative[name] > DETERMINED]
     if space.convention:
-        weak.append(space.convention)
+        weak = [*weak, *(name for name in _SHARE_SCALE if name in relative and name not in weak), space.convention]
     floors = {"fit": _floor(objective.runs, objective.basis.band), "verify": _floor(verify_runs, objective.basis.band)}
     label = _labels(objective)
     return FitResult(
         model=preset.name,
         effects=settings.effects,
-        parameters={label[name][0]: _estimate(objective, name, values, found, point) for name in space.order},
-        correlation=_renamed(found.correlation(), label),
-        determined=tuple(_combinations(objective, found, weak, values)),
-        undetermined=tuple(Undetermined(label[name][0], _reason(objective, name, found)) for name in weak),
+        parameters={label[name][0]: _estimate(objective, name, values, relative, point) for name in space.order},
+        correlation=found.correlation({label[name][0]: _value(objective, name) for name in space.names}),
+        determined=tuple(_determined(objective, found, relative, values)) if weak else (),
+        undetermined=tuple(Undetermined(label[name][0], _reason(objective, name, relative)) for name in weak),
         error={"fit": _mean(fit_errors, "error"), "held_out": None, "verify": _mean(verify_errors, "error")},
         offset={"fit": _mean(fit_errors, "offset"), "verify": _mean(verify_errors, "offset")},
         noise_floor=floors,
@@ -72,7 +76,7 @@ def _mean(runs: Sequence[RunError], what: str) -> float | None:
 
 
 def _floor(runs: Sequence[Run], band: float) -> float | None:
-    floors = [noise_floor(run, band) for run in runs]
+    floors = each(lambda run: noise_floor(run, band), runs)
     known = [floor for floor in floors if floor is not None]
     return float(np.mean(known)) if known and len(known) == len(floors) else None
 
@@ -84,75 +88,52 @@ def _labels(objective: Objective) -> dict[str, tuple[str, str]]:
     return plain if known else plain | dict(objective.preset.without_area or {})
 
 
+def _value(objective: Objective, name: str) -> Callable[[Array], Array]:
+    return lambda points: objective.space.values(points)[name]
+
+
 def _estimate(
-    objective: Objective, name: str, values: Mapping[str, float], found: Covariance, point: Array
+    objective: Objective, name: str, values: Mapping[str, float], relative: Mapping[str, float], point: Array
 ) -> Estimate:
     parameter, value = objective.preset.parameter(name), values[name]
     unit = _labels(objective)[name][1]
-    if name not in objective.space.names:
+    if name not in relative:
         return Estimate(value, unit, None, value, value, False, parameter.symbol, parameter.meaning, fixed=True)
     lower, upper = objective.space.bounds(values)[name]
-    relative = found.relative({name: 1})
+    error = value * relative[name] if relative[name] <= DETERMINED else None
     place = float(point[objective.space.names.index(name)])
-    return Estimate(
-        value, unit, value * relative if relative < DETERMINED else None, lower, upper,
-        not 1e-6 < place < 1 - 1e-6, parameter.symbol, parameter.meaning,
-    )  # fmt: skip
+    at_bound = not 1e-6 < place < 1 - 1e-6
+    return Estimate(value, unit, error, lower, upper, at_bound, parameter.symbol, parameter.meaning)
 
 
-def _combinations(
-    objective: Objective, found: Covariance, weak: Sequence[str], values: Mapping[str, float]
-) -> list[Combination]:
-    label = _labels(objective)
-    convention = objective.space.convention
-    if convention:  # along the convention every force scales with it, and the data do not see it
-        found = _with_convention(objective, found)
-    known = [name for name in found.names if name not in weak]
-    singles = [] if not weak else [
-        Combination(label[name][0], values[name], label[name][1], values[name] * found.relative({name: 1}))
-        for name in known
-    ]  # fmt: skip
-    return singles + [
-        Combination(_formula(exponents, label), value, _unit(exponents, label), value * error)
-        for exponents, value, error in determined_combinations(found, weak, values)
-    ]
+def _determined(
+    objective: Objective, found: Covariance, relative: Mapping[str, float], values: Mapping[str, float]
+) -> Iterator[Combination]:
+    """Where a parameter is not determined: the parameters and combinations that are."""
+    label, space = _labels(objective), objective.space
+    for name, error in relative.items():
+        if error <= DETERMINED and not (space.convention and name in _SHARE_SCALE):
+            yield Combination(label[name][0], values[name], label[name][1], values[name] * error)
+    for combined in objective.preset.combinations:
+        names = combined.equation.names - values.keys()
+        known = {name: np.array(space.typical[name]) for name in names}
+
+        def quantity(points: Array, combined: Combined = combined, known: Mapping[str, Array] = known) -> Array:
+            return np.asarray(combined.equation.value({**known, **space.values(points)}))
+
+        error = found.relative(quantity)
+        if error <= COMBINED:
+            value = float(quantity(found.point[None])[0])
+            yield Combination(combined.text.replace("**", "^"), value, combined.unit, value * error)
 
 
-def _with_convention(objective: Objective, found: Covariance) -> Covariance:
-    """The covariance with the conventional mass set free: (m0, c0) times s and (Ka, Cl) over s change nothing."""
-    names = (*found.names, objective.space.convention or "")
-    scaling = {"m0": 1.0, "c0": 1.0, "Ka": -1.0, "Cl": -1.0}
-    log = np.zeros((len(names), len(names)))
-    log[:-1, :-1] = found.log
-    direction = np.array([scaling.get(name, 0.0) for name in names])
-    return Covariance(names, log + 1e8 * np.outer(direction, direction))
-
-
-def _formula(exponents: Mapping[str, int], label: Mapping[str, tuple[str, str]]) -> str:
-    """m0*Ka/A^2 and the like, numerator first."""
-    top = [label[name][0] for name, power in exponents.items() if power > 0]
-    bottom = [label[name][0] for name, power in exponents.items() if power < 0]
-    return "*".join(top) + "".join(f"/({name})" if "/" in name else f"/{name}" for name in bottom)
-
-
-def _unit(exponents: Mapping[str, int], label: Mapping[str, tuple[str, str]]) -> str:
-    return "*".join(f"({label[name][1]})" + ("" if power == 1 else f"^{power}") for name, power in exponents.items())
-
-
-def _reason(objective: Objective, name: str, found: Covariance) -> str:
+def _reason(objective: Objective, name: str, relative: Mapping[str, float]) -> str:
     if name == objective.space.convention:
         return "no specimen of known mass, stiffness or damping gives forces a scale; held at 1 kg by convention"
-    if objective.space.convention and name in ("c0", "Ka", "Cl"):
-        return "known only as a ratio to the mass, which is a convention here"
-    relative = found.relative({name: 1})
-    size = "not seen by these runs" if relative > 10 else f"standard error {relative:.0%} of the value"
-    return f"{size}; other parameters make up for it (see the determined combinations)"
-
-
-def _renamed(
-    correlation: Mapping[str, Mapping[str, float]], label: Mapping[str, tuple[str, str]]
-) -> dict[str, dict[str, float]]:
-    return {label[a][0]: {label[b][0]: value for b, value in row.items()} for a, row in correlation.items()}
+    if objective.space.convention and name in _SHARE_SCALE:
+        return "known at best as a ratio to the moving mass, which is a convention here"
+    size = "not seen by these runs" if relative[name] > 10 else f"standard error {relative[name]:.0%} of the value"
+    return f"{size}; other parameters make up for it (see what is determined)"
 
 
 def _notes(objective: Objective, floors: Mapping[str, float | None], here: Local) -> list[str]:

@@ -7,9 +7,8 @@ in another, are accounted for as they are (White 1980; Newey, West 1987, with bl
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from itertools import combinations, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,75 +19,57 @@ Array = NDArray[np.float64]
 _LOST = 1e-9  # relative to the largest eigenvalue of the scaled H: below it a direction is not determined at all
 _BLIND = 1e4  # logarithmic standard deviation that stands for "not at all"
 DETERMINED = 0.5  # largest relative standard error that still is knowledge
-_COMBINED = 0.1  # for a combination, which has to be worth reporting
+COMBINED = 0.1  # for a combination, which has to be worth reporting
 
 
 @dataclass(frozen=True)
 class Covariance:
-    """Covariance of the logarithms of parameters, by name: relative errors, (p, p)."""
+    """Covariance on the axes of the search, (p, p), and the directions the data do not see at all, columns (p, b)."""
 
-    names: tuple[str, ...]
-    log: Array
+    point: Array
+    seen: Array
+    blind: Array
 
-    def relative(self, exponents: Mapping[str, int]) -> float:
-        """Relative standard error of a product of powers."""
-        e = np.array([exponents.get(name, 0) for name in self.names], dtype=float)
-        return float(np.sqrt(max(e @ self.log @ e, 0.0)))
+    def relative(self, quantity: Callable[[Array], Array]) -> float:
+        """Relative standard error of a positive quantity, a function of points (v, p) → (v,)."""
+        return float(np.sqrt(max(self._log(quantity, quantity), 0.0)))
 
-    def correlation(self) -> dict[str, dict[str, float]]:
-        """Correlations by name."""
-        deviation = np.sqrt(np.maximum(np.diag(self.log), 1e-300))
-        matrix = np.clip(self.log / deviation[:, None] / deviation, -1.0, 1.0)
-        return {a: {b: float(matrix[i, j]) for j, b in enumerate(self.names)} for i, a in enumerate(self.names)}
+    def correlation(self, quantities: Mapping[str, Callable[[Array], Array]]) -> dict[str, dict[str, float]]:
+        """Correlations of quantities by name."""
+        deviation = {name: max(self.relative(q), 1e-300) for name, q in quantities.items()}
+        return {
+            a: {b: float(np.clip(self._log(f, g) / deviation[a] / deviation[b], -1, 1)) for b, g in quantities.items()}
+            for a, f in quantities.items()
+        }
+
+    def _log(self, f: Callable[[Array], Array], g: Callable[[Array], Array]) -> float:
+        df, dg = self._gradient(f), self._gradient(g)
+        # What only rounding moves along a blind direction is not blind.
+        lost = [
+            np.where(np.abs(d) > 1e-5 * np.linalg.norm(h), d, 0.0)
+            for h, d in ((df, df @ self.blind), (dg, dg @ self.blind))
+        ]
+        return float(df @ self.seen @ dg + _BLIND**2 * (lost[0] @ lost[1]))
+
+    def _gradient(self, quantity: Callable[[Array], Array]) -> Array:
+        p, step = len(self.point), 1e-6
+        ends = np.log(quantity(np.concatenate([self.point + step * np.eye(p), self.point - step * np.eye(p)])))
+        return np.asarray((ends[:p] - ends[p:]) / (2 * step))
 
 
-def covariance(
-    here: Local, values: Callable[[Array], Mapping[str, Array]], point: Array, names: tuple[str, ...]
-) -> Covariance:
-    """The covariance at the optimum, carried from the axes of the search to the logarithms of the parameters."""
+def covariance(here: Local, point: Array) -> Covariance:
+    """The covariance at the optimum."""
     p = len(point)
     H, S = np.zeros((p, p)), np.zeros((p, p))
     for run in here.runs:
         weight = weight_of(run)
         H += weight * run.gram[:p, :p]
         S += weight**2 * run.scores.T @ run.scores
-    scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
+    if not p or not np.all(np.isfinite(H)):
+        return Covariance(point, np.zeros((p, p)), np.eye(p))
+    scale = np.sqrt(np.maximum(np.diag(H), 1e-12 * max(np.diag(H).max(), 1e-300)))
     strengths, directions = np.linalg.eigh(H / scale[:, None] / scale)
     seen = strengths > _LOST * strengths[-1]
     inverse = (directions[:, seen] / strengths[seen]) @ directions[:, seen].T / scale[:, None] / scale
-    axes = inverse @ S @ inverse
     blind = directions[:, ~seen] / scale[:, None]
-    blind = blind / np.maximum(np.linalg.norm(blind, axis=0), 1e-300)
-    step = 1e-6
-    cloud = np.concatenate([point + step * np.eye(p), point - step * np.eye(p)])
-    moved = values(cloud)
-    D = np.array([(np.log(moved[name][:p]) - np.log(moved[name][p:])) / (2 * step) for name in names])
-    return Covariance(names, D @ axes @ D.T + _BLIND**2 * (D @ blind) @ (D @ blind).T)
-
-
-def determined_combinations(
-    found: Covariance, weak: Sequence[str], values: Mapping[str, float]
-) -> list[tuple[dict[str, int], float, float]]:
-    """Products and ratios of two or three parameters that are determined although a factor is not.
-
-    Each is (exponents, value, relative standard error); simplest first, none that follows from those before it.
-    """
-    chosen: list[tuple[dict[str, int], float, float]] = []
-    basis: list[Array] = []
-    for size in (2, 3):
-        ranked = []
-        for subset in combinations(found.names, size):
-            if not set(subset) & set(weak):
-                continue
-            for signs in product((1, -1), repeat=size - 1):
-                exponents = dict(zip(subset, (1, *signs), strict=True))
-                error = found.relative(exponents)
-                if error < _COMBINED:
-                    ranked.append((error, exponents))
-        for error, exponents in sorted(ranked, key=lambda entry: entry[0]):
-            row = np.array([exponents.get(name, 0) if name in weak else 0 for name in found.names], dtype=float)
-            if np.linalg.matrix_rank(np.array([*basis, row])) == len(basis) + 1:
-                basis.append(row)
-                value = float(np.prod([values[name] ** power for name, power in exponents.items()]))
-                chosen.append((exponents, value, error))
-    return chosen
+    return Covariance(point, inverse @ S @ inverse, blind / np.maximum(np.linalg.norm(blind, axis=0), 1e-300))

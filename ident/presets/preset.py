@@ -31,6 +31,20 @@ class Scale:
 
 
 @dataclass(frozen=True)
+class Combined:
+    """A combination of parameters that data may determine where its factors are not: `text` in the grammar."""
+
+    text: str
+    unit: str
+    meaning: str
+
+    @property
+    def equation(self) -> Equation:
+        """The combination as an equation of the grammar."""
+        return Equation(f"combination = {self.text}")
+
+
+@dataclass(frozen=True)
 class Preset:
     """A model by name.
 
@@ -47,6 +61,7 @@ class Preset:
     scales: tuple[Scale, ...]
     bounds_hold_for: float | None = None
     without_area: Mapping[str, tuple[str, str]] | None = None
+    combinations: tuple[Combined, ...] = ()
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:

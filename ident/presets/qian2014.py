@@ -2,7 +2,7 @@
 
 from ident.chain import Chain
 from ident.parameter import Parameter
-from ident.presets.preset import Preset, Scale
+from ident.presets.preset import Combined, Preset, Scale
 from ident.stages import (
     COMPRESSIBLE,
     FIRST_ORDER_VALVE,
@@ -52,6 +52,18 @@ QIAN2014 = Preset(
     ),
     bounds_hold_for=4.97e-4,
     without_area={"Z0": ("Z0/A^2", "1/s"), "Ka": ("Ka/A^2", "m/N"), "Cl": ("Cl/A^2", "m/(N*s)")},
+    combinations=(
+        Combined("Z0 / (A**2 + Cl*c0)", "1/s", "speed gain of the loop, for Kp = 1 and no specimen"),
+        Combined(
+            "(A**2*tau + Ka*c0 + Cl*m0 + tau*Cl*c0) / (A**2 + Cl*c0)", "s", "sum of the lags behind the speed gain"
+        ),
+        Combined("(Ka*tau*c0 + tau*Cl*m0 + Ka*m0) / (A**2 + Cl*c0)", "s^2", "second-order lag behind the speed gain"),
+        Combined("Ka*tau*m0 / (A**2 + Cl*c0)", "s^3", "third-order lag behind the speed gain"),
+        Combined("Ka*m0 / A**2", "s^2", "1/ωh², the oil column against the moving mass"),
+        Combined("c0 / m0", "1/s", "damping of the moving mass"),
+        Combined("Cl*c0 / A**2", "1", "share of the leakage that the damping causes"),
+        Combined("Cl / Ka", "1/s", "decay of a pressure by leakage"),
+    ),
     notes=(
         "Z0 is printed in m^3/(s*kPa), which is not its unit: p5 = Z0 Kp + Cl k has the unit m^4/s. The printed "
         "number was converted from in^4/s with the factor of in^3/(s*psi); 1.48e-5 as printed is 2.592e-6 m^4/s.",

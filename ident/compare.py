@@ -1,0 +1,135 @@
+"""A fitted model beside the measurements, run by run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.signal
+from numpy.typing import NDArray
+
+from ident.chain import LinearModel, conditions
+from ident.errors import Unusable
+from ident.fit.record import output
+from ident.fit.result import FitResult
+from ident.matrix import Actuator, Matrix, Run
+from ident.parallel import each
+from ident.presets import Preset
+from ident.presets import preset as preset_called
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+_WINDOW = 1.0  # s: the length of a window of the spectral estimate, and with it its resolution of 1 Hz
+
+
+@dataclass(frozen=True)
+class RunComparison:
+    """One run: eq. (17), the offset, the model's output and the frequency responses.
+
+    `modelled` (n,) is in the run's own unit, beside ``run.measured``.
+    """
+
+    run: Run
+    linear: LinearModel
+    modelled: Array
+
+    @cached_property
+    def error(self) -> float:
+        """Eq. (17): std(x_m − x) / std(x_m)."""
+        return float(np.std(self.run.measured - self.modelled) / np.std(self.run.measured))
+
+    @cached_property
+    def offset(self) -> float:
+        """Difference of the means over the standard deviation."""
+        return float(np.mean(self.run.measured - self.modelled) / np.std(self.run.measured))
+
+    @cached_property
+    def frequency(self) -> Array:
+        """Frequencies of the estimates in Hz, (f,), without zero."""
+        return np.asarray(self._spectra[0])
+
+    @cached_property
+    def measured(self) -> Complex:
+        """Measured frequency response, the H1 estimate S_ux / S_uu, (f,)."""
+        _, uu, _, ux = self._spectra
+        return np.asarray(ux / uu)
+
+    @cached_property
+    def coherence(self) -> Array:
+        """|S_ux|² / (S_uu S_xx), (f,)."""
+        _, uu, xx, ux = self._spectra
+        return np.asarray(np.abs(ux) ** 2 / (uu * xx))
+
+    @cached_property
+    def model(self) -> Complex:
+        """The model's frequency response, (f,)."""
+        return np.asarray(self.linear.frequency_response(self.frequency)[0])
+
+    @cached_property
+    def _spectra(self) -> tuple[Array, Array, Array, Complex]:
+        run = self.run
+        segment = min(run.length // 2, max(16, round(_WINDOW * run.sample_rate))) if run.time_unit == "s" else 256
+        options = {"fs": run.sample_rate, "nperseg": min(segment, run.length), "detrend": "constant"}
+        frequency, ux = scipy.signal.csd(run.command, run.measured, **options)
+        _, uu = scipy.signal.welch(run.command, **options)
+        _, xx = scipy.signal.welch(run.measured, **options)
+        used = slice(1, None)
+        return frequency[used], np.maximum(uu[used], 1e-300), np.maximum(xx[used], 1e-300), ux[used]
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All runs of a matrix against one fit."""
+
+    matrix: Matrix
+    fit: FitResult
+    runs: tuple[RunComparison, ...]
+
+    @property
+    def error(self) -> dict[str, float | None]:
+        """Eq. (17) averaged over the runs of each use."""
+        return {use: self._mean(use, "error") for use in ("fit", "verify")}
+
+    @property
+    def offset(self) -> dict[str, float | None]:
+        """The offset averaged over the runs of each use."""
+        return {use: self._mean(use, "offset") for use in ("fit", "verify")}
+
+    def _mean(self, use: str, what: str) -> float | None:
+        values = [getattr(run, what) for run in self.runs if run.run.use == use]
+        return float(np.mean(values)) if values else None
+
+
+def compare(matrix: Matrix, fit: FitResult) -> Comparison:
+    """Every run of the matrix against the fitted model. Raises Unusable where the fit is of another model's data."""
+    preset, values = preset_called(fit.model), fitted_values(fit)
+
+    def one(run: Run) -> RunComparison:
+        model = linear_model(preset, values, run, matrix.actuator)
+        return RunComparison(run, model, output(run, model))
+
+    return Comparison(matrix, fit, tuple(each(one, matrix.runs)))
+
+
+def fitted_values(fit: FitResult) -> dict[str, float]:
+    """The fit's parameters under the names of the equations. Raises Unusable where one is missing."""
+    preset = preset_called(fit.model)
+    values = {preset.parameter(name).name: value for name, value in fit.values.items()}
+    missing = [parameter.name for parameter in preset.parameters if parameter.name not in values]
+    if missing:
+        raise Unusable("bad-fit", f"no value of {', '.join(missing)}", "fit", f"give a fit of model {fit.model}")
+    return values
+
+
+def linear_model(preset: Preset, values: Mapping[str, float], run: Run, actuator: Actuator) -> LinearModel:
+    """The model of a run as a batch of one."""
+    known = conditions(run, actuator) | dict(values)
+    return preset.chain.linearise({name: np.array([value]) for name, value in known.items()}, run.output)
+
+
+def response(model: str, values: Mapping[str, float], run: Run, actuator: Actuator, frequency: Array) -> Complex:
+    """Frequency response (f,) of a model at `frequency` in Hz for a run, also one whose conditions were changed."""
+    found = linear_model(preset_called(model), values, run, actuator)
+    return np.asarray(found.frequency_response(frequency)[0])
