@@ -41,7 +41,7 @@ def sensitivity(run: Run, actuator: Actuator, fit: FitResult, look: Look) -> Cha
     tables = {name: _rows(vary, run, fit, frequency) for name, (_, vary) in varied.items()}
     axes = _Axes(tables)
     columns = [
-        _column(name, text, axes, look, first=place == 0, width=640 // len(varied))
+        _column(name, text, axes, look, first=place == 0, width=600 // len(varied))
         for place, (name, (text, _)) in enumerate(varied.items())
     ]
     title = alt.TitleParams(

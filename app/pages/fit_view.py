@@ -1,0 +1,103 @@
+"""A finished fit as the page shows it: rows of text, nothing left to compute in a template."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from app.pages import numbers
+from ident.fit.result import Estimate, FitResult
+
+
+@dataclass(frozen=True)
+class ParameterRow:
+    """One parameter; value, standard error and bounds are multiples of the printed unit."""
+
+    name: str
+    symbol: str
+    meaning: str
+    unit: str
+    value: str
+    std_error: str
+    relative: str
+    lower: str
+    upper: str
+    remark: str
+
+
+@dataclass(frozen=True)
+class ErrorRow:
+    """Errors of one use of runs."""
+
+    use: str
+    runs: int
+    error: str
+    floor: str
+    ratio: str
+    offset: str
+
+
+def parameter_rows(fit: FitResult) -> tuple[ParameterRow, ...]:
+    """The table of parameters, in the model's order."""
+    undetermined = {entry.name for entry in fit.undetermined}
+    return tuple(_parameter(name, entry, name in undetermined) for name, entry in fit.parameters.items())
+
+
+def _parameter(name: str, entry: Estimate, undetermined: bool) -> ParameterRow:
+    power = numbers.power_of(entry.value)
+    value = entry.value / 10.0**power
+    error = None if entry.std_error is None else entry.std_error / 10.0**power
+    places = numbers.decimals(value, error)
+    return ParameterRow(
+        name=name,
+        symbol=entry.symbol or name,
+        meaning=entry.meaning,
+        unit=numbers.scaled_unit(entry.unit, power),
+        value=numbers.fixed(value, places),
+        std_error=numbers.fixed(error, places),
+        relative=numbers.percent(error / abs(value), 2) if error is not None and value else "–",
+        lower=numbers.plain(entry.lower / 10.0**power),
+        upper=numbers.plain(entry.upper / 10.0**power),
+        remark="; ".join(_remarks(entry, undetermined)),
+    )
+
+
+def _remarks(entry: Estimate, undetermined: bool) -> Iterator[str]:
+    if entry.fixed:
+        yield "held fixed"
+    if entry.at_bound:
+        yield "at its bound"
+    if undetermined:
+        yield "not determined by these data"
+
+
+def error_rows(fit: FitResult) -> tuple[ErrorRow, ...]:
+    """Errors by use, with the noise floor under each."""
+    rows = []
+    for use in ("fit", "held_out", "verify"):
+        error, floor = fit.error.get(use), fit.noise_floor.get(use)
+        if error is None:
+            continue
+        rows.append(
+            ErrorRow(
+                use=use.replace("_", " "),
+                runs=sum(run.use == use for run in fit.runs),
+                error=numbers.percent(error),
+                floor="unknown" if floor is None else numbers.percent(floor),
+                ratio=f"{error / floor:.2f} ×" if floor else "–",
+                offset=numbers.percent(fit.offset.get(use), 2),
+            )
+        )
+    return tuple(rows)
+
+
+def combination_rows(fit: FitResult) -> tuple[tuple[str, str, str], ...]:
+    """What is determined although its factors may not be: expression, value with unit, relative error."""
+    return tuple(
+        (
+            numbers.unit(entry.expression),
+            numbers.quantity(entry.value, entry.unit),
+            numbers.percent(entry.std_error / abs(entry.value), 2) if entry.value else "–",
+        )
+        for entry in fit.determined
+    )

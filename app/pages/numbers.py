@@ -1,0 +1,81 @@
+"""Numbers as the pages print them: with their unit, their uncertainty and no more digits than they deserve."""
+
+from __future__ import annotations
+
+import math
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_PREFIXED = {
+    ("m", -3): "mm", ("m", -6): "µm", ("s", -3): "ms", ("s", -6): "µs",
+    ("N", 3): "kN", ("Pa", 3): "kPa", ("Pa", 6): "MPa", ("N/m", 3): "kN/m",
+}  # fmt: skip
+
+
+def percent(fraction: float | None, digits: int = 3) -> str:
+    """0.0407 → "4.07 %"; a dash where there is none."""
+    if fraction is None or not math.isfinite(fraction):
+        return "–"
+    return f"{plain(100 * fraction, digits)} %"
+
+
+def plain(value: float, digits: int = 4) -> str:
+    """A number to so many significant digits, without an exponent where it is between 0.001 and 1e6, a true minus."""
+    if value == 0 or not math.isfinite(value):
+        return "0" if value == 0 else "–"
+    power = math.floor(math.log10(abs(value)))
+    if not -4 < power < 6:
+        mantissa = f"{value / 10.0**power:.{digits - 1}f}"
+        return f"{mantissa}·10{str(power).translate(_RAISED)}".replace("-", "−")
+    return f"{value:.{max(0, digits - 1 - power)}f}".replace("-", "−")
+
+
+def unit(text: str) -> str:
+    """``m^3/(s*Pa)`` → m³/(s·Pa); "–" for a dimensionless one."""
+    if text in ("", "1"):
+        return "–"
+    for digit in "23456":
+        text = text.replace(f"^{digit}", digit.translate(_RAISED))
+    return text.replace("*", "·")
+
+
+def power_of(value: float) -> int:
+    """The power of ten, in steps of three, that makes a number readable; 0 from 0.1 to 10 000."""
+    if value == 0 or not math.isfinite(value) or 0.1 <= abs(value) < 1e4:
+        return 0
+    return 3 * math.floor(math.log10(abs(value)) / 3)
+
+
+def scaled_unit(text: str, power: int) -> str:
+    """The unit of a column whose numbers were divided by 10^power."""
+    if power == 0:
+        return unit(text)
+    if (text, power) in _PREFIXED:
+        return _PREFIXED[text, power]
+    factor = f"10{str(power).translate(_RAISED)}"
+    return factor if text in ("", "1") else f"{factor} {unit(text)}"
+
+
+def decimals(value: float, std_error: float | None) -> int:
+    """Decimals of a value: two digits of its standard error, or five significant digits; never more than eight."""
+    if value == 0 and not std_error:
+        return 1
+    if std_error:
+        return min(8, max(0, 1 - math.floor(math.log10(abs(std_error)))))
+    return min(8, max(0, 4 - math.floor(math.log10(abs(value)))))
+
+
+def fixed(value: float | None, places: int) -> str:
+    """A number with so many decimals and a true minus; a dash where there is none."""
+    return "–" if value is None or not math.isfinite(value) else f"{value:.{places}f}".replace("-", "−")
+
+
+def quantity(value: float | None, text: str) -> str:
+    """One number with its unit: 497e-6, "m^2" → "497.0 10⁻⁶ m²"."""
+    if value is None:
+        return "not stated"
+    power = power_of(value)
+    printed = scaled_unit(text, power)
+    number = plain(value / 10.0**power)
+    if printed == "–":
+        return number
+    return f"{number}·{printed}" if power and printed.startswith("10") else f"{number} {printed}"

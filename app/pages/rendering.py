@@ -1,0 +1,72 @@
+"""Templates to responses, under a content security policy that allows nothing but this service's own files."""
+
+from __future__ import annotations
+
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from fastapi import Request
+from fastapi.responses import HTMLResponse
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from app.pages import numbers
+
+HERE = Path(__file__).parent
+STATIC = HERE / "static"
+
+POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
+    "form-action 'self'; base-uri 'none'; frame-ancestors 'none'"
+)
+"""No inline script or style, no eval, no other origin; Vega runs with its expression interpreter under it."""
+
+_HEADERS = {
+    "Content-Security-Policy": POLICY,
+    "Cache-Control": "no-store",
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+}
+
+
+def _edition() -> str:
+    """Changes with any file under static, so that browsers may keep these files."""
+    digest = sha256()
+    for path in sorted(STATIC.iterdir()):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+EDITION = _edition()
+
+
+def static(name: str) -> str:
+    """The address of a static file."""
+    return f"/static/{EDITION}/{name}"
+
+
+def _environment() -> Environment:
+    environment = Environment(
+        loader=FileSystemLoader(HERE / "templates"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["percent"] = numbers.percent
+    environment.globals["static"] = static
+    return environment
+
+
+_TEMPLATES = _environment()
+
+
+def page(request: Request, template: str, status: int = 200, **data: Any) -> HTMLResponse:
+    """The page of a template."""
+    text = _TEMPLATES.get_template(template).render(here=request.url.path, **data)
+    return HTMLResponse(text, status_code=status, headers=_HEADERS)
+
+
+def problem(request: Request, status: int, title: str, what: str, remedy: str) -> HTMLResponse:
+    """A page that says what is wrong and what to do."""
+    return page(request, "problem.html", status, title=title, what=what, remedy=remedy)

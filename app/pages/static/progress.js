@@ -1,0 +1,61 @@
+// A running job, live: stage, generation and best error as the service sends them, and a way to stop it.
+
+import { guarded, send } from "./api.js";
+
+const live = document.querySelector("#live");
+const bar = live.querySelector("progress");
+const stage = live.querySelector("[data-stage]");
+const step = live.querySelector("[data-step]");
+const error = live.querySelector("[data-error]");
+const trace = live.querySelector(".trace polyline");
+const cancel = live.querySelector("button");
+const problem = live.querySelector("[role=alert]");
+const seen = [];
+
+const FINISHED = new Set(["done", "succeeded", "failed", "cancelled"]);
+
+function report(progress) {
+  if (progress.stage) stage.textContent = progress.stage;
+  if (progress.total) {
+    bar.max = progress.total;
+    bar.value = progress.done;
+    step.textContent = `${progress.done} of ${progress.total}`;
+  }
+  if (typeof progress.error === "number" && progress.error > 0) {
+    error.textContent = `${(100 * progress.error).toPrecision(3)} %`;
+    seen.push(progress.error);
+    plot();
+  }
+}
+
+// Best error on a logarithmic scale over the reports so far.
+function plot() {
+  const low = Math.log(Math.min(...seen)), high = Math.log(Math.max(...seen));
+  const points = seen.map((value, place) => {
+    const x = (600 * place) / Math.max(1, seen.length - 1);
+    const y = high > low ? 96 - (88 * (Math.log(value) - low)) / (high - low) : 52;
+    return `${x.toFixed(1)},${y.toFixed(1)}`;
+  });
+  trace.setAttribute("points", points.join(" "));
+}
+
+const events = new EventSource(live.dataset.events);
+
+function read(event) {
+  const data = JSON.parse(event.data);
+  report(data.progress ?? data);
+  if (FINISHED.has(data.state)) {
+    events.close();
+    location.reload();
+  }
+}
+
+events.addEventListener("message", read);
+for (const name of ["progress", "state", "job", "end"]) events.addEventListener(name, read);
+
+cancel.addEventListener("click", () =>
+  guarded(cancel, problem, async () => {
+    await send("DELETE", live.dataset.job);
+    stage.textContent = "stopping at the next step";
+  }),
+);

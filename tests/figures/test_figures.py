@@ -1,0 +1,211 @@
+"""Every figure, in every format and theme, says what it shows, with units, and stays small."""
+
+from __future__ import annotations
+
+import json
+from importlib import import_module
+
+import pytest
+
+import ident.figures
+from ident.compare import Comparison
+from ident.errors import Unusable
+from ident.figures import FIGURES, figure, render
+from ident.figures.look import LOOKS
+from tests.figures.conftest import make_comparison, second_order
+
+
+@pytest.fixture(autouse=True)
+def hand_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Responses in closed form instead of the compared fit."""
+
+    def compare(matrix, fit):
+        return Comparison(tuple(map(make_comparison, matrix.runs)), {}, {})
+
+    monkeypatch.setattr(ident.figures, "compare", compare)
+    module = import_module("ident.figures.sensitivity")
+    monkeypatch.setattr(module, "response", lambda model, values, run, frequency: second_order(run, frequency))
+
+
+def drawn(name, matrix, fit, theme="light", **options):
+    return json.loads(render(figure(name, matrix, fit, theme, **options), "json"))
+
+
+def every(spec, key):
+    """All values under a key, anywhere in the specification but its data."""
+    if isinstance(spec, dict):
+        for name, value in spec.items():
+            if name == key:
+                yield value
+            if name != "datasets":
+                yield from every(value, key)
+    elif isinstance(spec, list):
+        for value in spec:
+            yield from every(value, key)
+
+
+def rows_of(spec):
+    return [row for table in spec["datasets"].values() for row in table]
+
+
+@pytest.mark.parametrize("name", FIGURES)
+@pytest.mark.parametrize("theme", LOOKS)
+def test_every_figure_names_serial_model_and_error_and_is_below_300_kb(name, theme, matrix, fit):
+    spec = drawn(name, matrix, fit, theme)
+    assert spec["title"]["text"].startswith("SW-910D-0001")
+    assert "qian2014" in spec["title"]["subtitle"][0]
+    assert "0.512 % fit, 0.507 % verify" in spec["title"]["subtitle"][0]
+    assert spec["config"]["background"] == LOOKS[theme].ground
+    assert len(json.dumps(spec)) < 300_000
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_every_named_axis_has_a_unit(name, matrix, fit):
+    titles = [axis["title"] for axis in every(drawn(name, matrix, fit), "axis") if axis.get("title")]
+    assert titles
+    assert all("(" in title and title.endswith(")") for title in titles)
+
+
+@pytest.mark.parametrize(
+    ("format", "start"), [("json", b"{"), ("svg", b"<svg"), ("png", b"\x89PNG\r\n\x1a\n"), ("pdf", b"%PDF-")]
+)
+def test_a_figure_is_one_definition_in_four_formats(format, start, matrix, fit):
+    assert render(figure("evolution", matrix, fit), format).startswith(start)
+
+
+def test_the_bode_plot_shows_a_few_verify_runs_and_says_of_how_many(matrix, fit):
+    spec = drawn("bode", matrix, fit)
+    shown = {row["r"] for row in rows_of(spec)}
+    assert shown <= {run.id for run in matrix.of_use("verify")}
+    assert 3 <= len(shown) <= 6
+    assert f"{len(shown)} of 21 runs" in spec["title"]["subtitle"][1]
+
+
+def test_all_84_runs_become_one_column_a_gain_with_shared_scales(matrix, fit):
+    spec = drawn("bode", matrix, fit, use="all")
+    headings = [panel["title"]["text"] for panel in spec["concat"] if "title" in panel]
+    assert headings == ["Kp 5", "Kp 6", "Kp 7", "Kp 10"]
+    magnitudes = [panel["layer"][0]["encoding"]["y"]["scale"]["domain"] for panel in spec["concat"][:4]]
+    assert all(domain == magnitudes[0] for domain in magnitudes)
+
+
+def test_legend_entries_are_in_numeric_not_in_alphabetic_order(matrix, fit):
+    spec = drawn("bode", matrix, fit, kp=10)
+    (domain,) = {tuple(entry["scale"]["domain"]) for entry in every(spec, "color") if isinstance(entry, dict)}
+    masses = [0.0 if entry == "no specimen" else float(entry.split()[0]) for entry in domain]
+    assert masses == sorted(masses)
+    assert list(domain) != sorted(domain)
+
+
+def test_magnitude_is_in_decibels_and_phase_runs_on_below_180_degrees(matrix, fit):
+    run = matrix.runs[0]
+    rows = rows_of(drawn("bode", matrix, fit, run=run.id))
+    assert {row["r"] for row in rows} == {run.id}
+    assert rows[0]["A"] == pytest.approx(0.0, abs=0.05)  # unit gain at the lowest frequency
+    assert min(row["P"] for row in rows) < -200
+    assert all(abs(row["p"] - row["P"]) <= 180 for row in rows)
+    assert max(row["f"] for row in rows) <= 81  # the excited band, not the Nyquist frequency
+
+
+def test_points_without_coherence_fade(matrix, fit):
+    spec = drawn("bode", matrix, fit)
+    (opacity,) = {json.dumps(entry["scale"]) for entry in every(spec, "opacity") if isinstance(entry, dict)}
+    low, high = json.loads(opacity)["range"]
+    assert low < 0.1 < high
+
+
+def test_filters_choose_by_gain_amplitude_and_specimen_and_say_when_nothing_passes(matrix, fit):
+    rows = rows_of(drawn("bode", matrix, fit, kp="7", amplitude="0.00127", specimen="10.2 kg, 67.6 kN/m"))
+    assert {row["r"] for row in rows} == {"m10.2-k67.6-kp7-a1.27"}
+    with pytest.raises(Unusable, match="no run with kp"):
+        figure("bode", matrix, fit, kp=8)
+
+
+def test_a_time_figure_keeps_the_peaks_of_a_long_stretch(matrix, fit):
+    run = matrix.runs[10]
+    rows = rows_of(drawn("time", matrix, fit, run=run.id, start=0, seconds=2))
+    measured = [row["y"] for row in rows if row.get("s") == "measured"]
+    assert len(measured) < run.length
+    assert max(measured) == pytest.approx(1000 * run.measured.max(), rel=1e-4)
+    assert min(measured) == pytest.approx(1000 * run.measured.min(), rel=1e-4)
+
+
+def test_the_residual_below_is_measured_minus_model_on_its_own_scale(matrix, fit):
+    run = matrix.runs[10]
+    spec = drawn("time", matrix, fit, run=run.id, start=0.5, seconds=0.1)
+    residual = run.measured - make_comparison(run).modelled
+    at = {row["t"]: row["y"] for row in spec["datasets"]["residual"]}
+    titles = [axis.get("title") for axis in every(spec, "title") if isinstance(axis, dict)]
+    titles += [title for title in every(spec, "title") if isinstance(title, str)]
+    scale = 1e6 if "Measured − model (µm)" in titles else 1e3
+    for time, value in list(at.items())[:10]:
+        assert value == pytest.approx(scale * residual[round(time * run.sample_rate)], rel=1e-3, abs=1e-3)
+
+
+def test_a_stretch_outside_the_record_is_refused_with_the_record_s_length(matrix, fit):
+    with pytest.raises(Unusable, match="stay within 0 to 2"):
+        figure("time", matrix, fit, start=3)
+
+
+def test_evolution_shows_generations_1_4_8_and_last_on_the_bounds_with_the_paper_s_axes(matrix, fit):
+    spec = drawn("evolution", matrix, fit)
+    panels = spec["vconcat"][0]["hconcat"]
+    assert [panel["title"]["text"] for panel in panels] == [f"Generation {index}" for index in (1, 4, 8, 12)]
+    x = panels[0]["layer"][0]["encoding"]["x"]
+    assert x["axis"]["title"].startswith("Z0")
+    assert x["scale"]["domain"] == pytest.approx([1.751, 3.503])
+
+
+def test_error_over_generation_is_in_percent(matrix, fit):
+    spec = drawn("evolution", matrix, fit)
+    best = [row["e"] for row in spec["vconcat"][1]["data"]["values"] if row["s"] == "best"]
+    assert best == pytest.approx([100 * generation.best for generation in fit.evolution], rel=1e-4)
+
+
+def test_a_name_that_was_not_searched_is_refused_with_those_that_were(matrix, fit):
+    with pytest.raises(Unusable, match="use Z0, c0"):
+        figure("evolution", matrix, fit, x="tau")
+
+
+def test_sensitivity_goes_from_a_tenth_to_ten_times_the_run_s_own_value(matrix, fit):
+    spec = drawn("sensitivity", matrix, fit)
+    assert set(spec["datasets"]) == {"mass", "stiffness", "gain"}
+    multiples = sorted({row["x"] for row in spec["datasets"]["gain"]})
+    assert multiples[0] == 0.1
+    assert multiples[-1] == 10
+    assert 1.0 in multiples
+
+
+def test_a_heavier_specimen_lowers_the_curve_above_resonance(matrix, fit):
+    rows = drawn("sensitivity", matrix, fit)["datasets"]["mass"]
+    top = max(row["f"] for row in rows)
+    at_top = {row["x"]: row["a"] for row in rows if row["f"] == top}
+    assert at_top[10] < at_top[1] < at_top[0.1]
+
+
+def test_a_run_without_specimen_has_a_gain_column_only(matrix, fit):
+    spec = drawn("sensitivity", matrix, fit, run="m0-k0-kp6-a1.27")
+    assert set(spec["datasets"]) == {"gain"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ({"name": "nyquist"}, "use one of bode"),
+        ({"name": "bode", "theme": "sepia"}, "use one of light, dark"),
+        ({"name": "bode", "colour": "red"}, "no option 'colour'"),
+        ({"name": "bode", "kp": "six"}, "give a number"),
+        ({"name": "bode", "axis": "cubic"}, "use log or linear"),
+        ({"name": "time", "start": "noon"}, "give a number"),
+        ({"name": "evolution", "generations": "last"}, "give whole numbers"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused_with_the_remedy(arguments, says, matrix, fit):
+    arguments = dict(arguments)
+    with pytest.raises(Unusable, match=says):
+        figure(arguments.pop("name"), matrix, fit, **arguments)
+
+
+def test_an_unknown_format_is_refused(matrix, fit):
+    with pytest.raises(Unusable, match="use one of json, svg, png, pdf"):
+        render(figure("evolution", matrix, fit), "gif")
