@@ -129,7 +129,7 @@ def linear_model(preset: Preset, values: Mapping[str, float], run: Run, actuator
     return preset.chain.linearise({name: np.array([value]) for name, value in known.items()}, run.output)
 
 
-def response(model: str, values: Mapping[str, float], run: Run, actuator: Actuator, frequency: Array) -> Complex:
-    """Frequency response (f,) of a model at `frequency` in Hz for a run, also one whose conditions were changed."""
-    found = linear_model(preset_called(model), values, run, actuator)
+def response(fit: FitResult, run: Run, actuator: Actuator, frequency: Array) -> Complex:
+    """The fitted model's frequency response (f,) at `frequency` in Hz for a run, also one whose conditions were changed."""
+    found = linear_model(preset_called(fit.model), fitted_values(fit), run, actuator)
     return np.asarray(found.frequency_response(frequency)[0])

@@ -5,6 +5,7 @@ What it writes says that it is simulated. It is no judge of the program itself: 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,6 +14,7 @@ import yaml
 from numpy.typing import NDArray
 
 from ident.compare import linear_model
+from ident.effects import effect
 from ident.errors import Unusable
 from ident.fit.record import output
 from ident.matrix import Actuator, Run, Specimen
@@ -73,13 +75,15 @@ def white_noise(length: int, rms: float, rng: np.random.Generator) -> Array:
 
 def simulate_matrix(
     out: Path, preset: str = "qian2014", seconds: float = 30.0, seed: int = 0, noise: float = 0.005,
-    report: Report = silent, serial: str = "SIM-0001",
+    effects: Mapping[str, float] | None = None, report: Report = silent, serial: str = "SIM-0001",
 ) -> None:  # fmt: skip
     """Write the matrix to the folder `out`, which must not exist or be empty; `noise` is relative to each run's output.
 
     Raises Unusable where the folder is in use, the model cannot follow a test matrix, or a number makes no sense.
     """
     model = preset_called(preset)
+    for name in effects or {}:
+        effect(name)
     if model.bounds_hold_for is None:
         raise Unusable("cannot-simulate", f"model {preset} has no test matrix of its own", "simulate", "use qian2014")
     if not (1 / 16 <= seconds <= 600 and 0 <= noise < 1):

@@ -51,7 +51,7 @@ def bode(
     columns = [_column(responses, look, place, gains) for place in range(len(gains))]
     panels = [panel for row in zip(*columns, strict=True) for panel in row]
     data = {_data(place): responses.rows[gain] for place, gain in enumerate(gains)}
-    return (
+    chart: Chart = (
         alt.concat(
             *panels,
             columns=len(gains),
@@ -63,6 +63,7 @@ def bode(
         .resolve_scale(color="shared", opacity="shared")
         .configure(**look.config())
     )
+    return chart
 
 
 def _title(responses: Responses, actuator: Actuator, fit: FitResult, candidates: int | None) -> alt.TitleParams:
@@ -128,7 +129,7 @@ def _panel(
         tooltip=_tooltip(responses, fields, title),
     )
     lines = base.mark_line(strokeWidth=1.6, clip=True).encode(y=f"{model}:Q", detail="r:N")
-    return points + lines
+    return alt.layer(points, lines)
 
 
 def _coherence(responses: Responses, look: Look, data: alt.NamedData, first: bool) -> alt.LayerChart:

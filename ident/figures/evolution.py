@@ -52,7 +52,12 @@ def evolution(
             f"Method {fit.method}, seed {fit.seed}, {fit.evaluations:,} evaluations · cross: the final estimate",
         ],
     )
-    return alt.vconcat(*panels, title=title, spacing=24).resolve_scale(color="independent").configure(**look.config())
+    chart: Chart = (
+        alt.vconcat(*panels, title=title, spacing=24, datasets=tables)
+        .resolve_scale(color="independent")
+        .configure(**look.config())
+    )
+    return chart
 
 
 def _pair(fit: FitResult, x: str | None, y: str | None) -> tuple[str, str] | None:

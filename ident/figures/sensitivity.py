@@ -8,8 +8,9 @@ from typing import Any
 
 import altair as alt
 import numpy as np
+from numpy.typing import NDArray
 
-from ident.compare import response
+from ident.compare import fitted_values, response
 from ident.figures import words
 from ident.figures.look import Look
 from ident.figures.render import Chart
@@ -38,7 +39,7 @@ def sensitivity(run: Run, actuator: Actuator, fit: FitResult, look: Look) -> Cha
     lower, upper = excited_band(run.command, run.sample_rate)
     frequency = np.geomspace(max(lower, upper / 400), 1.25 * upper, POINTS)
     varied = _variations(run)
-    tables = {name: _rows(vary, run, fit, frequency) for name, (_, vary) in varied.items()}
+    tables = {name: _rows(vary, run, actuator, fit, frequency) for name, (_, vary) in varied.items()}
     axes = _Axes(tables)
     columns = [
         _column(name, text, axes, look, first=place == 0, width=600 // len(varied))
@@ -48,7 +49,7 @@ def sensitivity(run: Run, actuator: Actuator, fit: FitResult, look: Look) -> Cha
         words.headline(actuator, "sensitivity of the frequency response"),
         subtitle=[words.verdict(fit), f"About {words.describe(run)}, which is drawn dashed"],
     )
-    return (
+    chart: Chart = (
         alt.concat(
             *(panel for row in zip(*columns, strict=True) for panel in row),
             columns=len(varied),
@@ -60,6 +61,7 @@ def sensitivity(run: Run, actuator: Actuator, fit: FitResult, look: Look) -> Cha
         .resolve_scale(color="shared")
         .configure(**look.config())
     )
+    return chart
 
 
 def _variations(run: Run) -> dict[str, tuple[str, Varied]]:
@@ -92,14 +94,14 @@ def _with_gain(run: Run, factor: float) -> Run:
 
 
 def _rows(
-    vary: Varied, run: Run, fit: FitResult, frequency: np.ndarray[Any, np.dtype[np.float64]]
+    frequency: NDArray[np.float64], answer: Callable[[float], NDArray[np.complex128]]
 ) -> list[dict[str, Any]]:
     """f frequency, a magnitude (dB), p phase (deg), x multiple."""
     rows: list[dict[str, Any]] = []
     for multiple in MULTIPLES:
-        answer = response(fit.model, fit.values, vary(run, multiple), frequency)
-        magnitude = significant(20 * np.log10(np.abs(answer)), 4)
-        phase = significant(np.degrees(np.unwrap(np.angle(answer))), 4)
+        found = answer(multiple)
+        magnitude = significant(20 * np.log10(np.abs(found)), 4)
+        phase = significant(np.degrees(np.unwrap(np.angle(found))), 4)
         x = float(f"{multiple:.3g}")
         rows += [
             {"f": f, "a": a, "p": p, "x": x}
@@ -153,4 +155,4 @@ def _panel(data: alt.NamedData, x: alt.X, y: alt.Y, look: Look, width: int) -> a
         .mark_line(strokeWidth=2, color=look.ink, strokeDash=[5, 3])
         .encode(x=x, y=y)
     )
-    return (lines + own).properties(width=width, height=190)
+    return alt.layer(lines, own, width=width, height=190)

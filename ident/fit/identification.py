@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.effects import EFFECTS
+from ident.effects import effect
 from ident.errors import Unusable
 from ident.fit import genetic
 from ident.fit.library_search import GENERATIONS, cma_es, differential_evolution
@@ -159,11 +159,8 @@ def _refuse(matrix: Matrix, settings: Settings) -> None:
     if settings.method not in METHODS:
         remedy = f"choose from {', '.join(METHODS)}"
         raise Unusable("unknown-method", f"no method {settings.method!r}", "method", remedy)
-    known = [effect.name for effect in EFFECTS]
     for name in settings.effects:
-        if name not in known:
-            remedy = f"choose from {', '.join(known)}" if known else "leave it out"
-            raise Unusable("unknown-effect", f"no effect {name!r}", "effects", remedy)
+        effect(name)
     if settings.load != "none":
         raise Unusable("unknown-load", f"load {settings.load!r} is not known", "load", "use none")
     if not matrix.of_use("fit"):
