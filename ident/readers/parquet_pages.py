@@ -16,6 +16,8 @@ DEEPEST = 8
 
 def unpacked_size(data: bytes, column: Any) -> int:
     """Bytes that all pages of one column chunk unpack to. Raises IndexError or ValueError for a broken chunk."""
+    if not column.num_values:
+        return 0
     at = column.data_page_offset
     if column.has_dictionary_page and column.dictionary_page_offset:
         at = min(at, column.dictionary_page_offset)

@@ -73,14 +73,14 @@ def numeric(array: Array, name: str, where: str) -> Array:
 
 
 def split_columns(name: str, shape: tuple[int, ...]) -> list[str]:
-    """The columns that an array of the given shape is: one for a vector, ``name[0]`` and on for a matrix (n, m)."""
+    """The columns that an array of the given shape is: one for a vector, ``name/0`` and on for a matrix (n, m)."""
     long = [length for length in shape if length != 1]
-    if len(long) <= 1:
+    if len(long) <= 1 or 0 in shape:
         return [name]
-    return [f"{name}[{number}]" for number in range(shape[1])] if len(shape) == 2 and shape[1] <= 1000 else []
+    return [f"{name}/{number}" for number in range(shape[1])] if len(shape) == 2 and shape[1] <= 1000 else []
 
 
 def column_of(array: Array, number: int) -> Array:
     """Column `number` of what :func:`split_columns` made of an array."""
-    vector = sum(length != 1 for length in array.shape) <= 1
+    vector = sum(length != 1 for length in array.shape) <= 1 or not array.size
     return np.ravel(array) if vector else array[:, number]

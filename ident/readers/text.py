@@ -84,7 +84,7 @@ def next_line(text: bytes, start: int, where: str) -> str:
 
 def sniff(header: str, first: str) -> str | None:
     """The delimiter of a table from its first two lines; None for columns aligned by spaces."""
-    counts = {delimiter: min(header.count(delimiter), first.count(delimiter)) for delimiter in DELIMITERS}
+    counts = {delimiter: min(line.count(delimiter) for line in (header, first or header)) for delimiter in DELIMITERS}
     best = max(DELIMITERS, key=lambda delimiter: counts[delimiter])
     return best if counts[best] else None
 

@@ -1,0 +1,124 @@
+"""Samples that no fit could use are refused, with the place of the first bad one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ident.errors import Unusable
+from ident.readers import read_matrix
+from ident.readers.clock import read_clock
+
+
+def refusal(path):
+    with pytest.raises(Unusable) as refused:
+        read_matrix(path)
+    assert "\n" not in str(refused.value)
+    return refused.value
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 1e200])
+def test_a_sample_that_is_not_finite_is_named(matrix, kind, bad):
+    matrix.columns["x"][[17, 90]] = bad
+    refused = refusal(matrix.write(kind))
+    assert refused.code == "not-finite"
+    assert "sample 17 is" in str(refused)
+
+
+@pytest.mark.parametrize(("length", "code"), [(0, "empty-file"), (1, "too-short"), (7, "too-short")])
+def test_a_record_without_enough_samples_is_refused(matrix, kind, length, code):
+    matrix.columns = {name: values[:length] for name, values in matrix.columns.items()}
+    assert refusal(matrix.write(kind)).code == code
+
+
+def test_an_empty_file_is_refused(matrix, kind):
+    path = matrix.write(kind)
+    next((path / "runs").iterdir()).write_bytes(b"")
+    assert refusal(path).code == "empty-file"
+
+
+@pytest.mark.parametrize("kind", ["npz", "mat5", "mat73", "h5", "tdms"])
+def test_columns_of_unequal_length_are_refused(matrix, kind):
+    matrix.columns["x"] = matrix.columns["x"][:300]
+    refused = refusal(matrix.write(kind))
+    assert refused.code == "unequal-lengths"
+    assert "command 400, displacement 300" in str(refused)
+
+
+@pytest.mark.parametrize("name", ["u", "x"])
+def test_a_channel_that_never_moves_is_refused(matrix, name):
+    matrix.columns[name][:] = 0.3
+    assert refusal(matrix.write()).code == "zero-variance"
+
+
+def test_a_missing_run_file_is_named(matrix):
+    refused = refusal(matrix.describe())
+    assert (refused.code, refused.where) == ("missing-file", "runs/first.csv")
+
+
+def test_text_in_a_column_of_numbers_is_named_with_its_line(matrix):
+    path = matrix.write()
+    text = (path / "runs/first.csv").read_text().splitlines()
+    text[5] = "0.004,broken,1"
+    (path / "runs/first.csv").write_text("\n".join(text))
+    refused = refusal(path)
+    assert refused.code == "not-numeric"
+    assert "line 6 holds 'broken'" in str(refused)
+
+
+def test_a_row_that_is_too_short_is_named_with_its_line(matrix):
+    path = matrix.write()
+    text = (path / "runs/first.csv").read_text().splitlines()
+    text[5] = "0.004,1"
+    (path / "runs/first.csv").write_text("\n".join(text))
+    refused = refusal(path)
+    assert refused.code == "ragged-row"
+    assert "line 6 has 2 fields" in str(refused)
+
+
+@pytest.mark.parametrize("kind", ["npz", "parquet", "mat5", "h5", "tdms"])
+@pytest.mark.parametrize("wrong", ["text", "complex", "truth"])
+def test_arrays_of_anything_but_numbers_are_refused(matrix, kind, wrong):
+    made = {"text": np.array(["a"] * 400), "complex": np.ones(400) * 1j, "truth": np.arange(400) % 2 == 0}
+    if (kind, wrong) in (("parquet", "complex"), ("h5", "text"), ("mat5", "truth")):
+        pytest.skip("the format cannot hold it, or stores it as numbers")
+    matrix.columns["x"] = made[wrong]
+    refused = refusal(matrix.write(kind))
+    assert refused.code in ("not-numeric", "missing-column")
+
+
+def test_a_time_column_gives_the_rate(matrix, kind):
+    matrix.change("sample_rate: 1000 Hz", "time: {column: t, unit: s}")
+    run = read_matrix(matrix.write(kind)).runs[0]
+    assert run.sample_rate == 1000.0
+    assert run.gaps == 0
+    assert run.clock_jitter < 1e-6
+
+
+@pytest.mark.parametrize("change", [lambda t: t[::-1], lambda t: np.where(np.arange(400) == 7, t[6], t)])
+def test_time_that_does_not_increase_is_refused(matrix, change):
+    matrix.change("sample_rate: 1000 Hz", "time: {column: t, unit: s}")
+    matrix.columns["t"] = change(matrix.columns["t"])
+    assert refusal(matrix.write()).code == "time-not-monotonic"
+
+
+def test_gaps_are_counted_and_do_not_change_the_rate():
+    time = np.delete(np.arange(4000) / 4096, [100, 101, 102, 2500])
+    clock = read_clock(time, "t")
+    assert (clock.rate, clock.gaps) == (4096.0, 4)
+    assert clock.jitter < 1e-6
+
+
+def test_jitter_is_the_largest_deviation_from_an_even_clock_in_samples():
+    time = np.arange(4000) / 4096
+    time[1000] += 0.3 / 4096
+    clock = read_clock(time, "t")
+    assert clock.gaps == 0
+    assert clock.jitter == pytest.approx(0.3, rel=1e-3)
+
+
+def test_a_time_printed_with_few_digits_is_no_gap():
+    clock = read_clock(np.round(np.arange(4000) / 4096, 4), "t")
+    assert clock.gaps == 0
+    assert clock.rate == pytest.approx(4096, rel=1e-5)
+    assert clock.jitter < 0.5

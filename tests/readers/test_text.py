@@ -1,0 +1,75 @@
+"""Text as laboratories' loggers write it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ident.errors import Unusable
+from ident.readers.limits import LIMITS, Limits
+from ident.readers.text import read_text
+
+VALUES = np.round(np.random.default_rng(0).normal(size=(50, 2)), 6)
+
+
+def read(text: str | bytes, columns=("a", "b"), skip_rows: int = 0):
+    table = read_text(text.encode() if isinstance(text, str) else text, "file", LIMITS, skip_rows)
+    return np.column_stack(table.load([table.number(name, "column") for name in columns]))
+
+
+def rows(delimiter: str, end: str = "\n", header: bool = True) -> str:
+    lines = [delimiter.join(f"{value:.6f}" for value in row) for row in VALUES]
+    return end.join(([delimiter.join("ab")] if header else []) + lines) + end
+
+
+@pytest.mark.parametrize("delimiter", [",", ";", "\t", " ", "   ", ", ", " ,  "])
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_the_delimiter_and_line_ends_are_found(delimiter, end):
+    assert np.array_equal(read(rows(delimiter, end)), VALUES)
+
+
+def test_decimal_commas_are_read_where_another_sign_separates():
+    assert np.array_equal(read(rows(";").replace(".", ",")), VALUES)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
+def test_byte_order_marks_are_skipped(encoding):
+    assert np.array_equal(read(rows(",").encode(encoding)), VALUES)
+
+
+def test_a_header_block_and_rows_that_trail_words_are_read():
+    lines = rows(", ", "\r\n").splitlines()
+    lines[1] += ", DAQ Start"
+    lines[-1] += ", DAQ Pause, DAQ Stop"
+    text = "Header Size: 2\r\nRate: 1000\r\n" + "\r\n".join(lines) + "\r\n"
+    assert np.array_equal(read(text, skip_rows=2), VALUES)
+
+
+def test_quoted_names_and_numbers_are_read():
+    text = rows(",").replace("a,b", '"a","b"')
+    assert np.array_equal(read(text), VALUES)
+
+
+def test_samples_without_a_line_of_names_are_all_kept_and_said():
+    table = read_text(rows(",", header=False).encode(), "file", LIMITS)
+    assert np.array_equal(np.column_stack(table.load([0, 1])), VALUES)
+    assert "no line of column names" in table.notices[0]
+
+
+def test_a_name_that_stands_twice_must_be_given_by_number():
+    with pytest.raises(Unusable) as refused:
+        read(rows(",").replace("a,b", "a,a"))
+    assert refused.value.code == "ambiguous-column"
+
+
+def test_the_declared_limit_of_a_column_holds():
+    table = read_text(rows(",").encode(), "file", Limits(channel=8 * 49))
+    with pytest.raises(Unusable) as refused:
+        table.load([0])
+    assert refused.value.code == "too-large"
+
+
+@pytest.mark.parametrize("text", [b"\0\1\2", b"a,b", b"\n\n\n", b"a" * 100_000, b"PK\3\4\0\0\n\0\0"])
+def test_what_is_no_table_is_refused(text):
+    with pytest.raises(Unusable):
+        read(text)
