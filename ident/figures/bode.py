@@ -12,7 +12,7 @@ from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.choose import by_gain, representative
 from ident.figures.look import Look
-from ident.figures.render import Chart
+from ident.figures.render import Chart, Panel
 from ident.figures.responses import Responses
 from ident.figures.thin import decade_ticks
 from ident.fit.result import FitResult
@@ -86,12 +86,12 @@ def _data(place: int) -> str:
     return f"gain{place}"
 
 
-def _column(responses: Responses, look: Look, place: int, gains: Sequence[float | None]) -> list[alt.LayerChart]:
+def _column(responses: Responses, look: Look, place: int, gains: Sequence[float | None]) -> list[Panel]:
     """The three panels of one gain; only the first column names the vertical axes."""
     width = _WIDTHS.get(len(gains), 240)
     data = alt.NamedData(_data(place))
     first = place == 0
-    panels = [
+    panels: list[Panel] = [
         _panel(
             responses, look, data, ("a", "A"), title=f"Magnitude ({responses.magnitude_unit})", height=200, first=first
         ),
@@ -117,7 +117,7 @@ def _panel(
     title: str,
     height: int,
     first: bool,
-) -> alt.LayerChart:
+) -> Panel:
     """One quantity: measured as points, model as lines."""
     measured, model = fields
     scale = alt.Scale(domain=list(responses.limits(*fields)), nice=True, zero=False)
@@ -132,7 +132,7 @@ def _panel(
     return alt.layer(points, lines)
 
 
-def _coherence(responses: Responses, look: Look, data: alt.NamedData, first: bool) -> alt.LayerChart:
+def _coherence(responses: Responses, look: Look, data: alt.NamedData, first: bool) -> Panel:
     ticks = alt.Axis(title="Coherence (–)" if first else None, labels=first, values=[0, 0.5, 1])
     base = alt.Chart(data, height=70).encode(x=_frequency(responses, named=True), color=_colour(responses, look))
     return alt.layer(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import altair as alt
@@ -12,7 +13,7 @@ from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.choose import Option
 from ident.figures.look import Look
-from ident.figures.render import Chart
+from ident.figures.render import Chart, Panel
 from ident.figures.thin import significant
 from ident.fit.result import FitResult, Generation
 from ident.matrix import Actuator
@@ -39,12 +40,16 @@ def evolution(
         raise Unusable(
             "no-evolution", "no generations are kept in this fit", "figure evolution", "fit with free parameters"
         )
-    panels: list[Any] = []
+    panels: list[Panel | alt.HConcatChart] = []
+    tables: dict[str, list[dict[str, Any]]] = {"history": _history_rows(fit)}
     pair = _pair(fit, x, y)
     pictured = [entry for entry in _pictured(fit, generations) if entry.population]
     if pair and pictured:
-        panels.append(_scatter(fit, look, pair, pictured))
-    panels.append(_history(fit, look, wide=bool(panels)))
+        axes = (_Axis.of(fit, pair[0], pictured), _Axis.of(fit, pair[1], pictured))
+        tables |= {_table(entry): _points(entry, axes) for entry in pictured}
+        tables["found"] = _found(fit, axes)
+        panels.append(_scatter(look, axes, pictured))
+    panels.append(_history(look, wide=bool(panels)))
     title = alt.TitleParams(
         words.headline(actuator, "how the search converged"),
         subtitle=[
@@ -67,7 +72,8 @@ def _pair(fit: FitResult, x: str | None, y: str | None) -> tuple[str, str] | Non
             raise Unusable(
                 "not-searched", f"{name!r} was not searched", "figure option", f"use {', '.join(fit.searched)}"
             )
-    preferred = [name for name in (*DEFAULT_PAIR, *fit.searched) if name in fit.searched]
+    usual = [name for wanted in DEFAULT_PAIR for name in fit.searched if name.split("/")[0] == wanted]  # Z0, Z0/A^2
+    preferred = [*usual, *fit.searched]
     first = x or next((name for name in preferred if name != y), None)
     second = y or next((name for name in preferred if name != first), None)
     return (first, second) if first and second else None
@@ -90,107 +96,115 @@ def _pictured(fit: FitResult, wanted: Option) -> list[Generation]:
     return chosen
 
 
-def _scatter(fit: FitResult, look: Look, pair: tuple[str, str], pictured: Sequence[Generation]) -> alt.HConcatChart:
-    """One panel a generation, all on the same axes: the bounds of the search."""
+@dataclass(frozen=True)
+class _Axis:
+    """One searched parameter as an axis: its values are multiplied by `factor` to be in the unit of `title`."""
+
+    name: str
+    place: int
+    factor: float
+    title: str
+    domain: tuple[float, float]
+
+    @classmethod
+    def of(cls, fit: FitResult, name: str, pictured: Sequence[Generation]) -> _Axis:
+        """Reaches over the bounds of the search and over what was tried outside the final ones."""
+        place, estimate = fit.searched.index(name), fit.parameters[name]
+        tried = [vector[place] for entry in pictured for vector in entry.population]
+        low, high = min(*tried, estimate.lower), max(*tried, estimate.upper)
+        factor, unit = words.engineering((low, high), estimate.unit)
+        return cls(name, place, factor, words.axis(name, unit), (factor * low, factor * high))
+
+    @property
+    def scale(self) -> alt.Scale:
+        """Logarithmic where the values span more than one and a half decades."""
+        low, high = self.domain
+        if low > 0 and high > 30 * low:
+            return alt.Scale(type="log", domain=[low, high], nice=False)
+        return alt.Scale(domain=[low, high], nice=False)
+
+
+def _table(entry: Generation) -> str:
+    return f"generation{entry.index}"
+
+
+def _points(entry: Generation, axes: tuple[_Axis, _Axis]) -> list[dict[str, Any]]:
+    """x and y in the axes' units, e the error in %."""
+    errors = entry.errors or (math.nan,) * len(entry.population)
+    x, y = ([axis.factor * vector[axis.place] for vector in entry.population] for axis in axes)
+    table = zip(significant(x, 4), significant(y, 4), significant([100 * error for error in errors], 4), strict=True)
+    return [{"x": a, "y": b, "e": e if math.isfinite(e) else None} for a, b, e in table]
+
+
+def _found(fit: FitResult, axes: tuple[_Axis, _Axis]) -> list[dict[str, Any]]:
+    """The final estimate."""
+    x, y = (axis.factor * fit.parameters[axis.name].value for axis in axes)
+    return [{"x": x, "y": y}]
+
+
+def _scatter(look: Look, axes: tuple[_Axis, _Axis], pictured: Sequence[Generation]) -> alt.HConcatChart:
+    """One panel a generation, all on the same axes."""
     errors = [error for entry in pictured for error in entry.errors if math.isfinite(error)]
-    ramp = alt.Scale(type="log", domain=_positive(errors), range=list(reversed(look.ramp)), clamp=True)
-    colour = alt.Color(
-        "e:Q", scale=ramp, legend=alt.Legend(title="Error (%)", orient="right", format=".3~g", tickCount=4)
-    )
+    ramp = alt.Scale(type="log", domain=_ends(errors), range=list(reversed(look.ramp)), clamp=True)
+    legend = alt.Legend(title="Error (%)", orient="right", format=".3~g", tickCount=4)
+    colour = alt.Color("e:Q", scale=ramp, legend=legend)
     width = max(150, 600 // len(pictured))
     panels = [
-        _generation(fit, look, pair, entry, colour, width=width, first=place == 0)
-        for place, entry in enumerate(pictured)
+        _generation(entry, axes, look, colour, first=entry is pictured[0]).properties(width=width) for entry in pictured
     ]
-    return alt.hconcat(*panels, spacing=18, bounds="flush").resolve_scale(color="shared")
+    row: alt.HConcatChart = alt.hconcat(*panels, spacing=18, bounds="flush").resolve_scale(color="shared")
+    return row
 
 
-def _positive(errors: Sequence[float]) -> list[float]:
+def _ends(errors: Sequence[float]) -> list[float]:
     """Ends of the colour scale in %, the worst tenth left out so that the good ones can be told apart."""
     ordered = sorted(100 * error for error in errors if error > 0) or [1.0, 10.0]
     low, high = ordered[0], ordered[int(0.9 * (len(ordered) - 1))]
     return significant([low, max(high, 1.05 * low)], 3)
 
 
-def _generation(
-    fit: FitResult, look: Look, pair: tuple[str, str], entry: Generation, colour: alt.Color, *, width: int, first: bool
-) -> alt.LayerChart:
-    places = [fit.searched.index(name) for name in pair]
-    (fx, tx, dx), (fy, ty, dy) = (_axis(fit, name) for name in pair)
-    errors = entry.errors or (float("nan"),) * len(entry.population)
-    rows = [
-        {"x": a, "y": b, "e": e if math.isfinite(e) else None}
-        for a, b, e in zip(
-            significant([fx * vector[places[0]] for vector in entry.population], 4),
-            significant([fy * vector[places[1]] for vector in entry.population], 4),
-            significant([100 * error for error in errors], 4),
-            strict=True,
-        )
-    ]
-    x = alt.X("x:Q", scale=alt.Scale(domain=dx, nice=False), axis=alt.Axis(title=tx, tickCount=4))
-    y = alt.Y(
-        "y:Q",
-        scale=alt.Scale(domain=dy, nice=False),
-        axis=alt.Axis(title=ty if first else None, labels=first, tickCount=5, format="~r"),
-    )
-    tips = [alt.Tooltip("x:Q", title=tx), alt.Tooltip("y:Q", title=ty), alt.Tooltip("e:Q", title="Error (%)")]
-    cloud = alt.Chart(alt.Data(values=rows)).mark_circle(size=16, opacity=0.75, clip=True)
-    found = alt.Chart(alt.Data(values=_found(fit, pair, fx, fy))).mark_point(
+def _generation(entry: Generation, axes: tuple[_Axis, _Axis], look: Look, colour: alt.Color, *, first: bool) -> Panel:
+    across, up = axes
+    x = alt.X("x:Q", scale=across.scale, axis=alt.Axis(title=across.title, tickCount=4, format="~r"))
+    ticks = alt.Axis(title=up.title if first else None, labels=first, tickCount=5, format="~r")
+    y = alt.Y("y:Q", scale=up.scale, axis=ticks)
+    named = {"x:Q": across.title, "y:Q": up.title, "e:Q": "Error (%)"}
+    tips = [alt.Tooltip(field, title=title) for field, title in named.items()]
+    cloud = alt.Chart(alt.NamedData(_table(entry))).mark_circle(size=16, opacity=0.75, clip=True)
+    cross = alt.Chart(alt.NamedData("found")).mark_point(
         shape="cross", size=110, color=look.ink, strokeWidth=1.4, filled=False
     )
-    layers = cloud.encode(x=x, y=y, color=colour, tooltip=tips) + found.encode(x="x:Q", y="y:Q")
     heading = alt.TitleParams(f"Generation {entry.index}", fontSize=12, offset=6, frame="group")
-    return layers.properties(width=width, height=190, title=heading)
+    layers = (cloud.encode(x=x, y=y, color=colour, tooltip=tips), cross.encode(x="x:Q", y="y:Q"))
+    return alt.layer(*layers, height=190, title=heading)
 
 
-def _axis(fit: FitResult, name: str) -> tuple[float, str, list[float]]:
-    """(factor, title, domain) of a searched parameter: its bounds, or the range of the first population."""
-    estimate = fit.parameters.get(name)
-    place = fit.searched.index(name)
-    seen = [vector[place] for entry in fit.evolution for vector in entry.population]
-    ends = (min(seen), max(seen)) if estimate is None else (estimate.lower, estimate.upper)
-    factor, unit = words.engineering(ends, "1" if estimate is None else estimate.unit)
-    return factor, words.axis(name, unit), [factor * ends[0], factor * ends[1]]
-
-
-def _found(fit: FitResult, pair: tuple[str, str], fx: float, fy: float) -> list[dict[str, float]]:
-    """The final estimate, where both parameters have one."""
-    if any(name not in fit.parameters for name in pair):
-        return []
-    return [{"x": fx * fit.parameters[pair[0]].value, "y": fy * fit.parameters[pair[1]].value}]
-
-
-def _history(fit: FitResult, look: Look, wide: bool) -> alt.Chart:
-    """Best and mean error in % over generation."""
-    rows = [
+def _history_rows(fit: FitResult) -> list[dict[str, Any]]:
+    """g generation, e error in %, s which."""
+    return [
         {"g": entry.index, "e": float(f"{100 * value:.5g}"), "s": name}
         for entry in fit.evolution
         for name, value in (("best", entry.best), ("mean", entry.mean))
         if math.isfinite(value) and value > 0
     ]
+
+
+def _history(look: Look, wide: bool) -> Panel:
+    """Best and mean error in % over generation."""
     colour = alt.Color(
         "s:N",
         scale=alt.Scale(domain=["best", "mean"], range=list(look.series[:2])),
         legend=alt.Legend(title=None, orient="top-right", symbolType="stroke", symbolSize=400),
     )
-    return (
-        alt.Chart(alt.Data(values=rows), width=720 if wide else 640, height=190)
+    x = alt.X("g:Q", scale=alt.Scale(nice=False), axis=alt.Axis(title="Generation (–)", format="d", tickMinStep=1))
+    y_axis = alt.Axis(title="Error, eq. (17) (%)", tickCount=5, format="~r")
+    y = alt.Y("e:Q", scale=alt.Scale(type="log", nice=True), axis=y_axis)
+    tips = [
+        alt.Tooltip("g:Q", title="Generation"), alt.Tooltip("s:N", title="Of"), alt.Tooltip("e:Q", title="Error (%)")
+    ]  # fmt: skip
+    panel: Panel = (
+        alt.Chart(alt.NamedData("history"), width=720 if wide else 640, height=190)
         .mark_line(point=alt.OverlayMarkDef(size=18), strokeWidth=1.6)
-        .encode(
-            x=alt.X(
-                "g:Q", title="Generation (–)", scale=alt.Scale(nice=False), axis=alt.Axis(format="d", tickMinStep=1)
-            ),
-            y=alt.Y(
-                "e:Q",
-                title="Error, eq. (17) (%)",
-                scale=alt.Scale(type="log", nice=True),
-                axis=alt.Axis(tickCount=5, format="~r"),
-            ),
-            color=colour,
-            tooltip=[
-                alt.Tooltip("g:Q", title="Generation"),
-                alt.Tooltip("s:N", title="Of"),
-                alt.Tooltip("e:Q", title="Error (%)"),
-            ],
-        )
+        .encode(x=x, y=y, color=colour, tooltip=tips)
     )
+    return panel

@@ -10,6 +10,7 @@ import vl_convert
 
 from ident.errors import Unusable
 
+Panel = alt.Chart | alt.LayerChart | alt.FacetChart
 Chart = alt.LayerChart | alt.HConcatChart | alt.VConcatChart | alt.ConcatChart
 
 MEDIA: Mapping[str, str] = {

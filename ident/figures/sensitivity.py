@@ -10,10 +10,10 @@ import altair as alt
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.compare import fitted_values, response
+from ident.compare import response
 from ident.figures import words
 from ident.figures.look import Look
-from ident.figures.render import Chart
+from ident.figures.render import Chart, Panel
 from ident.figures.thin import decade_ticks, excited_band, significant
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Run, Specimen
@@ -21,6 +21,8 @@ from ident.matrix import Actuator, Run, Specimen
 MULTIPLES = tuple(float(value) for value in np.geomspace(0.1, 10, 11))
 POINTS = 90
 
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 Varied = Callable[[Run, float], Run]
 
 
@@ -39,7 +41,10 @@ def sensitivity(run: Run, actuator: Actuator, fit: FitResult, look: Look) -> Cha
     lower, upper = excited_band(run.command, run.sample_rate)
     frequency = np.geomspace(max(lower, upper / 400), 1.25 * upper, POINTS)
     varied = _variations(run)
-    tables = {name: _rows(vary, run, actuator, fit, frequency) for name, (_, vary) in varied.items()}
+    tables = {
+        name: _rows(frequency, [response(fit, vary(run, multiple), actuator, frequency) for multiple in MULTIPLES])
+        for name, (_, vary) in varied.items()
+    }
     axes = _Axes(tables)
     columns = [
         _column(name, text, axes, look, first=place == 0, width=600 // len(varied))
@@ -93,20 +98,15 @@ def _with_gain(run: Run, factor: float) -> Run:
     return replace(run, gain=factor * run.Kp)
 
 
-def _rows(
-    frequency: NDArray[np.float64], answer: Callable[[float], NDArray[np.complex128]]
-) -> list[dict[str, Any]]:
+def _rows(frequency: Real, answers: Sequence[Complex]) -> list[dict[str, Any]]:
     """f frequency, a magnitude (dB), p phase (deg), x multiple."""
     rows: list[dict[str, Any]] = []
-    for multiple in MULTIPLES:
-        found = answer(multiple)
-        magnitude = significant(20 * np.log10(np.abs(found)), 4)
-        phase = significant(np.degrees(np.unwrap(np.angle(found))), 4)
+    for multiple, answer in zip(MULTIPLES, answers, strict=True):
+        magnitude = significant(20 * np.log10(np.abs(answer)), 4)
+        phase = significant(np.degrees(np.unwrap(np.angle(answer))), 4)
         x = float(f"{multiple:.3g}")
-        rows += [
-            {"f": f, "a": a, "p": p, "x": x}
-            for f, a, p in zip(significant(frequency, 4), magnitude, phase, strict=True)
-        ]
+        table = zip(significant(frequency, 4), magnitude, phase, strict=True)
+        rows += [{"f": f, "a": a, "p": p, "x": x} for f, a, p in table]
     return rows
 
 
@@ -132,14 +132,14 @@ class _Axes:
         )
 
 
-def _column(name: str, text: str, axes: _Axes, look: Look, *, first: bool, width: int) -> list[alt.LayerChart]:
+def _column(name: str, text: str, axes: _Axes, look: Look, *, first: bool, width: int) -> list[Panel]:
     data = alt.NamedData(name)
     magnitude = _panel(data, axes.x(named=False), axes.y("a", "Magnitude (dB)", first), look, width)
     phase = _panel(data, axes.x(named=True), axes.y("p", "Phase (°)", first), look, width)
     return [magnitude.properties(title=alt.TitleParams(text, fontSize=12, offset=6, frame="group")), phase]
 
 
-def _panel(data: alt.NamedData, x: alt.X, y: alt.Y, look: Look, width: int) -> alt.LayerChart:
+def _panel(data: alt.NamedData, x: alt.X, y: alt.Y, look: Look, width: int) -> Panel:
     legend = alt.Legend(
         title="× run's value", orient="right", values=[0.1, 0.3, 1, 3, 10], format="~g", gradientLength=180
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,7 +38,7 @@ def envelope(signal: Real, bins: int) -> Places:
     return np.unique(np.array([0, *(place for pair in pairs for place in pair), n - 1]))
 
 
-def significant(values: Real, digits: int = 5) -> list[float]:
+def significant(values: Iterable[float] | Real, digits: int = 5) -> list[float]:
     """Values rounded to so many significant digits, as plain floats; what is not finite becomes NaN."""
     return [float(f"{value:.{digits}g}") if np.isfinite(value) else float("nan") for value in values]
 

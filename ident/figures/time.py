@@ -12,7 +12,7 @@ from ident.compare import RunComparison
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.look import Look
-from ident.figures.render import Chart
+from ident.figures.render import Chart, Panel
 from ident.figures.thin import Real, envelope, significant
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Matrix, Run
@@ -61,7 +61,8 @@ def time(
         subtitle=[words.verdict(fit), f"{words.describe(run)}: {left}"],
     )
     rows = {"traces": _table(signals, factor, run, window), "residual": _rows(fine * residual, run, window)}
-    return alt.vconcat(upper, lower, title=title, spacing=8, datasets=rows).configure(**look.config())
+    chart: Chart = alt.vconcat(upper, lower, title=title, spacing=8, datasets=rows).configure(**look.config())
+    return chart
 
 
 def _window(run: Run, start: float | None, seconds: float | None) -> slice:
@@ -102,7 +103,7 @@ def _table(signals: Mapping[str, Real], factor: float, run: Run, window: slice) 
     return [row for name, signal in signals.items() for row in _rows(factor * signal, run, window, s=name)]
 
 
-def _traces(shown: Sequence[str], run: Run, window: slice, look: Look, unit: str) -> alt.Chart:
+def _traces(shown: Sequence[str], run: Run, window: slice, look: Look, unit: str) -> Panel:
     colours = {"command": look.faint, "measured": look.series[0], "model": look.series[1]}
     colour = alt.Color(
         "s:N",
@@ -113,7 +114,7 @@ def _traces(shown: Sequence[str], run: Run, window: slice, look: Look, unit: str
         "s:N", scale=alt.Scale(domain=list(shown), range=[_DASHES[name] for name in shown]), legend=None
     )
     name = run.output.replace("_", " ").capitalize()
-    return (
+    panel: Panel = (
         alt.Chart(alt.NamedData("traces"), width=720, height=240)
         .mark_line(strokeWidth=1.5)
         .encode(
@@ -123,10 +124,11 @@ def _traces(shown: Sequence[str], run: Run, window: slice, look: Look, unit: str
             strokeDash=dashes,
         )
     )
+    return panel
 
 
-def _residual(run: Run, window: slice, look: Look, unit: str) -> alt.Chart:
-    return (
+def _residual(run: Run, window: slice, look: Look, unit: str) -> Panel:
+    panel: Panel = (
         alt.Chart(alt.NamedData("residual"), width=720, height=110)
         .mark_line(strokeWidth=1.1, color=look.series[2])
         .encode(
@@ -134,3 +136,4 @@ def _residual(run: Run, window: slice, look: Look, unit: str) -> alt.Chart:
             y=alt.Y("y:Q", title=words.axis("Measured − model", unit), axis=alt.Axis(tickCount=4)),
         )
     )
+    return panel

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
-from ident.compare import RunComparison
 from ident.fit.result import Estimate, FitResult, Generation, RunError
 from ident.matrix import Actuator, Matrix, Run, Specimen
 
@@ -40,7 +41,21 @@ def make_run(mass: float, stiffness: float, kp: float, amplitude: float, seed: i
     return run
 
 
-def make_comparison(run: Run) -> RunComparison:
+@dataclass(frozen=True)
+class HandMade:
+    """What a figure reads of a compared run."""
+
+    run: Run
+    error: float
+    offset: float
+    frequency: np.ndarray
+    measured: np.ndarray
+    coherence: np.ndarray
+    model: np.ndarray
+    modelled: np.ndarray
+
+
+def make_comparison(run: Run) -> HandMade:
     """The exact response as model; the measured one noisy, the more the higher the frequency."""
     rng = np.random.default_rng(len(run.id))
     frequency = np.fft.rfftfreq(1024, 1 / RATE)[1:]
@@ -48,7 +63,7 @@ def make_comparison(run: Run) -> RunComparison:
     coherence = np.clip(1.02 - (frequency / 95) ** 6, 0.0, 1.0)
     noise = (1.02 - coherence) * 0.4 * (rng.standard_normal(512) + 1j * rng.standard_normal(512))
     modelled = np.fft.irfft(np.fft.rfft(run.command) * second_order(run, np.fft.rfftfreq(1024, 1 / RATE)))
-    return RunComparison(run, 0.005, 0.001, frequency, model * (1 + noise), coherence, model, modelled)
+    return HandMade(run, 0.005, 0.001, frequency, model * (1 + noise), coherence, model, modelled)
 
 
 @pytest.fixture(scope="session")

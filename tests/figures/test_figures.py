@@ -20,11 +20,11 @@ def hand_made(monkeypatch: pytest.MonkeyPatch) -> None:
     """Responses in closed form instead of the compared fit."""
 
     def compare(matrix, fit):
-        return Comparison(tuple(map(make_comparison, matrix.runs)), {}, {})
+        return Comparison(matrix, fit, tuple(map(make_comparison, matrix.runs)))
 
     monkeypatch.setattr(ident.figures, "compare", compare)
     module = import_module("ident.figures.sensitivity")
-    monkeypatch.setattr(module, "response", lambda model, values, run, frequency: second_order(run, frequency))
+    monkeypatch.setattr(module, "response", lambda _fit, run, _actuator, frequency: second_order(run, frequency))
 
 
 def drawn(name, matrix, fit, theme="light", **options):
@@ -67,10 +67,10 @@ def test_every_named_axis_has_a_unit(name, matrix, fit):
 
 
 @pytest.mark.parametrize(
-    ("format", "start"), [("json", b"{"), ("svg", b"<svg"), ("png", b"\x89PNG\r\n\x1a\n"), ("pdf", b"%PDF-")]
+    ("kind", "start"), [("json", b"{"), ("svg", b"<svg"), ("png", b"\x89PNG\r\n\x1a\n"), ("pdf", b"%PDF-")]
 )
-def test_a_figure_is_one_definition_in_four_formats(format, start, matrix, fit):
-    assert render(figure("evolution", matrix, fit), format).startswith(start)
+def test_a_figure_is_one_definition_in_four_formats(kind, start, matrix, fit):
+    assert render(figure("evolution", matrix, fit), kind).startswith(start)
 
 
 def test_the_bode_plot_shows_a_few_verify_runs_and_says_of_how_many(matrix, fit):
@@ -158,7 +158,7 @@ def test_evolution_shows_generations_1_4_8_and_last_on_the_bounds_with_the_paper
 
 def test_error_over_generation_is_in_percent(matrix, fit):
     spec = drawn("evolution", matrix, fit)
-    best = [row["e"] for row in spec["vconcat"][1]["data"]["values"] if row["s"] == "best"]
+    best = [row["e"] for row in spec["datasets"]["history"] if row["s"] == "best"]
     assert best == pytest.approx([100 * generation.best for generation in fit.evolution], rel=1e-4)
 
 
