@@ -57,7 +57,7 @@ def read_regular(path: Path, name: str, limit: int) -> bytes:
             if not stat.S_ISREG(status.st_mode):
                 raise Unusable("not-a-file", "it is not a regular file", name, "put a file there")
             check_size(status.st_size, limit, "the file", name)
-            return file.read(limit)
+            return file.read(status.st_size)  # of what there is: a larger number would be allocated
     except FileNotFoundError:
         raise Unusable("missing-file", "there is no such file", name, "add it or correct the name") from None
     except OSError as error:

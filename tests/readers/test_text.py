@@ -69,7 +69,7 @@ def test_the_declared_limit_of_a_column_holds():
     assert refused.value.code == "too-large"
 
 
-@pytest.mark.parametrize("text", [b"\0\1\2", b"a,b", b"\n\n\n", b"a" * 100_000, b"PK\3\4\0\0\n\0\0"])
+@pytest.mark.parametrize("text", [b"\0\1\2", b"\n\n\n", b"a" * 100_000, b"PK\3\4\0\0\n\0\0"])
 def test_what_is_no_table_is_refused(text):
     with pytest.raises(Unusable):
         read(text)
