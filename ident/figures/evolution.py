@@ -20,6 +20,7 @@ from ident.matrix import Actuator
 
 DEFAULT_PAIR = ("Z0", "c0")
 DEFAULT_GENERATIONS = (1, 4, 8)
+_DECADES = 30.0  # ratio of the ends above which an axis is logarithmic
 
 
 def evolution(
@@ -105,6 +106,7 @@ class _Axis:
     factor: float
     title: str
     domain: tuple[float, float]
+    wide: bool  # logarithmic
 
     @classmethod
     def of(cls, fit: FitResult, name: str, pictured: Sequence[Generation]) -> _Axis:
@@ -112,14 +114,15 @@ class _Axis:
         place, estimate = fit.searched.index(name), fit.parameters[name]
         tried = [vector[place] for entry in pictured for vector in entry.population]
         low, high = min(*tried, estimate.lower), max(*tried, estimate.upper)
-        factor, unit = words.engineering((low, high), estimate.unit)
-        return cls(name, place, factor, words.axis(name, unit), (factor * low, factor * high))
+        wide = low > 0 and high > _DECADES * low
+        factor, unit = (1.0, words.tidy_unit(estimate.unit)) if wide else words.engineering((low, high), estimate.unit)
+        return cls(name, place, factor, words.axis(name, unit), (factor * low, factor * high), wide)
 
     @property
     def scale(self) -> alt.Scale:
-        """Logarithmic where the values span more than one and a half decades."""
+        """Linear, or logarithmic where the values span decades."""
         low, high = self.domain
-        if low > 0 and high > 30 * low:
+        if self.wide:
             return alt.Scale(type="log", domain=[low, high], nice=False)
         return alt.Scale(domain=[low, high], nice=False)
 
@@ -165,8 +168,8 @@ def _ends(errors: Sequence[float]) -> list[float]:
 
 def _generation(entry: Generation, axes: tuple[_Axis, _Axis], look: Look, colour: alt.Color, *, first: bool) -> Panel:
     across, up = axes
-    x = alt.X("x:Q", scale=across.scale, axis=alt.Axis(title=across.title, tickCount=4, format="~r"))
-    ticks = alt.Axis(title=up.title if first else None, labels=first, tickCount=5, format="~r")
+    x = alt.X("x:Q", scale=across.scale, axis=alt.Axis(title=across.title, tickCount=4, format="~g"))
+    ticks = alt.Axis(title=up.title if first else None, labels=first, tickCount=5, format="~g" if up.wide else "~r")
     y = alt.Y("y:Q", scale=up.scale, axis=ticks)
     named = {"x:Q": across.title, "y:Q": up.title, "e:Q": "Error (%)"}
     tips = [alt.Tooltip(field, title=title) for field, title in named.items()]

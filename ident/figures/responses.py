@@ -30,9 +30,11 @@ class Responses:
     def band(self) -> tuple[float, float]:
         """Frequency limits: where any of the commands has power."""
         bands = [excited_band(entry.run.command, entry.run.sample_rate) for entry in self.compared]
-        lowest = min(float(entry.frequency[entry.frequency > 0][0]) for entry in self.compared)
+        lowest = min(float(entry.frequency[0]) for entry in self.compared)
+        highest = max(float(entry.frequency[-1]) for entry in self.compared)
         lower = max(min(low for low, _ in bands), lowest)
-        return lower, _rounded_up(max(*(high for _, high in bands), 1.01 * lower))
+        upper = max(*(high for _, high in bands), 10 * lower)  # a slow command leaves at least a decade to look at
+        return lower, _rounded_up(min(upper, highest))
 
     @cached_property
     def labels(self) -> dict[str, str]:
@@ -48,9 +50,10 @@ class Responses:
     @cached_property
     def common(self) -> list[str]:
         """In words, what all runs share: specimen and amplitude."""
-        namings = (_specimen, lambda run: f"{_amplitude(run)} RMS")
-        names = [{naming(entry.run) for entry in self.compared} for naming in namings]
-        return [name for (name, *others) in map(sorted, names) if not others]
+        runs = [entry.run for entry in self.compared]
+        specimens, amplitudes = {_specimen(run) for run in runs}, {_amplitude(run) for run in runs}
+        shared = [*specimens] if len(specimens) == 1 and runs[0].specimen is not None else []
+        return shared + ([f"{_amplitude(runs[0])} RMS"] if len(amplitudes) == 1 and runs[0].amplitude else [])
 
     @cached_property
     def domain(self) -> list[str]:

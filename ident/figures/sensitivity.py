@@ -10,13 +10,14 @@ import altair as alt
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.compare import response
+from ident.compare import fitted_values, linear_model, response
 from ident.figures import words
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel
 from ident.figures.thin import decade_ticks, excited_band, significant
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Run, Specimen
+from ident.presets import preset
 
 MULTIPLES = tuple(float(value) for value in np.geomspace(0.1, 10, 11))
 POINTS = 90
@@ -36,18 +37,20 @@ def loaded(runs: Sequence[Run]) -> Run:
 def sensitivity(run: Run, actuator: Actuator, fit: FitResult, look: Look) -> Chart:
     """Magnitude (dB) and phase (degrees) of the fitted model as one quantity of `run` goes from 0.1 to 10 times.
 
-    A quantity that the run does not state, or that is 0, has no column.
+    A quantity that the run does not state, or that is 0, has no column; multiples that make the loop unstable are
+    named, not drawn.
     """
     lower, upper = excited_band(run.command, run.sample_rate)
     frequency = np.geomspace(max(lower, upper / 400), 1.25 * upper, POINTS)
     varied = _variations(run)
+    stable = {name: _stable(vary, run, actuator, fit) for name, (_, vary) in varied.items()}
     tables = {
-        name: _rows(frequency, [response(fit, vary(run, multiple), actuator, frequency) for multiple in MULTIPLES])
+        name: _rows(frequency, {x: response(fit, vary(run, x), actuator, frequency) for x in stable[name]})
         for name, (_, vary) in varied.items()
     }
     axes = _Axes(tables)
     columns = [
-        _column(name, text, axes, look, first=place == 0, width=600 // len(varied))
+        _column(name, text + _without(stable[name]), axes, look, first=place == 0, width=600 // len(varied))
         for place, (name, (text, _)) in enumerate(varied.items())
     ]
     title = alt.TitleParams(
@@ -98,10 +101,23 @@ def _with_gain(run: Run, factor: float) -> Run:
     return replace(run, gain=factor * run.Kp)
 
 
-def _rows(frequency: Real, answers: Sequence[Complex]) -> list[dict[str, Any]]:
+def _stable(vary: Varied, run: Run, actuator: Actuator, fit: FitResult) -> list[float]:
+    """The multiples at which the closed loop is stable: another one has no frequency response to measure."""
+    values = fitted_values(fit)
+    models = ((x, linear_model(preset(fit.model), values, vary(run, x), actuator)) for x in MULTIPLES)
+    return [x for x, model in models if np.linalg.eigvals(model.A).real.max() < 0]
+
+
+def _without(stable: Sequence[float]) -> str:
+    """What is left out, for the heading."""
+    lost = [x for x in MULTIPLES if x not in stable]
+    return f"; unstable at {', '.join(f'{x:.2g}' for x in lost)} ×" if lost else ""
+
+
+def _rows(frequency: Real, answers: Mapping[float, Complex]) -> list[dict[str, Any]]:
     """f frequency, a magnitude (dB), p phase (deg), x multiple."""
     rows: list[dict[str, Any]] = []
-    for multiple, answer in zip(MULTIPLES, answers, strict=True):
+    for multiple, answer in answers.items():
         magnitude = significant(20 * np.log10(np.abs(answer)), 4)
         phase = significant(np.degrees(np.unwrap(np.angle(answer))), 4)
         x = float(f"{multiple:.3g}")

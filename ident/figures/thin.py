@@ -44,14 +44,14 @@ def significant(values: Iterable[float] | Real, digits: int = 5) -> list[float]:
 
 
 def excited_band(command: Real, sample_rate: float) -> tuple[float, float]:
-    """(lowest, highest) frequency between which 99.8 % of the command's power lies, in the unit of `sample_rate`."""
+    """(lowest, highest) frequency between which 98.9 % of the command's power lies, in the unit of `sample_rate`."""
     power = np.abs(np.fft.rfft(command - command.mean())) ** 2
     total = float(power.sum())
     frequency = np.fft.rfftfreq(len(command), 1 / sample_rate)
     if total == 0 or len(frequency) < 3:
         return float(frequency[min(1, len(frequency) - 1)]), float(frequency[-1])
     share = np.cumsum(power) / total
-    low, high = np.searchsorted(share, [0.001, 0.999])
+    low, high = np.searchsorted(share, [0.001, 0.99])
     return float(frequency[max(low, 1)]), float(frequency[min(high + 1, len(frequency) - 1)])
 
 

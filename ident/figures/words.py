@@ -13,7 +13,9 @@ _TIDY = {"^3": "³", "^2": "²", "*": "·"}  # a raised 4 is missing from too ma
 
 def percent(fraction: float | None) -> str:
     """0.0407 → "4.07 %"; three significant digits, "unknown" where there is none."""
-    return "unknown" if fraction is None or not math.isfinite(fraction) else f"{100 * fraction:.3g} %"
+    if fraction is None or not math.isfinite(fraction):
+        return "unknown"
+    return f"{100 * fraction:#.3g}".rstrip(".").replace("-", "−") + " %"
 
 
 def tidy_unit(unit: str) -> str:

@@ -97,6 +97,10 @@ def fit(matrix: Matrix) -> FitResult:
         parameters={
             "Z0": Estimate(2.592e-6, "m^4/s", 1e-9, 1.751e-6, 3.503e-6, False),
             "c0": Estimate(3200.0, "N*s/m", 2.0, 800.0, 5000.0, False),
+            "tau": Estimate(0.0036, "s", 1e-6, 0.001, 0.006, False),
+            "Cl": Estimate(1e-11, "m^3/(s*Pa)", 1e-14, 2e-12, 2e-11, False),
+            "m0": Estimate(4.25, "kg", 0.001, 1.0, 10.0, False),
+            "Ka": Estimate(1.39e-13, "m^3/Pa", 1e-16, 2e-15, 2e-13, False),
         },
         correlation={}, determined=(), undetermined=(),
         error={"fit": 0.00512, "held_out": None, "verify": 0.00507}, offset={"fit": 0.001, "verify": 0.001},

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from importlib import import_module
 
 import pytest
 
@@ -12,7 +11,7 @@ from ident.compare import Comparison
 from ident.errors import Unusable
 from ident.figures import FIGURES, figure, render
 from ident.figures.look import LOOKS
-from tests.figures.conftest import make_comparison, second_order
+from tests.figures.conftest import make_comparison
 
 
 @pytest.fixture(autouse=True)
@@ -23,8 +22,6 @@ def hand_made(monkeypatch: pytest.MonkeyPatch) -> None:
         return Comparison(matrix, fit, tuple(map(make_comparison, matrix.runs)))
 
     monkeypatch.setattr(ident.figures, "compare", compare)
-    module = import_module("ident.figures.sensitivity")
-    monkeypatch.setattr(module, "response", lambda _fit, run, _actuator, frequency: second_order(run, frequency))
 
 
 def drawn(name, matrix, fit, theme="light", **options):
@@ -170,10 +167,18 @@ def test_a_name_that_was_not_searched_is_refused_with_those_that_were(matrix, fi
 def test_sensitivity_goes_from_a_tenth_to_ten_times_the_run_s_own_value(matrix, fit):
     spec = drawn("sensitivity", matrix, fit)
     assert set(spec["datasets"]) == {"mass", "stiffness", "gain"}
-    multiples = sorted({row["x"] for row in spec["datasets"]["gain"]})
+    multiples = sorted({row["x"] for row in spec["datasets"]["mass"]})
     assert multiples[0] == 0.1
     assert multiples[-1] == 10
     assert 1.0 in multiples
+
+
+def test_a_gain_that_makes_the_loop_unstable_is_named_and_not_drawn(matrix, fit):
+    spec = drawn("sensitivity", matrix, fit, run="m4.25-k17.5-kp6-a1.27")
+    headings = [panel["title"]["text"] for panel in spec["concat"] if "title" in panel]
+    assert "unstable at" in headings[2]
+    assert "10 ×" in headings[2]
+    assert max(row["x"] for row in spec["datasets"]["gain"]) < 10
 
 
 def test_a_heavier_specimen_lowers_the_curve_above_resonance(matrix, fit):
