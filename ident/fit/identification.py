@@ -12,7 +12,7 @@ from ident.effects import effect
 from ident.errors import Unusable
 from ident.fit import genetic
 from ident.fit.library_search import GENERATIONS, cma_es, differential_evolution
-from ident.fit.objective import Local, Objective
+from ident.fit.objective import UNSTABLE, Local, Objective
 from ident.fit.polish import polish
 from ident.fit.result import FitResult
 from ident.fit.settings import METHODS, Settings
@@ -39,8 +39,9 @@ class Identification:
         self.matrix, self.settings, self.report = matrix, settings, report
         self.preset = preset_called(settings.model)
         self._runs = matrix.of_use("fit")
-        _refuse(matrix, settings)
-        self.options = self._options()
+        check_settings(settings)
+        _refuse(matrix)
+        self.options = _options(settings)
         band = excited_band(self._runs)
         space = search_space(self.preset, matrix, settings, band)
         self.objective = Objective(self.preset, matrix, self._runs, space, Basis(band))
@@ -49,14 +50,6 @@ class Identification:
             report(Progress("spectra", 0, 1))
             self.objective.prepare()
             report(Progress("spectra", 1, 1))
-
-    def _options(self) -> dict[str, float]:
-        known = {"ga": genetic.DEFAULT, "paper-ga": genetic.PAPER}.get(self.settings.method, {})
-        for name in self.settings.options:
-            if name not in known:
-                raise Unusable("unknown-option", f"method {self.settings.method} has no option {name!r}", "options",
-                               f"choose from {', '.join(known) or 'none'}")  # fmt: skip
-        return {**known, **self.settings.options}
 
     @property
     def generations(self) -> int:
@@ -118,6 +111,9 @@ class Identification:
     def finish(self, state: State) -> FitResult:
         """Polish (all methods but the paper's), errors of every run, uncertainty."""
         objective = self.objective
+        # Counted from the state, so that a search that was cut by a restart counts the same.
+        objective.evaluations = int(state["evaluations"])
+        objective.unstable = sum(error >= UNSTABLE for entry in state["history"] for error in entry["errors"])
         if not objective.space.axes:
             point, here = np.empty(0), objective.exact(np.empty(0))
         elif self.settings.method == "paper-ga":
@@ -154,8 +150,9 @@ def _distinct(points: Array) -> list[Array]:
     return chosen
 
 
-def _refuse(matrix: Matrix, settings: Settings) -> None:
-    """Raise Unusable for what cannot be fitted."""
+def check_settings(settings: Settings) -> None:
+    """Raise Unusable for settings that no matrix could be fitted with."""
+    preset = preset_called(settings.model)
     if settings.method not in METHODS:
         remedy = f"choose from {', '.join(METHODS)}"
         raise Unusable("unknown-method", f"no method {settings.method!r}", "method", remedy)
@@ -163,6 +160,27 @@ def _refuse(matrix: Matrix, settings: Settings) -> None:
         effect(name)
     if settings.load != "none":
         raise Unusable("unknown-load", f"load {settings.load!r} is not known", "load", "use none")
+    for name in (*settings.bounds, *settings.fixed):
+        preset.parameter(name)
+    _options(settings)
+
+
+def _options(settings: Settings) -> dict[str, float]:
+    """The method's options, those of the user over the defaults."""
+    known = {"ga": genetic.DEFAULT, "paper-ga": genetic.PAPER}.get(settings.method, {})
+    for name, value in settings.options.items():
+        if name not in known:
+            remedy = f"choose from {', '.join(known) or 'none'}"
+            raise Unusable("unknown-option", f"method {settings.method} has no option {name!r}", "options", remedy)
+        lower, upper = genetic.RANGES[name]
+        if not lower <= value <= upper:
+            remedy = f"give {lower:g} to {upper:g}"
+            raise Unusable("bad-option", f"{name} = {value:g}", "options", remedy)
+    return {**known, **settings.options}
+
+
+def _refuse(matrix: Matrix) -> None:
+    """Raise Unusable for a matrix that cannot be fitted."""
     if not matrix.of_use("fit"):
         raise Unusable("no-fit-runs", "every run is to verify, none to fit", "runs", "mark at least one run use: fit")
     for run in matrix.runs:

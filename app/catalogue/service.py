@@ -1,0 +1,42 @@
+"""Models and effects of the library as messages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict
+
+from ident.effects import EFFECTS
+from ident.expression import Equation, mathml
+from ident.parameter import Parameter
+from ident.presets import PRESETS
+from schemas.catalogue import EffectView, EquationView, ModelView, ParameterView
+
+
+def models() -> list[ModelView]:
+    """Every model that can be fitted."""
+    return [
+        ModelView(
+            name=preset.name, title=preset.title, citation=preset.citation, notes=list(preset.notes),
+            parameters=_parameters(preset.parameters), equations=_equations(preset.equations),
+        )
+        for preset in PRESETS.values()
+    ]  # fmt: skip
+
+
+def effects() -> list[EffectView]:
+    """Every effect of the catalogue."""
+    return [
+        EffectView(
+            name=effect.name, place=effect.place, meaning=effect.meaning,
+            parameters=_parameters((effect.strength, *effect.shape)), equations=_equations(effect.equations),
+        )
+        for effect in EFFECTS
+    ]  # fmt: skip
+
+
+def _parameters(parameters: Iterable[Parameter]) -> list[ParameterView]:
+    return [ParameterView(**asdict(parameter)) for parameter in parameters]
+
+
+def _equations(equations: Iterable[Equation]) -> list[EquationView]:
+    return [EquationView(place=e.place, text=e.text, mathml=mathml(e.text), meaning=e.meaning) for e in equations]

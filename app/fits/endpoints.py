@@ -1,0 +1,54 @@
+"""/fits: queue a fit, look at it, draw it, approve it."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Request, Response
+
+from app.context import Here
+from app.errors import COMMON
+from app.fits import service
+from app.idempotency import Key, fingerprint, once
+from schemas.fit import ComparisonView, FitRequest, FitView, JobView
+
+router = APIRouter(prefix="/fits", tags=["fits"], responses=COMMON)
+_IMAGES = {kind: {} for kind in ("application/json", "image/svg+xml", "image/png", "application/pdf")}
+
+
+@router.post("", status_code=202, response_model=JobView)
+def submit(here: Here, request: FitRequest, key: Key = None) -> Response:
+    """Queue a fit; Location is its job."""
+
+    def act() -> tuple[int, dict[str, object], str]:
+        job = service.submit(here, request)
+        return 202, job.model_dump(), f"/api/v1/jobs/{job.id}"
+
+    return once(here.sessions, key, fingerprint("fit", request.model_dump()), act)
+
+
+@router.get("/{fit}")
+def one(here: Here, fit: str) -> FitView:
+    """A fit: the contract's fit JSON in `result`."""
+    return service.get(here, fit)
+
+
+@router.get("/{fit}/compare")
+def compared(here: Here, fit: str) -> ComparisonView:
+    """Eq. (17) and offset of every run, recomputed."""
+    return service.comparison(here, fit)
+
+
+@router.post("/{fit}/approve", response_model=FitView)
+def approve(here: Here, fit: str, key: Key = None) -> Response:
+    """Make the fit its actuator's current parameter set; older ones stay."""
+    return once(
+        here.sessions, key, fingerprint("approve", fit), lambda: (200, service.approve(here, fit).model_dump(), "")
+    )
+
+
+@router.get("/{fit}/figures/{name}.{kind}", response_class=Response, responses={200: {"content": _IMAGES}})
+def drawn(here: Here, request: Request, fit: str, name: str, kind: str) -> Response:
+    """A figure as json (Vega-Lite), svg, png or pdf; query parameters choose what it shows."""
+    query = request.query_params
+    options = {key: values if len(values := query.getlist(key)) > 1 else values[0] for key in query}
+    content, media = service.drawn(here, fit, name, kind, options)
+    return Response(content, media_type=media)

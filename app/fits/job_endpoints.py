@@ -1,0 +1,67 @@
+"""/jobs: state, stream of events, cancel."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from typing import Annotated
+
+from fastapi import APIRouter, Header, Query
+from fastapi.concurrency import run_in_threadpool
+from fastapi.responses import StreamingResponse
+
+from app.context import Context, Here
+from app.errors import COMMON
+from app.fits import service
+from schemas.fit import JobPage, JobView
+
+router = APIRouter(prefix="/jobs", tags=["jobs"], responses=COMMON)
+_LOOK, _HEARTBEAT = 0.2, 15.0  # s
+_ENDED = ("succeeded", "failed", "cancelled")
+
+
+@router.get("")
+def listed(
+    here: Here, state: str | None = None, cursor: str | None = None, limit: Annotated[int, Query(ge=1, le=200)] = 50
+) -> JobPage:
+    """Jobs, newest first."""
+    return service.jobs(here, state, cursor, limit)
+
+
+@router.get("/{job}")
+def one(here: Here, job: str) -> JobView:
+    """A job and its progress."""
+    return service.job(here, job)
+
+
+@router.delete("/{job}")
+def cancel(here: Here, job: str) -> JobView:
+    """Cancel a job: at once while it waits, at its next step of progress while it runs."""
+    return service.cancel(here, job)
+
+
+@router.get("/{job}/events", response_class=StreamingResponse,
+            responses={200: {"content": {"text/event-stream": {}}}})  # fmt: skip
+async def events(
+    here: Here, job: str, last: Annotated[str | None, Header(alias="Last-Event-ID")] = None
+) -> StreamingResponse:
+    """Server-sent events until the job ends: each is the job, its id counts the changes, so a stream can be resumed."""
+    await run_in_threadpool(service.job, here, job)
+    seen = int(last) if last and last.isdecimal() and len(last) < 10 else -1
+    return StreamingResponse(_stream(here, job, seen), media_type="text/event-stream")
+
+
+async def _stream(here: Context, job: str, seen: int) -> AsyncIterator[str]:
+    quiet = 0.0
+    while True:
+        now, sequence = await run_in_threadpool(service.job_and_sequence, here, job)
+        if sequence > seen:
+            seen, quiet = sequence, 0.0
+            yield f"id: {sequence}\ndata: {now.model_dump_json()}\n\n"
+        if now.state in _ENDED:
+            return
+        await asyncio.sleep(_LOOK)
+        quiet += _LOOK
+        if quiet >= _HEARTBEAT:
+            quiet = 0.0
+            yield ": still here\n\n"

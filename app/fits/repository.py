@@ -1,0 +1,84 @@
+"""Every query on fits and jobs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from sqlalchemy import select, tuple_, update
+from sqlalchemy.orm import Session
+
+from app.tables import FitRow, JobRow, MatrixRow, ValueRow, now
+
+ENDED = ("succeeded", "failed", "cancelled")
+
+
+def add_job(session: Session, job: str, matrix: str, settings: dict[str, Any], parent: str | None) -> JobRow:
+    """A queued job."""
+    row = JobRow(id=job, matrix=matrix, settings=settings, parent=parent, progress={})
+    session.add(row)
+    return row
+
+
+def job(session: Session, job_id: str) -> JobRow | None:
+    """A job by id."""
+    return session.get(JobRow, job_id)
+
+
+def matrix_of(session: Session, job_id: str) -> MatrixRow | None:
+    """The matrix of a job."""
+    return session.scalar(select(MatrixRow).join(JobRow, JobRow.matrix == MatrixRow.id).where(JobRow.id == job_id))
+
+
+def jobs(session: Session, state: str | None, after: tuple[str, ...] | None, limit: int) -> Sequence[JobRow]:
+    """Jobs, newest first."""
+    query = select(JobRow).order_by(JobRow.created_at.desc(), JobRow.id.desc()).limit(limit)
+    if state is not None:
+        query = query.where(JobRow.state == state)
+    if after is not None:
+        query = query.where(tuple_(JobRow.created_at, JobRow.id) < after)
+    return session.scalars(query).all()
+
+
+def jobs_of(session: Session, serial: str) -> Sequence[JobRow]:
+    """Jobs on the matrices of an actuator, newest first."""
+    query = select(JobRow).join(MatrixRow, JobRow.matrix == MatrixRow.id).where(MatrixRow.serial == serial)
+    return session.scalars(query.order_by(JobRow.created_at.desc())).all()
+
+
+def unfinished(session: Session) -> Sequence[str]:
+    """Jobs that have not ended."""
+    return session.scalars(select(JobRow.id).where(JobRow.state.not_in(ENDED)).order_by(JobRow.created_at)).all()
+
+
+def change_job(session: Session, job_id: str, **values: Any) -> bool:
+    """Change a job that has not ended and count the change; False where it has ended."""
+    change = update(JobRow).where(JobRow.id == job_id, JobRow.state.not_in(ENDED))
+    result = session.execute(change.values(sequence=JobRow.sequence + 1, **values))
+    return bool(result.rowcount)  # type: ignore[attr-defined]
+
+
+def fit(session: Session, fit_id: str) -> FitRow | None:
+    """A fit by id."""
+    return session.get(FitRow, fit_id)
+
+
+def add_fit(session: Session, job_row: JobRow, serial: str, result: dict[str, Any]) -> FitRow:
+    """The fit that a job made, with its parameters in rows of their own."""
+    row = FitRow(
+        id=job_row.id, matrix=job_row.matrix, serial=serial, parent=job_row.parent, model=result["model"],
+        error_fit=result["error"]["fit"], error_verify=result["error"]["verify"], result=result,
+    )  # fmt: skip
+    row.values = [
+        ValueRow(name=name, value=entry["value"], unit=entry["unit"], std_error=entry["std_error"])
+        for name, entry in result["parameters"].items()
+    ]
+    session.add(row)
+    return row
+
+
+def approve(session: Session, row: FitRow) -> None:
+    """Make a fit the current set of its serial number; the one before stays, but is not current."""
+    session.execute(update(FitRow).where(FitRow.serial == row.serial).values(current=False))
+    row.current, row.approved_at = True, row.approved_at or now()
+    session.add(row)

@@ -1,0 +1,157 @@
+"""Fits and their jobs: queue, look, cancel, approve, draw."""
+
+from __future__ import annotations
+
+import uuid
+from typing import Any
+
+from app.context import Context
+from app.errors import Failure, missing
+from app.fits import repository
+from app.matrices import service as matrices
+from app.paging import cursor, keys_of
+from app.tables import FitRow, JobRow, now
+from ident.compare import compare
+from ident.figures import MEDIA, figure, render
+from ident.fit.identification import check_settings
+from ident.fit.result import FitResult
+from ident.fit.settings import Settings
+from ident.presets import preset
+from ident.quantity import quantity
+from schemas.fit import ComparedRun, ComparisonView, FitRequest, FitView, JobPage, JobView, ProgressView
+
+
+def submit(context: Context, request: FitRequest) -> JobView:
+    """Queue a fit. It is recorded before this returns, so that nothing can lose it."""
+    matrix = matrices.find(context, request.matrix)
+    if request.parent is not None:
+        find(context, request.parent)
+    settings = settings_of(request)
+    check_settings(settings)
+    with context.sessions.begin() as session:
+        row = repository.add_job(session, uuid.uuid4().hex, matrix.id, settings.to_json(), request.parent)
+        session.flush()
+        queued = job_view(row, matrix.serial)
+    context.jobs.submit(queued.id)
+    return queued
+
+
+def settings_of(request: FitRequest) -> Settings:
+    """The library's settings: numbers are SI, text carries its unit."""
+
+    def si(name: str, value: float | str) -> float:
+        parameter = preset(request.model).parameter(name)
+        return float(value) if isinstance(value, int | float) else quantity(value, parameter.unit, name)
+
+    return Settings(
+        model=request.model, effects=tuple(request.effects), method=request.method, seed=request.seed,
+        bounds={name: (si(name, lower), si(name, upper)) for name, (lower, upper) in request.bounds.items()},
+        fixed={name: si(name, value) for name, value in request.set.items()},
+        load=request.load, options=request.options,
+    )  # fmt: skip
+
+
+def resume(context: Context) -> None:
+    """Queue again what was recorded but, by a kill at the wrong moment, never queued."""
+    with context.sessions() as session:
+        waiting = repository.unfinished(session)
+    for job in waiting:
+        context.jobs.submit(job)
+
+
+def job(context: Context, job_id: str) -> JobView:
+    """A job by id; raises Failure 404."""
+    with context.sessions() as session:
+        row, matrix = repository.job(session, job_id), repository.matrix_of(session, job_id)
+    if row is None or matrix is None:
+        raise missing("job", job_id)
+    return job_view(row, matrix.serial)
+
+
+def job_and_sequence(context: Context, job_id: str) -> tuple[JobView, int]:
+    """A job and the number of changes it has seen."""
+    with context.sessions() as session:
+        row, matrix = repository.job(session, job_id), repository.matrix_of(session, job_id)
+    if row is None or matrix is None:
+        raise missing("job", job_id)
+    return job_view(row, matrix.serial), row.sequence
+
+
+def jobs(context: Context, state: str | None, after: str | None, limit: int) -> JobPage:
+    """A page of jobs."""
+    with context.sessions() as session:
+        rows = repository.jobs(session, state, keys_of(after, 2), limit)
+    following = cursor(rows[-1].created_at, rows[-1].id) if len(rows) == limit else None
+    return JobPage(items=[job(context, row.id) for row in rows], next=following)
+
+
+def cancel(context: Context, job_id: str) -> JobView:
+    """Ask a job to stop: at once where it waits, at its next report where it runs. An ended job stays as it is."""
+    job(context, job_id)
+    with context.sessions.begin() as session:
+        row = repository.job(session, job_id)
+        if row is not None and row.state == "queued":
+            repository.change_job(session, job_id, state="cancelled", cancel=True, ended_at=now())
+        else:
+            repository.change_job(session, job_id, cancel=True)
+    return job(context, job_id)
+
+
+def find(context: Context, fit_id: str) -> FitRow:
+    """The record of a fit; raises Failure 404."""
+    with context.sessions() as session:
+        row = repository.fit(session, fit_id)
+    if row is None:
+        raise missing("fit", fit_id)
+    return row
+
+
+def get(context: Context, fit_id: str) -> FitView:
+    """A fit by id."""
+    return view(find(context, fit_id))
+
+
+def approve(context: Context, fit_id: str) -> FitView:
+    """Make a fit the current parameter set of its actuator."""
+    with context.sessions.begin() as session:
+        row = repository.fit(session, fit_id)
+        if row is None:
+            raise missing("fit", fit_id)
+        repository.approve(session, row)
+    return get(context, fit_id)
+
+
+def comparison(context: Context, fit_id: str) -> ComparisonView:
+    """The fit against every run of its matrix, recomputed from the samples."""
+    row = find(context, fit_id)
+    found = compare(matrices.load(context, row.matrix), FitResult.from_json(row.result))
+    runs = [ComparedRun(id=r.run.id, use=r.run.use, error=r.error, offset=r.offset) for r in found.runs]
+    return ComparisonView(fit=fit_id, error=found.error, offset=found.offset, runs=runs)
+
+
+def drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str, Any]) -> tuple[bytes, str]:
+    """A figure of a fit as bytes and their media type."""
+    row = find(context, fit_id)
+    if kind not in MEDIA:
+        raise Failure(404, "no-such-format", f"no figures as {kind!r}", "figure", f"use {', '.join(MEDIA)}")
+    theme = options.pop("theme", "light")
+    matrix = matrices.load(context, row.matrix)
+    return render(figure(name, matrix, FitResult.from_json(row.result), theme, **options), kind), MEDIA[kind]
+
+
+def job_view(row: JobRow, serial: str) -> JobView:
+    """A job as it is sent."""
+    fit_id = row.id if row.state == "succeeded" else None
+    return JobView(
+        id=row.id, kind=row.kind, state=row.state, matrix=row.matrix, serial=serial, settings=row.settings,
+        progress=ProgressView(**row.progress), fit=fit_id, problem=row.problem, created_at=row.created_at,
+        ended_at=row.ended_at,
+    )  # fmt: skip
+
+
+def view(row: FitRow) -> FitView:
+    """A fit as it is sent."""
+    return FitView(
+        id=row.id, matrix=row.matrix, serial=row.serial, parent=row.parent, created_at=row.created_at,
+        approved_at=row.approved_at, current=row.current, result=row.result,
+    )  # fmt: skip

@@ -1,0 +1,81 @@
+"""The service put together."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from importlib.metadata import version
+
+import uvicorn
+from fastapi import APIRouter, FastAPI
+from fastapi.concurrency import run_in_threadpool
+
+from app import errors
+from app.actuators.endpoints import router as actuators
+from app.catalogue.endpoints import router as catalogue
+from app.context import Context
+from app.database import connect, migrate, sessions
+from app.fits.endpoints import router as fits
+from app.fits.job_endpoints import router as jobs
+from app.fits.service import resume
+from app.fits.work import FitWork
+from app.jobs import Jobs
+from app.matrices.endpoints import router as matrices
+from app.operation.endpoints import router as operation
+from app.pages import router as pages
+from app.parameters.endpoints import router as parameters
+from app.security import Guard
+from app.settings import Settings
+from app.storage import Storage
+
+API = "/api/v1"
+
+
+def create_app(settings: Settings) -> FastAPI:
+    """The application; its database is migrated and its queue runs while it is served."""
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        context: Context = app.state.context
+        await run_in_threadpool(_start, context)
+        yield
+        await run_in_threadpool(_stop, context)
+
+    app = FastAPI(
+        title="servoident", version=version("servoident"), lifespan=lifespan, docs_url=None, redoc_url=None,
+        openapi_url=f"{API}/openapi.json",
+    )  # fmt: skip
+    app.state.context = make_context(settings)
+    errors.install(app)
+    api = APIRouter(prefix=API)
+    for router in (matrices, actuators, fits, jobs, parameters, catalogue, operation):
+        api.include_router(router)
+    app.include_router(api)
+    app.include_router(pages)
+    app.add_middleware(Guard, settings=settings)
+    return app
+
+
+def _start(context: Context) -> None:
+    context.jobs.launch()
+    resume(context)
+
+
+def _stop(context: Context) -> None:
+    context.jobs.stop()
+    context.engine.dispose()
+
+
+def make_context(settings: Settings) -> Context:
+    """Folders, database and queue of a service that is not serving yet."""
+    settings.make_folders()
+    migrate(settings.database)
+    engine = connect(settings.database)
+    makers, storage = sessions(engine), Storage(settings.data / "blobs")
+    return Context(settings, engine, makers, storage, Jobs(settings, FitWork(makers, storage)))
+
+
+def run(settings: Settings) -> None:
+    """Serve until interrupted."""
+    app = create_app(settings)
+    uvicorn.run(app, host=settings.host, port=settings.port, log_level="warning", timeout_graceful_shutdown=2)

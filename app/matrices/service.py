@@ -1,0 +1,171 @@
+"""Uploads: checked before anything is recorded, kept byte for byte, mended by revisions."""
+
+from __future__ import annotations
+
+import io
+from collections import OrderedDict
+from collections.abc import Mapping
+from dataclasses import asdict
+from threading import Lock
+from typing import Any, BinaryIO
+
+import yaml
+from sqlalchemy.exc import IntegrityError
+
+from app.context import Context
+from app.errors import missing
+from app.matrices import repository
+from app.matrices.stored import DESCRIPTION_LIMIT, opened, read_stored
+from app.paging import cursor, keys_of
+from app.storage import Storage
+from app.tables import MatrixRow
+from ident.check import check
+from ident.errors import Unusable
+from ident.matrix import Matrix, Run
+from ident.readers.source import DESCRIPTION, inside
+from schemas.matrix import FindingView, MatrixPage, MatrixView, Revision, RunView
+
+_KEPT = 2  # matrices in memory: one may take 130 MB
+_cache: OrderedDict[tuple[str, str], Matrix] = OrderedDict()
+_lock = Lock()
+
+
+def upload(context: Context, files: Mapping[str, BinaryIO]) -> tuple[MatrixView, bool]:
+    """Store a matrix from one .zip, or from matrix.yaml and its files by name; True where it is new.
+
+    Raises Unusable; then nothing is recorded.
+    """
+    storage = context.storage
+    if len(files) == 1 and DESCRIPTION not in files:
+        source: dict[str, Any] = {"zip": storage.put(next(iter(files.values())))}
+    else:
+        source = {"files": {inside(name, "upload"): storage.put(content) for name, content in files.items()}}
+    return record(context, source, None)
+
+
+def record(context: Context, source: dict[str, Any], parent: str | None) -> tuple[MatrixView, bool]:
+    """Read, check and record a stored source."""
+    matrix = read_stored(context.storage, source)
+    identity = matrix.data_hash[:32]
+    with context.sessions() as session:
+        known = repository.find(session, identity)
+        if known is not None:
+            return view(known), False
+        row = repository.add(session, identity, matrix.actuator, source, summary(matrix), parent)
+        try:
+            session.commit()
+        except IntegrityError:  # the same upload twice at the same moment
+            session.rollback()
+            return get(context, identity), False
+        _remember(context, identity, matrix)
+        return view(row), True
+
+
+def revise(context: Context, matrix: str, revision: Revision) -> tuple[MatrixView, bool]:
+    """A new matrix with other labels, units or signs and the same raw bytes."""
+    row = find(context, matrix)
+    with opened(context.storage, row.source) as files:
+        description = yaml.safe_load(files.read(DESCRIPTION, DESCRIPTION_LIMIT))
+    _merge(description.setdefault("actuator", {}), revision.actuator)
+    runs = {str(run.get("id")): run for run in description["runs"]}
+    for name, changes in revision.runs.items():
+        if name not in runs:
+            raise Unusable(
+                "unknown-run", f"there is no run {name!r}", "runs", f"choose from {', '.join(list(runs)[:20])}"
+            )
+        _merge(runs[name], changes)
+    text = yaml.safe_dump(description, sort_keys=False, allow_unicode=True).encode()
+    sha256 = context.storage.put(io.BytesIO(text))
+    return record(context, {**row.source, "description": sha256}, matrix)
+
+
+def _merge(target: dict[str, Any], changes: Mapping[str, Any]) -> None:
+    """JSON merge patch (RFC 7396)."""
+    for name, value in changes.items():
+        if value is None:
+            target.pop(name, None)
+        elif isinstance(value, dict) and isinstance(target.get(name), dict):
+            _merge(target[name], value)
+        else:
+            target[name] = value
+
+
+def find(context: Context, matrix: str) -> MatrixRow:
+    """The record of a matrix; raises Failure 404."""
+    with context.sessions() as session:
+        row = repository.find(session, matrix)
+    if row is None:
+        raise missing("matrix", matrix)
+    return row
+
+
+def get(context: Context, matrix: str) -> MatrixView:
+    """A matrix and its findings."""
+    return view(find(context, matrix))
+
+
+def listed(context: Context, serial: str | None, after: str | None, limit: int) -> MatrixPage:
+    """A page of matrices."""
+    with context.sessions() as session:
+        rows = repository.page(session, serial, keys_of(after, 2), limit)
+    following = cursor(rows[-1].created_at, rows[-1].id) if len(rows) == limit else None
+    return MatrixPage(items=[view(row) for row in rows], next=following)
+
+
+def load(context: Context, matrix: str) -> Matrix:
+    """The samples of a matrix, from memory where it was used lately."""
+    return load_row(context.storage, find(context, matrix))
+
+
+def load_row(storage: Storage, row: MatrixRow) -> Matrix:
+    """The samples of a recorded matrix."""
+    key = (str(storage.folder), row.id)
+    with _lock:
+        if key in _cache:
+            _cache.move_to_end(key)
+            return _cache[key]
+    matrix = read_stored(storage, row.source)
+    _keep(key, matrix)
+    return matrix
+
+
+def _remember(context: Context, identity: str, matrix: Matrix) -> None:
+    _keep((str(context.storage.folder), identity), matrix)
+
+
+def _keep(key: tuple[str, str], matrix: Matrix) -> None:
+    with _lock:
+        _cache[key] = matrix
+        while len(_cache) > _KEPT:
+            _cache.popitem(last=False)
+
+
+def summary(matrix: Matrix) -> dict[str, Any]:
+    """What is shown of a matrix without its samples."""
+    return {
+        "data_hash": matrix.data_hash,
+        "runs": [_run(run) for run in matrix.runs],
+        "findings": [asdict(finding) for finding in check(matrix)],
+        "notices": list(matrix.notices),
+    }
+
+
+def _run(run: Run) -> dict[str, Any]:
+    specimen = run.specimen
+    return {
+        "id": run.id, "use": run.use, "kind": run.kind, "hold": run.hold, "output": run.output,
+        "samples": run.length, "sample_rate": run.sample_rate, "duration": run.duration, "gain": run.gain,
+        "amplitude": run.amplitude, "mass": specimen.mass if specimen else None,
+        "stiffness": specimen.stiffness if specimen else None, "damping": specimen.damping if specimen else None,
+        "channels": list(run.channels),
+    }  # fmt: skip
+
+
+def view(row: MatrixRow) -> MatrixView:
+    """A matrix as it is sent."""
+    shown = row.summary
+    return MatrixView(
+        id=row.id, serial=row.serial, parent=row.parent, created_at=row.created_at, data_hash=shown["data_hash"],
+        runs=[RunView(**run) for run in shown["runs"]], findings=[FindingView(**f) for f in shown["findings"]],
+        notices=shown["notices"],
+    )  # fmt: skip

@@ -1,0 +1,36 @@
+"""/parameter-sets: the production line's query."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Query, Request, Response
+
+from app.context import Here
+from app.errors import COMMON
+from app.parameters import service
+from app.parameters.repository import Wanted
+from schemas.parameters import ParameterSetPage
+
+router = APIRouter(prefix="/parameter-sets", tags=["parameter sets"], responses=COMMON)
+_FORMATS = {"text/csv": {}, "application/vnd.apache.parquet": {}}
+
+
+@router.get("", response_model=ParameterSetPage, responses={200: {"content": _FORMATS}})
+def listed(
+    request: Request, here: Here, serial: str | None = None, batch: str | None = None, model: str | None = None,
+    approved_after: str | None = None, approved_before: str | None = None, approved: bool | None = None,
+    current: bool | None = None, cursor: str | None = None, limit: Annotated[int, Query(ge=1, le=1000)] = 100,
+    format: Literal["json", "csv", "parquet"] = "json",  # noqa: A002  the contract's name
+) -> ParameterSetPage | Response:  # fmt: skip
+    """Parameter sets, newest first; NAME.min and NAME.max (SI) bound any parameter, such as Z0.min=2e-6."""
+    lowest, highest = service.ranges(request.query_params)
+    wanted = Wanted(
+        serial, batch, model, service.moment(approved_after, "approved_after"),
+        service.moment(approved_before, "approved_before"), approved, current, lowest, highest,
+    )  # fmt: skip
+    if format == "csv":
+        return Response(service.csv_text(here, wanted), media_type="text/csv")
+    if format == "parquet":
+        return Response(service.parquet(here, wanted), media_type="application/vnd.apache.parquet")
+    return service.page(here, wanted, cursor, limit)

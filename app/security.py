@@ -1,0 +1,115 @@
+"""Who may speak to the service: known hosts, own origin, the start token; and what every answer carries."""
+
+from __future__ import annotations
+
+import hmac
+from http.cookies import SimpleCookie
+from urllib.parse import parse_qsl, urlencode
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.responses import RedirectResponse
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.errors import problem
+from app.settings import Settings
+
+COOKIE = "servoident"
+OPEN = ("/api/v1/health", "/api/v1/ready")
+POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
+    "font-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors 'none'"
+)
+_HEADERS = {
+    "Content-Security-Policy": POLICY,
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+}
+
+
+class Guard:
+    """ASGI middleware: a request or socket passes all checks or ends here."""
+
+    def __init__(self, app: ASGIApp, settings: Settings) -> None:
+        self.app, self.settings = app, settings
+        names = ("127.0.0.1", "localhost", "[::1]")
+        self.hosts = {f"{name}:{settings.port}" for name in names} | set(names) | set(settings.allowed_hosts)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Check, then pass on."""
+        if scope["type"] not in ("http", "websocket"):
+            await self.app(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        answer = self._refusal(scope, headers)
+        if answer is None:
+            await self.app(scope, self._limited(receive), self._marked(send, scope["path"]))
+        elif scope["type"] == "websocket":
+            await send({"type": "websocket.close", "code": 1008})
+        else:
+            await answer(scope, receive, self._marked(send, scope["path"]))
+
+    def _refusal(self, scope: Scope, headers: Headers) -> ASGIApp | None:
+        host = headers.get("host", "")
+        if host not in self.hosts:
+            return problem(403, "unknown-host", f"host {host[:80]!r} is not served", "Host", "use the printed address")
+        origin = headers.get("origin")
+        if origin is not None and origin.partition("://")[2] not in self.hosts:
+            return problem(403, "foreign-origin", "requests from other sites are refused", "Origin",
+                           "open the service's own page")  # fmt: skip
+        length = headers.get("content-length", "0")
+        if not length.isdecimal() or int(length) > self.settings.largest_upload:
+            allowed = self.settings.largest_upload >> 20
+            return problem(413, "too-large", f"more than {allowed} MB are declared", "Content-Length",
+                           "upload fewer or shorter runs at a time", connection="close")  # fmt: skip
+        return None if scope["path"] in OPEN else self._token_refusal(scope, headers)
+
+    def _token_refusal(self, scope: Scope, headers: Headers) -> ASGIApp | None:
+        query = parse_qsl(scope.get("query_string", b"").decode("latin-1"), keep_blank_values=True)
+        given = dict(query).get("token")
+        if given is not None and self._right(given) and scope["type"] == "http" and scope["method"] == "GET":
+            rest = urlencode([(name, value) for name, value in query if name != "token"])
+            answer = RedirectResponse(scope["path"] + (f"?{rest}" if rest else ""), 303)
+            answer.set_cookie(COOKIE, given, httponly=True, samesite="strict", path="/")
+            return answer
+        bearer = headers.get("authorization", "").removeprefix("Bearer ")
+        cookies = SimpleCookie()
+        try:
+            cookies.load(headers.get("cookie", ""))
+        except Exception:  # a malformed cookie is no cookie
+            cookies.clear()
+        cookie = cookies[COOKIE].value if COOKIE in cookies else ""
+        if self._right(bearer) or self._right(cookie):
+            return None
+        return problem(401, "token-needed", "this request carries no valid token", "Authorization",
+                       "open the address that the service printed, or send Authorization: Bearer TOKEN",
+                       **{"WWW-Authenticate": "Bearer"})  # fmt: skip
+
+    def _right(self, token: str) -> bool:
+        return hmac.compare_digest(token.encode(), self.settings.token.encode())
+
+    def _limited(self, receive: Receive) -> Receive:
+        """Count a body that declared no length; past the limit the client is gone for the application."""
+        taken = 0
+
+        async def limited() -> Message:
+            nonlocal taken
+            message = await receive()
+            taken += len(message.get("body", b""))
+            if taken > self.settings.largest_upload:
+                return {"type": "http.disconnect"}
+            return message
+
+        return limited
+
+    def _marked(self, send: Send, path: str) -> Send:
+        async def marked(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                headers = MutableHeaders(scope=message)
+                for name, value in _HEADERS.items():
+                    headers.setdefault(name, value)
+                headers.setdefault("Cache-Control", "private, max-age=3600" if "/static/" in path else "no-store")
+            await send(message)
+
+        return marked

@@ -1,0 +1,47 @@
+"""What an operator may choose about the service."""
+
+from __future__ import annotations
+
+import os
+import secrets
+from dataclasses import dataclass, field
+from pathlib import Path
+
+
+def default_data() -> Path:
+    """The data folder: SERVOIDENT_DATA, or a folder of this user."""
+    base = os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share"
+    return Path(os.environ.get("SERVOIDENT_DATA") or Path(base) / "servoident")
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Where data live, where the service listens, and what it refuses.
+
+    `token` opens the service; without one given a new one is drawn at every start. `database_url` is a SQLite file in
+    the data folder unless a PostgreSQL URL is given.
+    """
+
+    data: Path = field(default_factory=default_data)
+    host: str = "127.0.0.1"
+    port: int = 8000
+    token: str = field(default_factory=lambda: os.environ.get("SERVOIDENT_TOKEN") or secrets.token_urlsafe(24))
+    database_url: str = ""
+    allowed_hosts: tuple[str, ...] = ()  # beside the loopback names, host or host:port
+    largest_upload: int = 1 << 30  # bytes
+    executor: str = "servoident-1"  # of the job queue; one process an executor
+
+    @property
+    def database(self) -> str:
+        """URL of the application's database."""
+        return self.database_url or f"sqlite:///{self.data / 'servoident.sqlite'}"
+
+    @property
+    def queue_database(self) -> str:
+        """URL of the job queue's own database."""
+        return self.database_url or f"sqlite:///{self.data / 'queue.sqlite'}"
+
+    def make_folders(self) -> None:
+        """Create the data folder, readable by this user only."""
+        self.data.mkdir(mode=0o700, parents=True, exist_ok=True)
+        self.data.chmod(0o700)

@@ -1,0 +1,91 @@
+"""Fits and the jobs that make them."""
+
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class FitRequest(BaseModel):
+    """A fit to be queued; `bounds` and `set` may carry units ("1 ms"), plain numbers are SI."""
+
+    model_config = ConfigDict(extra="forbid")
+    matrix: str
+    model: str = "qian2014"
+    effects: list[str] = Field(default_factory=list, max_length=50)
+    method: str = "ga"
+    seed: int = Field(default=0, ge=0, lt=2**31)
+    bounds: dict[str, tuple[float | str, float | str]] = Field(default_factory=dict)
+    set: dict[str, float | str] = Field(default_factory=dict)
+    options: dict[str, float] = Field(default_factory=dict)
+    load: str = "none"
+    parent: str | None = None
+
+
+class ProgressView(BaseModel):
+    """Where a job is: `done` of `total` steps of `stage`; `error` is the best eq. (17) so far."""
+
+    stage: str = ""
+    done: int = 0
+    total: int = 0
+    error: float | None = None
+
+
+class JobView(BaseModel):
+    """A queued, running or ended job; `fit` is the result's id, `problem` says why it failed."""
+
+    id: str
+    kind: str
+    state: str
+    matrix: str
+    serial: str
+    settings: dict[str, Any]
+    progress: ProgressView
+    fit: str | None
+    problem: dict[str, Any] | None
+    created_at: str
+    ended_at: str | None
+
+
+class JobPage(BaseModel):
+    """A page of jobs, newest first."""
+
+    items: list[JobView]
+    next: str | None = None
+
+
+class FitView(BaseModel):
+    """A stored fit: the contract's fit JSON and where it belongs."""
+
+    id: str
+    matrix: str
+    serial: str
+    parent: str | None
+    created_at: str
+    approved_at: str | None
+    current: bool
+    result: dict[str, Any]
+
+
+class FitPage(BaseModel):
+    """A page of fits, newest first, without their results' evolution."""
+
+    items: list[FitView]
+    next: str | None = None
+
+
+class ComparedRun(BaseModel):
+    """Eq. (17) and offset of a run."""
+
+    id: str
+    use: str
+    error: float
+    offset: float
+
+
+class ComparisonView(BaseModel):
+    """A fit against every run of its matrix, recomputed."""
+
+    fit: str
+    error: dict[str, float | None]
+    offset: dict[str, float | None]
+    runs: list[ComparedRun]

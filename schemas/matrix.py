@@ -1,0 +1,64 @@
+"""Matrices: what was uploaded, what was found in it, and how to mend its labels."""
+
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class FindingView(BaseModel):
+    """One doubt about a matrix, in words."""
+
+    run: str | None
+    severity: str
+    code: str
+    text: str
+
+
+class RunView(BaseModel):
+    """One run: conditions in SI."""
+
+    id: str
+    use: str
+    kind: str
+    hold: str
+    output: str
+    samples: int
+    sample_rate: float
+    duration: float
+    gain: float | None
+    amplitude: float | None
+    mass: float | None
+    stiffness: float | None
+    damping: float | None
+    channels: list[str]
+
+
+class MatrixView(BaseModel):
+    """A stored matrix."""
+
+    id: str
+    serial: str
+    parent: str | None
+    created_at: str
+    data_hash: str
+    runs: list[RunView]
+    findings: list[FindingView]
+    notices: list[str]
+
+
+class MatrixPage(BaseModel):
+    """A page of matrices; `next` is the cursor of the page that follows."""
+
+    items: list[MatrixView]
+    next: str | None = None
+
+
+class Revision(BaseModel):
+    """Labels, units and signs to change; raw bytes stay.
+
+    `actuator` and each entry of `runs` (by run id) are merged into the description; null takes a field away.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+    actuator: dict[str, Any] = Field(default_factory=dict)
+    runs: dict[str, dict[str, Any]] = Field(default_factory=dict)
