@@ -1,22 +1,19 @@
-"""MATLAB files: v4 and v5 through scipy, v7.3 as the HDF5 file that it is."""
+"""MATLAB files: v4 and v5, and v7.3 as the HDF5 file that it is."""
 
 from __future__ import annotations
 
-import io
-import warnings
 from collections.abc import Iterator, Sequence
-from typing import Any
-
-import numpy as np
 
 from ident.errors import Unusable
 from ident.readers.hdf5 import SIGNATURE, read_hdf5
 from ident.readers.limits import Limits
-from ident.readers.mat_inflate import inflated
-from ident.readers.table import Array, Table, column_of, numeric, split_columns
+from ident.readers.mat4 import variables4
+from ident.readers.mat5 import Damaged, Variable, variables5
+from ident.readers.mat_inflate import byte_order, inflated
+from ident.readers.table import Array, Table, column_of, split_columns
 
-HEADER = 128
-DEEPEST = 4
+Column = tuple[str, Array | str, int]
+"""Name, the variable it is a column of, and which."""
 
 
 def read_mat(data: bytes, where: str, limits: Limits) -> Table:
@@ -27,50 +24,34 @@ def read_mat(data: bytes, where: str, limits: Limits) -> Table:
     if SIGNATURE in (data[:8], data[512:520]):
         return read_hdf5(data, where, limits)
     try:
-        arrays = list(flat(variables(data, where, limits), "", DEEPEST))
-    except Unusable:
-        raise
-    except Exception as error:  # whatever scipy meets in a broken file
-        raise broken(where) from error
-    columns = [(part, number, array) for name, array in arrays for number, part in enumerate(columns_of(name, array))]
+        found = list(variables(data, where, limits))
+    except Damaged as damaged:
+        remedy = "copy it or save it again from MATLAB"
+        raise Unusable("broken-mat", f"this is not a whole MAT file: {damaged}", where, remedy) from None
+    columns = [column for name, array in found for column in columns_of(name, array)]
 
     def load(numbers: Sequence[int]) -> list[Array]:
-        return [column_of(numeric(columns[n][2], columns[n][0], where), columns[n][1]) for n in numbers]
+        return [samples(columns[number], where) for number in numbers]
 
     return Table(tuple(name for name, _, _ in columns), load)
 
 
-def variables(data: bytes, where: str, limits: Limits) -> dict[str, Any]:
-    """Everything in a v4 or v5 file. Compressed parts are unpacked by us, within the limits, before scipy sees them."""
-    from scipy.io import loadmat  # noqa: PLC0415
-
-    if not data:
-        raise broken(where)
-    version5 = data[:4].isalpha() or b"\0" not in data[:4]
-    plain = inflated(data, where, limits) if version5 else data
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore")
-        found: dict[str, Any] = loadmat(io.BytesIO(plain), struct_as_record=True, chars_as_strings=False)
-    return {name: value for name, value in found.items() if not name.startswith("__")}
+def variables(data: bytes, where: str, limits: Limits) -> Iterator[Variable]:
+    """Every variable of a v4 or v5 file: the first is marked by a zero among its first four bytes."""
+    if b"\0" in data[:4]:
+        return variables4(data)
+    return variables5(inflated(data, where, limits), byte_order(data, where))
 
 
-def flat(found: dict[str, Any], before: str, depth: int) -> Iterator[tuple[str, Array]]:
-    """Arrays by name, the fields of single structures too."""
-    for name, value in found.items():
-        if not isinstance(value, np.ndarray):
-            continue  # a sparse matrix or a MATLAB object is no record
-        if value.dtype.names and value.size == 1 and depth:
-            fields = {field: value[field].item() for field in value.dtype.names}
-            yield from flat(fields, f"{before}{name}.", depth - 1)
-        elif value.dtype.names is None:
-            yield before + name, value
+def columns_of(name: str, array: Array | str) -> list[Column]:
+    """The columns of a variable; what is no array of numbers counts as one, to be refused when asked for."""
+    names = [name] if isinstance(array, str) else split_columns(name, array.shape)
+    return [(each, array, number) for number, each in enumerate(names)]
 
 
-def columns_of(name: str, array: Array) -> list[str]:
-    """The columns of a variable; text and cells count as one, to be refused by name when asked for."""
-    return split_columns(name, array.shape) if array.dtype.kind in "iuf" else [name]
-
-
-def broken(where: str) -> Unusable:
-    """The error for a file that is no MAT file or was cut short."""
-    return Unusable("broken-mat", "this is not a whole MAT file", where, "save it again from MATLAB")
+def samples(column: Column, where: str) -> Array:
+    """The samples of a column. Raises Unusable: ``not-numeric``."""
+    name, array, number = column
+    if isinstance(array, str):
+        raise Unusable("not-numeric", f"variable {name!r} holds {array}", where, "save real numbers")
+    return column_of(array, number)

@@ -97,9 +97,10 @@ def test_a_serial_that_looks_like_a_number_keeps_its_digits(matrix):
 
 
 def test_a_description_and_a_number_of_runs_beyond_the_limits_are_refused(matrix):
+    matrix.text += "#" * (5 << 20)
+    matrix.describe()
     with pytest.raises(Unusable, match="5 MB") as refused:
-        matrix.text += "#" * (5 << 20)
-        read_matrix(matrix.describe())
+        read_matrix(matrix.path)
     assert refused.value.code == "too-large"
     matrix.text = matrix.text.rstrip("#")
     matrix.text += matrix.text.partition("runs:\n")[2].replace("id: first", "id: second")
@@ -107,7 +108,7 @@ def test_a_description_and_a_number_of_runs_beyond_the_limits_are_refused(matrix
         describe(matrix.text.encode(), Limits(runs=1))
 
 
-def test_everything_optional_may_be_left_out(matrix):
+def test_everything_optional_may_be_left_out():
     text = """
 actuator: {serial: A}
 runs:
@@ -134,7 +135,7 @@ def test_a_bench_record_may_have_a_current_for_its_input(matrix):
 
 def test_the_controller_and_a_limits_file_are_read(matrix):
     matrix.text += "controller: {kp: 160.18 1/s, kv: 243.45 V*s/m}\nlimits: sheet.yaml\n"
-    with pytest.raises(Unusable, match="sheet.yaml") as refused:
+    with pytest.raises(Unusable, match="sheet") as refused:
         read_matrix(matrix.write())
     assert refused.value.code == "missing-file"
     (matrix.path / "sheet.yaml").write_text("a: b")

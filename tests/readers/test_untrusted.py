@@ -220,7 +220,7 @@ def hdf5(matrix, make):
     return matrix.path
 
 
-def test_links_out_of_an_hdf5_file_are_refused(matrix, tmp_path):
+def test_links_out_of_an_hdf5_file_are_refused(matrix):
     import h5py
 
     path = hdf5(matrix, lambda file: file.__setitem__("x", h5py.ExternalLink("/etc/passwd", "/x")))
@@ -231,7 +231,7 @@ def test_links_out_of_an_hdf5_file_are_refused(matrix, tmp_path):
     assert refusal(hdf5(matrix, lambda file: file.__setitem__("x", h5py.SoftLink("/u")))).code == "hdf5-link"
 
 
-def test_virtual_and_external_datasets_are_refused(matrix, tmp_path):
+def test_virtual_and_external_datasets_are_refused(matrix):
     import h5py
 
     def virtual(file):

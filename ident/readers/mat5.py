@@ -1,0 +1,123 @@
+"""The variables of a v5 MAT file: arrays of numbers, and the fields of single structures.
+
+Read here, byte by byte, because scipy's reader can end the whole process on a damaged file. A file is a row of
+elements, each a tag (type, size) and its data; a variable is an element of elements: flags, dimensions, name, values.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ident.readers.table import Array
+
+MATRIX, INT8, INT32, UINT32, UTF8 = 14, 1, 5, 6, 16
+STORED = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
+STRUCT, OPAQUE = 2, 17
+NUMBERS = range(6, 16)
+COMPLEX, LOGICAL = 8, 2
+DEEPEST = 4
+
+Variable = tuple[str, Array | str]
+"""Name, and its array or a word for what it is instead."""
+
+
+class Damaged(ValueError):
+    """The bytes are not what a MAT file would hold there."""
+
+
+@dataclass
+class Elements:
+    """The elements in `data`, read one after another."""
+
+    data: memoryview
+    order: str
+    at: int = 0
+
+    def following(self) -> tuple[int, memoryview]:
+        """Type and data of the next element; small ones carry their data in the tag."""
+        if self.at + 8 > len(self.data):
+            raise Damaged("an element is missing")
+        first, size = struct.unpack(f"{self.order}II", self.data[self.at : self.at + 8])
+        start = self.at + 8
+        if first >> 16:
+            first, size, start = first & 0xFFFF, first >> 16, self.at + 4
+            if size > 4:
+                raise Damaged("a small element is too large")
+        if start + size > len(self.data):
+            raise Damaged("an element is cut short")
+        self.at = start + size + -(start + size) % 8
+        return first, self.data[start : start + size]
+
+    def values(self, *kinds: int) -> Array:
+        """The numbers of the next element, which must be of one of the given types."""
+        kind, data = self.following()
+        if kind not in kinds or len(data) % np.dtype(STORED[kind]).itemsize:
+            raise Damaged("an element of another type")
+        return np.frombuffer(data, np.dtype(STORED[kind]).newbyteorder("<" if self.order == "<" else ">"))
+
+    def text(self) -> str:
+        """The characters of the next element."""
+        kind, data = self.following()
+        if kind not in (INT8, UTF8, 2):
+            raise Damaged("a name is not text")
+        return bytes(data).decode("utf-8", "replace")
+
+
+def variables5(data: bytes, order: str) -> Iterator[Variable]:
+    """Every variable of the uncompressed elements behind the header. Raises Damaged."""
+    elements = Elements(memoryview(data), order)
+    while elements.at < len(data):
+        kind, content = elements.following()
+        if kind != MATRIX:
+            raise Damaged("an element that is no variable")
+        yield from variable(Elements(content, order), "", DEEPEST)
+
+
+def variable(elements: Elements, name: str, depth: int) -> Iterator[Variable]:
+    """One variable, under its own name or as the field `name` of a structure."""
+    if not len(elements.data):
+        return  # an empty field
+    flags = elements.values(UINT32)
+    if len(flags) < 1:
+        raise Damaged("a variable without flags")
+    kind, marks = int(flags[0]) & 0xFF, int(flags[0]) >> 8
+    if kind == OPAQUE:
+        return  # an object of a MATLAB class
+    shape = tuple(int(length) for length in elements.values(INT32))
+    own = elements.text()  # empty in a field
+    name = name or own
+    if kind == STRUCT and math.prod(shape) == 1 and depth:
+        yield from fields(elements, name, depth)
+    elif kind in NUMBERS and not marks & (COMPLEX | LOGICAL):
+        yield name, numbers(elements, shape)
+    else:
+        yield name, "complex numbers" if kind in NUMBERS and marks & COMPLEX else "no plain numbers"
+
+
+def numbers(elements: Elements, shape: tuple[int, ...]) -> Array:
+    """The values of an array, in MATLAB's order of columns."""
+    values = elements.values(*STORED)
+    if not shape or min(shape) < 0 or math.prod(shape) != len(values):
+        raise Damaged("an array whose size is not that of its data")
+    return values.reshape(shape, order="F")
+
+
+def fields(elements: Elements, name: str, depth: int) -> Iterator[Variable]:
+    """The fields of one structure as ``name.field``."""
+    width = elements.values(INT32)
+    if len(width) != 1 or width[0] < 1:
+        raise Damaged("a structure without the length of its names")
+    kind, packed = elements.following()
+    if kind not in (INT8, UTF8) or len(packed) % int(width[0]):
+        raise Damaged("a structure without names")
+    for start in range(0, len(packed), int(width[0])):
+        field = bytes(packed[start : start + int(width[0])]).partition(b"\0")[0].decode("utf-8", "replace")
+        kind, content = elements.following()
+        if kind != MATRIX:
+            raise Damaged("a field that is no variable")
+        yield from variable(Elements(content, elements.order), f"{name}.{field}", depth - 1)
