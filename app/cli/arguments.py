@@ -59,25 +59,13 @@ def method_options(texts: Sequence[str]) -> dict[str, float]:
     return {name: number(value, "--option", "NAME=VALUE") for name, value in pairs}
 
 
-def effect_values(texts: Sequence[str]) -> dict[str, dict[str, float]]:
-    """`NAME[.PARAM=VALUE]` as the parameters of each effect, SI; raises Unusable for one that is not known."""
-    found: dict[str, dict[str, float]] = {}
+def effect_values(texts: Sequence[str]) -> dict[str, float]:
+    """`NAME.PARAM=VALUE` as the parameters of effects, SI; raises Unusable for an effect that is not known."""
+    from ident.effects import effect
+
+    found = {}
     for text in texts:
-        head, separator, value = text.partition("=")
-        name, _, parameter = head.partition(".")
-        known_effect(name)
-        given = found.setdefault(name, {})
-        if separator:
-            given[parameter] = number(value, "--effect", "NAME.PARAM=VALUE")
+        parameter, _, value = text.partition("=")
+        effect(parameter.partition(".")[0])
+        found[parameter] = number(value, "--effect", "NAME.PARAM=VALUE")
     return found
-
-
-def known_effect(name: str) -> str:
-    """`name` where the catalogue has it; raises Unusable with the effects there are."""
-    from ident.effects import EFFECTS
-
-    names = [effect.name for effect in EFFECTS]
-    if name not in names:
-        remedy = f"choose from {', '.join(names)}" if names else "the catalogue of this version is empty: leave it out"
-        raise Unusable("unknown-effect", f"no effect {name!r}", "--effect", remedy)
-    return name

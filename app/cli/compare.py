@@ -60,7 +60,9 @@ def show(rows: list[tuple[str, str, float, float]], error: Any) -> None:
 
     lines = [(name, use, percent(of_run), percent(offset)) for name, use, of_run, offset in rows]
     lines += [("mean", use, percent(mean), "") for use, mean in error.items() if mean is not None]
-    Console(soft_wrap=True, highlight=False).print(table(("run", "use", "error", "offset"), lines))
+    Console(soft_wrap=True, highlight=False).print(
+        table(("run", "use", "error", "offset"), lines, numbers=("error", "offset"))
+    )
 
 
 def draw(matrix: Matrix, fit: FitResult, out: Path) -> None:

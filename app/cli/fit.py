@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from app.cli.arguments import bounds as read_bounds
-from app.cli.arguments import known_effect, method_options
+from app.cli.arguments import method_options
 from app.cli.arguments import values as read_values
 from app.cli.output import STANDARD_OUTPUT, write_json
 from app.cli.progress import shown
@@ -45,7 +45,7 @@ def fit(
 
     settings = Settings(
         model=model,
-        effects=tuple(known_effect(name) for name in effect or []),
+        effects=tuple(effect or []),
         method=method,
         bounds=read_bounds(bounds or [], model),
         fixed=read_values(set_ or [], model),

@@ -7,13 +7,25 @@ from typing import NoReturn
 
 import typer
 
+from app.cli.approve import approve
 from app.cli.check import check
 from app.cli.compare import compare
+from app.cli.demo import demo
 from app.cli.failures import INTERRUPTED, report
 from app.cli.fit import fit
+from app.cli.migrate import migrate
+from app.cli.query import query
+from app.cli.regress import regress
+from app.cli.revise import revise
+from app.cli.serve import serve
 from app.cli.simulate import simulate
+from app.cli.token import token
+from app.cli.upload import upload
+from app.cli.worker import worker
 
-COMMANDS = (simulate, check, fit, compare)
+LOCAL = (simulate, check, fit, compare)
+SERVICE = (serve, worker, demo, token, migrate, regress)
+CLIENT = (upload, approve, query, revise)
 
 program = typer.Typer(
     name="servoident",
@@ -22,7 +34,7 @@ program = typer.Typer(
     add_completion=False,
     rich_markup_mode=None,  # plain help: rich's takes half a second to import
 )
-for command in COMMANDS:
+for command in (*LOCAL, *SERVICE, *CLIENT):
     program.command()(command)
 
 

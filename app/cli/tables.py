@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from ident.fit.result import Estimate, FitResult
@@ -13,11 +14,13 @@ from ident.fit.result import Estimate, FitResult
 def show_fit(result: FitResult) -> None:
     """Print a fit: parameters, errors, what the data determine and what they do not, notes."""
     console = Console(soft_wrap=True, highlight=False)
-    console.print(table(("parameter", "value", "std error", "unit", ""), parameter_rows(result.parameters)))
-    console.print(table(("error (eq. 17)", "fit", "held out", "verify"), error_rows(result)))
+    header = ("parameter", "value", "std error", "unit", "")
+    console.print(table(header, parameter_rows(result.parameters), numbers=("value", "std error")))
+    uses = ("fit", "held out", "verify")
+    console.print(table(("error (eq. 17)", *uses), error_rows(result), numbers=uses))
     for combination in result.determined:
-        std_error = f" ± {combination.std_error:.2g}" if combination.std_error is not None else ""
-        console.print(f"determined: {combination.expression} = {combination.value:.5g}{std_error} {combination.unit}")
+        value = f"{combination.value:.5g} ± {combination.std_error:.2g} {combination.unit}"
+        console.print(f"determined: {combination.expression} = {value}", markup=False)
     for entry in result.undetermined:
         console.print(f"not determined: {entry.name}: {entry.reason}", markup=False)
     for note in result.notes:
@@ -25,17 +28,17 @@ def show_fit(result: FitResult) -> None:
     console.print(f"{result.method}, seed {result.seed}: {result.evaluations} evaluations in {result.seconds:.2f} s")
 
 
-def table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> Table:
-    """A plain table, its first column to the left and numbers to the right."""
+def table(header: Sequence[str], rows: Iterable[Sequence[str]], numbers: Container[str]) -> Table:
+    """A plain table; the columns titled in `numbers` stand to the right."""
     made = Table(box=None, pad_edge=False, header_style="bold")
-    for index, title in enumerate(header):
-        made.add_column(title, justify="left" if index in (0, 3) and title in ("parameter", "unit", "run") else "right")
+    for title in header:
+        made.add_column(title, justify="right" if title in numbers else "left")
     for row in rows:
-        made.add_row(*row)
+        made.add_row(*map(escape, row))
     return made
 
 
-def parameter_rows(parameters: Mapping[str, Estimate]) -> Iterable[tuple[str, ...]]:
+def parameter_rows(parameters: Mapping[str, Estimate]) -> Iterator[tuple[str, ...]]:
     """One row a parameter."""
     for name, estimate in parameters.items():
         remark = "held" if estimate.fixed else "at its bound" if estimate.at_bound else ""
@@ -43,7 +46,7 @@ def parameter_rows(parameters: Mapping[str, Estimate]) -> Iterable[tuple[str, ..
         yield name, f"{estimate.value:.5g}", std_error, estimate.unit, remark
 
 
-def error_rows(result: FitResult) -> Iterable[tuple[str, ...]]:
+def error_rows(result: FitResult) -> Iterator[tuple[str, ...]]:
     """Error, offset and noise floor by use, in per cent."""
     uses = ("fit", "held_out", "verify")
     yield "model", *(percent(result.error.get(use)) for use in uses)

@@ -1,0 +1,71 @@
+"""`servoident query`: the parameter sets of a production line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from app.cli.arguments import split
+from app.cli.output import STANDARD_OUTPUT, write_bytes, write_json
+from app.cli.remote import DEFAULT, Server, Token, items, request
+
+LISTED = "/parameter-sets"
+
+
+def query(
+    serial: Annotated[str | None, typer.Option(help="Serial number.")] = None,
+    batch: Annotated[str | None, typer.Option(help="Batch.")] = None,
+    model: Annotated[str | None, typer.Option(help="Model.")] = None,
+    range_: Annotated[
+        list[str] | None,
+        typer.Option("--range", metavar="NAME=MIN:MAX", help="Range of a parameter, SI; may be repeated."),
+    ] = None,
+    approved_after: Annotated[str | None, typer.Option(metavar="DATE", help="Approved after, ISO 8601.")] = None,
+    server: Server = DEFAULT,
+    token: Token = "",
+    json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the sets as JSON; - is stdout.")] = None,
+    csv: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the sets as CSV; - is stdout.")] = None,
+) -> None:
+    """List parameter sets by serial number, batch, model, date and range of any parameter."""
+    given = {"serial": serial, "batch": batch, "model": model, "approved_after": approved_after}
+    params = {name: value for name, value in given.items() if value is not None} | limits(range_ or [])
+    if csv is not None:
+        content = request(server, token, "GET", LISTED, params=params | {"format": "csv"}).content
+        if csv == STANDARD_OUTPUT:
+            print(content.decode(), end="")
+        else:
+            write_bytes(content, csv)
+        return
+    sets = list(items(server, token, LISTED, params))
+    if json is not None:
+        write_json(sets, json)
+    if json != STANDARD_OUTPUT:
+        show(sets)
+
+
+def limits(texts: list[str]) -> dict[str, str]:
+    """`NAME=MIN:MAX` as the query's NAME.min and NAME.max; either side may be empty."""
+    found: dict[str, str] = {}
+    for text in texts:
+        name, value = split(text, "--range", "NAME=MIN:MAX")
+        lower, _, upper = value.partition(":")
+        found |= {f"{name}.{side}": limit.strip() for side, limit in (("min", lower), ("max", upper)) if limit.strip()}
+    return found
+
+
+def show(sets: list[dict[str, Any]]) -> None:
+    """Print the sets as a table."""
+    from rich.console import Console
+
+    from app.cli.tables import percent, table
+
+    header = ("serial", "model", "approved", "current", "error fit", "verify", "parameters")
+    rows = []
+    for one in sets:
+        parameters = ", ".join(f"{name} {entry['value']:.4g}" for name, entry in one["parameters"].items())
+        approved = (one["approved_at"] or "–")[:10]
+        errors = (percent(one["error_fit"]), percent(one["error_verify"]))
+        rows.append((one["serial"], one["model"], approved, "yes" if one["current"] else "", *errors, parameters))
+    Console(soft_wrap=True, highlight=False).print(table(header, rows, numbers=("error fit", "verify")))

@@ -1,0 +1,65 @@
+"""Requests to a running service, for the commands that are thin clients of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, Any
+from uuid import uuid4
+
+import typer
+
+from ident.errors import Unusable
+
+if TYPE_CHECKING:
+    import httpx
+
+Server = Annotated[
+    str, typer.Option(metavar="URL", envvar="SERVOIDENT_SERVER", help="Address of the service (SERVOIDENT_SERVER).")
+]
+Token = Annotated[
+    str,
+    typer.Option(metavar="TOKEN", envvar="SERVOIDENT_TOKEN", help="Its token (SERVOIDENT_TOKEN).", show_envvar=False),
+]
+DEFAULT = "http://127.0.0.1:8000"
+PATIENCE = 60.0  # s without an answer; fits are jobs, so nothing that is asked here takes longer
+
+
+def request(server: str, token: str, method: str, path: str, **content: Any) -> httpx.Response:
+    """The answer of the service to one request. Raises Unusable where it refuses, or where there is none."""
+    import httpx
+
+    headers = {"Idempotency-Key": str(uuid4())} if method == "POST" else {}
+    if token:
+        headers["Authorization"] = f"Bearer {token}"
+    url = f"{server.rstrip('/')}/api/v1{path}"
+    try:
+        answer = httpx.request(method, url, headers=headers, timeout=PATIENCE, **content)
+    except (httpx.HTTPError, httpx.InvalidURL) as error:
+        remedy = "start it with `servoident serve`, or give its address with --server"
+        raise Unusable("no-service", f"no answer from the service ({error})", server, remedy) from None
+    if answer.is_error:
+        raise refusal(answer)
+    return answer
+
+
+def refusal(answer: httpx.Response) -> Unusable:
+    """The problem document of an answer as the error it is."""
+    url = str(answer.request.url)
+    try:
+        problem = answer.json()
+        return Unusable(problem["code"], problem["detail"], problem["where"] or url, problem["remedy"])
+    except (ValueError, KeyError, TypeError):
+        what = f"it answered {answer.status_code} {answer.reason_phrase}"
+        return Unusable("no-service", what, url, "give the address of a servoident service with --server")
+
+
+def items(server: str, token: str, path: str, params: Mapping[str, str]) -> Iterator[dict[str, Any]]:
+    """Every entry of a list, page after page."""
+    cursor: str | None = None
+    while True:
+        asked = dict(params) | ({"cursor": cursor} if cursor else {})
+        page = request(server, token, "GET", path, params=asked).json()
+        yield from page["items"]
+        cursor = page.get("next")
+        if cursor is None:
+            return

@@ -1,0 +1,42 @@
+"""`servoident revise`: mend labels, units or signs of a stored matrix."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from app.cli.remote import DEFAULT, Server, Token, request
+
+
+def revise(
+    matrix: Annotated[str, typer.Argument(metavar="MATRIX", help="Id of a stored matrix.")],
+    changes: Annotated[
+        Path, typer.Argument(metavar="CHANGES.yaml", help="actuator: {…} and runs: {ID: {…}}, as in matrix.yaml.")
+    ],
+    server: Server = DEFAULT,
+    token: Token = "",
+) -> None:
+    """Mend labels, units or signs of a stored matrix. The raw bytes stay; the result is a new matrix."""
+    from urllib.parse import quote
+
+    body = read_changes(changes)
+    stored = request(server, token, "POST", f"/matrices/{quote(matrix, safe='')}/revisions", json=body).json()
+    print(f"matrix {stored['id']} of {stored['serial']}: a revision of {stored['parent']}")
+
+
+def read_changes(path: Path) -> dict[str, Any]:
+    """The changes as plain data; raises Unusable where the file is no YAML mapping."""
+    import yaml
+
+    from ident.errors import Unusable
+
+    try:
+        changes = yaml.safe_load(path.read_bytes())
+    except (yaml.YAMLError, ValueError):
+        changes = None
+    if not isinstance(changes, dict):
+        remedy = "write runs: {RUN: {gain: 7}} or actuator: {batch: B1}"
+        raise Unusable("bad-changes", "not a YAML mapping of changes", str(path), remedy)
+    return changes

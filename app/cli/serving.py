@@ -1,0 +1,72 @@
+"""Running the service in this process, and doing something once it answers."""
+
+from __future__ import annotations
+
+import socket
+import threading
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from ident.errors import Unusable
+
+if TYPE_CHECKING:
+    from app.settings import Settings
+
+LOOPBACK = ("127.0.0.1", "localhost", "::1")
+
+
+def address(settings: Settings) -> str:
+    """Where a client finds the service."""
+    host = f"[{settings.host}]" if ":" in settings.host else settings.host
+    return f"http://{host}:{settings.port}"
+
+
+def run(settings: Settings, once_ready: Callable[[], None]) -> None:
+    """Serve until interrupted; `once_ready` runs in a thread as soon as the service answers.
+
+    Raises Unusable where the address is in use or not this machine's.
+    """
+    from app.main import run as served
+
+    check_free(settings.host, settings.port)
+    threading.Thread(target=wait_and, args=(settings, once_ready), daemon=True).start()
+    try:
+        served(settings)
+    except KeyboardInterrupt:
+        print("stopped; unfinished jobs go on at the next start")
+
+
+def wait_and(settings: Settings, act: Callable[[], None]) -> None:
+    """Act when the port answers."""
+    while True:
+        try:
+            socket.create_connection((settings.host, settings.port), timeout=1).close()
+        except OSError:
+            time.sleep(0.05)
+        else:
+            act()
+            return
+
+
+def check_free(host: str, port: int) -> None:
+    """Raise Unusable where the service could not listen."""
+    try:
+        family, *_, place = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        with socket.socket(family) as trial:
+            trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            trial.bind(place)
+    except (OSError, OverflowError) as error:
+        what = getattr(error, "strerror", None) or str(error)
+        raise Unusable("cannot-listen", what, f"{host}:{port}", "choose another --port, or stop what uses it") from None
+
+
+def free_port(host: str, preferred: int) -> int:
+    """The preferred port, or any other where it is taken."""
+    try:
+        check_free(host, preferred)
+    except Unusable:
+        with socket.socket() as trial:
+            trial.bind((host, 0))
+            return int(trial.getsockname()[1])
+    return preferred

@@ -1,0 +1,33 @@
+"""`servoident worker`: one more process that works on the queue."""
+
+from __future__ import annotations
+
+import signal
+from typing import Annotated
+
+import typer
+
+from app.cli.place import Data, Database, settings
+from ident.errors import Unusable
+
+
+def worker(
+    executor: Annotated[str, typer.Option(metavar="NAME", help="Its own name, kept over restarts.")],
+    database: Database = "",
+    data: Data = None,
+) -> None:
+    """Work on queued fits, beside a service that uses the same PostgreSQL and data folder."""
+    from app.main import make_context
+
+    if not database.startswith("postgres"):
+        what = "a queue in SQLite is worked on by the service's own process only"
+        raise Unusable("needs-postgresql", what, "--database", "give a PostgreSQL URL here and to the service")
+    context = make_context(settings(data, database, executor=executor))
+    context.jobs.launch()
+    print(f"worker {executor} is waiting for jobs  (Ctrl-C stops it)", flush=True)
+    try:
+        signal.pause()
+    except KeyboardInterrupt:
+        print("stopped; its unfinished jobs go on when it starts again")
+    finally:
+        context.jobs.stop()

@@ -1,0 +1,95 @@
+"""One approved fit against what the program finds today."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from ident.compare import compare
+from ident.errors import Unusable
+from ident.fit.identification import identify
+from ident.fit.result import FitResult
+from ident.fit.settings import Settings
+from ident.matrix import Matrix
+from ident.progress import Report
+
+
+@dataclass(frozen=True)
+class Change:
+    """A quantity that was approved as `before` and is now `after`."""
+
+    quantity: str
+    before: float
+    after: float
+
+    @property
+    def relative(self) -> float:
+        """|after − before| / |before|; infinite where what was 0 is no longer, or where there is no number now."""
+        if self.before == self.after:
+            return 0.0
+        if math.isnan(self.after) or not self.before:
+            return math.inf
+        return abs(self.after - self.before) / abs(self.before)
+
+
+@dataclass(frozen=True)
+class Recheck:
+    """What became of one actuator: the changes, or why it could not be rechecked."""
+
+    serial: str
+    fit: str
+    changes: tuple[Change, ...]
+    tolerance: float
+    seconds: float
+    failure: str = ""
+
+    @property
+    def moved(self) -> tuple[Change, ...]:
+        """The changes beyond the tolerance."""
+        return tuple(change for change in self.changes if change.relative > self.tolerance)
+
+    @property
+    def passed(self) -> bool:
+        """True where all was recomputed and nothing moved."""
+        return not self.failure and not self.moved
+
+    @property
+    def largest(self) -> Change | None:
+        """The largest relative change."""
+        return max(self.changes, key=lambda change: change.relative, default=None)
+
+
+def recheck(serial: str, fit: str, stored: FitResult, matrix: Matrix, tolerance: float, report: Report) -> Recheck:
+    """Recompute the stored error, refit with the stored settings, and compare both with what was approved."""
+    began = time.monotonic()
+    changes: tuple[Change, ...] = ()
+    failure = ""
+    try:
+        changes = (*recomputed(stored, matrix), *refitted(stored, matrix, report))
+    except Unusable as error:
+        failure = str(error)
+    return Recheck(serial, fit, changes, tolerance, time.monotonic() - began, failure)
+
+
+def recomputed(stored: FitResult, matrix: Matrix) -> Iterator[Change]:
+    """The error of the stored parameters, computed again."""
+    yield from errors("error", stored, compare(matrix, stored).error)
+
+
+def refitted(stored: FitResult, matrix: Matrix, report: Report) -> Iterator[Change]:
+    """Error and parameters of a new fit; a parameter that the data do not determine may be anywhere."""
+    new = identify(matrix, Settings.from_json(stored.settings), report)
+    yield from errors("refit error", stored, new.error)
+    for name, estimate in stored.parameters.items():
+        if estimate.std_error is not None and not estimate.fixed:
+            yield Change(name, estimate.value, new.values.get(name, math.nan))
+
+
+def errors(name: str, stored: FitResult, after: Mapping[str, float | None]) -> Iterator[Change]:
+    """The error of each use that was stored."""
+    for use, before in stored.error.items():
+        if before is not None:
+            now = after.get(use)
+            yield Change(f"{name} {use}", before, math.nan if now is None else now)
