@@ -29,7 +29,8 @@ def polish(
         trial = np.clip(point + free_step, 0.0, 1.0)
         step = trial - point
         promised = -(here.gradient @ step + 0.5 * step @ here.curvature @ step)
-        cut = bool(np.any(step != free_step))  # a step cut at a bound may promise nothing where a shorter one does
+        # A step cut at a bound may promise nothing where a shorter one does.
+        cut = bool(np.any(trial != point + free_step))
         if not promised > _CONVERGED * here.error and not cut:
             break
         there = evaluate(trial) if promised > 0 else None
