@@ -1,0 +1,88 @@
+"""A running service in the test's own process, with a small matrix from the independent reference."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fastapi.testclient import TestClient
+
+from app.main import create_app
+from app.settings import Settings
+from tests.reference import qian_reference as reference
+
+TOKEN = "a-token-for-tests"
+DESCRIPTION = """
+actuator: {serial: SW-1, batch: B1, piston_area: 497 mm^2}
+runs:
+"""
+RUN = """
+  - id: %(id)s
+    file: runs/%(id)s.npz
+    sample_rate: 4096 Hz
+    specimen: {mass: %(mass)g kg, stiffness: %(stiffness)g N/m, damping: 0 N*s/m}
+    gain: %(gain)g
+    kind: blwn
+    use: %(use)s
+    channels: {command: {column: command, unit: m}, displacement: {column: displacement, unit: m}}
+"""
+
+
+@lru_cache
+def files(serial: str = "SW-1") -> dict[str, bytes]:
+    """Nine runs of half a second: name → bytes."""
+    chosen = reference.trials()[::9] + reference.trials()[-2:]
+    records = reference.measure_all(reference.Plant(), chosen, seconds=0.5, noise=0.005, seed=3, hold="linear")
+    text, found = DESCRIPTION.replace("SW-1", serial), {}
+    for record in records:
+        cell = record.trial.cell
+        text += RUN % {
+            "id": record.trial.id, "mass": cell.mass, "stiffness": cell.stiffness, "gain": cell.gain,
+            "use": record.trial.use,
+        }  # fmt: skip
+        buffer = io.BytesIO()
+        np.savez(buffer, command=record.command, displacement=record.displacement)
+        found[f"runs/{record.trial.id}.npz"] = buffer.getvalue()
+    return {"matrix.yaml": text.encode(), **found}
+
+
+@lru_cache
+def zipped(serial: str = "SW-1") -> bytes:
+    """The same as one archive."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        for name, content in files(serial).items():
+            archive.writestr(name, content)
+    return buffer.getvalue()
+
+
+@pytest.fixture(scope="session")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """A client of a service with a folder of its own."""
+    settings = Settings(data=Path(tmp_path_factory.mktemp("service")), token=TOKEN)
+    app = create_app(settings)
+    headers = {"Authorization": f"Bearer {TOKEN}"}
+    with TestClient(app, "http://127.0.0.1:8000", raise_server_exceptions=False, headers=headers) as client:
+        yield client
+
+
+@pytest.fixture(scope="session")
+def matrix(service: TestClient) -> str:
+    """The id of the uploaded matrix."""
+    answer = service.post("/api/v1/matrices", files={"files": ("matrix.zip", zipped())})
+    assert answer.status_code == 201, answer.text
+    return str(answer.json()["id"])
+
+
+@pytest.fixture(scope="session")
+def fitted(service: TestClient, matrix: str) -> str:
+    """The id of a finished fit."""
+    job = service.post("/api/v1/fits", json={"matrix": matrix}).json()
+    events = service.get(f"/api/v1/jobs/{job['id']}/events").text
+    assert '"state":"succeeded"' in events, events[-2000:]
+    return str(job["id"])

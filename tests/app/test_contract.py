@@ -1,0 +1,39 @@
+"""Whatever is asked within the served OpenAPI document: no 5xx, no undocumented status, no undocumented type."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+import schemathesis
+from fastapi.testclient import TestClient
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from schemathesis.checks import not_a_server_error
+from schemathesis.specs.openapi.checks import content_type_conformance, status_code_conformance
+
+CHECKS = [not_a_server_error, status_code_conformance, content_type_conformance]
+EXAMPLES = 25  # of each operation
+
+
+def test_fuzzed_requests_stay_within_the_document(service: TestClient, matrix: str) -> None:
+    document = service.get("/api/v1/openapi.json").json()
+    schema = schemathesis.openapi.from_dict(document)
+    tried = 0
+    for found in schema.get_all_operations():
+        operation = found.ok()
+        if operation.path.endswith("/events"):
+            continue  # a stream that lasts as long as its job; it has tests of its own
+
+        _attempts(service, operation, matrix)()
+        tried += 1
+    assert tried >= 18
+
+
+@pytest.mark.parametrize(
+    "path", ["/api/v1/nothing", "/api/v1/fits/%00", "/api/v1/jobs/%F0%9F%98%80", "/api/v1/fits/a/b"]
+)
+def test_a_path_that_is_not_there_is_a_problem_document(service: TestClient, path: str) -> None:
+    answer = service.get(path)
+    assert answer.status_code == 404
+    assert answer.headers["content-type"] == "application/problem+json"
