@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.cli.output import STANDARD_OUTPUT, write_json
+from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 
 if TYPE_CHECKING:
     from ident.matrix import Actuator, Matrix, Run
@@ -23,6 +23,7 @@ def check(
     from ident.check import check as findings_of
     from ident.readers import read_matrix
 
+    check_target(json)
     read = read_matrix(matrix)
     findings = findings_of(read)
     if json is not None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from app.cli.output import STANDARD_OUTPUT, write_bytes, write_json
+from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
 from ident.errors import Unusable
 
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ def compare(
     from ident.compare import compare as compared
     from ident.readers import read_matrix
 
+    check_target(json)
     result, read = read_fit(fit), read_matrix(matrix)
     comparison = compared(read, result)
     rows = [(run.run.id, run.run.use, run.error, run.offset) for run in comparison.runs]

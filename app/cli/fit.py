@@ -10,7 +10,7 @@ import typer
 from app.cli.arguments import bounds as read_bounds
 from app.cli.arguments import method_options
 from app.cli.arguments import values as read_values
-from app.cli.output import STANDARD_OUTPUT, write_json
+from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
 from ident.fit.settings import METHODS
 
@@ -43,6 +43,7 @@ def fit(
     from ident.fit.settings import Settings
     from ident.readers import read_matrix
 
+    check_target(json)
     settings = Settings(
         model=model,
         effects=tuple(effect or []),

@@ -9,7 +9,15 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from ident.errors import Unusable
+
 STANDARD_OUTPUT = Path("-")
+
+
+def check_target(target: Path | None) -> None:
+    """Raise Unusable where the folder of an output file does not exist: before the work, not after it."""
+    if target is not None and not target.parent.is_dir():
+        raise Unusable("no-such-folder", "the folder does not exist", str(target.parent), "create it, or name another")
 
 
 def write_json(data: Any, target: Path) -> None:

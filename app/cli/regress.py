@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.cli.output import write_bytes
+from app.cli.output import check_target, write_bytes
 from app.cli.place import Data, Database, settings
 from app.cli.progress import shown
 
@@ -29,6 +29,7 @@ def regress(
     from app.regress.junit import junit as as_junit
     from app.regress.service import regress as rechecks_of
 
+    check_target(junit)
     with shown() as report:
         rechecks = list(rechecks_of(settings(data, database), tolerance, report))
     if junit is not None:

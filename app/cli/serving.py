@@ -27,9 +27,9 @@ def run(settings: Settings, once_ready: Callable[[], None]) -> None:
 
     Raises Unusable where the address is in use or not this machine's.
     """
+    check_free(settings.host, settings.port)
     from app.main import run as served
 
-    check_free(settings.host, settings.port)
     threading.Thread(target=wait_and, args=(settings, once_ready), daemon=True).start()
     try:
         served(settings)

@@ -17,11 +17,11 @@ def worker(
     data: Data = None,
 ) -> None:
     """Work on queued fits, beside a service that uses the same PostgreSQL and data folder."""
-    from app.main import make_context
-
     if not database.startswith("postgres"):
         what = "a queue in SQLite is worked on by the service's own process only"
         raise Unusable("needs-postgresql", what, "--database", "give a PostgreSQL URL here and to the service")
+    from app.main import make_context
+
     context = make_context(settings(data, database, executor=executor))
     context.jobs.launch()
     print(f"worker {executor} is waiting for jobs  (Ctrl-C stops it)", flush=True)

@@ -1,0 +1,101 @@
+"""The commands of the main job, as a user runs them."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+
+def test_a_simulated_matrix_says_that_it_is_simulated(matrix):
+    """Nobody can take it for a measurement."""
+    assert "simulated" in (matrix / "matrix.yaml").read_text()
+
+
+def test_check_describes_the_matrix_and_finds_no_fault(servoident, matrix):
+    """The runs by use, and exit status 0."""
+    done = servoident("check", matrix)
+    assert done.returncode == 0, done.stderr
+    assert "fit: 63 runs (blwn), Kp 5, 7, 10" in done.stdout
+    assert "verify: 21 runs (blwn), Kp 6" in done.stdout
+    assert "0 faults" in done.stdout
+
+
+def test_check_ends_with_1_where_a_run_has_a_fault(servoident, matrix, tmp_path):
+    """A dead transducer is a fault, named with its run."""
+    import shutil
+
+    import numpy as np
+
+    broken = tmp_path / "broken"
+    shutil.copytree(matrix, broken)
+    file = next((broken / "runs").iterdir())
+    recorded = np.load(file)
+    rng = np.random.default_rng(0)
+    noise = rng.standard_normal(len(recorded["command"])) * 1e-4
+    np.savez(file, command=recorded["command"], displacement=-recorded["displacement"] * 1000 + noise)
+    done = servoident("check", broken, "--json", "-")
+    findings = json.loads(done.stdout)
+    assert any(finding["run"] == file.stem and finding["severity"] != "note" for finding in findings)
+    assert done.returncode == int(any(finding["severity"] == "fault" for finding in findings))
+
+
+def test_fit_writes_what_the_contract_promises(fit_file):
+    """Every key of the fit JSON is there, and the held parameter was held."""
+    fit = json.loads(fit_file.read_text())
+    promised = (
+        "model effects parameters correlation determined undetermined error offset noise_floor runs method seed "
+        "evaluations seconds version data_hash notes"
+    )
+    assert set(promised.split()) <= set(fit)
+    assert set(fit["parameters"]) == {"Z0", "tau", "Cl", "c0", "m0", "Ka"}
+    assert fit["parameters"]["m0"]["value"] == 4.25
+    assert {"value", "unit", "std_error", "lower", "upper", "at_bound"} <= set(fit["parameters"]["tau"])
+
+
+def test_bounds_with_units_are_the_same_as_in_si(fit_file):
+    """1 ms and 6 ms were taken as 0.001 and 0.006 s."""
+    tau = json.loads(fit_file.read_text())["parameters"]["tau"]
+    assert (tau["lower"], tau["upper"]) == (0.001, 0.006)
+
+
+def test_the_printed_unit_of_z0_is_converted_with_a_notice(servoident, matrix):
+    """1.48e-5 as printed is 2.592e-6 m⁴/s, and the user is told."""
+    held = [f"--set={text}" for text in ("tau=3.6 ms", "Cl=1e-11", "c0=3200", "m0=4.25", "Ka=1.39e-13")]
+    done = servoident("fit", matrix, "--set", "Z0=1.48e-5 m^3/(s*kPa) as printed", *held, "--json", "-")
+    assert done.returncode == 0, done.stderr
+    assert "notice: Z0" in done.stderr
+    assert json.loads(done.stdout)["parameters"]["Z0"]["value"] == pytest.approx(2.592e-6, rel=1e-4)
+
+
+def test_fit_tells_a_reader_parameters_and_errors(servoident, matrix):
+    """The table names each parameter with its unit, and the error on the verify runs in per cent."""
+    done = servoident("fit", matrix, "--set", "tau=3.6 ms", "--set", "m0=4.25 kg", "--seed", 1)
+    assert done.returncode == 0, done.stderr
+    assert "m^3/(s*Pa)" in done.stdout
+    assert "held" in done.stdout
+    assert "verify" in done.stdout
+    assert "%" in done.stdout
+    assert "search" in done.stderr
+
+
+def test_compare_writes_every_figure_in_every_format(servoident, matrix, fit_file, tmp_path):
+    """Each figure is there as svg, png, pdf and json, and the table holds every run."""
+    done = servoident(
+        "compare", matrix, "--fit", fit_file, "--out", tmp_path / "figures", "--json", tmp_path / "c.json"
+    )
+    assert done.returncode == 0, done.stderr
+    starts = {"svg": b"<svg", "png": b"\x89PNG", "pdf": b"%PDF", "json": b"{"}
+    for name in ("bode", "time", "evolution", "sensitivity"):
+        for kind, start in starts.items():
+            assert (tmp_path / "figures" / f"{name}.{kind}").read_bytes().startswith(start)
+    assert len(json.loads((tmp_path / "c.json").read_text())["runs"]) == 84
+    assert "m087-k36-kp6-a05" in done.stdout
+
+
+def test_compare_finds_the_errors_of_the_fit_again(servoident, matrix, fit_file):
+    """What `fit` reported and what `compare` computes are the same numbers."""
+    compared = json.loads(servoident("compare", matrix, "--fit", fit_file, "--json", "-").stdout)
+    fit = json.loads(fit_file.read_text())
+    for use in ("fit", "verify"):
+        assert compared["error"][use] == pytest.approx(fit["error"][use], rel=1e-9)

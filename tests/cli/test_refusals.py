@@ -1,0 +1,91 @@
+"""Unusable input: one line on standard error, exit status 2, never a traceback."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+
+ONE_LINE = [
+    (["fit"], "Missing argument"),
+    (["fot"], "Did you mean 'fit'"),
+    (["fit", "nowhere"], "nowhere"),
+    (["fit", "nowhere", "--seed", "x"], "--seed"),
+    (["fit", "nowhere", "--colour", "red"], "--colour"),
+    (["fit", "MATRIX", "--bounds", "Z0"], "NAME=LO:HI"),
+    (["fit", "MATRIX", "--bounds", "Z0=1e-6"], "NAME=LO:HI"),
+    (["fit", "MATRIX", "--bounds", "tau=5 ms:1 ms"], "tau"),
+    (["fit", "MATRIX", "--bounds", "tau=1 mm:5 mm"], "mm"),
+    (["fit", "MATRIX", "--set", "Z9=1"], "Z9"),
+    (["fit", "MATRIX", "--option", "keep=half"], "half"),
+    (["fit", "MATRIX", "--option", "colour=1"], "colour"),
+    (["fit", "MATRIX", "--model", "linear"], "qian2014"),
+    (["fit", "MATRIX", "--method", "newton"], "paper-ga"),
+    (["fit", "MATRIX", "--effect", "magic"], "magic"),
+    (["fit", "MATRIX", "--load", "sideways"], "sideways"),
+    (["fit", "MATRIX", "--json", "/nowhere/fit.json"], "/nowhere"),
+    (["compare", "MATRIX", "--fit", "nowhere.json"], "nowhere.json"),
+    (["compare", "MATRIX", "--fit", __file__], "not the JSON of a fit"),
+    (["simulate", "MATRIX"], "not empty"),
+    (["simulate", "new", "--effect", "magic"], "magic"),
+    (["simulate", "new", "--preset", "unknown"], "unknown"),
+    (["check", __file__], "test_refusals"),
+    (["regress", "--data", "nowhere"], "nowhere"),
+    (["worker", "--executor", "w1"], "PostgreSQL"),
+    (["serve", "--host", "203.0.113.7"], "203.0.113.7"),
+    (["query", "--server", "http://127.0.0.1:9"], "no answer"),
+    (["upload", "MATRIX", "--server", "http://127.0.0.1:9"], "no answer"),
+    (["upload", __file__], "test_refusals"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "named"), ONE_LINE, ids=[" ".join(a).split("/")[0] for a, _ in ONE_LINE])
+def test_unusable_input_is_one_line_and_exit_2(servoident, matrix, arguments, named):
+    """The line names what is wrong, and nothing else is said."""
+    done = servoident(*(matrix if argument == "MATRIX" else argument for argument in arguments))
+    said = [line for line in done.stderr.splitlines() if line.startswith("servoident: ")]
+    assert done.returncode == 2, done.stderr
+    assert len(said) == 1
+    assert done.stderr.splitlines()[-1] == said[0]
+    assert named in said[0]
+    assert "Traceback" not in done.stderr
+
+
+def test_ctrl_c_is_one_line_and_130(matrix, tmp_path):
+    """An interrupted fit says so and writes nothing."""
+    command = [sys.executable, "-m", "app.cli", "fit", str(matrix), "--json", str(tmp_path / "fit.json"), "--method"]
+    process = subprocess.Popen([*command, "differential-evolution"], stderr=subprocess.PIPE, text=True)
+    assert process.stderr is not None
+    heard = process.stderr.readline()  # the first line of progress: the work is under way
+    process.send_signal(signal.SIGINT)
+    rest = process.stderr.read()
+    assert process.wait() == 130, heard + rest
+    assert rest.splitlines()[-1] == "servoident: interrupted; nothing was written"
+    assert "Traceback" not in rest
+    assert not (tmp_path / "fit.json").exists()
+
+
+def test_a_defect_is_one_line_that_says_where_the_details_are(monkeypatch, capsys, tmp_path):
+    """What nobody foresaw ends with 70; its traceback is in the log, not on the screen."""
+    from app.cli import program
+
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    monkeypatch.setattr("ident.readers.read_matrix", lambda _: 1 / 0)
+    with pytest.raises(SystemExit) as ended:
+        program.main(["check", "anything"])
+    said = capsys.readouterr().err
+    assert ended.value.code == 70
+    assert said.count("\n") == 1
+    assert "ZeroDivisionError" in said
+    assert "Traceback" in (tmp_path / "servoident" / "errors.log").read_text()
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full on this system")
+def test_a_full_disk_is_one_line_and_exit_2(servoident, matrix):
+    """Nothing is half written where the disk is full."""
+    done = servoident("check", matrix, "--json", "/dev/full")
+    assert done.returncode == 2
+    assert done.stderr.startswith("servoident: /dev/full")
