@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from app.pages.run_view import specimen_of
 from ident.figures import words
 from ident.fit.result import FitResult
-from ident.matrix import Run
+from schemas.matrix import RunView
 
 Choices = tuple[tuple[str, str], ...]
 
@@ -30,7 +31,7 @@ class FigureForm:
     fields: tuple[Field, ...]
 
 
-def forms(runs: Sequence[Run], fit: FitResult) -> tuple[FigureForm, ...]:
+def forms(runs: Sequence[RunView], fit: FitResult) -> tuple[FigureForm, ...]:
     """The figures that this fit has, in the order of the tabs."""
     run = Field("run", "Run", (("", "a typical one"), *((each.id, each.id) for each in runs)))
     pictures = [
@@ -43,13 +44,15 @@ def forms(runs: Sequence[Run], fit: FitResult) -> tuple[FigureForm, ...]:
     return tuple(pictures)
 
 
-def _bode(runs: Sequence[Run]) -> tuple[Field, ...]:
-    verify = "verify runs" if any(run.use == "verify" for run in runs) else "fit runs"
-    gains = _distinct(runs, lambda run: run.gain, lambda run: f"{run.gain:g}", words.gain)
-    amplitudes = _distinct(runs, lambda run: run.amplitude, lambda run: f"{run.amplitude:.6g}", words.amplitude)
-    specimens = dict.fromkeys(words.specimen(run.specimen) for run in sorted(runs, key=_by_specimen) if run.specimen)
+def _bode(runs: Sequence[RunView]) -> tuple[Field, ...]:
+    first = "verify" if any(run.use == "verify" for run in runs) else "fit"
+    others = tuple((use, f"{use} runs") for use in ("fit",) if first == "verify")
+    gains = _stated(runs, lambda run: run.gain, words.gain)
+    amplitudes = _stated(runs, lambda run: run.amplitude, words.amplitude)
+    ordered = sorted(runs, key=lambda run: (run.mass or 0.0, run.stiffness or 0.0))
+    specimens = dict.fromkeys(words.specimen(specimen_of(run)) for run in ordered if run.mass is not None)
     offered = (
-        Field("use", "Runs", (("", f"a few {verify}"), ("verify", "verify"), ("fit", "fit"), ("all", "all"))),
+        Field("use", "Runs", (("", f"{first} runs"), *others, ("all", "all runs"))),
         Field("kp", "Gain", (("", "any"), *gains)),
         Field("amplitude", "Amplitude, RMS", (("", "any"), *amplitudes)),
         Field("specimen", "Specimen", (("", "any"), *((text, text) for text in specimens))),
@@ -58,19 +61,10 @@ def _bode(runs: Sequence[Run]) -> tuple[Field, ...]:
     return tuple(field for field in offered if len(field.choices) > 1)
 
 
-def _distinct(
-    runs: Iterable[Run],
-    value: Callable[[Run], float | None],
-    query: Callable[[Run], str],
-    text: Callable[[float | None], str],
-) -> Choices:
+def _stated(runs: Sequence[RunView], of: Callable[[RunView], float | None], text: Callable[[float], str]) -> Choices:
     """The stated values in numeric order, as query and as words."""
-    stated = {number: query(run) for run in runs if (number := value(run)) is not None}
-    return tuple((stated[number], text(number)) for number in sorted(stated))
-
-
-def _by_specimen(run: Run) -> tuple[float, float]:
-    return (0.0, 0.0) if run.specimen is None else (run.specimen.mass, run.specimen.stiffness)
+    numbers = sorted({number for run in runs if (number := of(run)) is not None})
+    return tuple((f"{number:.6g}", text(number)) for number in numbers)
 
 
 def _evolution(fit: FitResult) -> tuple[Field, ...]:

@@ -5,7 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from markupsafe import Markup, escape
+
 from app.pages import numbers
+from ident.errors import Unusable
+from ident.expression import mathml
 from ident.fit.result import Estimate, FitResult
 
 
@@ -37,6 +41,15 @@ class ErrorRow:
     offset: str
 
 
+@dataclass(frozen=True)
+class Determined:
+    """A combination of parameters that the data determine, with its relative standard error."""
+
+    expression: Markup
+    value: str
+    relative: str
+
+
 def parameter_rows(fit: FitResult) -> tuple[ParameterRow, ...]:
     """The table of parameters, in the model's order."""
     undetermined = {entry.name for entry in fit.undetermined}
@@ -50,14 +63,14 @@ def _parameter(name: str, entry: Estimate, undetermined: bool) -> ParameterRow:
     places = numbers.decimals(value, error)
     return ParameterRow(
         name=name,
-        symbol=entry.symbol or name,
+        symbol=numbers.symbol(name, entry.symbol),
         meaning=entry.meaning,
         unit=numbers.scaled_unit(entry.unit, power),
         value=numbers.fixed(value, places),
         std_error=numbers.fixed(error, places),
         relative=numbers.percent(error / abs(value), 2) if error is not None and value else "–",
-        lower=numbers.plain(entry.lower / 10.0**power),
-        upper=numbers.plain(entry.upper / 10.0**power),
+        lower=numbers.trimmed(entry.lower / 10.0**power),
+        upper=numbers.trimmed(entry.upper / 10.0**power),
         remark="; ".join(_remarks(entry, undetermined)),
     )
 
@@ -91,13 +104,23 @@ def error_rows(fit: FitResult) -> tuple[ErrorRow, ...]:
     return tuple(rows)
 
 
-def combination_rows(fit: FitResult) -> tuple[tuple[str, str, str], ...]:
-    """What is determined although its factors may not be: expression, value with unit, relative error."""
+def combination_rows(fit: FitResult) -> tuple[Determined, ...]:
+    """What is determined although its factors may not be."""
     return tuple(
-        (
-            numbers.unit(entry.expression),
-            numbers.quantity(entry.value, entry.unit),
-            numbers.percent(entry.std_error / abs(entry.value), 2) if entry.value else "–",
+        Determined(
+            expression=_formula(entry.expression),
+            value=numbers.quantity(entry.value, entry.unit),
+            relative=numbers.percent(entry.std_error / abs(entry.value), 2) if entry.value else "–",
         )
         for entry in fit.determined
     )
+
+
+def _formula(expression: str) -> Markup:
+    """An expression of the grammar as MathML; as text where it is outside the grammar."""
+    try:
+        equation = mathml(f"determined = {expression}")
+    except Unusable:
+        return escape(expression)
+    _, _, right = equation.partition("<mo>=</mo>")
+    return Markup(f"<math><mrow>{right}")

@@ -6,16 +6,18 @@ import math
 
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PREFIXED = {
-    ("m", -3): "mm", ("m", -6): "µm", ("s", -3): "ms", ("s", -6): "µs",
+    ("m", -3): "mm", ("m", -6): "µm", ("m^2", -6): "mm²", ("s", -3): "ms", ("s", -6): "µs",
     ("N", 3): "kN", ("Pa", 3): "kPa", ("Pa", 6): "MPa", ("N/m", 3): "kN/m",
 }  # fmt: skip
 
 
 def percent(fraction: float | None, digits: int = 3) -> str:
-    """0.0407 → "4.07 %"; a dash where there is none."""
+    """0.0407 → "4.07 %", never more than three decimals; a dash where there is none."""
     if fraction is None or not math.isfinite(fraction):
         return "–"
-    return f"{plain(100 * fraction, digits)} %"
+    size = abs(100 * fraction)
+    places = 3 if size == 0 else min(3, max(0, digits - 1 - math.floor(math.log10(size))))
+    return f"{fixed(100 * fraction, places)} %"
 
 
 def plain(value: float, digits: int = 4) -> str:
@@ -67,6 +69,18 @@ def decimals(value: float, std_error: float | None) -> int:
 def fixed(value: float | None, places: int) -> str:
     """A number with so many decimals and a true minus; a dash where there is none."""
     return "–" if value is None or not math.isfinite(value) else f"{value:.{places}f}".replace("-", "−")
+
+
+def trimmed(value: float) -> str:
+    """A number to four significant digits without trailing zeros, as a stated bound is written."""
+    text = plain(value)
+    return text.rstrip("0").rstrip(".") if "." in text and "·" not in text else text
+
+
+def symbol(name: str, of: str) -> str:
+    """How a parameter is written: its symbol, with the divisor of a ratio such as ``Z0/A^2``."""
+    _, slash, divisor = name.partition("/")
+    return f"{of or name}/{unit(divisor)}" if slash and of else of or name
 
 
 def quantity(value: float | None, text: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 from hashlib import sha256
+from importlib.metadata import version as distribution
 
 import vl_convert
 
@@ -18,4 +19,4 @@ def bundle() -> bytes:
 
 def version() -> str:
     """Changes with the bundle, so that a browser may keep it for ever under this name."""
-    return sha256(f"{vl_convert.__version__} {_SNIPPET}".encode()).hexdigest()[:12]
+    return sha256(f"{distribution('vl-convert-python')} {_SNIPPET}".encode()).hexdigest()[:12]

@@ -128,7 +128,7 @@ def _panel(
         opacity=alt.Opacity("c:Q", scale=alt.Scale(domain=[0.3, 0.95], range=[0.06, 0.8], clamp=True), legend=None),
         tooltip=_tooltip(responses, fields, title),
     )
-    lines = base.mark_line(strokeWidth=1.6, clip=True).encode(y=f"{model}:Q", detail="r:N")
+    lines = base.mark_line(strokeWidth=1.6, clip=True, interpolate="monotone").encode(y=f"{model}:Q", detail="r:N")
     return alt.layer(points, lines)
 
 

@@ -77,9 +77,9 @@ def _variations(run: Run) -> dict[str, tuple[str, Varied]]:
     varied: dict[str, tuple[str, Varied]] = {}
     specimen = run.specimen
     if specimen is not None and specimen.mass > 0:
-        varied["mass"] = (f"Specimen mass, 1 × = {specimen.mass:.4g} kg", _with_mass)
+        varied["mass"] = (f"Mass, 1 × = {specimen.mass:.4g} kg", _with_mass)
     if specimen is not None and specimen.stiffness > 0:
-        varied["stiffness"] = (f"Specimen stiffness, 1 × = {specimen.stiffness / 1000:.4g} kN/m", _with_stiffness)
+        varied["stiffness"] = (f"Stiffness, 1 × = {specimen.stiffness / 1000:.4g} kN/m", _with_stiffness)
     stated = f"{run.Kp:g}" if run.gain is not None else "1 (not stated)"
     varied["gain"] = (f"Gain Kp, 1 × = {stated}", _with_gain)
     return varied
@@ -111,7 +111,10 @@ def _stable(vary: Varied, run: Run, actuator: Actuator, fit: FitResult) -> list[
 def _without(stable: Sequence[float]) -> str:
     """What is left out, for the heading."""
     lost = [x for x in MULTIPLES if x not in stable]
-    return f"; unstable at {', '.join(f'{x:.2g}' for x in lost)} ×" if lost else ""
+    if not lost:
+        return ""
+    above = not stable or lost[0] > stable[-1]
+    return f"; unstable from {lost[0]:.2g} ×" if above else f"; unstable at {', '.join(f'{x:.2g}' for x in lost)} ×"
 
 
 def _rows(frequency: Real, answers: Mapping[float, Complex]) -> list[dict[str, Any]]:

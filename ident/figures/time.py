@@ -105,13 +105,14 @@ def _table(signals: Mapping[str, Real], factor: float, run: Run, window: slice) 
 
 def _traces(shown: Sequence[str], run: Run, window: slice, look: Look, unit: str) -> Panel:
     colours = {"command": look.faint, "measured": look.series[0], "model": look.series[1]}
+    legend = alt.Legend(title=None, orient="top", symbolType="stroke", symbolStrokeWidth=2, symbolSize=500, offset=4)
     colour = alt.Color(
         "s:N",
         scale=alt.Scale(domain=list(shown), range=[colours[name] for name in shown]),
-        legend=alt.Legend(title=None, orient="top", symbolType="stroke", symbolStrokeWidth=2, symbolSize=500, offset=4),
+        legend=legend,
     )
     dashes = alt.StrokeDash(
-        "s:N", scale=alt.Scale(domain=list(shown), range=[_DASHES[name] for name in shown]), legend=None
+        "s:N", scale=alt.Scale(domain=list(shown), range=[_DASHES[name] for name in shown]), legend=legend
     )
     name = run.output.replace("_", " ").capitalize()
     panel: Panel = (

@@ -8,7 +8,7 @@ for (const form of document.querySelectorAll("form[data-start-fit]")) {
     guarded(form.querySelector("button"), form.querySelector("[role=alert]"), async () => {
       const wanted = Object.fromEntries(new FormData(form));
       const { data } = await send("POST", form.action, { ...wanted, seed: Number(wanted.seed) });
-      location.assign(`/jobs/${data.id}`);
+      location.assign(`/fits/${data.id}`);
     });
   });
 }

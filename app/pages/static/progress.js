@@ -4,6 +4,7 @@ import { guarded, send } from "./api.js";
 
 const live = document.querySelector("#live");
 const bar = live.querySelector("progress");
+const state = document.querySelector(".head .state");
 const stage = live.querySelector("[data-stage]");
 const step = live.querySelector("[data-step]");
 const error = live.querySelector("[data-error]");
@@ -12,7 +13,7 @@ const cancel = live.querySelector("button");
 const problem = live.querySelector("[role=alert]");
 const seen = [];
 
-const FINISHED = new Set(["done", "succeeded", "failed", "cancelled"]);
+const ENDED = ["succeeded", "failed", "cancelled"];
 
 function report(progress) {
   if (progress.stage) stage.textContent = progress.stage;
@@ -20,6 +21,7 @@ function report(progress) {
     bar.max = progress.total;
     bar.value = progress.done;
     step.textContent = `${progress.done} of ${progress.total}`;
+    step.closest("span").hidden = progress.total < 2;
   }
   if (typeof progress.error === "number" && progress.error > 0) {
     error.textContent = `${(100 * progress.error).toPrecision(3)} %`;
@@ -39,19 +41,20 @@ function plot() {
   trace.setAttribute("points", points.join(" "));
 }
 
+// Each event is the job as it is now.
 const events = new EventSource(live.dataset.events);
 
 function read(event) {
-  const data = JSON.parse(event.data);
-  report(data.progress ?? data);
-  if (FINISHED.has(data.state)) {
-    events.close();
-    location.reload();
-  }
+  const job = JSON.parse(event.data);
+  state.textContent = job.state;
+  state.className = `state ${job.state}`;
+  report(job.progress);
+  if (!ENDED.includes(job.state)) return;
+  events.close();
+  location.reload();
 }
 
-events.addEventListener("message", read);
-for (const name of ["progress", "state", "job", "end"]) events.addEventListener(name, read);
+for (const name of ["message", "queued", "running", ...ENDED]) events.addEventListener(name, read);
 
 cancel.addEventListener("click", () =>
   guarded(cancel, problem, async () => {

@@ -1,0 +1,124 @@
+"""Actuators and their fits as rows of tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from app.pages import numbers
+from ident.errors import Unusable
+from ident.presets import preset
+from schemas.fit import JobView
+from schemas.parameters import ActuatorView, ParameterSetView
+
+
+@dataclass(frozen=True)
+class ActuatorRow:
+    """An actuator with its current set, or without one its newest."""
+
+    serial: str
+    name: str
+    batch: str
+    state: str
+    state_text: str
+    model: str
+    error_fit: float | None
+    error_verify: float | None
+    parameters: tuple[tuple[str, str], ...]
+    made: str | None
+
+
+@dataclass(frozen=True)
+class FitRow:
+    """A fit or the job that is to make it."""
+
+    id: str
+    state: str
+    state_text: str
+    model: str
+    method: str
+    seed: str
+    error_fit: float | None
+    error_verify: float | None
+    made: str
+
+
+def actuator_row(actuator: ActuatorView, newest: ParameterSetView | None, job: JobView | None) -> ActuatorRow:
+    """The row of an actuator; `job` is one that waits or runs for it."""
+    shown = actuator.current or newest
+    state, text = _state(actuator, newest, job)
+    return ActuatorRow(
+        serial=actuator.serial,
+        name=actuator.name,
+        batch=actuator.batch,
+        state=state,
+        state_text=text,
+        model=shown.model if shown else "",
+        error_fit=shown.error_fit if shown else None,
+        error_verify=shown.error_verify if shown else None,
+        parameters=_parameters(shown) if shown else (),
+        made=newest.created_at if newest else None,
+    )
+
+
+def _state(actuator: ActuatorView, newest: ParameterSetView | None, job: JobView | None) -> tuple[str, str]:
+    if job is not None:
+        total, done = job.progress.total, job.progress.done
+        share = f", {100 * done / total:.0f} %" if total and job.state == "running" else ""
+        return job.state, f"{job.state}{share}"
+    if actuator.current is not None:
+        return "approved", "approved"
+    return ("succeeded", "fitted, not approved") if newest is not None else ("queued", "no fit yet")
+
+
+def _parameters(shown: ParameterSetView) -> tuple[tuple[str, str], ...]:
+    symbols = {name: _symbol(shown.model, name) for name in shown.parameters}
+    return tuple((symbols[name], numbers.quantity(entry.value, entry.unit)) for name, entry in shown.parameters.items())
+
+
+def _symbol(model: str, name: str) -> str:
+    """The symbol of the literature; the plain name where this version does not know the model or parameter."""
+    try:
+        return numbers.symbol(name, preset(model).parameter(name).symbol)
+    except Unusable:
+        return name
+
+
+def fit_rows(jobs: Iterable[JobView], sets: Sequence[ParameterSetView]) -> tuple[FitRow, ...]:
+    """Jobs newest first, each with the errors of the set that it made."""
+    made = {entry.id: entry for entry in sets}
+    rows = [_fit_row(job, made.pop(job.id, None)) for job in jobs]
+    older = [_older(entry) for entry in made.values()]  # their jobs are on a later page
+    return (*rows, *older)
+
+
+def _fit_row(job: JobView, made: ParameterSetView | None) -> FitRow:
+    settings: Mapping[str, object] = job.settings
+    state, text = _fit_state(job.state, made)
+    return FitRow(
+        id=job.id,
+        state=state,
+        state_text=text,
+        model=str(settings.get("model", "")),
+        method=str(settings.get("method", "")),
+        seed=str(settings.get("seed", "")),
+        error_fit=made.error_fit if made else None,
+        error_verify=made.error_verify if made else None,
+        made=job.created_at,
+    )
+
+
+def _older(made: ParameterSetView) -> FitRow:
+    state, text = _fit_state("succeeded", made)
+    return FitRow(
+        id=made.id, state=state, state_text=text, model=made.model, method="–", seed="–",
+        error_fit=made.error_fit, error_verify=made.error_verify, made=made.created_at,
+    )  # fmt: skip
+
+
+def _fit_state(state: str, made: ParameterSetView | None) -> tuple[str, str]:
+    if made is None or state != "succeeded":
+        return state, state
+    if made.current:
+        return "approved", "approved, current"
+    return ("succeeded", "approved earlier") if made.approved_at else ("succeeded", "done")

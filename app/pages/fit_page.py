@@ -1,0 +1,92 @@
+"""Everything that the page of a finished fit shows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from app.pages import numbers
+from app.pages.figure_forms import FigureForm, forms
+from app.pages.fit_view import Determined, ErrorRow, ParameterRow, combination_rows, error_rows, parameter_rows
+from app.pages.job_view import settings_facts
+from app.pages.run_view import Conditions, conditions
+from ident.expression import mathml
+from ident.fit.result import FitResult, Undetermined
+from ident.presets import PRESETS
+from schemas.fit import FitView
+from schemas.matrix import MatrixView
+
+
+@dataclass(frozen=True)
+class FittedRun:
+    """A run with its error and offset, fractions."""
+
+    run: Conditions
+    error: float
+    offset: float
+
+
+@dataclass(frozen=True)
+class FitPageView:
+    """What the fit page shows."""
+
+    id: str
+    serial: str
+    matrix: str
+    parent: str | None
+    title: str
+    citation: str
+    method: str
+    seed: int
+    made: str
+    approved_at: str | None
+    current: bool
+    parameters: tuple[ParameterRow, ...]
+    errors: tuple[ErrorRow, ...]
+    combinations: tuple[Determined, ...]
+    undetermined: tuple[Undetermined, ...]
+    notes: tuple[str, ...]
+    runs: tuple[FittedRun, ...]
+    figures: tuple[FigureForm, ...]
+    equations: tuple[tuple[str, str, Markup], ...]
+    facts: tuple[tuple[str, str], ...]
+
+
+def fit_page(stored: FitView, matrix: MatrixView) -> FitPageView:
+    """The page of a fit of this matrix."""
+    fit = FitResult.from_json(stored.result)
+    model = PRESETS[fit.model]
+    known = {run.id: run for run in matrix.runs}
+    return FitPageView(
+        id=stored.id,
+        serial=stored.serial,
+        matrix=stored.matrix,
+        parent=stored.parent,
+        title=" + ".join((model.title, *fit.effects)),
+        citation=model.citation,
+        method=fit.method,
+        seed=fit.seed,
+        made=stored.created_at,
+        approved_at=stored.approved_at,
+        current=stored.current,
+        parameters=parameter_rows(fit),
+        errors=error_rows(fit),
+        combinations=combination_rows(fit),
+        undetermined=fit.undetermined,
+        notes=fit.notes,
+        runs=tuple(FittedRun(conditions(known[run.id]), run.error, run.offset) for run in fit.runs if run.id in known),
+        figures=forms(matrix.runs, fit),
+        equations=tuple((line.place, line.meaning, Markup(mathml(line.text))) for line in model.equations),
+        facts=_facts(fit),
+    )
+
+
+def _facts(fit: FitResult) -> tuple[tuple[str, str], ...]:
+    return (
+        *settings_facts(dict(fit.settings)),
+        ("Evaluations", f"{fit.evaluations:,}".replace(",", "\u2009")),
+        ("Computing time", numbers.quantity(fit.seconds, "s")),
+        ("Version", fit.version),
+        ("Data, SHA-256", fit.data_hash),
+    )

@@ -1,0 +1,70 @@
+"""Jobs and fits as rows of a table, and a job that has no result yet as a page."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from schemas.fit import JobView
+
+_OPEN = ("queued", "running")
+
+
+@dataclass(frozen=True)
+class JobPageView:
+    """A fit that waits, runs, or ended without a result."""
+
+    id: str
+    serial: str
+    matrix: str
+    state: str
+    open: bool
+    stage: str
+    done: int
+    total: int
+    error: float | None
+    problem: str
+    facts: tuple[tuple[str, str], ...]
+    made: str
+
+
+def job_page(job: JobView) -> JobPageView:
+    """The page of a job."""
+    return JobPageView(
+        id=job.id,
+        serial=job.serial,
+        matrix=job.matrix,
+        state=job.state,
+        open=job.state in _OPEN,
+        stage=job.progress.stage or ("waiting for its turn" if job.state == "queued" else "preparing the runs"),
+        done=job.progress.done,
+        total=job.progress.total,
+        error=job.progress.error,
+        problem=_problem(job.problem),
+        facts=settings_facts(job.settings),
+        made=job.created_at,
+    )
+
+
+def settings_facts(settings: dict[str, Any]) -> tuple[tuple[str, str], ...]:
+    """What the user chose, as far as it is not empty."""
+    names = ("model", "effects", "method", "seed", "bounds", "fixed", "load", "options")
+    chosen = ((name, settings.get(name)) for name in names)
+    return tuple((name.capitalize(), _words(value)) for name, value in chosen if value not in (None, [], {}, "none"))
+
+
+def _words(value: Any) -> str:
+    if isinstance(value, dict):
+        return "; ".join(f"{name} {_words(entry)}" for name, entry in value.items())
+    if isinstance(value, list | tuple):
+        return " to ".join(map(_words, value))
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _problem(problem: dict[str, Any] | None) -> str:
+    """What, where and remedy as sentences."""
+    if not problem:
+        return ""
+    where, what, remedy = (str(problem.get(name, "")) for name in ("where", "detail", "remedy"))
+    said = f"{where}: {what}" if where else what
+    return f"{said}. {remedy[:1].upper()}{remedy[1:]}." if remedy else f"{said}."

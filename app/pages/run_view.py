@@ -1,0 +1,47 @@
+"""The conditions of a run as words, the same on every page."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.pages import numbers
+from ident.figures import words
+from ident.matrix import Specimen
+from schemas.matrix import RunView
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """What a run was made under; `amplitude_value` sorts the column."""
+
+    id: str
+    use: str
+    kind: str
+    gain: str
+    amplitude: str
+    amplitude_value: str
+    specimen: str
+    length: str
+    rate: str
+
+
+def conditions(run: RunView) -> Conditions:
+    """The words for a run; a dash where the matrix states nothing."""
+    return Conditions(
+        id=run.id,
+        use=run.use,
+        kind=run.kind,
+        gain="–" if run.gain is None else f"{run.gain:g}",
+        amplitude="–" if run.amplitude is None else words.amplitude(run.amplitude),
+        amplitude_value="" if run.amplitude is None else f"{run.amplitude:g}",
+        specimen="–" if run.mass is None else words.specimen(specimen_of(run)),
+        length=numbers.quantity(run.duration, "s"),
+        rate=numbers.quantity(run.sample_rate, "Hz"),
+    )
+
+
+def specimen_of(run: RunView) -> Specimen | None:
+    """The specimen of a run, None where none is stated."""
+    if run.mass is None:
+        return None
+    return Specimen(run.mass, run.stiffness or 0.0, run.damping or 0.0)
