@@ -1,0 +1,46 @@
+"""Every physical doubt about a matrix, in words, before a fit is started on it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ident.checks.amplitude import amplitude
+from ident.checks.band import band
+from ident.checks.clipping import clipping
+from ident.checks.delay import delays
+from ident.checks.finding import Finding
+from ident.checks.flat import flat
+from ident.checks.gain import force_sign, gain
+from ident.checks.offset import offset
+from ident.checks.ranges import ranges
+from ident.checks.repeats import repeats
+from ident.checks.response import Response, respond
+from ident.checks.statements import statements
+from ident.checks.summary import RunSummary, Summary, describe
+from ident.checks.timing import timing
+from ident.matrix import Actuator, Matrix, Run
+
+__all__ = ["Finding", "RunSummary", "Summary", "check", "describe"]
+
+ORDER = ("fault", "doubt", "note")
+
+
+def check(matrix: Matrix) -> tuple[Finding, ...]:
+    """Everything that a person should know about the data: faults first, then doubts, then notes."""
+    measured = [(run, respond(run)) for run in matrix.runs]
+    found = [finding for run, response in measured for finding in one_run(run, response, matrix.actuator)]
+    found += [*delays(measured), *repeats(matrix), *statements(matrix)]
+    return tuple(sorted(found, key=lambda finding: ORDER.index(finding.severity)))
+
+
+def one_run(run: Run, response: Response | None, actuator: Actuator) -> Iterator[Finding]:
+    """What can be said of a run by itself."""
+    yield from timing(run, response)
+    yield from clipping(run)
+    yield from flat(run)
+    yield from band(run, response)
+    yield from amplitude(run)
+    yield from gain(run, response)
+    yield from force_sign(run)
+    yield from offset(run)
+    yield from ranges(run, actuator)

@@ -1,0 +1,70 @@
+"""A channel that was cut off at the end of its range."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ident.checks.finding import Finding
+from ident.matrix import Run, Samples
+
+PLATEAU = 4  # equal samples; three may be chance in a record of few bits
+PLATEAUS = 3  # peaks that end at the very same value
+STEP = 0.2  # of the usual step: a cut signal arrives at speed, one that comes to rest arrives slowly
+RESOLUTIONS = 3.0  # a rounded peak is left by one step of the resolution, a cut one by more
+NEAR = 2e-3  # of the range; in noise the fifth highest peak lies ten times deeper
+BETWEEN = 0.05  # of the range
+PEAKS = 5
+AT_REST = 0.4  # of the samples: a signal of levels, not a cut one
+LEVELS = ("static", "speed-levels", "speed-continuous")
+
+
+def clipping(run: Run) -> Iterator[Finding]:
+    """Peaks of command, output or force that all end at one value."""
+    if run.kind in LEVELS:
+        return
+    for name in dict.fromkeys(("command", run.output, "force")):
+        signal = run.channels.get(name)
+        if signal is None:
+            continue
+        for side, flipped in (("highest", signal), ("lowest", -signal)):
+            count = peaks_at_the_top(flipped) if run.kind == "blwn" else plateaus_at_the_top(flipped)
+            if count:
+                level = signal.max() if side == "highest" else signal.min()
+                text = (
+                    f"{name} of run {run.id} seems clipped: {count} peaks end at its {side} value {level:.4g} "
+                    f"{run.units.get(name, '')}; look at the range of the sensor or amplifier and repeat the run"
+                )
+                yield Finding(run.id, "doubt", "clipping", text)
+
+
+def peaks_at_the_top(signal: Samples) -> int:
+    """Number of separate peaks of a random signal within NEAR of its range from the top; 0 below PEAKS.
+
+    Two peaks are separate where the signal falls by BETWEEN in the meantime, which its noise does not.
+    """
+    extent = float(np.ptp(signal))
+    high = signal >= signal.max() - BETWEEN * extent
+    starts = high & ~np.concatenate([[False], high[:-1]])
+    near = signal >= signal.max() - NEAR * extent
+    count = len(np.unique(np.cumsum(starts)[near]))
+    return count if count >= PEAKS else 0
+
+
+def plateaus_at_the_top(signal: Samples) -> int:
+    """Number of plateaus of equal samples at the top that are entered at speed; 0 below PLATEAUS."""
+    top = signal == signal.max()
+    if top.mean() > AT_REST:
+        return 0
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], top, [False]]).astype(np.int8)))
+    starts, ends = edges[::2], edges[1::2]
+    long = (ends - starts >= PLATEAU) & (starts > 0)
+    steps = np.abs(np.diff(signal))
+    moving = steps[steps > 0]
+    if not long.any() or not len(moving):
+        return 0
+    least = max(STEP * float(np.sqrt(np.mean(moving**2))), RESOLUTIONS * float(moving.min()))
+    entered = steps[starts[long] - 1] > least
+    count = int(np.count_nonzero(entered))
+    return count if count >= PLATEAUS else 0

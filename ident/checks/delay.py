@@ -1,0 +1,122 @@
+"""A whole sample or more between command and displacement that the dynamics do not explain."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.checks.finding import Finding
+from ident.checks.local_response import LocalResponse, local_response
+from ident.checks.response import Response
+from ident.matrix import Run, Samples
+
+POLES = 4  # of the chain: valve, pressure, mass
+SEARCHED = 24.0  # samples either way
+STEP = 0.5  # samples
+ITERATIONS = 4  # of the weights; the poles hardly move after three
+POWER = 0.98  # of the command, whose band is looked at
+NEAR = 1.25  # times the best misfit: what fits as well cannot be told from it
+FLOOR = 0.002  # misfit, relative: below, differences are those of the method
+WIDEST = 3.0  # samples between the first and the last delay that fit
+LEAST = 0.75  # samples; the scatter of the estimate at 5 % noise is below 0.3
+APART = 0.75  # samples between one run and the middle of all
+
+
+@dataclass(frozen=True)
+class Delay:
+    """Samples by which the output lags a model of POLES poles, and the range of delays that fit about as well."""
+
+    samples: float
+    shortest: float
+    longest: float
+
+    @property
+    def told(self) -> bool:
+        """True where the run determines its delay."""
+        return self.longest - self.shortest <= WIDEST
+
+
+def delays(measured: list[tuple[Run, Response | None]]) -> Iterator[Finding]:
+    """A displacement ahead of any model, a run apart from the others, or a delay that all runs share."""
+    found = [(run, estimate) for run, response in measured if (estimate := delay(run, response)) is not None]
+    told = [estimate.samples for _, estimate in found if estimate.told]
+    middle = float(np.median(told)) if told else 0.0
+    if abs(middle) >= LEAST and len(told) > 1:
+        yield Finding(None, "doubt", "delay", f"displacement {lags(middle)} in {len(told)} runs alike{remedy(middle)}")
+    for run, estimate in found:
+        if estimate.told and len(told) > 2 and abs(estimate.samples - middle) >= APART:
+            text = (
+                f"displacement of run {run.id} {lags(estimate.samples)} where the runs in common show {middle:.1f}; "
+                "look for a shift between the channels of this run (rows, other recorder) or a wrong label"
+            )
+            yield Finding(run.id, "doubt", "skew", text)
+        elif estimate.told and len(told) == 1 and abs(estimate.samples) >= LEAST:
+            yield alone(run, estimate.samples)
+        elif not estimate.told and estimate.longest <= -LEAST:
+            yield alone(run, estimate.longest)
+
+
+def alone(run: Run, samples: float) -> Finding:
+    """The finding for one run that is judged by itself."""
+    return Finding(run.id, "doubt", "delay", f"displacement of run {run.id} {lags(samples)}{remedy(samples)}")
+
+
+def lags(samples: float) -> str:
+    """A delay in words."""
+    word = "lags" if samples > 0 else "leads"
+    return f"{word} the command by {abs(samples):.1f} samples beyond what {POLES} poles explain"
+
+
+def remedy(samples: float) -> str:
+    """What to do about a delay."""
+    if samples < 0:
+        return ", which no actuator can; the channels are shifted or exchanged: correct columns or rows"
+    return (
+        "; channels sampled one after another, a filter, or a delay of the controller: shift it out or add the effect"
+    )
+
+
+def delay(run: Run, response: Response | None) -> Delay | None:
+    """The delay T of the best H(f) = exp(-i w T) / (a0 + a1 s + ... + a4 s^4); None where there is nothing to fit.
+
+    An actuator lags its command by tens of samples, which its poles explain; T is what is left.
+    """
+    if response is None or run.output != "displacement" or run.time_unit != "s" or run.kind in ("sine", "frequency"):
+        return None
+    measured = local_response(run.command, run.measured, run.sample_rate, response.below(POWER))
+    if measured is None or not np.all(measured.scatter > 0):
+        return None
+    trial = np.arange(-SEARCHED, SEARCHED + STEP / 2, STEP)
+    cost = misfits(measured, trial / run.sample_rate)
+    best = int(np.argmin(cost))
+    near = np.flatnonzero(cost <= NEAR * cost[best] + FLOOR)
+    return Delay(lowest(trial, cost, best), float(trial[near[0]]), float(trial[near[-1]]))
+
+
+def lowest(trial: Samples, cost: Samples, best: int) -> float:
+    """The lowest point of the parabola through the squares of the best cost and its neighbours."""
+    if not 0 < best < len(trial) - 1:
+        return float(trial[best])
+    left, middle, right = cost[best - 1 : best + 2] ** 2
+    curve = left - 2 * middle + right
+    return float(trial[best] + STEP * 0.5 * (left - right) / curve) if curve > 0 else float(trial[best])
+
+
+def misfits(measured: LocalResponse, seconds: Samples) -> Samples:
+    """Weighted relative error of the best all-pole model with each delay (T,), by iterated linear least squares."""
+    s = 1j * measured.frequency / measured.frequency[-1]
+    h = measured.gain * np.exp(2j * np.pi * measured.frequency * seconds[:, None])  # (T, F)
+    weight = 1 / np.maximum(measured.scatter, FLOOR * np.abs(measured.gain))
+    basis = s[:, None] ** np.arange(POLES + 1)
+    inverse: NDArray[np.complex128] = 1 / h
+    for _ in range(ITERATIONS):
+        scale = weight / np.abs(inverse)
+        system = (scale * h)[:, :, None] * basis  # (T, F, POLES + 1)
+        normal = np.real(system.conj().transpose(0, 2, 1) @ system)
+        wanted = np.real(system.conj().transpose(0, 2, 1) @ scale[:, :, None])
+        inverse = (basis @ (np.linalg.pinv(normal, rcond=1e-14, hermitian=True) @ wanted))[:, :, 0]
+    cost: Samples = np.linalg.norm(weight * (h - 1 / inverse), axis=1) / np.linalg.norm(weight * h, axis=1)
+    return cost

@@ -1,0 +1,41 @@
+"""A channel that stood still while the other moved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ident.checks.finding import Finding
+from ident.matrix import Run, Samples
+
+SECONDS = 0.05  # longer than any rest of a rounded signal in a band of tens of Hz
+SAMPLES = 32
+MOVED = 0.5  # of the other channel's standard deviation, from end to end of its range meanwhile
+
+
+def flat(run: Run) -> Iterator[Finding]:
+    """The longest part in which command or output repeats one value exactly while the other one moves."""
+    if "command" not in run.channels or run.units.get("command") == "A":
+        return
+    least = max(SAMPLES, int(SECONDS * run.sample_rate) if run.time_unit == "s" else SAMPLES)
+    for name, other in ((run.output, "command"), ("command", run.output)):
+        first, end = longest_rest(run.channels[name])
+        moved = run.channels[other][first:end]
+        if name == "command" and (run.kind != "blwn" or first == 0 or end == run.length):
+            continue  # a command may rest, before and after a run in any case
+        if end - first < least or np.ptp(moved) < MOVED * run.channels[other].std():
+            continue
+        text = (
+            f"{name} of run {run.id} is flat from sample {first} to {end - 1} ({(end - first) / run.sample_rate:.3g} "
+            f"{run.time_unit}) while {other} moves; look for a stuck sensor or a filled gap and cut it out with rows"
+        )
+        yield Finding(run.id, "doubt", "flat", text)
+
+
+def longest_rest(signal: Samples) -> tuple[int, int]:
+    """The longest part [first, end) of equal samples."""
+    changes = np.flatnonzero(np.diff(signal) != 0) + 1
+    edges = np.concatenate([[0], changes, [len(signal)]])
+    longest = int(np.argmax(np.diff(edges)))
+    return int(edges[longest]), int(edges[longest + 1])

@@ -1,0 +1,87 @@
+"""Sign and size of the response at the lowest excited frequencies, where a position loop follows its command."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import degrees, log
+
+import numpy as np
+
+from ident.checks.finding import Finding
+from ident.checks.response import Response, response
+from ident.matrix import Run
+
+BAND = (0.01, 0.2)  # of the command's power
+RELATED = 0.3  # mean coherence; far above the 0.12 that chance makes of 8 frames
+TURNED = 120.0  # degrees; the loop lags by less than 90 there
+LARGE, SMALL = 2.0, 1 / 7  # a closed position loop gives 0.5 to 1.2; stiff specimens and leakage lower it
+FACTORS = {2.54: "in for cm", 10.0: "cm for mm", 25.4: "in for mm", 100.0: "m for cm", 1000.0: "m for mm"}
+NEAR = 1.3  # either way: the loop's own gain is not 1
+NARROW = ("sine", "frequency")  # one frequency, at which a loop may well have turned by 180 degrees
+
+
+def gain(run: Run, measured: Response | None) -> Iterator[Finding]:
+    """Wrong sign, a factor of a wrong unit, or no relation at all between command and displacement."""
+    same = run.output == "displacement" and run.units.get("command") == "m"
+    if not same or measured is None or run.kind in NARROW:
+        return
+    lowest = measured.between(*BAND)
+    if measured.coherence[measured.between(0.01, 0.9)].mean() < RELATED:
+        yield unrelated(run, float(measured.coherence[measured.between(0.01, 0.9)].mean()))
+        return
+    value = complex(measured.uy[lowest].sum() / measured.uu[lowest].sum())
+    turn = degrees(abs(np.angle(value)))
+    if turn > TURNED:
+        text = (
+            f"displacement of run {run.id} moves against the command ({turn:.0f} degrees at {where(measured)}); "
+            "set invert: true on the channel whose sign is wrong"
+        )
+        yield Finding(run.id, "doubt", "sign", text)
+    if not SMALL < abs(value) < LARGE:
+        text = (
+            f"displacement of run {run.id} is {abs(value):.3g} times the command at {where(measured)}"
+            f"{guess(abs(value))}; correct the unit or scale of the channel"
+        )
+        yield Finding(run.id, "doubt", "unit", text)
+
+
+def unrelated(run: Run, coherence: float) -> Finding:
+    """The finding for two channels that have nothing to do with each other."""
+    text = (
+        f"displacement of run {run.id} hardly follows the command (coherence {coherence:.2f} where it is excited); "
+        "check that both columns are the right ones and of this run"
+    )
+    return Finding(run.id, "doubt", "unrelated", text)
+
+
+def where(measured: Response) -> str:
+    """The band that was looked at, in words."""
+    return f"{measured.below(BAND[0]):.2g}-{measured.below(BAND[1]):.2g} Hz"
+
+
+def guess(ratio: float) -> str:
+    """The wrong unit that makes such a ratio, in words; nothing where none does."""
+    size = max(ratio, 1 / ratio)
+    factor = min(FACTORS, key=lambda each: abs(log(size / each)))
+    return f", near {factor:g}, as if {FACTORS[factor]}" if abs(log(size / factor)) < log(NEAR) else ""
+
+
+def force_sign(run: Run) -> Iterator[Finding]:
+    """Force against what the specimen needs, k x + c v + m a, where both are known."""
+    specimen, force = run.specimen, run.channels.get("force")
+    if specimen is None or force is None or run.units.get("displacement") != "m" or run.units.get("force") != "N":
+        return
+    measured = response(run.channels["displacement"], force, run.sample_rate)
+    if measured is None or measured.coherence[measured.between(0.01, 0.9)].mean() < RELATED:
+        return
+    omega = 2 * np.pi * measured.frequency
+    needed = specimen.stiffness + 1j * omega * specimen.damping - omega**2 * specimen.mass
+    used = measured.between(0.01, 0.9)
+    agreement = float(np.real(np.sum((needed.conj() * measured.uy)[used])))
+    power = float(np.sum((np.abs(needed) ** 2 * measured.uu)[used]))
+    if agreement < -0.3 * power:
+        text = (
+            f"force of run {run.id} is {agreement / power:.2g} times what its specimen needs: the sign is wrong; "
+            "set invert: true on force, which is positive on the specimen along +x"
+        )
+        yield Finding(run.id, "doubt", "force-sign", text)

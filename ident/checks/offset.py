@@ -1,0 +1,27 @@
+"""A constant difference between command and displacement."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ident.checks.finding import Finding
+from ident.matrix import Run
+
+SMALL = 0.05  # of the displacement's standard deviation; as large as the error that a good model leaves
+LARGE = 1.0
+
+
+def offset(run: Run) -> Iterator[Finding]:
+    """The difference of means over the standard deviation, to which eq. (17) is blind."""
+    if run.output != "displacement" or run.units.get("command") != "m" or run.units.get("displacement") != "m":
+        return
+    difference = float(run.measured.mean() - run.command.mean())
+    share = abs(difference) / float(run.measured.std())
+    if share <= SMALL:
+        return
+    remedy = "zero the sensor or state offset" if share > LARGE else "a null bias, a static load or a sensor's zero"
+    text = (
+        f"displacement of run {run.id} lies {difference:.3g} m beside the command, {share:.2g} times its standard "
+        f"deviation; the error of eq. (17) does not see it: {remedy}"
+    )
+    yield Finding(run.id, "doubt" if share > LARGE else "note", "offset", text)

@@ -1,0 +1,37 @@
+"""Values that the stated machine cannot reach."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ident.checks.finding import Finding
+from ident.matrix import Actuator, Run
+
+PRESSURES = ("load_pressure", "pressure_a", "pressure_b")
+MARGIN = 1.1  # pressure peaks above the supply; a stroke is printed with its cushions
+
+
+def ranges(run: Run, actuator: Actuator) -> Iterator[Finding]:
+    """Travel beyond the stroke, pressure beyond the supply."""
+    travel = run.channels.get("displacement")
+    if actuator.stroke is not None and travel is not None and run.units.get("displacement") == "m":
+        extent = float(np.ptp(travel))
+        if extent > MARGIN * actuator.stroke:
+            text = (
+                f"displacement of run {run.id} travels {extent:.3g} m where the stroke is {actuator.stroke:.3g} m; "
+                "correct the unit of the channel or the stroke"
+            )
+            yield Finding(run.id, "fault", "beyond-stroke", text)
+    for name in PRESSURES:
+        pressure = run.channels.get(name)
+        if actuator.supply_pressure is None or pressure is None or run.units.get(name) != "Pa":
+            continue
+        highest = float(np.abs(pressure).max())
+        if highest > MARGIN * actuator.supply_pressure:
+            text = (
+                f"{name} of run {run.id} reaches {highest:.3g} Pa where the supply is {actuator.supply_pressure:.3g} "
+                "Pa; correct the unit of the channel or supply_pressure"
+            )
+            yield Finding(run.id, "doubt", "beyond-supply", text)

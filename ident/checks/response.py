@@ -1,0 +1,82 @@
+"""The frequency response of a run as a check needs it: rough, quick, with its coherence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+
+from ident.matrix import Run, Samples
+
+LONGEST_FRAME = 8192
+FRAMES = 8  # at least: with fewer, chance alone makes a coherence of 0.4
+SHORTEST_FRAME = 16
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """Averages over Hann frames of half overlap, each frame without its mean.
+
+    `frequency` (F,) in Hz (or 1/sample) without 0; power of command `uu` and output `yy`, cross power `uy`, each (F,).
+    Good enough to see a sign, a factor or a whole sample; the fit uses the exact spectra of :mod:`ident.spectra`.
+    """
+
+    frequency: Samples
+    uu: Samples
+    yy: Samples
+    uy: NDArray[np.complex128]
+    frames: int
+
+    @cached_property
+    def gain(self) -> NDArray[np.complex128]:
+        """H = uy / uu, (F,)."""
+        return self.uy / self.uu
+
+    @cached_property
+    def coherence(self) -> Samples:
+        """|uy|² / (uu yy), (F,), between 0 and 1."""
+        value: Samples = np.abs(self.uy) ** 2 / (self.uu * self.yy)
+        return value
+
+    def below(self, share: float) -> float:
+        """The frequency below which this share of the command's power lies."""
+        power = np.cumsum(self.uu)
+        return float(self.frequency[int(np.searchsorted(power, share * power[-1]))])
+
+    def between(self, low: float, high: float) -> NDArray[np.bool_]:
+        """The frequencies that carry the command's power from the share `low` to the share `high`."""
+        return (self.frequency >= self.below(low)) & (self.frequency <= self.below(high))
+
+
+def respond(run: Run) -> Response | None:
+    """The response from command to output; None where there is no command or the record is too short to average."""
+    if "command" not in run.channels:
+        return None
+    return response(run.command, run.measured, run.sample_rate)
+
+
+def response(u: Samples, y: Samples, sample_rate: float) -> Response | None:
+    """The response from u (n,) to y (n,); None for a record that is too short to average."""
+    length = min(LONGEST_FRAME, 1 << max(len(u) // (FRAMES // 2 + 1), 1).bit_length() - 1)
+    if length < SHORTEST_FRAME:
+        return None
+    window = np.hanning(length + 1)[:-1]
+    one, two = (spectra(signal, window) for signal in (u, y))
+    frequency: Samples = np.arange(1, length // 2 + 1) * (sample_rate / length)
+    uu, yy = power(one), power(two)
+    return Response(frequency, uu, yy, (one.conj() * two).mean(axis=0), len(one))
+
+
+def spectra(signal: Samples, window: Samples) -> NDArray[np.complex128]:
+    """The spectrum of each frame without its mean, (frames, F), frequency 0 left out."""
+    frames = sliding_window_view(signal, len(window))[:: len(window) // 2]
+    return np.asarray(np.fft.rfft((frames - frames.mean(axis=1, keepdims=True)) * window, axis=1)[:, 1:])
+
+
+def power(frames: NDArray[np.complex128]) -> Samples:
+    """The mean power of the frames, (F,), never 0 so that it may divide."""
+    mean: Samples = np.asarray((np.abs(frames) ** 2).mean(axis=0) + np.finfo(float).tiny, np.float64)
+    return mean
