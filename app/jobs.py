@@ -17,6 +17,7 @@ from app.settings import Settings
 QUEUE = "fits"
 # Pinned: by default the engine derives it from the code, and jobs queued before an upgrade would wait for ever.
 WORKFLOWS = "1"
+_PATIENCE = 2  # s for a step to end by itself when the service stops
 State = dict[str, Any]
 
 
@@ -90,9 +91,11 @@ class Jobs:
             DBOS.enqueue_workflow(QUEUE, self.workflow, job)
 
     def stop(self) -> None:
-        """Stop the engine; what runs is taken up at the next start."""
+        """Stop the engine; what runs is taken up at the next start, as after a kill."""
         self.running = False
-        DBOS.destroy(destroy_registry=True)
+        # A step that is cut off here would be logged as an error, with a traceback that means nothing to a user.
+        logging.getLogger("dbos").setLevel(logging.CRITICAL + 1)
+        DBOS.destroy(destroy_registry=True, workflow_completion_timeout_sec=_PATIENCE)
 
 
 def _workflow(work: Work) -> Any:

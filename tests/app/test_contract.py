@@ -30,6 +30,23 @@ def test_fuzzed_requests_stay_within_the_document(service: TestClient, matrix: s
     assert tried >= 18
 
 
+def _attempts(service: TestClient, operation: schemathesis.APIOperation, matrix: str) -> Callable[[], None]:
+    @settings(max_examples=EXAMPLES, deadline=None, derandomize=True, database=None,
+              suppress_health_check=list(HealthCheck))  # fmt: skip
+    @given(st.data())
+    def attempt(data: st.DataObject) -> None:
+        case = data.draw(operation.as_strategy())
+        if case.path_parameters and "matrix" in case.path_parameters:
+            case.path_parameters["matrix"] = data.draw(st.sampled_from([matrix, case.path_parameters["matrix"]]))
+        request = case.as_transport_kwargs(base_url="http://127.0.0.1:8000")
+        request.pop("cookies", None)
+        headers = {**(request.pop("headers", None) or {}), "Authorization": service.headers["Authorization"]}
+        answer = service.request(**request, headers=headers)
+        case.validate_response(answer, checks=CHECKS)
+
+    return attempt
+
+
 @pytest.mark.parametrize(
     "path", ["/api/v1/nothing", "/api/v1/fits/%00", "/api/v1/jobs/%F0%9F%98%80", "/api/v1/fits/a/b"]
 )

@@ -117,13 +117,13 @@ def test_the_same_key_is_answered_once(service: TestClient, matrix: str) -> None
 def test_a_fit_that_cannot_be_is_refused_before_it_is_queued(
     service: TestClient, matrix: str, change: dict[str, object], code: str | None
 ) -> None:
-    before = service.get("/api/v1/jobs?limit=1").json()["items"]
+    before = service.get("/api/v1/jobs?limit=1").json()["items"][0]["id"]
     answer = service.post("/api/v1/fits", json={"matrix": matrix} | change)
     assert answer.status_code == 422
     assert answer.headers["content-type"] == "application/problem+json"
     assert answer.json()["remedy"]
     assert code is None or answer.json()["code"] == code
-    assert service.get("/api/v1/jobs?limit=1").json()["items"] == before
+    assert service.get("/api/v1/jobs?limit=1").json()["items"][0]["id"] == before
 
 
 def test_models_come_with_their_mathematics(service: TestClient) -> None:

@@ -80,7 +80,7 @@ def test_a_killed_fit_ends_bit_identical_and_once(tmp_path: Path, kills: int) ->
     service = Service(tmp_path / "data")
     try:
         matrix = service.client.post("/matrices", files={"files": ("a.zip", zipped())}).json()["id"]
-        body = {"matrix": matrix, "options": {"generations": 120}}
+        body = {"matrix": matrix, "options": {"generations": 40}}
         undisturbed = service.client.post("/fits", json=body).json()["id"]
         started = time.monotonic()
         assert service.ended(undisturbed)["state"] == "succeeded"
