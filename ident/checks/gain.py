@@ -11,12 +11,13 @@ from ident.checks.finding import Finding
 from ident.checks.response import Response, response
 from ident.matrix import Run
 
-BAND = (0.01, 0.2)  # of the command's power
+BAND = (0.0, 0.1)  # of the command's power
 RELATED = 0.3  # mean coherence; far above the 0.12 that chance makes of 8 frames
 TURNED = 120.0  # degrees; the loop lags by less than 90 there
 LARGE, SMALL = 2.0, 1 / 7  # a closed position loop gives 0.5 to 1.2; stiff specimens and leakage lower it
 FACTORS = {2.54: "in for cm", 10.0: "cm for mm", 25.4: "in for mm", 100.0: "m for cm", 1000.0: "m for mm"}
-NEAR = 1.3  # either way: the loop's own gain is not 1
+USUAL = 0.8  # gain of a position loop near the lowest frequencies of its band
+NEAR = 1.6  # either way; half the distance from 10 to 25.4
 NARROW = ("sine", "frequency")  # one frequency, at which a loop may well have turned by 180 degrees
 
 
@@ -61,7 +62,7 @@ def where(measured: Response) -> str:
 
 def guess(ratio: float) -> str:
     """The wrong unit that makes such a ratio, in words; nothing where none does."""
-    size = max(ratio, 1 / ratio)
+    size = ratio / USUAL if ratio > 1 else USUAL / ratio
     factor = min(FACTORS, key=lambda each: abs(log(size / each)))
     return f", near {factor:g}, as if {FACTORS[factor]}" if abs(log(size / factor)) < log(NEAR) else ""
 

@@ -78,5 +78,5 @@ def spectra(signal: Samples, window: Samples) -> NDArray[np.complex128]:
 
 def power(frames: NDArray[np.complex128]) -> Samples:
     """The mean power of the frames, (F,), never 0 so that it may divide."""
-    mean: Samples = np.asarray((np.abs(frames) ** 2).mean(axis=0) + np.finfo(float).tiny, np.float64)
-    return mean
+    mean: Samples = np.asarray((np.abs(frames) ** 2).mean(axis=0), np.float64)
+    return mean + float(np.finfo(float).tiny)

@@ -1,0 +1,250 @@
+"""One fault in a healthy matrix gives one finding, with the right code and run, and nothing else does."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ident.check import check, describe
+from ident.checks.delay import delay
+from ident.checks.response import respond
+from ident.matrix import Matrix
+from ident.readers import read_matrix
+
+from .conftest import SPECIMENS, displacement_of, noise_of
+
+
+def test_a_healthy_matrix_raises_nothing(healthy):
+    assert check(healthy) == ()
+
+
+@pytest.mark.parametrize(("channel", "flip"), [("command", 1), ("displacement", 1), ("displacement", -1)])
+def test_a_clipped_channel_is_found(faulty, channel, flip):
+    samples = flip * faulty.matrix.runs[3].channels[channel]
+    clipped = flip * np.minimum(samples, 1.5 * samples.std())
+    found = faulty.channel(3, channel, clipped)
+    assert found.found()["run-3", "clipping"] == "doubt"
+    assert channel in found.text("clipping")
+    assert {run for run, code in found.found() if code == "clipping"} == {"run-3"}
+
+
+def test_a_clipped_sine_is_found_and_a_whole_one_is_not_even_when_rounded(faulty):
+    time = np.arange(8192) / 4096
+    sine = np.round(0.00127 * np.sqrt(2) * np.sin(2 * np.pi * 3 * time), 6)
+    for share, expected in ((1.0, False), (0.8, True)):
+        top = share * sine.max()
+        found = faulty.channel(0, "command", np.clip(sine, -top, top)).run(0, kind="sine").found()
+        assert (("run-0", "clipping") in found) is expected
+
+
+def test_a_displacement_that_stands_still_is_found(faulty):
+    samples = faulty.matrix.runs[2].measured.copy()
+    samples[3000:3600] = samples[3000]
+    found = faulty.channel(2, "displacement", samples)
+    assert found.found()["run-2", "flat"] == "doubt"
+    assert "from sample 3000 to 3599" in found.text("flat")
+
+
+def test_a_command_that_stands_still_is_found_inside_a_run_but_not_at_its_ends(faulty):
+    samples = faulty.matrix.runs[2].command.copy()
+    samples[3000:3600] = samples[3000]
+    assert ("run-2", "flat") in faulty.channel(2, "command", samples).found()
+    resting = faulty.matrix.runs[2].command.copy()
+    resting[:600] = resting[0]
+    assert ("run-2", "flat") not in faulty.channel(2, "command", resting).found()
+
+
+def test_gaps_and_jitter_are_told(faulty):
+    assert faulty.run(1, gaps=3).found() == {("run-1", "gaps"): "doubt"}
+    assert "3 samples are missing" in faulty.run(1, gaps=3).text("gaps")
+    assert faulty.run(1, clock_jitter=0.7).found() == {("run-1", "clock-jitter"): "doubt"}
+    assert faulty.run(1, clock_jitter=0.3).found() == {("run-1", "clock-jitter"): "note"}
+    assert faulty.run(1, clock_jitter=0.05).found() == {}
+
+
+@pytest.mark.parametrize("channel", ["command", "displacement"])
+def test_a_wrong_sign_is_found(faulty, channel):
+    found = faulty.channel(4, channel, -faulty.matrix.runs[4].channels[channel])
+    assert [place for place, severity in found.found().items() if severity != "note"] == [("run-4", "sign")]
+    assert "moves against the command" in found.text("sign")
+
+
+@pytest.mark.parametrize(("ratio", "found"), [(0.85, True), (0.93, False), (1.06, False), (1.15, True)])
+def test_an_rms_that_disagrees_with_the_stated_amplitude_is_found(faulty, ratio, found):
+    assert (("run-5", "amplitude") in faulty.run(5, amplitude=0.00127 / ratio).found()) is found
+
+
+@pytest.mark.parametrize("factor", [10.0, 25.4, 1000.0, 0.1, 1 / 25.4, 0.001])
+def test_a_wrong_unit_is_named(faulty, factor):
+    label = faulty.run(5, amplitude=0.00127 * factor)
+    assert label.found() == {("run-5", "unit"): "doubt"}
+    displacement = faulty.channel(5, "displacement", factor * faulty.matrix.runs[5].measured)
+    assert displacement.found()["run-5", "unit"] == "doubt"
+    named = f"near {max(factor, 1 / factor):g}"
+    assert named in label.text("unit")
+    assert named in displacement.text("unit")
+
+
+@pytest.mark.parametrize("shift", [-20, -3, -1, 1, 3])
+def test_a_run_whose_channels_are_shifted_by_whole_samples_is_found(faulty, shift):
+    run = faulty.matrix.runs[7]
+    command, displacement = run.command[30:-30], run.measured[30 - shift : len(run.measured) - 30 - shift]
+    found = faulty.run(7, channels={"command": command, "displacement": displacement}).found()
+    assert found == {("run-7", "skew"): "doubt"}
+
+
+@pytest.mark.parametrize("shift", [-2, 2])
+def test_a_shift_of_all_runs_is_found_although_an_actuator_lags_by_itself(faulty, shift):
+    runs = [
+        replace(
+            run,
+            channels={
+                "command": run.command[30:-30],
+                "displacement": run.measured[30 - shift : len(run.measured) - 30 - shift],
+            },
+        )
+        for run in faulty.matrix.runs
+    ]
+    found = {(each.run, each.code): each for each in check(replace(faulty.matrix, runs=tuple(runs)))}
+    assert list(found) == [(None, "delay")]
+    assert f"{abs(shift)}.0 samples" in found[None, "delay"].text
+    assert ("leads" if shift < 0 else "lags") in found[None, "delay"].text
+
+
+def test_the_estimated_delay_of_a_healthy_run_is_a_small_part_of_a_sample(healthy):
+    for run in healthy.runs:
+        estimate = delay(run, respond(run))
+        assert estimate is not None
+        assert estimate.told
+        assert abs(estimate.samples) < 0.2
+
+
+@pytest.mark.parametrize("edge", [20.0, 45.0, 150.0])
+def test_noise_of_another_band_is_found(faulty, edge):
+    command = noise_of(np.random.default_rng(50), edge, 0.00127)
+    moved = displacement_of(command, SPECIMENS[0], 5.0)
+    found = faulty.channel(0, "command", command).matrix
+    changed = type(faulty)(found).channel(0, "displacement", moved)
+    assert changed.found()["run-0", "band"] == "doubt"
+    assert ("run-0", "band") not in changed.run(0, kind="other").found()
+
+
+def test_a_sample_rate_too_low_for_the_band_is_found(faulty):
+    command = noise_of(np.random.default_rng(51), 80.0, 0.00127, 400.0)
+    moved = displacement_of(command, SPECIMENS[0], 5.0, 400.0)
+    found = faulty.run(0, sample_rate=400.0, channels={"command": command, "displacement": moved}).found()
+    assert found["run-0", "sample-rate"] == "doubt"
+
+
+def test_the_column_of_another_run_is_found(faulty):
+    found = faulty.channel(6, "displacement", faulty.matrix.runs[4].measured[::-1].copy()).found()
+    assert found["run-6", "unrelated"] == "doubt"
+
+
+def test_the_same_samples_under_two_names_are_found(faulty):
+    twin = faulty.run(1, channels=faulty.matrix.runs[0].channels).found()
+    assert twin["run-1", "duplicate-run"] == "doubt"
+    verifies = faulty.run(2, channels=faulty.matrix.runs[0].channels).found()
+    assert verifies["run-2", "duplicate-run"] == "fault"
+
+
+def test_the_same_conditions_twice_are_a_repeat_and_no_doubt(faulty):
+    again = faulty.run(1, gain=5.0)
+    assert again.found()[None, "repeat"] == "note"
+    assert "run-0 and run-1" in again.text("repeat")
+
+
+def test_missing_runs_to_verify_and_to_fit_are_found(faulty):
+    assert faulty.all_runs(use="fit").found() == {(None, "no-verify-runs"): "doubt"}
+    assert faulty.all_runs(use="verify").found() == {(None, "no-fit-runs"): "fault"}
+
+
+def test_what_is_not_stated_is_said_with_what_follows(faulty):
+    matrix = replace(faulty.matrix, actuator=replace(faulty.matrix.actuator, piston_area=None))
+    open_ended = type(faulty)(matrix).all_runs(gain=None, specimen=None, amplitude=None)
+    codes = {code for _, code in open_ended.found()}
+    assert codes == {"no-piston-area", "no-gain", "no-specimen", "one-condition"}
+    assert set(open_ended.found().values()) == {"note"}
+    assert "Z0/A^2" in open_ended.text("no-piston-area")
+    assert "run-0, run-1, run-2 and 6 more" in open_ended.text("no-gain")
+
+
+def test_a_verification_outside_the_gains_of_the_fit_is_said(faulty):
+    assert faulty.run(2, gain=12.0, use="verify").found()["run-2", "extrapolation"] == "note"
+
+
+@pytest.mark.parametrize(("share", "severity"), [(0.02, None), (0.2, "note"), (3.0, "doubt")])
+def test_an_offset_is_said(faulty, share, severity):
+    samples = faulty.matrix.runs[0].measured
+    found = faulty.channel(0, "displacement", samples + share * samples.std()).found()
+    assert found.get(("run-0", "offset")) == severity
+
+
+def test_a_force_against_its_specimen_is_found(faulty):
+    run = faulty.matrix.runs[0]
+    x = displacement_of(run.command, SPECIMENS[0], 5.0)
+    acceleration = np.gradient(np.gradient(x)) * run.sample_rate**2
+    force = SPECIMENS[0].stiffness * x + SPECIMENS[0].mass * acceleration
+    assert faulty.channel(0, "force", force, "N").found() == {}
+    assert faulty.channel(0, "force", -force, "N").found() == {("run-0", "force-sign"): "doubt"}
+
+
+def test_values_that_the_machine_cannot_reach_are_found(faulty):
+    matrix = replace(faulty.matrix, actuator=replace(faulty.matrix.actuator, stroke=0.001, supply_pressure=2e7))
+    pressure = 3e7 * np.sin(np.arange(8192.0))
+    found = type(faulty)(matrix).channel(0, "load_pressure", pressure, "Pa").found()
+    assert found["run-0", "beyond-stroke"] == "fault"
+    assert found["run-0", "beyond-supply"] == "doubt"
+
+
+def test_faults_come_first(faulty):
+    severities = [finding.severity for finding in check(faulty.all_runs(use="verify", gaps=1).matrix)]
+    assert severities == ["fault"] + ["doubt"] * 9
+
+
+def test_every_finding_is_a_line_that_names_its_run(faulty):
+    found = check(faulty.all_runs(gaps=1, clock_jitter=0.9, amplitude=1.0, use="fit").matrix)
+    assert len(found) > 20
+    for finding in found:
+        assert "\n" not in finding.text
+        assert finding.run is None or finding.run in finding.text
+
+
+def test_very_short_and_unitless_records_are_checked_without_error(healthy):
+    for length in (8, 16, 40, 300):
+        runs = [
+            replace(run, channels={name: values[:length] for name, values in run.channels.items()})
+            for run in healthy.runs
+        ]
+        check(replace(healthy, runs=tuple(runs)))
+    for output in ("1", "m"):
+        run = replace(
+            healthy.runs[0], units={"command": "1", "displacement": output}, time_unit="sample", sample_rate=1.0
+        )
+        check(Matrix(healthy.actuator, (run,)))
+
+
+def test_the_summary_counts_what_is_there(healthy):
+    summary = describe(healthy)
+    assert (summary.serial, summary.fit_runs, summary.verify_runs, summary.specimens) == ("SW-1", 6, 3, 3)
+    assert summary.gains == (5.0, 6.0, 10.0)
+    assert summary.duration == 18.0
+    first = summary.runs[0]
+    assert (first.id, first.samples, first.duration, first.mass) == ("run-0", 8192, 2.0, 0.87)
+    assert first.rms["command"] == pytest.approx(0.00127)
+    unknown = replace(healthy, runs=(replace(healthy.runs[0], specimen=None, time_unit="sample"),))
+    assert describe(unknown).duration is None
+    assert describe(unknown).runs[0].mass is None
+
+
+def test_measured_records_raise_no_doubt(measured_data):
+    for name in ("mts_actuator", "emps", "crane_actuator"):
+        found = check(read_matrix(measured_data / name))
+        assert [finding for finding in found if finding.severity != "note"] == [], name
+
+
+def test_the_offset_and_the_unknowns_of_the_measured_machine_are_noted(measured_data):
+    codes = {finding.code for finding in check(read_matrix(measured_data / "mts_actuator"))}
+    assert codes == {"offset", "no-piston-area", "no-gain", "no-specimen", "one-condition"}
