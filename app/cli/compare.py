@@ -55,15 +55,11 @@ def read_fit(path: Path) -> FitResult:
 
 def show(rows: list[tuple[str, str, float, float]], error: Any) -> None:
     """Print the error of every run and the means."""
-    from rich.console import Console
-
-    from app.cli.tables import percent, table
+    from app.cli.tables import output, percent, table
 
     lines = [(name, use, percent(of_run), percent(offset)) for name, use, of_run, offset in rows]
     lines += [("mean", use, percent(mean), "") for use, mean in error.items() if mean is not None]
-    Console(soft_wrap=True, highlight=False).print(
-        table(("run", "use", "error", "offset"), lines, numbers=("error", "offset"))
-    )
+    output().print(table(("run", "use", "error", "offset"), lines, numbers=("error", "offset")))
 
 
 def draw(matrix: Matrix, fit: FitResult, out: Path) -> None:

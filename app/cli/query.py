@@ -57,15 +57,15 @@ def limits(texts: list[str]) -> dict[str, str]:
 
 def show(sets: list[dict[str, Any]]) -> None:
     """Print the sets as a table."""
-    from rich.console import Console
+    from app.cli.tables import output, percent, table
 
-    from app.cli.tables import percent, table
-
-    header = ("serial", "model", "approved", "current", "error fit", "verify", "parameters")
+    header = ("serial", "fit", "model", "approved", "current", "error fit", "verify", "parameters")
     rows = []
     for one in sets:
         parameters = ", ".join(f"{name} {entry['value']:.4g}" for name, entry in one["parameters"].items())
         approved = (one["approved_at"] or "–")[:10]
         errors = (percent(one["error_fit"]), percent(one["error_verify"]))
-        rows.append((one["serial"], one["model"], approved, "yes" if one["current"] else "", *errors, parameters))
-    Console(soft_wrap=True, highlight=False).print(table(header, rows, numbers=("error fit", "verify")))
+        rows.append(
+            (one["serial"], one["id"], one["model"], approved, "yes" if one["current"] else "", *errors, parameters)
+        )
+    output().print(table(header, rows, numbers=("error fit", "verify")))

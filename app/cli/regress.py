@@ -41,15 +41,13 @@ def regress(
 
 def show(rechecks: list[Recheck]) -> None:
     """Print one line an actuator."""
-    from rich.console import Console
-
-    from app.cli.tables import table
+    from app.cli.tables import output, table
 
     if not rechecks:
         print("no parameter set is approved yet: nothing to recheck")
         return
     rows = [(one.serial, "same" if one.passed else "failed" if one.failure else "moved", told(one)) for one in rechecks]
-    Console(soft_wrap=True, highlight=False).print(table(("serial", "outcome", ""), rows, numbers=()))
+    output().print(table(("serial", "outcome", ""), rows, numbers=()))
 
 
 def told(one: Recheck) -> str:

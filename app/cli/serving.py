@@ -6,6 +6,7 @@ import socket
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from ident.errors import Unusable
@@ -31,10 +32,9 @@ def run(settings: Settings, once_ready: Callable[[], None]) -> None:
     from app.main import run as served
 
     threading.Thread(target=wait_and, args=(settings, once_ready), daemon=True).start()
-    try:
+    with suppress(KeyboardInterrupt):
         served(settings)
-    except KeyboardInterrupt:
-        print("stopped; unfinished jobs go on at the next start")
+    print("stopped; unfinished jobs go on at the next start")
 
 
 def wait_and(settings: Settings, act: Callable[[], None]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 
 from rich.console import Console
@@ -11,9 +12,14 @@ from rich.table import Table
 from ident.fit.result import Estimate, FitResult
 
 
+def output() -> Console:
+    """Standard output; where it is no terminal, lines are as long as they need to be."""
+    return Console(soft_wrap=True, highlight=False, width=None if sys.stdout.isatty() else 1000)
+
+
 def show_fit(result: FitResult) -> None:
     """Print a fit: parameters, errors, what the data determine and what they do not, notes."""
-    console = Console(soft_wrap=True, highlight=False)
+    console = output()
     header = ("parameter", "value", "std error", "unit", "")
     console.print(table(header, parameter_rows(result.parameters), numbers=("value", "std error")))
     uses = ("fit", "held out", "verify")

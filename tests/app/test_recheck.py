@@ -1,0 +1,44 @@
+"""What counts as moved when an approved fit is rechecked, and how it is reported."""
+
+from __future__ import annotations
+
+import math
+from xml.etree import ElementTree
+
+import pytest
+
+from app.regress.junit import junit
+from app.regress.recheck import Change, Recheck
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "relative"),
+    [(2.0, 2.0, 0.0), (2.0, 2.1, 0.05), (-2.0, -2.1, 0.05), (0.0, 1e-9, math.inf), (1.0, math.nan, math.inf)],
+)
+def test_a_change_is_relative_to_what_was_approved(before, after, relative):
+    """A number that is no longer one has moved infinitely far."""
+    assert Change("Z0", before, after).relative == pytest.approx(relative)
+
+
+def test_only_changes_beyond_the_tolerance_have_moved():
+    """One in a thousand passes a tolerance of one in a hundred, and not one of one in ten thousand."""
+    changes = (Change("error fit", 0.01, 0.01001), Change("Z0", 2e-6, 2e-6))
+    assert Recheck("SW-1", "f", changes, 1e-2, 1.0).passed
+    moved = Recheck("SW-1", "f", changes, 1e-4, 1.0)
+    assert not moved.passed
+    assert [change.quantity for change in moved.moved] == ["error fit"]
+
+
+def test_the_junit_file_counts_failures_and_errors_apart():
+    """Moved is a failure, unreadable an error; any text of a serial number is well-formed XML."""
+    same = Recheck("SW-1", "a", (Change("Z0", 1.0, 1.0),), 1e-3, 1.0)
+    moved = Recheck("SW-2 <&\x00", "b", (Change("Z0", 1.0, 2.0),), 1e-3, 1.0)
+    broken = Recheck("SW-3", "c", (), 1e-3, 0.0, "its matrix cannot be read")
+    suite = ElementTree.fromstring(junit([same, moved, broken]))
+    assert {name: suite.get(name) for name in ("tests", "failures", "errors")} == {
+        "tests": "3",
+        "failures": "1",
+        "errors": "1",
+    }
+    assert [case.get("name") for case in suite] == ["SW-1", "SW-2 <&", "SW-3"]
+    assert "Z0 1 → 2" in suite.find(".//failure").get("message")

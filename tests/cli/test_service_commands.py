@@ -1,0 +1,164 @@
+"""The commands that run the service, speak to it, and recheck what it stored."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+import httpx
+import pytest
+
+WAIT = 240  # s, for a machine that is busy with other things
+
+
+@dataclass(frozen=True)
+class Service:
+    """A running service, its start line and its data folder."""
+
+    said: str
+    data: Path
+    options: tuple[str, ...]
+
+    def get(self, path: str) -> dict:
+        """An answer of the interface."""
+        return self.call("GET", path)
+
+    def call(self, method: str, path: str, **content: object) -> dict:
+        """A request of the interface."""
+        headers = {"Authorization": f"Bearer {self.options[3]}"}
+        answer = httpx.request(method, f"{self.options[1]}/api/v1{path}", headers=headers, timeout=60, **content)
+        assert answer.is_success, answer.text
+        return answer.json()
+
+
+def started(*arguments: object) -> tuple[subprocess.Popen[str], str]:
+    """A command that serves, and the line with its address."""
+    environment = {name: value for name, value in os.environ.items() if name != "SERVOIDENT_TOKEN"}
+    process = subprocess.Popen(
+        [sys.executable, "-m", "app.cli", *map(str, arguments)], stdout=subprocess.PIPE, text=True, env=environment
+    )
+    assert process.stdout is not None
+    lines = []
+    for line in process.stdout:
+        lines.append(line)
+        if "token=" in line:
+            return process, line
+    raise AssertionError(f"no address in {lines}")
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory) -> Iterator[Service]:
+    """`servoident serve` in a process of its own."""
+    with socket.socket() as trial:
+        trial.bind(("127.0.0.1", 0))
+        port = trial.getsockname()[1]
+    data = tmp_path_factory.mktemp("data")
+    process, said = started("serve", "--port", port, "--data", data)
+    token = re.search(r"token=(\S+)", said)[1]
+    yield Service(said, data, ("--server", f"http://127.0.0.1:{port}", "--token", token))
+    process.send_signal(signal.SIGINT)
+    assert process.wait(WAIT) == 0
+
+
+@pytest.fixture(scope="module")
+def stored(service, servoident, matrix) -> dict:
+    """The simulated matrix, uploaded by the command."""
+    done = servoident("upload", matrix, *service.options, "--json", "-")
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+@pytest.fixture(scope="module")
+def fitted(service, stored) -> str:
+    """The id of a finished fit of it."""
+    job = service.call("POST", "/fits", json={"matrix": stored["id"], "set": {"m0": "4.25 kg"}})
+    deadline = time.monotonic() + WAIT
+    while job["state"] in ("queued", "running") and time.monotonic() < deadline:
+        time.sleep(0.2)
+        job = service.get(f"/jobs/{job['id']}")
+    assert job["state"] == "succeeded", job
+    return job["fit"]
+
+
+def test_serve_prints_an_address_on_this_machine_only(service):
+    """The loopback address, with a token."""
+    assert re.search(r"http://127\.0\.0\.1:\d+/\?token=\S{20,}", service.said)
+
+
+def test_an_uploaded_folder_is_the_matrix(stored, matrix):
+    """Every run arrived under its id."""
+    assert len(stored["runs"]) == 84
+    assert stored["serial"] == "SIM-0001"
+    assert (matrix / "runs" / f"{stored['runs'][0]['id']}.npz").exists()
+
+
+def test_the_same_folder_again_is_known_already(service, servoident, matrix, stored):
+    """Nothing is stored twice."""
+    done = servoident("upload", matrix, *service.options)
+    assert stored["id"] in done.stdout
+    assert "known already" in done.stdout
+
+
+def test_a_revision_is_a_new_matrix_with_the_mended_label(service, servoident, stored, tmp_path):
+    """The gain of one run is changed; the first matrix stays."""
+    run = stored["runs"][0]["id"]
+    (tmp_path / "changes.yaml").write_text(f"runs: {{{run}: {{gain: 9}}}}")
+    done = servoident("revise", stored["id"], tmp_path / "changes.yaml", *service.options)
+    assert done.returncode == 0, done.stderr
+    revised = service.get(f"/matrices/{done.stdout.split()[1]}")
+    assert revised["parent"] == stored["id"]
+    assert {one["id"]: one["gain"] for one in revised["runs"]}[run] == 9
+
+
+def test_an_approved_fit_is_what_a_query_finds_and_what_regress_rechecks(service, servoident, fitted, tmp_path):
+    """Approve, query by serial and range, recheck: the whole way of a parameter set."""
+    assert servoident("approve", fitted, *service.options).returncode == 0
+    told = servoident("query", "--serial", "SIM-0001", "--range", "Z0=2e-6:3e-6", *service.options, "--json", "-")
+    sets = json.loads(told.stdout)
+    assert [one["id"] for one in sets] == [fitted]
+    assert sets[0]["current"]
+    assert servoident("query", "--range", "Z0=3e-6:", *service.options, "--json", "-").stdout.strip() == "[]"
+    assert fitted in servoident("query", *service.options, "--csv", "-").stdout
+    assert fitted in servoident("query", *service.options).stdout
+
+    junit = tmp_path / "junit.xml"
+    done = servoident("regress", "--data", service.data, "--junit", junit)
+    assert done.returncode == 0, done.stdout + done.stderr
+    suite = ElementTree.parse(junit).getroot()
+    assert (suite.get("tests"), suite.get("failures"), suite.get("errors")) == ("1", "0", "0")
+
+
+def test_what_the_service_refuses_is_one_line_and_exit_2(service, servoident):
+    """Its problem document becomes the line."""
+    done = servoident("approve", "nothing", *service.options)
+    assert done.returncode == 2
+    assert done.stderr.startswith("servoident: fit: there is no fit 'nothing'")
+    assert done.stderr.count("\n") == 1
+
+
+def test_a_wrong_token_is_told(service, servoident):
+    """The remedy names the address that the service printed."""
+    done = servoident("query", "--server", service.options[1], "--token", "guessed")
+    assert done.returncode == 2
+    assert "token" in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def test_demo_identifies_a_simulated_actuator(tmp_path):
+    """The address is printed when the identification has begun; the serial number says what it is."""
+    process, said = started("demo", "--port", 8765, "--data", tmp_path)
+    server, token = re.search(r"(http://[\d.:]+)/\?token=(\S+)", said).groups()
+    jobs = Service(said, tmp_path, ("--server", server, "--token", token)).get("/jobs")
+    process.send_signal(signal.SIGINT)
+    assert process.wait(WAIT) == 0
+    assert [job["serial"] for job in jobs["items"]] == ["DEMO-0001"]
