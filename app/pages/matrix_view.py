@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from app.pages import numbers
@@ -31,6 +32,7 @@ class MatrixPageView:
     facts: tuple[tuple[str, str], ...]
     general: tuple[FindingView, ...]
     flagged: tuple[tuple[str, tuple[FindingView, ...]], ...]
+    remarks: tuple[FindingView, ...]
     notices: tuple[str, ...]
     runs: tuple[RunRow, ...]
 
@@ -43,8 +45,9 @@ def matrix_view(matrix: MatrixView) -> MatrixPageView:
         serial=matrix.serial,
         summary=_summary(matrix),
         facts=_facts(matrix),
-        general=tuple(entry for entry in matrix.findings if entry.run not in flagged),
-        flagged=tuple((run, entries) for run, entries in flagged.items() if entries),
+        general=tuple(entry for entry in matrix.findings if entry.run not in flagged and entry.severity != "note"),
+        flagged=_by_weight(flagged),
+        remarks=tuple(entry for entry in matrix.findings if entry.severity == "note"),
         notices=tuple(matrix.notices),
         runs=tuple(_row(conditions(run), flagged[run.id]) for run in matrix.runs),
     )
@@ -54,6 +57,13 @@ def counted(findings: list[FindingView] | tuple[FindingView, ...]) -> str:
     """ "1 fault, 2 doubts", the worst first; "" for none."""
     counts = Counter(entry.severity for entry in findings)
     return ", ".join(f"{counts[name]} {name}{'s' if counts[name] > 1 else ''}" for name in _WORST if counts[name])
+
+
+def _by_weight(found: Mapping[str, tuple[FindingView, ...]]) -> tuple[tuple[str, tuple[FindingView, ...]], ...]:
+    """Faults and doubts by run, the runs with the worst first; notes stand apart."""
+    serious = {run: tuple(entry for entry in entries if entry.severity != "note") for run, entries in found.items()}
+    listed = [(run, entries) for run, entries in serious.items() if entries]
+    return tuple(sorted(listed, key=lambda pair: min(_WORST.index(entry.severity) for entry in pair[1])))
 
 
 def _row(run: Conditions, findings: tuple[FindingView, ...]) -> RunRow:

@@ -1,0 +1,169 @@
+"""Every page in a browser: it opens, complains of nothing, asks no other origin, and shows what is stored."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from playwright.sync_api import expect
+
+from app.pages import numbers
+from tests.app.conftest import zipped
+
+pytestmark = pytest.mark.usefixtures("watch")
+
+FIGURE = ".figure:not([hidden])"
+
+
+def addresses(matrix: str, fitted: str) -> dict[str, str]:
+    return {
+        "actuators": "/",
+        "actuator": "/actuators/SW/1%20%3Cb%3E",
+        "upload": "/upload",
+        "matrix": f"/matrices/{matrix}",
+        "jobs": "/jobs",
+        "fit": f"/fits/{fitted}",
+    }
+
+
+@pytest.mark.parametrize("width", [1280, 820])
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("name", ["actuators", "actuator", "upload", "matrix", "jobs", "fit"])
+def test_a_page_fits_its_width_in_both_themes(name, theme, width, page, site, matrix, fitted, screenshots):
+    page.set_viewport_size({"width": width, "height": 900})
+    page.emulate_media(color_scheme=theme)
+    page.goto(site.address + addresses(matrix, fitted)[name])
+    if name == "fit":
+        expect(page.locator(f"{FIGURE} canvas")).to_be_visible(timeout=60_000)
+        expect(page.locator(f"{FIGURE} .plot")).to_have_attribute("aria-busy", "false")
+    expect(page.locator("h1")).to_have_count(1)
+    page.screenshot(path=screenshots / f"{name}-{width}-{theme}.png", full_page=True)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
+    assert (sum(map(int, re.findall(r"\d+", ground))) < 200) == (theme == "dark")
+
+
+@pytest.mark.parametrize("name", ["actuators", "actuator", "upload", "matrix", "jobs", "fit"])
+def test_every_field_has_a_label_and_every_table_column_a_heading(name, page, site, matrix, fitted):
+    page.goto(site.address + addresses(matrix, fitted)[name])
+    unlabelled = page.evaluate(
+        """[...document.querySelectorAll("input:not([type=hidden]), select")]
+             .filter((field) => field.labels.length === 0).map((field) => field.outerHTML)"""
+    )
+    assert unlabelled == []
+    ragged = page.evaluate(
+        """[...document.querySelectorAll("table")].filter((table) => [...table.tBodies[0].rows]
+             .some((row) => row.cells.length !== table.tHead.rows[0].cells.length)).length"""
+    )
+    assert ragged == 0
+
+
+def test_the_fit_page_shows_the_stored_parameters_and_errors(page, site, fitted):
+    result = site.client.get(f"/fits/{fitted}").json()["result"]
+    page.goto(f"{site.address}/fits/{fitted}")
+    for name, entry in result["parameters"].items():
+        cells = page.locator(f"tr:has(th[title='{name}']) td").all_inner_texts()
+        power = numbers.power_of(entry["value"])
+        assert float(cells[1].replace("−", "-")) * 10**power == pytest.approx(entry["value"], rel=2e-4)
+        assert float(cells[2]) * 10**power == pytest.approx(entry["std_error"], rel=0.5)
+        assert cells[3] == numbers.scaled_unit(entry["unit"], power)
+    errors = page.locator("section:has-text('Error, eq. (17)') tbody tr").all_inner_texts()
+    assert len(errors) == 2
+    for row, use in zip(errors, ("fit", "verify"), strict=True):
+        assert f"{100 * result['error'][use]:.3g}" in row
+
+
+def test_the_run_table_sorts_by_number(page, site, fitted):
+    page.goto(f"{site.address}/fits/{fitted}")
+    page.get_by_role("button", name="Error", exact=True).click()
+    texts = page.locator(".runs tbody td:nth-child(2)").all_inner_texts()
+    errors = [float(text.split()[0]) for text in texts]
+    assert errors == sorted(errors)
+    assert len(errors) == 12
+
+
+def test_a_figure_follows_its_options_and_the_theme(page, site, fitted):
+    page.emulate_media(color_scheme="light")
+    page.goto(f"{site.address}/fits/{fitted}")
+    link = page.locator(f"{FIGURE} a[data-format=svg]")
+    expect(link).to_have_attribute("href", re.compile("theme=light"))
+    page.locator("#bode-axis").select_option("linear")
+    expect(link).to_have_attribute("href", re.compile("axis=linear"))
+    page.locator("#theme").select_option("dark")
+    expect(link).to_have_attribute("href", re.compile("theme=dark"))
+    expect(page.locator(f"{FIGURE} .plot")).to_have_attribute("aria-busy", "false", timeout=60_000)
+    answer = page.request.get(site.address + link.get_attribute("href"))
+    assert answer.headers["content-type"].startswith("image/svg+xml")
+    page.reload()
+    assert page.evaluate("document.documentElement.dataset.theme") == "dark"
+
+
+def test_the_figures_are_reached_by_keyboard(page, site, fitted):
+    page.goto(f"{site.address}/fits/{fitted}")
+    page.locator("#tab-bode").focus()
+    for name in ("time", "evolution", "sensitivity"):
+        page.keyboard.press("ArrowRight")
+        expect(page.locator(f"#tab-{name}")).to_be_focused()
+        expect(page.locator(f"#figure-{name} canvas")).to_be_visible(timeout=60_000)
+
+
+@pytest.mark.usefixtures("matrix")
+def test_a_serial_number_with_markup_is_text(page, site):
+    page.goto(site.address)
+    page.get_by_label("Serial number, name or batch").fill("SW/1 <b>")
+    page.keyboard.press("Enter")
+    page.get_by_role("link", name="SW/1 <b>").click()
+    expect(page.locator("h1")).to_have_text("SW/1 <b>")
+
+
+def test_a_search_without_a_hit_says_so(page, site):
+    page.goto(f"{site.address}/?q=nowhere")
+    expect(page.locator("main")).to_contain_text("No actuator has “nowhere”")
+
+
+@pytest.mark.parametrize("path", ["/nothing/here", "/fits/none", "/matrices/none", "/actuators/none"])
+def test_what_is_not_there_is_said_on_a_page_with_a_way_on(path, page, watch, site):
+    answer = page.goto(site.address + path)
+    assert answer.status == 404
+    expect(page.locator("h1")).to_have_text("Not found")
+    expect(page.get_by_role("link", name="All actuators")).to_be_visible()
+    watch.complaints.clear()  # the browser notes the status itself
+
+
+def test_the_whole_way_from_upload_to_approval(page, site, tmp_path):
+    archive = tmp_path / "matrix.zip"
+    archive.write_bytes(zipped("SW-NEW"))
+    page.goto(f"{site.address}/upload")
+    page.get_by_label("A zip, or matrix.yaml and files").set_input_files(archive)
+    page.get_by_role("button", name="Upload").click()
+    expect(page.locator("h1")).to_have_text("Test matrix of SW-NEW")
+    page.get_by_label("Seed").fill("3")
+    page.get_by_role("button", name="Start").click()
+    page.get_by_role("button", name="Approve as the parameters of SW-NEW").click(timeout=120_000)
+    expect(page.locator(".head .state.approved")).to_contain_text("current parameter set")
+    assert site.client.get("/actuators/SW-NEW").json()["current"] is not None
+    page.goto(f"{site.address}/?q=SW-NEW")
+    expect(page.locator("tbody tr")).to_contain_text("approved")
+    expect(page.locator("tbody tr")).to_contain_text("Z₀")
+
+
+def test_a_waiting_fit_can_be_cancelled(page, site, matrix):
+    first, second = (site.client.post("/fits", json={"matrix": matrix, "seed": seed}).json() for seed in (11, 12))
+    page.goto(f"{site.address}/fits/{second['id']}")
+    page.get_by_role("button", name="Cancel").click()
+    expect(page.locator("main")).to_contain_text("It was cancelled; nothing was stored.", timeout=60_000)
+    assert site.client.get(f"/jobs/{second['id']}").json()["state"] == "cancelled"
+    site.client.delete(f"/jobs/{first['id']}")
+
+
+def test_a_refused_upload_says_what_where_and_the_remedy(page, watch, site, tmp_path):
+    bad = tmp_path / "matrix.zip"
+    bad.write_bytes(b"not a zip at all")
+    page.goto(f"{site.address}/upload")
+    page.get_by_label("A zip, or matrix.yaml and files").set_input_files(bad)
+    page.get_by_role("button", name="Upload").click()
+    said = page.get_by_role("alert")
+    expect(said).not_to_be_empty()
+    assert said.inner_text().endswith(".")
+    assert "Traceback" not in page.content()
+    watch.complaints.clear()  # the browser notes the status itself
