@@ -72,7 +72,7 @@ def output(run: Run, model: LinearModel) -> Array:
     systems = discretise(model, run.sample_rate, run.hold)
     if not run.starts_at_rest:
         systems = _with_releases(systems)
-    y = np.concatenate([rows for rows, _, _ in _responses(run, systems, run.length)])
+    y = np.concatenate([rows[:, : len(systems.D)] for rows, _, _ in _responses(run, systems, 8192)])
     if y.shape[1] == 1:
         return np.ascontiguousarray(y[:, 0])
     free = np.column_stack([y[:, 1:], np.ones(run.length)])
@@ -93,31 +93,44 @@ def _with_releases(systems: Recursion) -> Recursion:
 
 
 def _responses(run: Run, systems: Recursion, length: int) -> Iterator[tuple[Array, int, int]]:
-    """Outputs of the batch in blocks of at most `length` samples: (rows (n, b), first, last)."""
-    kernel, batch = advance(systems.C.shape[1]), len(systems.D)
-    firsts = range(0, batch, LANES)
-    buffers = [systems.part(first, first + LANES).packed(LANES) for first in firsts]
-    lanes = np.empty(length * LANES)
+    """Outputs of the batch in blocks of at most `length` samples: (rows, first, last).
+
+    Rows have a column for each lane, the spare ones being zero: (samples, b rounded up to a multiple of the lanes).
+    """
+    kernel = advance(systems.C.shape[1])
+    buffers = [systems.part(i, i + LANES).packed(LANES) for i in range(0, len(systems.D), LANES)]
     for first in range(0, run.length, length):
         last = min(first + length, run.length)
-        rows = np.empty((last - first, batch))
-        for column, buffer in zip(firsts, buffers, strict=True):
+        parts = []
+        for buffer in buffers:
+            lanes = np.empty((last - first) * LANES)
             kernel(buffer, run.command, first, last, lanes)
-            width = min(LANES, batch - column)
-            rows[:, column : column + width] = lanes[: (last - first) * LANES].reshape(-1, LANES)[:, :width]
-        yield rows, first, last
+            parts.append(lanes.reshape(-1, LANES))
+        yield parts[0] if len(parts) == 1 else np.hstack(parts), first, last
 
 
 def _products(run: Run, systems: Recursion, p: int, step: float) -> Array:
-    """Sums of products of [J, releases, 1, r] for each block, (blocks, q, q)."""
+    """Sums of products of [J, releases, 1, r] for each block, (blocks, q, q).
+
+    They are formed from the sums of the outputs themselves, of which J and r are combinations: the sums of a block
+    are one product of matrices, and with a step of 1e-5 the differences keep six digits.
+    """
     length = max(16, -(-run.length // _BLOCKS))
-    mean = run.measured.mean()
+    batch, mean = len(systems.D), run.measured.mean()
     out = []
     for rows, first, last in _responses(run, systems, length):
-        z = np.empty((last - first, rows.shape[1] + 1))
-        z[:, :p] = (rows[:, 1 : p + 1] - rows[:, :1]) / step
-        z[:, p:-2] = rows[:, p + 1 :]
-        z[:, -2] = 1.0
-        z[:, -1] = run.measured[first:last] - mean - rows[:, 0]
-        out.append(z.T @ z)
-    return np.array(out)
+        x = run.measured[first:last] - mean
+        raw = np.empty((batch + 2, batch + 2))
+        raw[:batch, :batch] = (rows.T @ rows)[:batch, :batch]
+        raw[:batch, batch] = raw[batch, :batch] = rows.sum(axis=0)[:batch]
+        raw[:batch, -1] = raw[-1, :batch] = (x @ rows)[:batch]
+        raw[batch, batch], raw[-1, -1] = len(x), x @ x
+        raw[batch, -1] = raw[-1, batch] = x.sum()
+        out.append(raw)
+    # Columns of the combination: J from y and its neighbours, the releases and the constant as they are, r = x − y.
+    combine = np.zeros((batch + 2, batch + 1))
+    combine[1 : p + 1, :p] = np.eye(p) / step
+    combine[0, :p] = -1.0 / step
+    combine[p + 1 : -1, p:-1] = np.eye(batch - p)
+    combine[-1, -1], combine[0, -1] = 1.0, -1.0
+    return np.asarray(combine.T @ np.array(out) @ combine)
