@@ -59,9 +59,9 @@ def runs_line(runs: tuple[Run, ...]) -> str:
     specimens = len({run.specimen for run in runs if run.specimen is not None})
     unit = runs[0].time_unit.replace("sample", "samples")
     parts = [
-        f"{len(runs)} runs ({kinds})",
+        f"{count(len(runs), 'run')} ({kinds})",
         f"Kp {gains}" if gains else "gain not stated",
-        f"{specimens} specimens" if specimens else "specimen not stated",
+        count(specimens, "specimen") if specimens else "specimen not stated",
         f"{sum(run.duration for run in runs):.4g} {unit} in all",
     ]
     return ", ".join(parts)
@@ -69,5 +69,9 @@ def runs_line(runs: tuple[Run, ...]) -> str:
 
 def summary(severities: list[str]) -> str:
     """How many findings of each severity."""
-    counts = {severity: severities.count(severity) for severity in ("fault", "doubt", "note")}
-    return ", ".join(f"{count} {severity}{'' if count == 1 else 's'}" for severity, count in counts.items())
+    return ", ".join(count(severities.count(severity), severity) for severity in ("fault", "doubt", "note"))
+
+
+def count(number: int, thing: str) -> str:
+    """A number with its noun."""
+    return f"{number} {thing}{'' if number == 1 else 's'}"

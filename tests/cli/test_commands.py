@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import shutil
 
 import pytest
+import yaml
 
 
 def test_a_simulated_matrix_says_that_it_is_simulated(matrix):
@@ -21,23 +23,18 @@ def test_check_describes_the_matrix_and_finds_no_fault(servoident, matrix):
     assert "0 faults" in done.stdout
 
 
-def test_check_ends_with_1_where_a_run_has_a_fault(servoident, matrix, tmp_path):
-    """A dead transducer is a fault, named with its run."""
-    import shutil
-
-    import numpy as np
-
-    broken = tmp_path / "broken"
-    shutil.copytree(matrix, broken)
-    file = next((broken / "runs").iterdir())
-    recorded = np.load(file)
-    rng = np.random.default_rng(0)
-    noise = rng.standard_normal(len(recorded["command"])) * 1e-4
-    np.savez(file, command=recorded["command"], displacement=-recorded["displacement"] * 1000 + noise)
-    done = servoident("check", broken, "--json", "-")
-    findings = json.loads(done.stdout)
-    assert any(finding["run"] == file.stem and finding["severity"] != "note" for finding in findings)
-    assert done.returncode == int(any(finding["severity"] == "fault" for finding in findings))
+def test_check_ends_with_1_where_the_matrix_has_a_fault(servoident, matrix, tmp_path):
+    """A record that is both fitted and used to verify is a fault, named with its run."""
+    copy = tmp_path / "copy"
+    shutil.copytree(matrix, copy)
+    description = yaml.safe_load((copy / "matrix.yaml").read_text())
+    fitted, *_, verifying = description["runs"]
+    verifying["file"] = fitted["file"]
+    (copy / "matrix.yaml").write_text(yaml.safe_dump(description))
+    done = servoident("check", copy, "--json", "-")
+    faults = [finding for finding in json.loads(done.stdout) if finding["severity"] == "fault"]
+    assert done.returncode == 1
+    assert {finding["run"] for finding in faults} & {fitted["id"], verifying["id"]}
 
 
 def test_fit_writes_what_the_contract_promises(fit_file):
