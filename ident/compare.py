@@ -130,6 +130,9 @@ def linear_model(preset: Preset, values: Mapping[str, float], run: Run, actuator
 
 
 def response(fit: FitResult, run: Run, actuator: Actuator, frequency: Array) -> Complex:
-    """The fitted model's frequency response (f,) at `frequency` in Hz for a run, also one whose conditions were changed."""
+    """The fitted model's frequency response (f,) at `frequency` in Hz.
+
+    For a run of the matrix, or one whose conditions were changed.
+    """
     found = linear_model(preset_called(fit.model), fitted_values(fit), run, actuator)
     return np.asarray(found.frequency_response(frequency)[0])

@@ -13,7 +13,7 @@ from app.parameters.repository import Wanted
 from schemas.parameters import ParameterSetPage
 
 router = APIRouter(prefix="/parameter-sets", tags=["parameter sets"], responses=COMMON)
-_FORMATS = {"text/csv": {}, "application/vnd.apache.parquet": {}}
+_FORMATS: dict[str, dict[str, str]] = {"text/csv": {}, "application/vnd.apache.parquet": {}}
 
 
 @router.get("", response_model=ParameterSetPage, responses={200: {"content": _FORMATS}})

@@ -38,7 +38,7 @@ def sets(
     return [(fit, actuator) for fit, actuator in session.execute(query).all()]
 
 
-Query = Select[tuple[FitRow, ActuatorRow]]
+Query = Select[FitRow, ActuatorRow]
 
 
 def _filters(query: Query, wanted: Wanted) -> Query:

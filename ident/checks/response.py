@@ -65,7 +65,7 @@ def response(u: Samples, y: Samples, sample_rate: float) -> Response | None:
         return None
     window = np.hanning(length + 1)[:-1]
     one, two = (spectra(signal, window) for signal in (u, y))
-    frequency: Samples = np.arange(1, length // 2 + 1) * (sample_rate / length)
+    frequency: Samples = np.arange(1, length // 2 + 1, dtype=np.float64) * (sample_rate / length)
     uu, yy = power(one), power(two)
     return Response(frequency, uu, yy, (one.conj() * two).mean(axis=0), len(one))
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import re
+from array import array
 from collections.abc import Sequence
 
 import numpy as np
@@ -131,8 +132,8 @@ def by_line(
 ) -> list[Array]:
     """The columns line by line, rows being as long as they like; `before` lines stand above, for messages."""
     separator = delimiter.encode() if delimiter else None
-    columns: list[list[float]] = [[] for _ in numbers]
-    for number, line in enumerate(text.splitlines(), before + 1):
+    columns = [array("d") for _ in numbers]
+    for number, line in enumerate(io.BytesIO(text), before + 1):
         fields = line.split(separator)
         if not line.strip():
             continue
@@ -141,7 +142,7 @@ def by_line(
                 what = f"line {number} has {len(fields)} fields and no column {column}"
                 raise Unusable("ragged-row", what, where, "complete the row or cut the file there")
             values.append(as_float(fields[column], comma, number, where))
-    return [np.array(values, dtype=np.float64) for values in columns]
+    return [np.frombuffer(values, np.float64) for values in columns]
 
 
 def as_float(field: bytes, comma: bool, line: int, where: str) -> float:
