@@ -11,7 +11,8 @@ from app.idempotency import Key, fingerprint, once
 from schemas.fit import ComparisonView, FitRequest, FitView, JobView
 
 router = APIRouter(prefix="/fits", tags=["fits"], responses=COMMON)
-_IMAGES: dict[str, dict[str, str]] = {kind: {} for kind in ("application/json", "image/svg+xml", "image/png", "application/pdf")}
+_MEDIA = ("application/json", "image/svg+xml", "image/png", "application/pdf")
+_IMAGES: dict[str, dict[str, str]] = {kind: {} for kind in _MEDIA}
 
 
 @router.post("", status_code=202, response_model=JobView)

@@ -9,7 +9,6 @@ from fastapi import APIRouter, Query, Request, Response
 from app.context import Here
 from app.errors import COMMON
 from app.parameters import service
-from app.parameters.repository import Wanted
 from schemas.parameters import ParameterSetPage
 
 router = APIRouter(prefix="/parameter-sets", tags=["parameter sets"], responses=COMMON)
@@ -24,10 +23,9 @@ def listed(
     format: Literal["json", "csv", "parquet"] = "json",  # noqa: A002  the contract's name
 ) -> ParameterSetPage | Response:  # fmt: skip
     """Parameter sets, newest first; NAME.min and NAME.max (SI) bound any parameter, such as Z0.min=2e-6."""
-    lowest, highest = service.ranges(request.query_params)
-    wanted = Wanted(
-        serial, batch, model, service.moment(approved_after, "approved_after"),
-        service.moment(approved_before, "approved_before"), approved, current, lowest, highest,
+    wanted = service.wanted(
+        request.query_params, serial=serial, batch=batch, model=model, approved_after=approved_after,
+        approved_before=approved_before, approved=approved, current=current,
     )  # fmt: skip
     if format == "csv":
         return Response(service.csv_text(here, wanted), media_type="text/csv")

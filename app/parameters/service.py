@@ -21,7 +21,16 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r")  # a spreadsheet would run a text ce
 _MOST = 100_000  # rows of an export
 
 
-def ranges(query: Mapping[str, str]) -> tuple[dict[str, float], dict[str, float]]:
+def wanted(
+    query: Mapping[str, str], *, approved_after: str | None, approved_before: str | None, **filters: Any
+) -> Wanted:
+    """What a request asks for; raises Failure where a time or a range cannot be read."""
+    lowest, highest = _ranges(query)
+    after, before = _moment(approved_after, "approved_after"), _moment(approved_before, "approved_before")
+    return Wanted(approved_after=after, approved_before=before, lowest=lowest, highest=highest, **filters)
+
+
+def _ranges(query: Mapping[str, str]) -> tuple[dict[str, float], dict[str, float]]:
     """NAME.min and NAME.max of a query string, in SI."""
     found: dict[str, dict[str, float]] = {"min": {}, "max": {}}
     for key, text in query.items():
@@ -37,7 +46,7 @@ def ranges(query: Mapping[str, str]) -> tuple[dict[str, float], dict[str, float]
     return found["min"], found["max"]
 
 
-def moment(text: str | None, where: str) -> str | None:
+def _moment(text: str | None, where: str) -> str | None:
     """A time of a query as the database stores times; a bare date is its midnight, UTC."""
     if text is None:
         return None
