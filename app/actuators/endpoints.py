@@ -23,7 +23,7 @@ def listed(
     return service.listed(here, q, batch, cursor, limit)
 
 
-@router.get("/{serial}")
+@router.get("/{serial:path}")
 def one(here: Here, serial: str) -> ActuatorDetail:
     """An actuator, its sets and matrices."""
     return service.get(here, serial)

@@ -26,21 +26,23 @@ def addresses(matrix: str, fitted: str) -> dict[str, str]:
     }
 
 
-@pytest.mark.parametrize("width", [1280, 820])
-@pytest.mark.parametrize("theme", ["light", "dark"])
 @pytest.mark.parametrize("name", ["actuators", "actuator", "upload", "matrix", "jobs", "fit"])
-def test_a_page_fits_its_width_in_both_themes(name, theme, width, page, site, matrix, fitted, screenshots):
-    page.set_viewport_size({"width": width, "height": 900})
-    page.emulate_media(color_scheme=theme)
+def test_a_page_fits_desk_and_tablet_in_both_themes(name, page, site, matrix, fitted, screenshots):
     page.goto(site.address + addresses(matrix, fitted)[name])
-    if name == "fit":
-        expect(page.locator(f"{FIGURE} canvas")).to_be_visible(timeout=60_000)
-        expect(page.locator(f"{FIGURE} .plot")).to_have_attribute("aria-busy", "false")
     expect(page.locator("h1")).to_have_count(1)
-    page.screenshot(path=screenshots / f"{name}-{width}-{theme}.png", full_page=True)
-    assert page.evaluate("document.documentElement.scrollWidth") <= width
-    ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
-    assert (sum(map(int, re.findall(r"\d+", ground))) < 200) == (theme == "dark")
+    for theme in ("light", "dark"):
+        page.emulate_media(color_scheme=theme)
+        if name == "fit":
+            link = page.locator(f"{FIGURE} a[data-format=svg]")
+            expect(link).to_have_attribute("href", re.compile(f"theme={theme}"))
+            expect(page.locator(f"{FIGURE} .plot")).to_have_attribute("aria-busy", "false", timeout=60_000)
+            expect(page.locator(f"{FIGURE} canvas")).to_be_visible()
+        ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
+        assert (sum(map(int, re.findall(r"\d+", ground))) < 200) == (theme == "dark")
+        for width in (1280, 820):
+            page.set_viewport_size({"width": width, "height": 900})
+            assert page.evaluate("document.documentElement.scrollWidth") <= width
+            page.screenshot(path=screenshots / f"{name}-{width}-{theme}.png", full_page=True)
 
 
 @pytest.mark.parametrize("name", ["actuators", "actuator", "upload", "matrix", "jobs", "fit"])
