@@ -3,71 +3,21 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import signal
-import socket
-import subprocess
-import sys
-import time
 from collections.abc import Iterator
-from dataclasses import dataclass
-from pathlib import Path
 from xml.etree import ElementTree
 
-import httpx
 import pytest
 
-WAIT = 240  # s, for a machine that is busy with other things
-
-
-@dataclass(frozen=True)
-class Service:
-    """A running service, its start line and its data folder."""
-
-    said: str
-    data: Path
-    options: tuple[str, ...]
-
-    def get(self, path: str) -> dict:
-        """An answer of the interface."""
-        return self.call("GET", path)
-
-    def call(self, method: str, path: str, **content: object) -> dict:
-        """A request of the interface."""
-        headers = {"Authorization": f"Bearer {self.options[3]}"}
-        answer = httpx.request(method, f"{self.options[1]}/api/v1{path}", headers=headers, timeout=60, **content)
-        assert answer.is_success, answer.text
-        return answer.json()
-
-
-def started(*arguments: object) -> tuple[subprocess.Popen[str], str]:
-    """A command that serves, and the line with its address."""
-    environment = {name: value for name, value in os.environ.items() if name != "SERVOIDENT_TOKEN"}
-    process = subprocess.Popen(
-        [sys.executable, "-m", "app.cli", *map(str, arguments)], stdout=subprocess.PIPE, text=True, env=environment
-    )
-    assert process.stdout is not None
-    lines = []
-    for line in process.stdout:
-        lines.append(line)
-        if "token=" in line:
-            return process, line
-    raise AssertionError(f"no address in {lines}")
+from tests.cli.running import Service, free_port, running
 
 
 @pytest.fixture(scope="module")
 def service(tmp_path_factory) -> Iterator[Service]:
     """`servoident serve` in a process of its own."""
-    with socket.socket() as trial:
-        trial.bind(("127.0.0.1", 0))
-        port = trial.getsockname()[1]
     data = tmp_path_factory.mktemp("data")
-    process, said = started("serve", "--port", port, "--data", data)
-    token = re.search(r"token=(\S+)", said)[1]
-    yield Service(said, data, ("--server", f"http://127.0.0.1:{port}", "--token", token))
-    process.send_signal(signal.SIGINT)
-    assert process.wait(WAIT) == 0
+    with running("serve", "--port", free_port(), "--data", data, until="token=") as said:
+        yield Service(said, data)
 
 
 @pytest.fixture(scope="module")
@@ -81,11 +31,7 @@ def stored(service, servoident, matrix) -> dict:
 @pytest.fixture(scope="module")
 def fitted(service, stored) -> str:
     """The id of a finished fit of it."""
-    job = service.call("POST", "/fits", json={"matrix": stored["id"], "set": {"m0": "4.25 kg"}})
-    deadline = time.monotonic() + WAIT
-    while job["state"] in ("queued", "running") and time.monotonic() < deadline:
-        time.sleep(0.2)
-        job = service.get(f"/jobs/{job['id']}")
+    job = service.ended(service.call("POST", "/fits", json={"matrix": stored["id"], "set": {"m0": "4.25 kg"}}))
     assert job["state"] == "succeeded", job
     return job["fit"]
 
@@ -148,7 +94,7 @@ def test_what_the_service_refuses_is_one_line_and_exit_2(service, servoident):
 
 def test_a_wrong_token_is_told(service, servoident):
     """The remedy names the address that the service printed."""
-    done = servoident("query", "--server", service.options[1], "--token", "guessed")
+    done = servoident("query", *service.options[:2], "--token", "guessed")
     assert done.returncode == 2
     assert "token" in done.stderr
     assert done.stderr.count("\n") == 1
@@ -156,9 +102,6 @@ def test_a_wrong_token_is_told(service, servoident):
 
 def test_demo_identifies_a_simulated_actuator(tmp_path):
     """The address is printed when the identification has begun; the serial number says what it is."""
-    process, said = started("demo", "--port", 8765, "--data", tmp_path)
-    server, token = re.search(r"(http://[\d.:]+)/\?token=(\S+)", said).groups()
-    jobs = Service(said, tmp_path, ("--server", server, "--token", token)).get("/jobs")
-    process.send_signal(signal.SIGINT)
-    assert process.wait(WAIT) == 0
+    with running("demo", "--port", 8765, "--data", tmp_path, until="token=") as said:
+        jobs = Service(said, tmp_path).get("/jobs")
     assert [job["serial"] for job in jobs["items"]] == ["DEMO-0001"]

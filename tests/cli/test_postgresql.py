@@ -1,0 +1,68 @@
+"""The service and a worker beside it on PostgreSQL."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.cli.running import Service, free_port, running
+
+SERVERS = sorted(Path("/usr/lib/postgresql").glob("*/bin/pg_ctl"))
+pytestmark = pytest.mark.skipif(not SERVERS, reason="PostgreSQL is not installed (apt-get install postgresql)")
+
+
+def as_owner(*command: object) -> None:
+    """Run a program of PostgreSQL, which refuses to run as root."""
+    other = ["runuser", "-u", "postgres", "--"] if os.geteuid() == 0 else []
+    done = subprocess.run([*other, *map(str, command)], cwd="/", capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.fixture(scope="module")
+def database() -> Iterator[str]:
+    """The URL of a new PostgreSQL server, which is gone after the tests."""
+    folder = Path("/tmp") / f"servoident-pg-{os.getpid()}"  # short, for its socket; pytest's own is closed to others
+    folder.mkdir(mode=0o700)
+    if os.geteuid() == 0:
+        shutil.chown(folder, "postgres")
+    binaries, port = SERVERS[-1].parent, free_port()
+    options = f"-p {port} -k {folder} -c listen_addresses=127.0.0.1 -c fsync=off"
+    try:
+        as_owner(binaries / "initdb", "-D", folder / "data", "-A", "trust", "-U", "postgres")
+        as_owner(binaries / "pg_ctl", "-D", folder / "data", "-o", options, "-l", folder / "log", "-w", "start")
+        yield f"postgresql://postgres@127.0.0.1:{port}/postgres"
+        as_owner(binaries / "pg_ctl", "-D", folder / "data", "-m", "immediate", "stop")
+    finally:
+        shutil.rmtree(folder)
+
+
+def test_the_schema_is_made_and_made_again(servoident, database, tmp_path):
+    """`migrate` brings an empty database up to date, and finds nothing to do the second time."""
+    for _ in range(2):
+        done = servoident("migrate", "--database", database, "--data", tmp_path)
+        assert done.returncode == 0, done.stderr
+
+
+def test_a_service_and_a_worker_share_the_queue(servoident, database, matrix, tmp_path):
+    """Fits of one matrix all end well, and an approved one is found by its serial number and rechecked."""
+    place = ("--database", database, "--data", tmp_path)
+    with (
+        running("serve", "--port", free_port(), *place, until="token=") as said,
+        running("worker", "--executor", "second", *place, until="waiting for jobs"),
+    ):
+        service = Service(said, tmp_path)
+        stored = servoident("upload", matrix, *service.options)
+        assert stored.returncode == 0, stored.stderr
+        identity = stored.stdout.split()[1]
+        jobs = [service.call("POST", "/fits", json={"matrix": identity, "seed": seed}) for seed in (1, 2)]
+        ended = [service.ended(job) for job in jobs]
+        assert [job["state"] for job in ended] == ["succeeded", "succeeded"]
+        assert servoident("approve", ended[0]["fit"], *service.options).returncode == 0
+        assert ended[0]["fit"] in servoident("query", "--serial", "SIM-0001", *service.options, "--csv", "-").stdout
+    done = servoident("regress", *place)
+    assert done.returncode == 0, done.stdout + done.stderr
