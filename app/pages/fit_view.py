@@ -119,7 +119,7 @@ def combination_rows(fit: FitResult) -> tuple[Determined, ...]:
 def _formula(expression: str) -> Markup:
     """An expression of the grammar as MathML; as text where it is outside the grammar."""
     try:
-        equation = mathml(f"determined = {expression}")
+        equation = mathml(f"determined = {expression.replace('^', '**')}")
     except Unusable:
         return escape(expression)
     _, _, right = equation.partition("<mo>=</mo>")
