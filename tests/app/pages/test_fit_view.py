@@ -16,7 +16,9 @@ def fit() -> FitResult:
             "m0": Estimate(1.0, "kg", None, 1.0, 1.0, False, "m₀", "mass", fixed=True),
             "Ka": Estimate(2e-13, "m^3/Pa", 1e-16, 2e-15, 2e-13, True, "Kₐ", "oil"),
         },
-        determined=(Combination("Ka*tau*m0 / (A^2 + Cl*c0)", 2.778e-8, "s^3", 1.1e-9), Combination("a ? b", 1.0, "1", 0.1)),
+        determined=(
+            Combination("Ka*tau*m0 / (A^2 + Cl*c0)", 2.778e-8, "s^3", 1.1e-9), Combination("a ? b", 1.0, "1", 0.1),
+        ),
         undetermined=(Undetermined("m0", "a convention"),),
         error={"fit": 0.0407, "held_out": None, "verify": 0.037}, offset={"fit": -0.01, "verify": 0.0},
         noise_floor={"fit": 0.02, "verify": None}, runs=(RunError("a", "fit", 0.0407, -0.01),), data_hash="0",
