@@ -21,6 +21,6 @@ def noise_floor(run: Run, band: float) -> float | None:
     if clear > (1 - _LEAST) * nyquist or run.length < 256:
         return None
     segment = min(run.length, 8192)
-    frequency, power = scipy.signal.welch(run.measured, run.sample_rate, nperseg=segment, detrend="linear")
+    frequency, power = scipy.signal.welch(run.measured, run.sample_rate, nperseg=segment, detrend="constant")
     density = float(np.mean(power[(frequency > clear) & (frequency < 0.98 * nyquist)]))
     return float(np.sqrt(density * nyquist) / np.std(run.measured))

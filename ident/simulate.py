@@ -76,8 +76,8 @@ def discretise(model: LinearModel, sample_rate: float, hold: str) -> Recursion:
 
 @lru_cache
 def advance(order: int, lanes: int = LANES) -> Callable[..., Any]:
-    """The compiled recursion for `order` states: kernel(b, u, first, last, out) takes the packed buffer b over the
-    samples first to last − 1 and writes the outputs, (last − first) · lanes.
+    """The compiled recursion for `order` states: kernel(b, u, first, last, out, stride) takes the packed buffer b over
+    the samples first to last − 1 and writes the outputs, a row of lanes a sample, rows `stride` apart in the flat out.
 
     It is generated with every offset a number: only so does the compiler see that nothing overlaps and use SIMD.
     """
@@ -97,11 +97,11 @@ def advance(order: int, lanes: int = LANES) -> Callable[..., Any]:
 _RECURSION = """from numba import njit
 
 @njit(cache=True, fastmath=True, nogil=True)
-def recursion(b, u, first, last, out):
+def recursion(b, u, first, last, out, stride):
     for k in range(first, last):
         now = u[k]
         then = u[min(k + 1, len(u) - 1)]
-        row = (k - first) * {lanes}
+        row = (k - first) * stride
         for lane in range({lanes}):
 {body}
 """
@@ -114,6 +114,6 @@ def respond(recursion: Recursion, u: Array) -> Array:
     kernel = advance(order, LANES)
     for first in range(0, batch, LANES):
         lanes = np.empty(len(u) * LANES)
-        kernel(recursion.part(first, first + LANES).packed(LANES), u, 0, len(u), lanes)
+        kernel(recursion.part(first, first + LANES).packed(LANES), u, 0, len(u), lanes, LANES)
         out[:, first : first + LANES] = lanes.reshape(-1, LANES)
     return np.ascontiguousarray(out[:, :batch].T)

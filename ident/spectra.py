@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from ident.chain import LinearModel
 from ident.matrix import Run
+from ident.parallel import each
 from ident.simulate import LANES, Recursion, advance, discretise
 
 Array = NDArray[np.float64]
@@ -34,7 +35,7 @@ _PAIR_DAMPING, _PAIR_SPACING, _PAIR_REACH = 0.12, 0.07, 1.5
 _REAL = (0.03, 2.0, 5.0)
 _NODES, _NODE_REACH, _BEYOND_BAND = 44, 1.6, 0.1
 _CHECKS = 4
-_BLOCK = 2048
+_BLOCK = 1024
 
 
 @dataclass(frozen=True)
@@ -147,12 +148,14 @@ def excited_band(runs: Sequence[Run]) -> float:
     1.25 times that below which every command has 99 % of its power: the rest may be the recorder's own noise, spread
     over all frequencies, and must not stretch the basis.
     """
-    edges = []
-    for run in runs:
+
+    def edge(run: Run) -> float:
         segment = min(run.length, max(256, run.length // 4), 16384)
-        frequency, power = scipy.signal.welch(run.command, run.sample_rate, nperseg=segment, detrend="linear")
+        frequency, power = scipy.signal.welch(run.command, run.sample_rate, nperseg=segment, detrend="constant")
         share = np.cumsum(power)
-        edges.append(float(frequency[max(1, np.searchsorted(share, 0.99 * share[-1]))]))
+        return float(frequency[max(1, np.searchsorted(share, 0.99 * share[-1]))])
+
+    edges = each(edge, runs)
     nyquist = max(run.sample_rate for run in runs) / 2
     return 2 * np.pi * min(1.25 * max(edges), 0.9 * nyquist)
 
@@ -161,7 +164,10 @@ def spectrum(run: Run, basis: Basis) -> Spectrum:
     """Reduce a run. What no model of the command can explain is projected out first: the mean and, in a record that
     starts moving, the decay of whatever state it started in."""
     columns = len(basis.filters.D)
-    gram = np.sum([block.T @ block for block in _blocks(run, basis)], axis=0)
+    sums = np.sum([block.T @ block for block in _blocks(run, basis)], axis=0)
+    width = _width(columns)
+    order = [*range(columns + 1), *range(width, min(width + columns, len(sums))), columns + 1]  # the constant goes last
+    gram = sums[np.ix_(order, order)]
     kept, nuisance = slice(0, columns + 1), slice(columns + 1, None)
     values, vectors = np.linalg.eigh(gram[nuisance, nuisance])
     sound = values > 1e-12 * values[-1]
@@ -182,29 +188,29 @@ def spectrum(run: Run, basis: Basis) -> Spectrum:
     return Spectrum(W, d, max(float(gram[columns, columns] - d @ d), 0.0), float(mean_free))
 
 
+def _width(columns: int) -> int:
+    """Lanes for the filters, the record and the constant."""
+    return -(-(columns + 2) // LANES) * LANES
+
+
 def _blocks(run: Run, basis: Basis) -> Iterator[Array]:
-    """Blocks of rows [filtered command, measured, decays from a moving start, 1]."""
+    """Blocks of rows [filtered command, record, 1, spare lanes | decays from a moving start, spare lanes].
+
+    The recursion writes where the block wants it; record and constant take the place of spare lanes.
+    """
     filters = discretise(basis.filters, run.sample_rate, run.hold)
-    groups = [filters]
-    if not run.starts_at_rest:
-        groups.append(_decays(filters))
-    packs = [(group, first) for group in groups for first in range(0, len(group.D), LANES)]
-    buffers = [group.part(first, first + LANES).packed(LANES) for group, first in packs]
-    widths = [min(LANES, len(group.D) - first) for group, first in packs]
-    m, kernel, lanes = len(filters.D), advance(2), np.empty(_BLOCK * LANES)
+    groups = [filters] if run.starts_at_rest else [filters, _decays(filters)]
+    columns, width, kernel = len(filters.D), _width(len(filters.D)), advance(2)
+    buffers = [group.part(i, i + LANES).packed(LANES) for group in groups for i in range(0, width, LANES)]
     # The mean of a record would cost digits in the sums of squares, so it goes first; the model is blind to it anyway.
     measured = run.measured - run.measured.mean()
     for first in range(0, run.length, _BLOCK):
         last = min(first + _BLOCK, run.length)
-        block = np.empty((last - first, sum(widths) + 2))
-        column = 0
-        for buffer, width in zip(buffers, widths, strict=True):
-            kernel(buffer, run.command, first, last, lanes)
-            column += column == m  # the measured column stands behind the filters
-            block[:, column : column + width] = lanes[: (last - first) * LANES].reshape(-1, LANES)[:, :width]
-            column += width
-        block[:, m] = measured[first:last]
-        block[:, -1] = 1.0
+        block = np.empty((last - first, len(groups) * width))
+        for lane, buffer in enumerate(buffers):
+            kernel(buffer, run.command, first, last, block.reshape(-1)[lane * LANES :], block.shape[1])
+        block[:, columns] = measured[first:last]
+        block[:, columns + 1] = 1.0
         yield block
 
 

@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 Outcome = TypeVar("Outcome")
 UNSTABLE = 1e3  # the error of a model that is unstable at some run: a cost, not a failure
 _TRUSTED = 0.05  # of the error: a doubt below this moves the error by less than 0.13 %
+_WRONG = 0.2  # beyond it the fast error can be off by more than half a percent
 STEP = 1e-5  # of an axis, for sensitivities by differences
 
 
@@ -84,14 +85,19 @@ class Objective:
     def errors(self, points: Array) -> Array:
         """Eq. (17) averaged over runs at points of the space, (v, p) → (v,), fast.
 
-        Where the best of them cannot be represented by the basis, they are evaluated exactly instead.
+        Those that the basis cannot represent are evaluated exactly instead: all of them where they are few, as in the
+        bounds of a known machine, else the leading ones.
         """
         errors, doubt = self._fast(points)
         self.evaluations += len(points)
         self.unstable += int(np.sum(errors >= UNSTABLE))
-        doubtful = (doubt > _TRUSTED * errors) & (errors < UNSTABLE)
-        leading = np.argsort(errors, kind="stable")[: max(1, len(points) // 20)]
-        for index in leading[doubtful[leading]]:
+        few = max(1, len(points) // 20)
+        leading = np.argsort(errors, kind="stable")[:few]
+        doubtful = set(leading[(doubt > _TRUSTED * errors)[leading] & (errors[leading] < UNSTABLE)])
+        wrong = np.flatnonzero((doubt > _WRONG * errors) & (errors < UNSTABLE))
+        if len(wrong) <= few:  # where most are, as in a search without bounds, only the leading ones are worth it
+            doubtful |= set(wrong)
+        for index in sorted(doubtful):
             exact = self.exact(points[index], sensitivities=False).error
             errors[index] = exact if np.isfinite(exact) else UNSTABLE
         return errors

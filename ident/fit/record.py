@@ -104,7 +104,7 @@ def _responses(run: Run, systems: Recursion, length: int) -> Iterator[tuple[Arra
         parts = []
         for buffer in buffers:
             lanes = np.empty((last - first) * LANES)
-            kernel(buffer, run.command, first, last, lanes)
+            kernel(buffer, run.command, first, last, lanes, LANES)
             parts.append(lanes.reshape(-1, LANES))
         yield parts[0] if len(parts) == 1 else np.hstack(parts), first, last
 
