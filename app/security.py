@@ -7,7 +7,7 @@ from http.cookies import SimpleCookie
 from urllib.parse import parse_qsl, urlencode
 
 from starlette.datastructures import Headers, MutableHeaders
-from starlette.responses import RedirectResponse
+from starlette.responses import HTMLResponse, RedirectResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.errors import problem
@@ -19,6 +19,12 @@ POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
     "font-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors 'none'"
 )
+_SIGN_IN = """<!doctype html>
+<html lang="en"><meta charset="utf-8"><title>servoident: token needed</title>
+<h1>This service asks for its token</h1>
+<p>Open the whole address that the service printed when it started; it ends with <code>?token=…</code></p>
+</html>
+"""
 _HEADERS = {
     "Content-Security-Policy": POLICY,
     "X-Content-Type-Options": "nosniff",
@@ -82,6 +88,8 @@ class Guard:
         cookie = cookies[COOKIE].value if COOKIE in cookies else ""
         if self._right(bearer) or self._right(cookie):
             return None
+        if "text/html" in headers.get("accept", "") and not scope["path"].startswith("/api/"):
+            return HTMLResponse(_SIGN_IN, 401)
         return problem(401, "token-needed", "this request carries no valid token", "Authorization",
                        "open the address that the service printed, or send Authorization: Bearer TOKEN",
                        **{"WWW-Authenticate": "Bearer"})  # fmt: skip
