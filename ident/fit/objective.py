@@ -79,7 +79,7 @@ class Objective:
     def prepare(self) -> None:
         """Reduce every run; once."""
         if not self._spectra:
-            _ = self.basis.expansion
+            each(lambda basis: (basis.expansion, basis.check), [self.basis])  # on one thread too
             self._spectra = each(lambda run: spectrum(run, self.basis), self.runs)
 
     def errors(self, points: Array) -> Array:

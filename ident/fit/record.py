@@ -95,10 +95,10 @@ def _with_releases(systems: Recursion) -> Recursion:
 def _responses(run: Run, systems: Recursion, length: int) -> Iterator[tuple[Array, int, int]]:
     """Outputs of the batch in blocks of at most `length` samples: (rows, first, last).
 
-    Rows have a column for each lane, the spare ones being zero: (samples, b rounded up to a multiple of the lanes).
+    Rows have a column for each lane; at least one is spare, and zero: (samples, a multiple of the lanes above b).
     """
     kernel = advance(systems.C.shape[1])
-    buffers = [systems.part(i, i + LANES).packed(LANES) for i in range(0, len(systems.D), LANES)]
+    buffers = [systems.part(i, i + LANES).packed(LANES) for i in range(0, len(systems.D) + 1, LANES)]
     for first in range(0, run.length, length):
         last = min(first + length, run.length)
         parts = []
@@ -112,25 +112,18 @@ def _responses(run: Run, systems: Recursion, length: int) -> Iterator[tuple[Arra
 def _products(run: Run, systems: Recursion, p: int, step: float) -> Array:
     """Sums of products of [J, releases, 1, r] for each block, (blocks, q, q).
 
-    They are formed from the sums of the outputs themselves, of which J and r are combinations: the sums of a block
-    are one product of matrices, and with a step of 1e-5 the differences keep six digits.
+    The differences are taken in place, before the products: taken after, they would lose half the digits.
     """
     length = max(16, -(-run.length // _BLOCKS))
     batch, mean = len(systems.D), run.measured.mean()
+    order = np.array([*range(1, batch + 1), 0])
     out = []
     for rows, first, last in _responses(run, systems, length):
-        x = run.measured[first:last] - mean
-        raw = np.empty((batch + 2, batch + 2))
-        raw[:batch, :batch] = (rows.T @ rows)[:batch, :batch]
-        raw[:batch, batch] = raw[batch, :batch] = rows.sum(axis=0)[:batch]
-        raw[:batch, -1] = raw[-1, :batch] = (x @ rows)[:batch]
-        raw[batch, batch], raw[-1, -1] = len(x), x @ x
-        raw[batch, -1] = raw[-1, batch] = x.sum()
-        out.append(raw)
-    # Columns of the combination: J from y and its neighbours, the releases and the constant as they are, r = x − y.
-    combine = np.zeros((batch + 2, batch + 1))
-    combine[1 : p + 1, :p] = np.eye(p) / step
-    combine[0, :p] = -1.0 / step
-    combine[p + 1 : -1, p:-1] = np.eye(batch - p)
-    combine[-1, -1], combine[0, -1] = 1.0, -1.0
-    return np.asarray(combine.T @ np.array(out) @ combine)
+        rows[:, 1 : p + 1] -= rows[:, :1]
+        rows[:, 0] = run.measured[first:last] - mean - rows[:, 0]
+        rows[:, batch] = 1.0  # a spare lane
+        out.append((rows.T @ rows)[np.ix_(order, order)])
+    products = np.array(out)
+    products[:, :p] /= step
+    products[:, :, :p] /= step
+    return products
