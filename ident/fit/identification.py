@@ -25,6 +25,7 @@ from ident.spectra import Basis, excited_band
 
 Array = NDArray[np.float64]
 State = dict[str, Any]
+_SAME = 1e-6  # relative difference of errors that is none
 _CANDIDATES = 5  # distinct vectors of the last generation from which the polish starts
 
 
@@ -114,20 +115,22 @@ class Identification:
         # Counted from the state, so that a search that was cut by a restart counts the same.
         objective.evaluations = int(state["evaluations"])
         objective.unstable = sum(error >= UNSTABLE for entry in state["history"] for error in entry["errors"])
+        valley = np.empty((0, len(objective.space.axes)))
         if not objective.space.axes:
             point, here = np.empty(0), objective.exact(np.empty(0))
         elif self.settings.method == "paper-ga":
             point = np.array(state["best"])
             here = objective.exact(point)
         else:
-            point, here = self._polished(state)
+            point, here, valley = self._polished(state)
         self.report(Progress("uncertainty", 0, 1, here.error))
         seconds = time.monotonic() - self._started
-        result = summarise(objective, self.settings, point, here, state, seconds)
+        result = summarise(objective, self.settings, point, here, valley, state, seconds)
         self.report(Progress("uncertainty", 1, 1, here.error))
         return result
 
-    def _polished(self, state: State) -> tuple[Array, Local]:
+    def _polished(self, state: State) -> tuple[Array, Local, Array]:
+        """The optimum, the objective there, and where the starts ended that found the same error."""
         population = np.array(state["population"])
         starts = _distinct(np.concatenate([np.array(state["best"])[None], population]))
 
@@ -135,8 +138,9 @@ class Identification:
             self.report(Progress("polish", count, 40, error))
 
         ends = [polish(self.objective.approximate, start, progress) for start in starts]
-        point, _ = min(ends, key=lambda end: end[1].error)
-        return polish(self.objective.exact, point, progress)
+        point, best = min(ends, key=lambda end: end[1].error)
+        valley = np.array([end for end, there in ends if there.error <= best.error * (1 + _SAME)])
+        return *polish(self.objective.exact, point, progress), valley
 
 
 def _distinct(points: Array) -> list[Array]:

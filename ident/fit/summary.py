@@ -25,15 +25,21 @@ _SHARE_SCALE = ("c0", "Ka", "Cl")  # without a known force (m0, c0) × s and (Ka
 
 
 def summarise(
-    objective: Objective, settings: Settings, point: Array, here: Local, state: Mapping[str, Any], seconds: float
+    objective: Objective,
+    settings: Settings,
+    point: Array,
+    here: Local,
+    valley: Array,
+    state: Mapping[str, Any],
+    seconds: float,
 ) -> FitResult:
-    """The result of a fit that ended at `point`, where the objective is `here`."""
+    """The result of a fit that ended at `point`, where the objective is `here`; `valley` has points as good."""
     space, matrix, preset = objective.space, objective.matrix, objective.preset
     values = {name: float(found[0]) for name, found in space.values(point[None]).items()}
     verify_runs = matrix.of_use("verify")
     verify = replace(objective, runs=verify_runs).exact(point, sensitivities=False).runs if verify_runs else ()
     fit_errors, verify_errors = _run_errors(objective.runs, here.runs), _run_errors(verify_runs, verify)
-    found = covariance(here, point)
+    found = covariance(here, point, valley)
     relative = {name: found.relative(_value(objective, name)) for name in space.names}
     weak = [name for name in space.names if relative[name] > DETERMINED]
     if space.convention:
@@ -43,7 +49,9 @@ def summarise(
     return FitResult(
         model=preset.name,
         effects=settings.effects,
-        parameters={label[name][0]: _estimate(objective, name, values, relative, point) for name in space.order},
+        parameters={
+            label[name][0]: _estimate(objective, name, values, relative, point, name in weak) for name in space.order
+        },
         correlation=found.correlation({label[name][0]: _value(objective, name) for name in space.names}),
         determined=tuple(_determined(objective, found, relative, values)) if weak else (),
         undetermined=tuple(Undetermined(label[name][0], _reason(objective, name, relative)) for name in weak),
@@ -93,14 +101,19 @@ def _value(objective: Objective, name: str) -> Callable[[Array], Array]:
 
 
 def _estimate(
-    objective: Objective, name: str, values: Mapping[str, float], relative: Mapping[str, float], point: Array
+    objective: Objective,
+    name: str,
+    values: Mapping[str, float],
+    relative: Mapping[str, float],
+    point: Array,
+    weak: bool,
 ) -> Estimate:
     parameter, value = objective.preset.parameter(name), values[name]
     unit = _labels(objective)[name][1]
     if name not in relative:
         return Estimate(value, unit, None, value, value, False, parameter.symbol, parameter.meaning, fixed=True)
     lower, upper = objective.space.bounds(values)[name]
-    error = value * relative[name] if relative[name] <= DETERMINED else None
+    error = None if weak else value * relative[name]
     place = float(point[objective.space.names.index(name)])
     at_bound = not 1e-6 < place < 1 - 1e-6
     return Estimate(value, unit, error, lower, upper, at_bound, parameter.symbol, parameter.meaning)

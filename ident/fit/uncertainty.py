@@ -24,15 +24,21 @@ COMBINED = 0.1  # for a combination, which has to be worth reporting
 
 @dataclass(frozen=True)
 class Covariance:
-    """Covariance on the axes of the search, (p, p), and the directions the data do not see at all, columns (p, b)."""
+    """Covariance on the axes of the search, (p, p), and the directions the data do not see at all, columns (p, b).
+
+    `valley` holds points of one error, (k, p), where searches from other starts ended: a flat valley may be curved,
+    and what differs along it is not determined, however steep its walls are where the fit ended.
+    """
 
     point: Array
     seen: Array
     blind: Array
+    valley: Array
 
     def relative(self, quantity: Callable[[Array], Array]) -> float:
         """Relative standard error of a positive quantity, a function of points (v, p) → (v,)."""
-        return float(np.sqrt(max(self._log(quantity, quantity), 0.0)))
+        along = np.ptp(np.log(quantity(self.valley))) if len(self.valley) else 0.0
+        return float(np.sqrt(max(self._log(quantity, quantity), 0.0) + along**2))
 
     def correlation(self, quantities: Mapping[str, Callable[[Array], Array]]) -> dict[str, dict[str, float]]:
         """Correlations of quantities by name."""
@@ -57,7 +63,7 @@ class Covariance:
         return np.asarray((ends[:p] - ends[p:]) / (2 * step))
 
 
-def covariance(here: Local, point: Array) -> Covariance:
+def covariance(here: Local, point: Array, valley: Array) -> Covariance:
     """The covariance at the optimum."""
     p = len(point)
     H, S = np.zeros((p, p)), np.zeros((p, p))
@@ -66,10 +72,10 @@ def covariance(here: Local, point: Array) -> Covariance:
         H += weight * run.gram[:p, :p]
         S += weight**2 * run.scores.T @ run.scores
     if not p or not np.all(np.isfinite(H)):
-        return Covariance(point, np.zeros((p, p)), np.eye(p))
+        return Covariance(point, np.zeros((p, p)), np.eye(p), valley)
     scale = np.sqrt(np.maximum(np.diag(H), 1e-12 * max(np.diag(H).max(), 1e-300)))
     strengths, directions = np.linalg.eigh(H / scale[:, None] / scale)
     seen = strengths > _LOST * strengths[-1]
     inverse = (directions[:, seen] / strengths[seen]) @ directions[:, seen].T / scale[:, None] / scale
     blind = directions[:, ~seen] / scale[:, None]
-    return Covariance(point, inverse @ S @ inverse, blind / np.maximum(np.linalg.norm(blind, axis=0), 1e-300))
+    return Covariance(point, inverse @ S @ inverse, blind / np.maximum(np.linalg.norm(blind, axis=0), 1e-300), valley)
