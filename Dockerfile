@@ -7,4 +7,5 @@ RUN python3 -c "from app.environment import prepare; prepare('requirements.lock'
 USER servoident
 VOLUME /data
 ENV PATH="/servoident/.venv/bin:$PATH"
-CMD ["servoident", "serve"]
+EXPOSE 8000
+CMD ["servoident", "serve", "--host", "0.0.0.0", "--data", "/data"]

@@ -120,7 +120,7 @@ def create() -> None:
 def install(lock: str) -> None:
     """Install the packages of `lock`, then the project itself without dependencies."""
     pip = [str(PYTHON), "-m", "pip", "install", "--quiet", "--no-input", "--disable-pip-version-check"]
-    uv = [str(PYTHON), "-m", "uv", "pip", "install", "--quiet", "--python", str(PYTHON)]
+    uv = [str(PYTHON), "-m", "uv", "pip", "install", "--quiet", "--system-certs", "--python", str(PYTHON)]
     packages = ["--require-hashes", "--requirement", str(ROOT / lock)]
     project = ["--no-deps", "--no-build-isolation", "--editable", str(ROOT)]
     count = sum("==" in line for line in (ROOT / lock).read_text().splitlines())

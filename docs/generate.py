@@ -94,12 +94,12 @@ def errors() -> str:
         "# Errors",
         NOTE,
         "",
-        "Unusable input is refused with a code, and with what is wrong, where, and the remedy. The command line prints",
-        "them in one line and exits with 2; the service answers with problem+json whose `code` is this one.",
-        "In the table, … stands for what is filled in.",
+        "What cannot be used or done is refused with a code, and with what is wrong, where, and the remedy. The command line",
+        "prints it in one line and exits with 2; the service answers with problem+json whose `code` is this one, and the HTTP",
+        "status below. In the table, … stands for what is filled in.",
         "",
     ]
-    return "\n".join([*head, *table(("code", "what", "remedy"), rows), ""])
+    return "\n".join([*head, *table(("code", "HTTP", "what", "remedy"), rows), ""])
 
 
 def source_files(folder: str) -> Iterator[Path]:
@@ -107,12 +107,14 @@ def source_files(folder: str) -> Iterator[Path]:
     return (DOCS.parent / folder).rglob("*.py")
 
 
-def codes(file: Path) -> Iterator[tuple[str, str, str]]:
-    """Code, what and remedy of every `Unusable(…)` in a file."""
+def codes(file: Path) -> Iterator[tuple[str, str, str, str]]:
+    """Code, HTTP status, what and remedy of every refusal in a file."""
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Unusable" and len(node.args) == 4:
-            code, what, _, remedy = map(words, node.args)
-            yield f"`{code}`", what, remedy
+        match node:
+            case ast.Call(ast.Name("Unusable"), [code, what, _, remedy]):
+                yield f"`{words(code)}`", "422", words(what), words(remedy)
+            case ast.Call(ast.Name("Failure" | "problem"), [ast.Constant(status), code, what, _, remedy]):
+                yield f"`{words(code)}`", str(status), words(what), words(remedy)
 
 
 def words(node: ast.expr) -> str:

@@ -34,7 +34,7 @@ def demo(
     from app.settings import default_data
     from ident.synthesis import simulate_matrix
 
-    host = LOOPBACK[0]
+    host = LOOPBACK
     chosen = settings(data or default_data() / "demo", "", host=host, port=free_port(host, port))
     with tempfile.TemporaryDirectory(prefix="servoident-") as folder:
         matrix = Path(folder) / SERIAL

@@ -13,7 +13,7 @@ from app.cli.serving import LOOPBACK, address, run
 def serve(
     host: Annotated[
         str, typer.Option(help="Address to listen on; by default only this machine can reach it.")
-    ] = LOOPBACK[0],
+    ] = LOOPBACK,
     port: Annotated[int, typer.Option(min=1, max=65535, help="Port to listen on.")] = 8000,
     data: Data = None,
     database: Database = "",
@@ -25,5 +25,7 @@ def serve(
 
     SERVOIDENT_TOKEN sets the token; else each start draws a new one.
     """
-    chosen = settings(data, database, host=host, port=port, allowed_hosts=tuple(allow_host or []))
+    names = [*(allow_host or []), f"[{host}]" if ":" in host else host]
+    allowed = tuple(form for name in names for form in (name, f"{name}:{port}"))
+    chosen = settings(data, database, host=host, port=port, allowed_hosts=allowed)
     run(chosen, lambda: print(f"servoident: {address(chosen)}/?token={chosen.token}  (Ctrl-C stops it)", flush=True))

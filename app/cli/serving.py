@@ -14,12 +14,14 @@ from ident.errors import Unusable
 if TYPE_CHECKING:
     from app.settings import Settings
 
-LOOPBACK = ("127.0.0.1", "localhost", "::1")
+LOOPBACK = "127.0.0.1"
+EVERYWHERE = ("0.0.0.0", "::")
 
 
 def address(settings: Settings) -> str:
-    """Where a client finds the service."""
-    host = f"[{settings.host}]" if ":" in settings.host else settings.host
+    """Where a client on this machine finds the service."""
+    host = LOOPBACK if settings.host in EVERYWHERE else settings.host
+    host = f"[{host}]" if ":" in host else host
     return f"http://{host}:{settings.port}"
 
 

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator
 from xml.etree import ElementTree
 
+import httpx
 import pytest
 
 from tests.cli.running import Service, free_port, running
@@ -16,7 +17,7 @@ from tests.cli.running import Service, free_port, running
 def service(tmp_path_factory) -> Iterator[Service]:
     """`servoident serve` in a process of its own."""
     data = tmp_path_factory.mktemp("data")
-    with running("serve", "--port", free_port(), "--data", data, until="token=") as said:
+    with running("serve", "--port", free_port(), "--data", data, "--allow-host", "lab.example", until="token=") as said:
         yield Service(said, data)
 
 
@@ -39,6 +40,14 @@ def fitted(service, stored) -> str:
 def test_serve_prints_an_address_on_this_machine_only(service):
     """The loopback address, with a token."""
     assert re.search(r"http://127\.0\.0\.1:\d+/\?token=\S{20,}", service.said)
+
+
+@pytest.mark.parametrize(("host", "status"), [("lab.example", 200), ("other.example", 403)])
+def test_only_names_that_were_allowed_are_served(service, host, status):
+    """A name given with --allow-host works; any other is refused, whatever it resolves to."""
+    _, server, _, token = service.options
+    headers = {"Host": host, "Authorization": f"Bearer {token}"}
+    assert httpx.get(f"{server}/api/v1/jobs", headers=headers).status_code == status
 
 
 def test_an_uploaded_folder_is_the_matrix(stored, matrix):
