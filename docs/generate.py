@@ -18,6 +18,7 @@ from ident.presets import PRESETS, Preset
 
 DOCS = Path(__file__).resolve().parent
 SOURCES = ("ident", "app", "schemas")
+PASSED_ON = {("`…`", "422", "…", "…")}  # what a client says in the words of the service
 NOTE = "<!-- written by docs/generate.py -->"
 
 
@@ -89,14 +90,14 @@ def parameters(of: Iterable[Parameter]) -> list[str]:
 
 def errors() -> str:
     """Every error code, with what it says and its remedy; {…} stands for what is filled in."""
-    rows = sorted({found for folder in SOURCES for file in source_files(folder) for found in codes(file)})
+    rows = sorted({found for folder in SOURCES for file in source_files(folder) for found in codes(file)} - PASSED_ON)
     head = [
         "# Errors",
         NOTE,
         "",
-        "What cannot be used or done is refused with a code, and with what is wrong, where, and the remedy. The command line",
-        "prints it in one line and exits with 2; the service answers with problem+json whose `code` is this one, and the HTTP",
-        "status below. In the table, … stands for what is filled in.",
+        "What cannot be used or done is refused with a code, with what is wrong, where, and the remedy. The command",
+        "line prints it in one line and exits with 2; the service answers with problem+json whose `code` is this one,",
+        "and the HTTP status below. In the table, … stands for what is filled in.",
         "",
     ]
     return "\n".join([*head, *table(("code", "HTTP", "what", "remedy"), rows), ""])
@@ -124,6 +125,8 @@ def words(node: ast.expr) -> str:
             return str(node.value)
         case ast.JoinedStr():
             return "".join(words(part) for part in node.values)
+        case ast.IfExp():
+            return f"{words(node.body)} or {words(node.orelse)}"
         case _:
             return "…"
 
