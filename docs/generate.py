@@ -113,9 +113,14 @@ def codes(file: Path) -> Iterator[tuple[str, str, str, str]]:
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         match node:
             case ast.Call(ast.Name("Unusable"), [code, what, _, remedy]):
-                yield f"`{words(code)}`", "422", words(what), words(remedy)
+                yield from ((f"`{name}`", "422", words(what), words(remedy)) for name in alternatives(code))
             case ast.Call(ast.Name("Failure" | "problem"), [ast.Constant(status), code, what, _, remedy]):
                 yield f"`{words(code)}`", str(status), words(what), words(remedy)
+
+
+def alternatives(node: ast.expr) -> list[str]:
+    """A code, or both of a choice between two."""
+    return [words(node.body), words(node.orelse)] if isinstance(node, ast.IfExp) else [words(node)]
 
 
 def words(node: ast.expr) -> str:
@@ -125,8 +130,6 @@ def words(node: ast.expr) -> str:
             return str(node.value)
         case ast.JoinedStr():
             return "".join(words(part) for part in node.values)
-        case ast.IfExp():
-            return f"{words(node.body)} or {words(node.orelse)}"
         case _:
             return "…"
 

@@ -132,8 +132,12 @@ def describe_gain(fields: Fields) -> float | None:
     """Kp, a dial. Raises Unusable: ``zero-gain``, ``negative-gain``."""
     gain = fields.number("gain")
     if gain is not None and gain <= 0:
-        what, remedy = f"Kp is {gain:g}, and the loop is open", "give the gain that was set"
-        raise Unusable("zero-gain" if gain == 0 else "negative-gain", what, fields.place("gain"), remedy)
+        raise Unusable(
+            "zero-gain" if gain == 0 else "negative-gain",
+            f"Kp is {gain:g}, and the loop is open",
+            fields.place("gain"),
+            "give the gain that was set",
+        )
     return gain
 
 
