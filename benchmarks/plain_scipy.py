@@ -11,6 +11,7 @@ from itertools import groupby
 
 import numpy as np
 from scipy.signal import cont2discrete, lfilter
+from threadpoolctl import threadpool_limits
 
 from ident.matrix import Run
 
@@ -61,6 +62,6 @@ def on_all_cores(kind: str) -> Iterator[Callable[[np.ndarray], list[float]]]:
         if kind == "threads"
         else ProcessPoolExecutor(cores, mp_context=multiprocessing.get_context("fork"))
     )
-    with pool:
-        list(pool.map(error, []))
+    # Small matrices on many threads of a BLAS would only wait for each other: one thread makes this side twice as fast.
+    with threadpool_limits(1), pool:
         yield lambda vectors: list(pool.map(error, vectors))
