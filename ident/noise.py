@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 import scipy.signal
 
-from ident.matrix import Run
+from ident.matrix import USES, Matrix, Run
+from ident.parallel import each
 
 _CLEAR = 1.6  # times the band edge: beyond it a Hann window lets less than 1e-6 of the band's power through
 _LEAST = 0.2  # of the Nyquist frequency must be left above that, to average over
@@ -24,3 +27,15 @@ def noise_floor(run: Run, band: float) -> float | None:
     frequency, power = scipy.signal.welch(run.measured, run.sample_rate, nperseg=segment, detrend="constant")
     density = float(np.mean(power[(frequency > clear) & (frequency < 0.98 * nyquist)]))
     return float(np.sqrt(density * nyquist) / np.std(run.measured))
+
+
+def noise_floors(matrix: Matrix, band: float) -> Mapping[str, float | None]:
+    """The noise floor averaged over the runs of each use; None where it cannot be told of every run."""
+    floors = each(lambda run: noise_floor(run, band), matrix.runs)
+    by_use = {use: [f for run, f in zip(matrix.runs, floors, strict=True) if run.use == use] for use in USES}
+    return {use: _mean(found) for use, found in by_use.items()}
+
+
+def _mean(floors: Sequence[float | None]) -> float | None:
+    known = [floor for floor in floors if floor is not None]
+    return float(np.mean(known)) if known and len(known) == len(floors) else None

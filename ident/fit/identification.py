@@ -19,6 +19,7 @@ from ident.fit.settings import METHODS, Settings
 from ident.fit.space import search_space
 from ident.fit.summary import summarise
 from ident.matrix import Matrix
+from ident.noise import noise_floors
 from ident.presets import preset as preset_called
 from ident.progress import Progress, Report, silent
 from ident.spectra import Basis, excited_band
@@ -47,6 +48,7 @@ class Identification:
         space = search_space(self.preset, matrix, settings, band)
         self.objective = Objective(self.preset, matrix, self._runs, space, Basis(band))
         self._started = time.monotonic()
+        self.floors = noise_floors(matrix, band)
         if space.axes:
             report(Progress("spectra", 0, 1))
             self.objective.prepare()
@@ -125,7 +127,7 @@ class Identification:
             point, here, valley = self._polished(state)
         self.report(Progress("uncertainty", 0, 1, here.error))
         seconds = time.monotonic() - self._started
-        result = summarise(objective, self.settings, point, here, valley, state, seconds)
+        result = summarise(objective, self.settings, point, here, valley, state, self.floors, seconds)
         self.report(Progress("uncertainty", 1, 1, here.error))
         return result
 

@@ -16,8 +16,6 @@ from ident.fit.result import Combination, Estimate, FitResult, Generation, RunEr
 from ident.fit.settings import Settings
 from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
 from ident.matrix import Run
-from ident.noise import noise_floor
-from ident.parallel import each
 from ident.presets.preset import Combined
 
 Array = NDArray[np.float64]
@@ -31,9 +29,13 @@ def summarise(
     here: Local,
     valley: Array,
     state: Mapping[str, Any],
+    floors: Mapping[str, float | None],
     seconds: float,
 ) -> FitResult:
-    """The result of a fit that ended at `point`, where the objective is `here`; `valley` has points as good."""
+    """The result of a fit that ended at `point`, where the objective is `here`; `valley` has points as good.
+
+    `floors` is the noise floor of the runs of each use.
+    """
     space, matrix, preset = objective.space, objective.matrix, objective.preset
     values = {name: float(found[0]) for name, found in space.values(point[None]).items()}
     verify_runs = matrix.of_use("verify")
@@ -44,7 +46,6 @@ def summarise(
     weak = [name for name in space.names if relative[name] > DETERMINED]
     if space.convention:
         weak = [*weak, *(name for name in _SHARE_SCALE if name in relative and name not in weak), space.convention]
-    floors = {"fit": _floor(objective.runs, objective.basis.band), "verify": _floor(verify_runs, objective.basis.band)}
     label = _labels(objective)
     return FitResult(
         model=preset.name,
@@ -81,12 +82,6 @@ def _run_errors(runs: Sequence[Run], found: Sequence[Moments]) -> tuple[RunError
 
 def _mean(runs: Sequence[RunError], what: str) -> float | None:
     return float(np.mean([getattr(run, what) for run in runs])) if runs else None
-
-
-def _floor(runs: Sequence[Run], band: float) -> float | None:
-    floors = each(lambda run: noise_floor(run, band), runs)
-    known = [floor for floor in floors if floor is not None]
-    return float(np.mean(known)) if known and len(known) == len(floors) else None
 
 
 def _labels(objective: Objective) -> dict[str, tuple[str, str]]:
