@@ -10,10 +10,14 @@ import numpy as np
 import scipy.signal
 from numpy.typing import NDArray
 
-from ident.chain import LinearModel, conditions
+from ident.chain import LinearModel
+from ident.effect import parameter_name
 from ident.errors import Unusable
+from ident.fit.output_error import OutputError
 from ident.fit.record import output
 from ident.fit.result import FitResult
+from ident.fit.space import Space
+from ident.linear import linear_model
 from ident.matrix import Actuator, Matrix, Run
 from ident.parallel import each
 from ident.presets import Preset
@@ -28,11 +32,11 @@ _WINDOW = 1.0  # s: the length of a window of the spectral estimate, and with it
 class RunComparison:
     """One run: eq. (17), the offset, the model's output and the frequency responses.
 
-    `modelled` (n,) is in the run's own unit, beside ``run.measured``.
+    `modelled` (n,) is in the run's own unit, beside ``run.measured``; `linear` is None for a model with effects.
     """
 
     run: Run
-    linear: LinearModel
+    linear: LinearModel | None
     modelled: Array
 
     @cached_property
@@ -64,17 +68,23 @@ class RunComparison:
 
     @cached_property
     def model(self) -> Complex:
-        """The model's frequency response, (f,)."""
-        return np.asarray(self.linear.frequency_response(self.frequency)[0])
+        """The model's frequency response, (f,); with effects, estimated from its output as the measured one is."""
+        if self.linear is not None:
+            return np.asarray(self.linear.frequency_response(self.frequency)[0])
+        _, uu, _, ux = self._spectra_of(self.modelled)
+        return np.asarray(ux / uu)
 
     @cached_property
     def _spectra(self) -> tuple[Array, Array, Array, Complex]:
+        return self._spectra_of(self.run.measured)
+
+    def _spectra_of(self, output: Array) -> tuple[Array, Array, Array, Complex]:
         run = self.run
         segment = min(run.length // 2, max(16, round(_WINDOW * run.sample_rate))) if run.time_unit == "s" else 256
         options = {"fs": run.sample_rate, "nperseg": min(segment, run.length), "detrend": "constant"}
-        frequency, ux = scipy.signal.csd(run.command, run.measured, **options)
+        frequency, ux = scipy.signal.csd(run.command, output, **options)
         _, uu = scipy.signal.welch(run.command, **options)
-        _, xx = scipy.signal.welch(run.measured, **options)
+        _, xx = scipy.signal.welch(output, **options)
         used = slice(1, None)
         return frequency[used], np.maximum(uu[used], 1e-300), np.maximum(xx[used], 1e-300), ux[used]
 
@@ -104,35 +114,38 @@ class Comparison:
 
 def compare(matrix: Matrix, fit: FitResult) -> Comparison:
     """Every run of the matrix against the fitted model. Raises Unusable where the fit is of another model's data."""
-    preset, values = preset_called(fit.model), fitted_values(fit)
+    preset, values = fitted(fit)
+    if preset.effects:
+        outputs = modelled(preset, values, matrix)
+        return Comparison(matrix, fit, tuple(RunComparison(run, None, outputs[run.id]) for run in matrix.runs))
 
     def one(run: Run) -> RunComparison:
-        model = linear_model(preset, values, run, matrix.actuator)
+        model = linear_model(preset.core, values, run, matrix.actuator)
         return RunComparison(run, model, output(run, model))
 
     return Comparison(matrix, fit, tuple(each(one, matrix.runs)))
 
 
-def fitted_values(fit: FitResult) -> dict[str, float]:
-    """The fit's parameters under the names of the equations. Raises Unusable where one is missing."""
-    preset = preset_called(fit.model)
+def modelled(preset: Preset, values: Mapping[str, float], matrix: Matrix) -> dict[str, Array]:
+    """The output of a model with effects for every run of a matrix, by the run's id."""
+    nothing = Space((), tuple(values), values, {})
+    return OutputError(preset, matrix, matrix.runs, nothing, 0.0).outputs(np.empty(0))
+
+
+def fitted(fit: FitResult) -> tuple[Preset, dict[str, float]]:
+    """The model of a fit, and its parameters under the names of the equations. Raises Unusable where one is missing."""
+    preset = preset_called(fit.model, fit.effects)
     values = {preset.parameter(name).name: value for name, value in fit.values.items()}
-    missing = [parameter.name for parameter in preset.parameters if parameter.name not in values]
+    missing = [parameter_name(p.name) for p in preset.parameters if p.name not in values]
     if missing:
         raise Unusable("bad-fit", f"no value of {', '.join(missing)}", "fit", f"give a fit of model {fit.model}")
-    return values
-
-
-def linear_model(preset: Preset, values: Mapping[str, float], run: Run, actuator: Actuator) -> LinearModel:
-    """The model of a run as a batch of one."""
-    known = conditions(run, actuator) | dict(values)
-    return preset.chain.linearise({name: np.array([value]) for name, value in known.items()}, run.output)
+    return preset, values
 
 
 def response(fit: FitResult, run: Run, actuator: Actuator, frequency: Array) -> Complex:
-    """The fitted model's frequency response (f,) at `frequency` in Hz.
+    """The frequency response (f,) of the fitted model's linear core at `frequency` in Hz.
 
     For a run of the matrix, or one whose conditions were changed.
     """
-    found = linear_model(preset_called(fit.model), fitted_values(fit), run, actuator)
-    return np.asarray(found.frequency_response(frequency)[0])
+    preset, values = fitted(fit)
+    return np.asarray(linear_model(preset.core, values, run, actuator).frequency_response(frequency)[0])

@@ -1,9 +1,14 @@
 """The grammar in which every equation of the program is written, and what can be read off an equation.
 
-An equation is one line of text, ``q' = (e - q) / tau`` (rate of a state) or ``w = q`` (a signal). Its right-hand side
-is arithmetic, comparison and a fixed list of functions on named quantities, nothing else: it is parsed, checked node
-by node, and never handed to the interpreter as it came. Simulation, frequency response, documentation and the page's
-mathematics all come from this one text.
+An equation is one line of text:
+
+    q' = (e - q) / tau                a rate of a state
+    w = q                             a signal
+    p := clip(p, q - b, q + b)        a memory: on the right, p is its value at the start of the step
+
+Its right-hand side is arithmetic, comparison and a fixed list of functions on named quantities, nothing else: it is
+parsed, checked node by node, and never handed to the interpreter as it came. Simulation, frequency response,
+documentation and the page's mathematics all come from this one text.
 """
 
 from __future__ import annotations
@@ -30,10 +35,22 @@ FUNCTIONS: Mapping[str, Callable[..., Any]] = {
     "sin": np.sin,
     "sqrt": np.sqrt,
     "tanh": np.tanh,
+    "where": np.where,
+    "lag": lambda x, T: x,
+    "lag2": lambda x, a1, a2: x,
+    "delay": lambda x, T: x,
+    "dry": lambda limit, speed, acceleration, mass: 0.0 * limit,
 }
-"""Functions an equation may call, with their numpy meaning."""
+"""Functions an equation may call, with their numpy meaning for signals that stand still.
 
-_ARGUMENTS = {"clip": 3, "max": 2, "min": 2}
+Those that remember are exact for a strength of zero: `lag` is x/(T s + 1), `lag2` x/(a2 s² + a1 s + 1), `delay`
+x(t − T), and `dry` the friction force that takes at most `limit`, and at most what stops `mass` within the step.
+"""
+
+DYNAMIC = ("lag", "lag2", "delay", "dry")
+"""The functions that remember."""
+
+_ARGUMENTS = {"clip": 3, "max": 2, "min": 2, "where": 3, "lag": 2, "lag2": 3, "delay": 2, "dry": 4}
 _OPERATORS = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.USub, ast.UAdd, ast.Lt, ast.LtE, ast.Gt, ast.GtE)
 _NODES = (ast.Expression, ast.BinOp, ast.UnaryOp, ast.Compare, ast.Call, ast.Name, ast.Load, ast.Constant, *_OPERATORS)
 _LONGEST = 1000  # characters; a longer text is no equation
@@ -55,8 +72,13 @@ class Equation:
 
     @property
     def target(self) -> str:
-        """The quantity on the left, without the prime of a rate."""
-        return self._left.removesuffix("'")
+        """The quantity on the left, without the prime of a rate or the colon of a memory."""
+        return self._left.removesuffix("'").removesuffix(":").rstrip()
+
+    @property
+    def is_memory(self) -> bool:
+        """True for ``x := ...``."""
+        return self._left.endswith(":")
 
     @property
     def is_rate(self) -> bool:
@@ -72,7 +94,7 @@ class Equation:
         """The right-hand side as a checked syntax tree."""
         left, equals, right = self.text.partition("=")
         if not equals or not self.target.isidentifier() or len(self.text) > _LONGEST:
-            raise _refused(self.text, 0, "an equation reads NAME = EXPRESSION or NAME' = EXPRESSION")
+            raise _refused(self.text, 0, "an equation reads NAME = , NAME' = or NAME := EXPRESSION")
         return _parse(right, self.text, len(left) + 1)
 
     @cached_property
@@ -80,6 +102,19 @@ class Equation:
         """The quantities on the right, functions left out."""
         called = {node.func.id for node in ast.walk(self.tree) if isinstance(node, ast.Call)}  # type: ignore[attr-defined]
         return frozenset(node.id for node in ast.walk(self.tree) if isinstance(node, ast.Name)) - called
+
+    def renamed(self, names: Mapping[str, str], target: str) -> Equation:
+        """The same equation with other names for what it reads, and another target."""
+        values = {name: ast.Name(other, ast.Load()) for name, other in names.items()}
+        sign = "' = " if self.is_rate else " := " if self.is_memory else " = "
+        return Equation(f"{target}{sign}{_replaced(self.python, values)}", self.place, self.meaning)
+
+    def with_values(self, values: Mapping[str, ast.expr]) -> Equation:
+        """The same equation with expressions in place of names."""
+        if not self.names & values.keys():
+            return self
+        left, _, _ = self.text.partition("=")
+        return Equation(f"{left}= {_replaced(self.python, values)}", self.place, self.meaning)
 
     def value(self, known: Mapping[str, Any]) -> Any:
         """The right-hand side where every quantity it reads has a value: numbers or arrays that broadcast."""
@@ -91,6 +126,14 @@ class Equation:
     def python(self) -> str:
         """The right-hand side as Python source, to be put into a generated function."""
         return ast.unparse(self.tree)
+
+
+def _replaced(text: str, values: Mapping[str, ast.expr]) -> str:
+    class Replace(ast.NodeTransformer):
+        def visit_Name(self, node: ast.Name) -> ast.expr:
+            return values.get(node.id, node)
+
+    return ast.unparse(Replace().visit(ast.parse(text, mode="eval")))
 
 
 def _parse(right: str, text: str, offset: int) -> ast.expr:
@@ -142,7 +185,8 @@ def mathml(text: str) -> str:
     left = _symbol(equation.target)
     if equation.is_rate:
         left = f"<mover>{left}<mo>˙</mo></mover>"
-    return f"<math display='block'><mrow>{left}<mo>=</mo>{_render(equation.tree)}</mrow></math>"
+    equals = "≔" if equation.is_memory else "="
+    return f"<math display='block'><mrow>{left}<mo>{equals}</mo>{_render(equation.tree)}</mrow></math>"
 
 
 def _symbol(name: str) -> str:
@@ -176,11 +220,25 @@ def _render(node: ast.expr) -> str:
             return f"<msqrt>{_render(argument)}</msqrt>"
         case ast.Call(func=ast.Name(id="abs"), args=[argument]):
             return f"<mrow><mo>|</mo>{_render(argument)}<mo>|</mo></mrow>"
+        case ast.Call(func=ast.Name(id="lag"), args=[x, T]):
+            return _filtered(x, f"<mn>1</mn><mo>+</mo>{_inside(T, 2)}<mo>·</mo><mi>s</mi>")
+        case ast.Call(func=ast.Name(id="lag2"), args=[x, a1, a2]):
+            first, second = (
+                f"{_inside(a1, 2)}<mo>·</mo><mi>s</mi>",
+                f"{_inside(a2, 2)}<mo>·</mo><msup><mi>s</mi><mn>2</mn></msup>",
+            )
+            return _filtered(x, f"<mn>1</mn><mo>+</mo>{first}<mo>+</mo>{second}")
+        case ast.Call(func=ast.Name(id="delay"), args=[x, T]):
+            return f"{_inside(x, 9)}<mo>⁡</mo><mrow><mo>(</mo><mi>t</mi><mo>−</mo>{_inside(T, 2)}<mo>)</mo></mrow>"
         case ast.Call(func=ast.Name(id=name), args=arguments):
             listed = "<mo>,</mo>".join(map(_render, arguments))
             return f"<mi>{name}</mi><mo>⁡</mo><mrow><mo>(</mo>{listed}<mo>)</mo></mrow>"
         case _:
             raise TypeError(f"{ast.dump(node)} passed the grammar but has no MathML")
+
+
+def _filtered(x: ast.expr, denominator: str) -> str:
+    return f"<mfrac><mn>1</mn><mrow>{denominator}</mrow></mfrac><mo>·</mo>{_inside(x, 2)}"
 
 
 def _inside(node: ast.expr, rank: int) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -104,6 +104,10 @@ class Run:
     def Kp(self) -> float:
         """The loop gain; 1 where the matrix states none."""
         return 1.0 if self.gain is None else self.gain
+
+    def part(self, first: int, last: int) -> Run:
+        """The samples first to last − 1 as a run of their own."""
+        return replace(self, channels={name: samples[first:last] for name, samples in self.channels.items()})
 
     @cached_property
     def starts_at_rest(self) -> bool:

@@ -1,119 +1,251 @@
-"""The exact response of a linear chain to a sampled command.
-
-Between samples the command is what the run's `hold` says, so that the response at the samples is a recursion without
-any error of integration (F first-order hold "linear", Z zero-order hold "zoh"):
-
-    s[k+1] = Φ s[k] + Γ0 u[k] + Γ1 u[k+1],   y[k] = C s[k] + D u[k],   Φ = exp(A T)
-
-Sixteen systems run side by side through one command, one a SIMD lane; blocks of samples keep the memory small.
-"""
+"""Chains with effects and runs in, outputs out: what the compiled kernel of :mod:`ident.kernel` needs, and its use."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
+import scipy.linalg
 from numpy.typing import NDArray
-from scipy.linalg import expm
 
-from ident.chain import LinearModel
-from ident.compiled import function
+from ident.chain import FORCE, INPUT, STEP, Chain
+from ident.kernel import HELD, LANES, SHARE, Filter, Kernel, constant, kernel
+from ident.matrix import Run
 
 Array = NDArray[np.float64]
-LANES = 16
+FINE = 0.4  # radians or time constants a step: the largest eigenvalue times the step, above which steps are divided
+MOST = 32  # steps a sample; a faster mode is cut there, and said
+_SMALL = 1e-9  # of a unit: where small-signal behaviour is taken
 
 
 @dataclass(frozen=True)
-class Recursion:
-    """A batch of b systems in discrete time: Φ (b, n, n), Γ0 and Γ1 (b, n), C (b, n), D (b), start state s0 (b, n)."""
+class Simulation:
+    """Runs of one length and sample rate, each with `v` parameter vectors, side by side.
 
-    phi: Array
-    gamma0: Array
-    gamma1: Array
-    C: Array
-    D: Array
-    start: Array
+    `values` maps every symbol of the chain to an array that broadcasts to (runs, v); `start` holds the states at the
+    first sample, (runs, v, n), zero where None; `steps` divides the sample time.
+    """
 
-    def packed(self, lanes: int) -> Array:
-        """One flat buffer, the lane its fastest index: Φ, Γ0, Γ1, C, D, state.
-
-        One buffer at constant offsets lets the compiler see that nothing overlaps. Spare lanes are zero systems.
-        """
-        spare = lanes - len(self.D)
-        pad = [np.concatenate([a, np.zeros((spare, *a.shape[1:]))]) for a in self._parts]
-        return np.concatenate([np.moveaxis(a, 0, -1).ravel() for a in pad])
-
-    def part(self, first: int, last: int) -> Recursion:
-        """The systems first to last − 1 of the batch."""
-        return Recursion(*(a[first:last] for a in self._parts))
+    chain: Chain
+    runs: tuple[Run, ...]
+    values: Mapping[str, Array]
+    steps: int = 1
+    start: Array | None = None
 
     @property
-    def _parts(self) -> tuple[Array, ...]:
-        return self.phi, self.gamma0, self.gamma1, self.C, self.D, self.start
+    def shape(self) -> tuple[int, int]:
+        """(runs, vectors)."""
+        wide = np.broadcast_shapes((len(self.runs), 1), *(np.shape(value) for value in self.values.values()))
+        return int(wide[0]), int(wide[1])
+
+    def outputs(self, length: int = 4096) -> Iterator[tuple[Array, int, int]]:
+        """The outputs in blocks of at most `length` samples: ((samples, runs, vectors), first, last)."""
+        (count, vectors), samples = self.shape, self.runs[0].length
+        lanes = -(-count * vectors // LANES) * LANES
+        built = self._kernel()
+        lane_values = self._lanes(lanes)
+        commands, where, shares = self._inputs(lanes, INPUT, built, lane_values)
+        forces = self._inputs(lanes, FORCE, built, lane_values)[0] if FORCE in built.inputs else commands
+        lane_values |= {HELD: self._held(lanes), SHARE: shares}
+        buffers = self._packed(built, lane_values, lanes, commands, forces, where)
+        for first in range(0, samples, length):
+            last = min(first + length, samples)
+            out = np.empty((last - first) * lanes)
+            for i, buffer in enumerate(buffers):
+                group = slice(i * LANES, (i + 1) * LANES)
+                ends = first * self.steps, (last - 1) * self.steps + 1
+                built.advance(buffer, commands, forces, where[group], *ends, self.steps, out[i * LANES :], lanes)
+                if last < samples:  # on to the first step of the next block
+                    rest = ends[1], last * self.steps
+                    built.advance(buffer, commands, forces, where[group], *rest, 1 << 40, np.empty(LANES), LANES)
+            yield out.reshape(last - first, lanes)[:, : count * vectors].reshape(-1, count, vectors), first, last
+
+    def _kernel(self) -> Kernel:
+        exponents = {
+            (name, float(np.ravel(self.values[name])[0]))
+            for name in self.chain.exponents
+            if np.ptp(self.values[name]) == 0
+        }
+        return kernel(self.chain, self.runs[0].output, frozenset(exponents))
+
+    def _lanes(self, lanes: int) -> dict[str, Array]:
+        """Every symbol lane by lane, the spare lanes repeating the last."""
+        shape = self.shape
+        values = {name: np.broadcast_to(self.values[name], shape).ravel() for name in self.chain.symbols}
+        values[STEP] = np.full(shape[0] * shape[1], 1.0 / (self.runs[0].sample_rate * self.steps))
+        return {name: _filled(value, lanes) for name, value in values.items()}
+
+    def _held(self, lanes: int) -> Array:
+        held = np.array([[float(run.hold == "zoh")] for run in self.runs])
+        return _filled(np.broadcast_to(held, self.shape).ravel(), lanes)
+
+    def _inputs(
+        self, lanes: int, name: str, built: Kernel, values: Mapping[str, Array]
+    ) -> tuple[Array, NDArray[np.int64], Array]:
+        """One input of every run at the fine steps, one after the other; where each lane begins; delays' fractions."""
+        shift = np.zeros(lanes)
+        if name == INPUT and built.shift is not None:
+            shift = np.broadcast_to(constant(built.shift, values) / values[STEP], (lanes,))
+        whole = np.floor(shift + 1e-9).astype(np.int64)
+        before = int(whole.max()) + 2
+        records = [_fine(run, name, self.steps, before) for run in self.runs]
+        starts = np.cumsum([0, *(len(record) for record in records[:-1])]) + before
+        begin = _filled(np.repeat(starts, self.shape[1]).astype(float), lanes).astype(np.int64)
+        return np.concatenate(records), begin - whole, np.maximum(shift - whole, 0.0)
+
+    def _packed(
+        self, built: Kernel, values: Mapping[str, Array], lanes: int, commands: Array, forces: Array,
+        where: NDArray[np.int64],
+    ) -> list[Array]:  # fmt: skip
+        rows = np.zeros((built.rows, lanes))
+        for row, node in built.constants:
+            rows[row] = constant(node, values)
+        for known in built.filters:
+            _pack_filter(rows, known, values)
+        for name, first in built.inputs.items():
+            record = commands if name == INPUT else forces
+            rows[first], rows[first + 1] = record[where - 1], record[where]
+        if self.start is not None:
+            for i, name in enumerate(self.chain.states):
+                rows[built.states[name]] = _filled(self.start[..., i].ravel(), lanes)
+            self._settle(rows, built, values, commands[where])
+        return [np.ascontiguousarray(rows[:, i : i + LANES]).ravel() for i in range(0, lanes, LANES)]
+
+    def _settle(self, rows: Array, built: Kernel, values: Mapping[str, Array], command: Array) -> None:
+        """What remembers, as if the machine had stood where it starts."""
+        known = dict(values) | {name: rows[row] for name, row in built.states.items()}
+        known |= {INPUT: command, "du": np.zeros_like(command), FORCE: np.zeros_like(command)}
+        found = _at_rest(self.chain, known)
+        for name, row in built.memories.items():
+            rows[row] = found[name]
+        for known_filter in built.filters:
+            rows[known_filter.first] = constant(known_filter.input, found)
 
 
-def discretise(model: LinearModel, sample_rate: float, hold: str) -> Recursion:
-    """The recursion of a batch of linear models, shape (b, ...), at rest in the beginning.
+def _at_rest(chain: Chain, known: Mapping[str, Any]) -> dict[str, Any]:
+    """Every signal where nothing moves; a memory that copies a signal has always held it, others were at zero."""
+    copies = {equation.target for equation in chain.equations if equation.is_memory and not _reads_old(equation.names)}
+    values = dict(known) | {f"{name}__old": 0.0 for name in chain.memories}
+    for _ in range(2):
+        for equation in chain.signals:
+            values[equation.target] = equation.value(values)
+        values |= {f"{name}__old": values[name] for name in copies}
+    return values
 
-    Φ, Γ0, Γ1 come from one matrix exponential of the system with its input's own dynamics appended: a constant for
-    "zoh", a ramp for "linear" (the exact first-order hold).
+
+def _reads_old(names: frozenset[str]) -> bool:
+    return any(name.endswith("__old") for name in names)
+
+
+def _filled(values: Array, lanes: int) -> Array:
+    return np.concatenate([values, np.full(lanes - len(values), values[-1])])
+
+
+def _fine(run: Run, channel: str, steps: int, before: int) -> Array:
+    """An input at the fine steps, with `before` steps in front and two behind.
+
+    Before the record it is zero where the run starts at rest, and its first value where the run is cut out of a
+    longer test.
     """
-    T = 1.0 / sample_rate
-    batch, n = model.B.shape
-    augmented = np.zeros((batch, n + 2, n + 2))
-    augmented[:, :n, :n] = model.A * T
-    augmented[:, :n, n] = model.B * T
-    augmented[:, n, n + 1] = 1.0
-    phi = expm(augmented)
-    step, ramp = phi[:, :n, n], phi[:, :n, n + 1]
-    if hold == "zoh":
-        ramp = np.zeros_like(step)
-    return Recursion(phi[:, :n, :n], step - ramp, ramp, model.C, model.D, np.zeros((batch, n)))
+    samples = run.command if channel == INPUT else run.channels["force"]
+    if steps > 1 and run.hold == "zoh" and channel == INPUT:
+        fine = np.repeat(samples, steps)
+    elif steps > 1:
+        fine = np.interp(np.arange((len(samples) - 1) * steps + 1) / steps, np.arange(len(samples)), samples)
+    else:
+        fine = samples
+    front = 0.0 if channel == INPUT and run.starts_at_rest else fine[0]
+    return np.concatenate([np.full(before, front), fine, np.full(steps + 2, fine[-1])])
 
 
-@lru_cache
-def advance(order: int, lanes: int = LANES) -> Callable[..., Any]:
-    """The compiled recursion for `order` states: kernel(b, u, first, last, out, stride) takes the packed buffer b over
-    the samples first to last − 1 and writes the outputs, a row of lanes a sample, rows `stride` apart in the flat out.
+# Filters ----------------------------------------------------------------------------------------------------------
 
-    It is generated with every offset a number: only so does the compiler see that nothing overlaps and use SIMD.
+
+def _pack_filter(rows: Array, known: Filter, values: Mapping[str, Array]) -> None:
+    """The gains of a filter over half a step (input a line) and a whole step (a parabola), exactly.
+
+    Rows of a block: for each state, the gains of the states at the start, then of the inputs. A filter without any
+    time constant passes its input on.
     """
-    n, L = order, lanes
-    gamma0, gamma1, C, D = n * n * L, (n * n + n) * L, (n * n + 2 * n) * L, (n * n + 3 * n) * L
-    state = D + L
-    lines = [f"            s{i} = b[{state + i * L} + lane]" for i in range(n)]
-    reading = " + ".join([f"b[{D} + lane] * now", *(f"b[{C + i * L} + lane] * s{i}" for i in range(n))])
-    lines.append(f"            out[row + lane] = {reading}")
-    for i in range(n):
-        drive = f"b[{gamma0 + i * L} + lane] * now + b[{gamma1 + i * L} + lane] * then"
-        terms = " + ".join(f"b[{(i * n + j) * L} + lane] * s{j}" for j in range(n))
-        lines.append(f"            b[{state + i * L} + lane] = {drive} + {terms}")
-    return function("recursion", _RECURSION.format(lanes=L, body="\n".join(lines)))
+    order, lanes = known.order, rows.shape[1]
+    coefficients = np.array([np.broadcast_to(constant(node, values), (lanes,)) for node in known.coefficients])
+    steps = values[STEP]
+    cases, case = np.unique(np.vstack([coefficients, steps]), axis=1, return_inverse=True)
+    case = np.ravel(case)
+    block = order * (order + 3)
+    gains = np.array([_gains(entry[:-1], float(entry[-1])) for entry in cases.T])  # (cases, 3 blocks)
+    first = known.first + order
+    rows[first : first + 3 * block] = gains[case].T
 
 
-_RECURSION = """from numba import njit
+def _gains(coefficients: Array, step: float) -> Array:
+    """The three blocks for one filter: start, half step, whole step; flat."""
+    order = len(coefficients)
+    start, half, whole = (np.zeros((order, order + 3)) for _ in range(3))
+    if not np.any(coefficients > 0):
+        start[0, order] = half[0, order + 1] = whole[0, order + 2] = 1.0
+        return np.concatenate([start.ravel(), half.ravel(), whole.ravel()])
+    start[:, :order] = np.eye(order)
+    phi, constant_, ramp, parabola = _responses(coefficients, step / 2)
+    half[:, :order], half[:, order], half[:, order + 1] = phi, constant_ - ramp, ramp
+    phi, constant_, ramp, parabola = _responses(coefficients, step)
+    whole[:, :order] = phi
+    # x0, xm, x1 at 0, ½, 1: x = x0 + (−3 x0 + 4 xm − x1) σ + (2 x0 − 4 xm + 2 x1) σ²
+    whole[:, order] = constant_ - 3 * ramp + 2 * parabola
+    whole[:, order + 1] = 4 * ramp - 4 * parabola
+    whole[:, order + 2] = 2 * parabola - ramp
+    return np.concatenate([start.ravel(), half.ravel(), whole.ravel()])
 
-@njit(cache=True, fastmath=True, nogil=True)
-def recursion(b, u, first, last, out, stride):
-    for k in range(first, last):
-        now = u[k]
-        then = u[min(k + 1, len(u) - 1)]
-        row = (k - first) * stride
-        for lane in range({lanes}):
-{body}
-"""
+
+def _responses(coefficients: Array, duration: float) -> tuple[Array, Array, Array, Array]:
+    """Transition matrix over `duration`, and the states' responses to the inputs 1, σ and σ², σ = t/duration."""
+    order = len(coefficients)
+    if order == 1:
+        system, drive = np.array([[-duration / coefficients[0]]]), np.array([duration / coefficients[0]])
+    else:
+        a1, a2 = coefficients[0], max(coefficients[1], (1e-3 * duration) ** 2)
+        system = np.array([[0.0, duration], [-duration / a2, -duration * a1 / a2]])
+        drive = np.array([0.0, duration / a2])
+    augmented = np.zeros((order + 3, order + 3))
+    augmented[:order, :order], augmented[:order, order] = system, drive
+    augmented[order, order + 1] = augmented[order + 1, order + 2] = 1.0
+    if order == 2:  # the second state is a rate: taken in units of the duration it is of the size of the first
+        scale = np.ones(order + 3)
+        scale[1] = duration
+        augmented = augmented * scale[:, None] / scale
+    phi = scipy.linalg.expm(augmented)
+    if order == 2:
+        phi = phi / scale[:, None] * scale
+    return phi[:order, :order], phi[:order, order], phi[:order, order + 1], 2.0 * phi[:order, order + 2]
 
 
-def respond(recursion: Recursion, u: Array) -> Array:
-    """Outputs of all systems of a batch to one command: (n,) → (b, n)."""
-    batch, order = recursion.C.shape
-    out = np.empty((len(u), -(-batch // LANES) * LANES))
-    kernel = advance(order, LANES)
-    for first in range(0, batch, LANES):
-        lanes = np.empty(len(u) * LANES)
-        kernel(recursion.part(first, first + LANES).packed(LANES), u, 0, len(u), lanes, LANES)
-        out[:, first : first + LANES] = lanes.reshape(-1, LANES)
-    return np.ascontiguousarray(out[:, :batch].T)
+# Steps ------------------------------------------------------------------------------------------------------------
+
+
+def rates(chain: Chain, values: Mapping[str, Any], output: str) -> Array:
+    """The largest eigenvalue of the chain's small-signal behaviour in magnitude, 1/s, for a batch of values."""
+    evaluate, n = chain.evaluator(output), len(chain.states)
+    shape = np.broadcast_shapes(*(np.shape(values[name]) for name in chain.symbols))
+    rest = evaluate(0.0, [0.0] * n, values)[0]
+    jacobian = np.zeros((*shape, n, n))
+    for j in range(n):
+        moved = evaluate(0.0, [_SMALL * (i == j) for i in range(n)], values)[0]
+        for i in range(n):
+            jacobian[..., i, j] = (moved[i] - rest[i]) / _SMALL
+    jacobian = np.where(np.isfinite(jacobian), jacobian, 0.0)
+    return np.asarray(np.abs(np.linalg.eigvals(jacobian)).max(axis=-1))
+
+
+def steps_needed(fastest: Array, sample_rate: float) -> NDArray[np.int64]:
+    """Steps a sample, a power of two up to :data:`MOST`, with which eigenvalues `fastest` (1/s) are followed."""
+    ratio = np.maximum(fastest / sample_rate / FINE, 1.0)
+    return np.minimum(2 ** np.ceil(np.log2(ratio)), MOST).astype(np.int64)
+
+
+def responses(
+    chain: Chain, runs: Sequence[Run], values: Mapping[str, Array], steps: int = 1, start: Array | None = None
+) -> Array:
+    """The whole outputs of runs of one length: (samples, runs, vectors)."""
+    return np.concatenate([rows for rows, _, _ in Simulation(chain, tuple(runs), values, steps, start).outputs()])

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from ident.chain import LinearModel
 from ident.matrix import Run
 from ident.parallel import each
-from ident.simulate import LANES, Recursion, advance, discretise
+from ident.recursion import LANES, Recursion, advance, discretise
 
 Array = NDArray[np.float64]
 

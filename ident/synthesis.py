@@ -13,11 +13,12 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
-from ident.compare import linear_model
-from ident.effects import effect
+from ident.compare import modelled
 from ident.errors import Unusable
 from ident.fit.record import output
-from ident.matrix import Actuator, Run, Specimen
+from ident.linear import linear_model
+from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.presets import Preset
 from ident.presets import preset as preset_called
 from ident.progress import Progress, Report, silent
 
@@ -81,9 +82,7 @@ def simulate_matrix(
 
     Raises Unusable where the folder is in use, the model cannot follow a test matrix, or a number makes no sense.
     """
-    model = preset_called(preset)
-    for name in effects or {}:
-        effect(name)
+    model = preset_called(preset, tuple(name.partition(".")[0] for name in effects or {}))
     if model.bounds_hold_for is None:
         raise Unusable("cannot-simulate", f"model {preset} has no test matrix of its own", "simulate", "use qian2014")
     if not (1 / 16 <= seconds <= 600 and 0 <= noise < 1):
@@ -93,6 +92,7 @@ def simulate_matrix(
         raise Unusable("folder-in-use", "the folder is not empty", str(out), "name a new one")
     (out / "runs").mkdir(parents=True, exist_ok=True)
     values = {parameter.name: parameter.value for parameter in model.parameters}
+    values |= {model.parameter(name).name: value for name, value in (effects or {}).items()}
     actuator, entries = Actuator(serial, piston_area=AREA), []
     todo = plans()
     for index, plan in enumerate(todo):
@@ -101,14 +101,24 @@ def simulate_matrix(
         u = white_noise(round(seconds * SAMPLE_RATE), plan.inches * _INCH, rng)
         still = Run(plan.id, "", SAMPLE_RATE, {"command": u, "displacement": np.zeros_like(u)},
                     specimen=plan.specimen, gain=plan.gain)  # fmt: skip
-        x = output(still, linear_model(model, values, still, actuator))
+        x = _displacement(model, values, still, actuator)
         x = x + noise * np.std(x) * rng.standard_normal(len(x))
         np.savez(out / "runs" / f"{plan.id}.npz", command=u, displacement=x)
         entries.append(_entry(plan))
     report(Progress("simulate", len(todo), len(todo)))
-    notes = f"simulated with the model {preset}, seed {seed}, noise {noise:g} of each output; not measured"
+    notes = f"simulated with the model {preset}, seed {seed}, noise {noise:g} of each output{_listed(effects)}; not measured"
     machine = {"serial": serial, "name": "simulated", "piston_area": "497 mm^2", "notes": notes}
     (out / "matrix.yaml").write_text(yaml.safe_dump({"actuator": machine, "runs": entries}, sort_keys=False))
+
+
+def _listed(effects: Mapping[str, float] | None) -> str:
+    return "".join(f", {name} = {value:g}" for name, value in (effects or {}).items())
+
+
+def _displacement(model: Preset, values: Mapping[str, float], run: Run, actuator: Actuator) -> Array:
+    if model.effects:
+        return modelled(model, values, Matrix(actuator, (run,)))[run.id]
+    return output(run, linear_model(model.core, values, run, actuator))
 
 
 def _entry(plan: Plan) -> dict[str, object]:

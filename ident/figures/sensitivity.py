@@ -10,14 +10,14 @@ import altair as alt
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.compare import fitted_values, linear_model, response
+from ident.compare import fitted, response
 from ident.figures import words
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel
 from ident.figures.thin import decade_ticks, excited_band, significant
 from ident.fit.result import FitResult
+from ident.linear import linear_model
 from ident.matrix import Actuator, Run, Specimen
-from ident.presets import preset
 
 MULTIPLES = tuple(float(value) for value in np.geomspace(0.1, 10, 11))
 POINTS = 90
@@ -103,9 +103,9 @@ def _with_gain(run: Run, factor: float) -> Run:
 
 def _stable(vary: Varied, run: Run, actuator: Actuator, fit: FitResult) -> list[float]:
     """The multiples at which the closed loop is stable: another one has no frequency response to measure."""
-    values = fitted_values(fit)
-    models = ((x, linear_model(preset(fit.model), values, vary(run, x), actuator)) for x in MULTIPLES)
-    return [x for x, model in models if np.linalg.eigvals(model.A).real.max() < 0]
+    model, values = fitted(fit)
+    models = ((x, linear_model(model.core, values, vary(run, x), actuator)) for x in MULTIPLES)
+    return [x for x, linear in models if np.linalg.eigvals(linear.A).real.max() < 0]
 
 
 def _without(stable: Sequence[float]) -> str:

@@ -22,6 +22,27 @@ RANGES = {
     "generations": (1.0, 10_000.0), "elite": (1.0, 10_000.0),
 }  # fmt: skip
 DEFAULT = {"population": 200.0, "generations": 30.0, "elite": 10.0, "mutation": 0.3}
+WITH_EFFECTS = {**DEFAULT, "population": 64.0, "generations": 12.0, "elite": 6.0}
+_LEVELS = (0.03, 0.15, 0.5)  # of a strength's range, at which each effect is tried alone
+
+
+def around(state: State, centre: Array, of_effects: Array) -> State:
+    """The state with its population drawn around a model without effects, the strengths over their whole range.
+
+    First comes the centre itself, then each effect alone at a few strengths to either side.
+    """
+    population = np.array(state["population"])
+    near = centre + 0.1 * (population - 0.5)
+    drawn = np.where(of_effects, population, np.clip(near, 0.0, 1.0))
+    alone = [centre]
+    for axis in np.flatnonzero(of_effects):
+        for level in _LEVELS:
+            for strength in (centre[axis] + level, centre[axis] - level):
+                if 0 <= strength <= 1:
+                    alone.append(np.where(np.arange(len(centre)) == axis, strength, centre))
+    first = np.array(alone)[: len(drawn)]
+    drawn[: len(first)] = first
+    return state | {"population": drawn.tolist()}
 
 
 def begin(axes: int, seed: int, options: dict[str, float]) -> State:

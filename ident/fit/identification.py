@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.effects import effect
 from ident.errors import Unusable
 from ident.fit import genetic
 from ident.fit.library_search import GENERATIONS, cma_es, differential_evolution
 from ident.fit.objective import UNSTABLE, Local, Objective
+from ident.fit.output_error import OutputError, shortened
 from ident.fit.polish import polish
 from ident.fit.result import FitResult
 from ident.fit.settings import METHODS, Settings
@@ -27,6 +29,7 @@ from ident.spectra import Basis, excited_band
 Array = NDArray[np.float64]
 State = dict[str, Any]
 _SAME = 1e-6  # relative difference of errors that is none
+_SEARCHED = 65_536  # samples of a search with effects; the polish takes every sample
 _CANDIDATES = 5  # distinct vectors of the last generation from which the polish starts
 
 
@@ -39,20 +42,25 @@ class Identification:
 
     def __init__(self, matrix: Matrix, settings: Settings, report: Report = silent) -> None:
         self.matrix, self.settings, self.report = matrix, settings, report
-        self.preset = preset_called(settings.model)
-        self._runs = matrix.of_use("fit")
         check_settings(settings)
+        self.preset = preset_called(settings.model, settings.effects)
+        self._runs = matrix.of_use("fit")
         _refuse(matrix)
         self.options = _options(settings)
         band = excited_band(self._runs)
         space = search_space(self.preset, matrix, settings, band)
-        self.objective = Objective(self.preset, matrix, self._runs, space, Basis(band))
+        self.objective: Objective | OutputError
+        if self.preset.effects:
+            self.objective = OutputError(self.preset, matrix, self._runs, space, band)
+            self.searched: Objective | OutputError = self.objective.fresh(shortened(self._runs, _SEARCHED))
+        else:
+            self.objective = self.searched = Objective(self.preset, matrix, self._runs, space, Basis(band))
         self._started = time.monotonic()
         self.floors = noise_floors(matrix, band)
         if space.axes:
-            report(Progress("spectra", 0, 1))
-            self.objective.prepare()
-            report(Progress("spectra", 1, 1))
+            report(Progress("prepare", 0, 1))
+            self.searched.prepare()
+            report(Progress("prepare", 1, 1))
 
     @property
     def generations(self) -> int:
@@ -71,7 +79,32 @@ class Identification:
         axes = len(self.objective.space.axes)
         options = self.options if self.settings.method in ("ga", "paper-ga") else {"population": 1.0}
         state = genetic.begin(axes, self.settings.seed, options)
+        if self.preset.effects and axes and self.settings.method == "ga":
+            state = genetic.around(state, self._linear_point(), self._of_effects)
         return state | {"done": not axes, "best": [] if not axes else None}
+
+    @property
+    def _of_effects(self) -> Array:
+        """For each axis, whether it is an effect's."""
+        return np.array([name not in self._linear for name in self.objective.space.names])
+
+    @property
+    def _linear(self) -> set[str]:
+        return {parameter.name for parameter in preset_called(self.settings.model).parameters}
+
+    def _linear_point(self) -> Array:
+        """Where the model without effects fits best, every strength at zero."""
+        plain = preset_called(self.settings.model)
+
+        def own(given: Mapping[str, Any]) -> dict[str, Any]:
+            names = {name: self.preset.parameter(name).name for name in given}
+            return {name: given[name] for name in given if names[name] in self._linear}
+
+        settings = replace(self.settings, effects=(), bounds=own(self.settings.bounds), fixed=own(self.settings.fixed))
+        found = identify(self.matrix, settings, self.report)
+        values = {plain.parameter(name).name: value for name, value in found.values.items()}
+        strengths = {p.name: 0.0 for p in self.preset.parameters if p.name not in self._linear}
+        return self.objective.space.point({**self.objective.space.fixed, **strengths, **values})
 
     def finished(self, state: State) -> bool:
         """True when the search is over and only :meth:`finish` remains."""
@@ -85,7 +118,7 @@ class Identification:
         for _ in range(generations):
             if state["done"]:
                 break
-            state = step(state, self.objective.errors, self.options)
+            state = step(state, self.searched.errors, self.options)
             done = len(state["history"])
             self.report(Progress("search", done, self.generations, min(state["history"][-1]["errors"])))
         return state
@@ -95,7 +128,7 @@ class Identification:
 
         def errors(points: Array) -> Array:
             nonlocal count
-            cost = self.objective.errors(points)
+            cost = self.searched.errors(points)
             count += 1
             self.report(Progress("search", min(count, self.generations), self.generations, float(cost.min())))
             return cost
@@ -139,7 +172,7 @@ class Identification:
         def progress(count: int, error: float) -> None:
             self.report(Progress("polish", count, 40, error))
 
-        ends = [polish(self.objective.approximate, start, progress) for start in starts]
+        ends = [polish(self.searched.approximate, start, progress) for start in starts]
         point, best = min(ends, key=lambda end: end[1].error)
         valley = np.array([end for end, there in ends if there.error <= best.error * (1 + _SAME)])
         return *polish(self.objective.exact, point, progress), valley
@@ -158,12 +191,10 @@ def _distinct(points: Array) -> list[Array]:
 
 def check_settings(settings: Settings) -> None:
     """Raise Unusable for settings that no matrix could be fitted with."""
-    preset = preset_called(settings.model)
+    preset = preset_called(settings.model, settings.effects)
     if settings.method not in METHODS:
         remedy = f"choose from {', '.join(METHODS)}"
         raise Unusable("unknown-method", f"no method {settings.method!r}", "method", remedy)
-    for name in settings.effects:
-        effect(name)
     if settings.load != "none":
         raise Unusable("unknown-load", f"load {settings.load!r} is not known", "load", "use none")
     for name in (*settings.bounds, *settings.fixed):
@@ -173,7 +204,8 @@ def check_settings(settings: Settings) -> None:
 
 def _options(settings: Settings) -> dict[str, float]:
     """The method's options, those of the user over the defaults."""
-    known = {"ga": genetic.DEFAULT, "paper-ga": genetic.PAPER}.get(settings.method, {})
+    default = genetic.WITH_EFFECTS if settings.effects else genetic.DEFAULT
+    known = {"ga": default, "paper-ga": genetic.PAPER}.get(settings.method, {})
     for name, value in settings.options.items():
         if name not in known:
             remedy = f"choose from {', '.join(known) or 'none'}"

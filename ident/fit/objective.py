@@ -7,7 +7,7 @@ Fast: from the reduced runs (:mod:`ident.spectra`), for whole populations. Exact
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain
 from typing import TypeVar
@@ -40,19 +40,53 @@ class Local:
     gradient: Array
     curvature: Array
     runs: tuple[Moments, ...]
+    means: Moments | None = None
+
+    @property
+    def terms(self) -> tuple[Moments, ...]:
+        """All that the data say: the runs, and their means where these count."""
+        return self.runs if self.means is None else (*self.runs, self.means)
 
 
-def local(runs: Sequence[Moments]) -> Local:
-    """Mean over runs of |r| / |x_m|: gradient −Jᵀr/(|r| |x_m|), curvature JᵀJ/(|r| |x_m|), averaged."""
+def local(runs: Sequence[Moments], with_means: bool = False) -> Local:
+    """Mean over runs of |r| / |x_m|: gradient −Jᵀr/(|r| |x_m|), curvature JᵀJ/(|r| |x_m|), averaged.
+
+    `with_means`: the runs' means count too, see :func:`means_of`.
+    """
     p = len(runs[0].gram) - 1
     gradient, curvature = np.zeros(p), np.zeros((p, p))
     if not all(np.isfinite(run.error) for run in runs):
         return Local(np.inf, gradient, curvature, tuple(runs))
-    for run in runs:
+    error = float(np.mean([run.error for run in runs]))
+    means = means_of(runs, error) if with_means else None
+    here = Local(error, gradient, curvature, tuple(runs), means)
+    for run in here.terms:
         weight = weight_of(run) / len(runs)
         gradient -= weight * run.gram[:p, p]
         curvature += weight * run.gram[:p, :p]
-    return Local(float(np.mean([run.error for run in runs])), gradient, curvature, tuple(runs))
+    if means is None:
+        return here
+    share = len(runs) / sum(run.length for run in runs)
+    return replace(here, error=error * (1.0 + share * np.log(np.sqrt(means.gram[p, p] / runs[0].total))))
+
+
+def means_of(runs: Sequence[Moments], error: float) -> Moments | None:
+    """The means of the runs as one more record, a run a sample, with the transducer's zero as its nuisance.
+
+    Eq. (17) is blind to them, but a bias shows in nothing else: it moves them in proportion to 1/Kp. They enter as
+    log |r̄|, with as many observations as there are runs: the likelihood of means whose scatter is not known. Two
+    runs, or runs of one gain, tell nothing beside the zero: then there is nothing to add.
+    """
+    if len(runs) < 3:
+        return None
+    z = np.array([run.means for run in runs])
+    z = z - z.mean(axis=0)
+    least = 1e-14 * runs[0].total / runs[0].length
+    gram = z.T @ z
+    gram[-1, -1] += least
+    samples = sum(run.length for run in runs) / len(runs)
+    weight = samples / (max(error, 1e-12) * len(runs))  # of the record's norm, so that weight_of gives its due
+    return Moments(gram, z[:, :-1] * z[:, -1:], float(gram[-1, -1] * weight**2), 0.0)
 
 
 def weight_of(run: Moments) -> float:
@@ -140,6 +174,15 @@ class Objective:
         stacked = {name: np.array([entry[name] for entry in known])[:, None] for name in known[0]}
         batch = stacked | {name: value[None] for name, value in values.items()}
         return self.preset.chain.linearise(batch, runs[0].output)
+
+    @property
+    def band(self) -> float:
+        """Angular frequency up to which the command excites the machine, rad/s."""
+        return self.basis.band
+
+    def fresh(self, runs: tuple[Run, ...]) -> Objective:
+        """The same for other runs."""
+        return replace(self, runs=runs, evaluations=0, unstable=0, _spectra=[])
 
     @cached_property
     def _patterns(self) -> dict[str, Pattern]:

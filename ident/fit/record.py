@@ -8,14 +8,14 @@ and, where it starts moving, the decay of its unknown first state).
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.chain import LinearModel
 from ident.matrix import Run
-from ident.simulate import LANES, Recursion, advance, discretise
+from ident.recursion import LANES, Recursion, advance, discretise
 
 Array = NDArray[np.float64]
 _BLOCKS = 32  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
@@ -25,13 +25,17 @@ _BLOCKS = 32  # of a record; each is one sample of the score, long enough to hol
 class Moments:
     """Σ of products of [J, r] with the nuisances projected out, (p+1, p+1), and the score JᵀR of each block, (b, p).
 
-    `total` is Σ (x_m − mean)²; `offset` the difference of means over the standard deviation.
+    `total` is Σ (x_m − mean)²; `offset` the difference of means over the standard deviation; `release` how much of
+    each nuisance but the mean the record holds; `means` the means of [J, r], `length` the number of samples.
     """
 
     gram: Array
     scores: Array
     total: float
     offset: float
+    release: Array = field(default_factory=lambda: np.empty(0))
+    means: Array = field(default_factory=lambda: np.empty(0))
+    length: int = 0
 
     @property
     def error(self) -> float:
@@ -46,7 +50,11 @@ def moments(run: Run, model: LinearModel, step: float = 1.0) -> Moments:
     p = len(systems.D) - 1
     if not run.starts_at_rest:
         systems = _with_releases(systems)
-    blocks = _products(run, systems, p, step)
+    return moments_of(run, _products(run, systems, p, step), p)
+
+
+def moments_of(run: Run, blocks: Array, p: int) -> Moments:
+    """The moments from sums of products of [J, N, r] of each block, (b, q, q), r taken from the mean-free record."""
     gram = blocks.sum(axis=0)
     if not np.all(np.isfinite(gram)):
         return Moments(np.full((p + 1, p + 1), np.inf), np.zeros((len(blocks), p)), 1.0, np.inf)
@@ -60,8 +68,19 @@ def moments(run: Run, model: LinearModel, step: float = 1.0) -> Moments:
     projected = remove.T @ gram @ remove
     scores = np.einsum("ai,bac,c->bi", remove[:, :p], blocks, remove[:, -1])
     total = float(np.sum((run.measured - run.measured.mean()) ** 2))
-    constant = solution[-1, -1] + run.measured.mean()  # r was taken from the mean-free record
-    return Moments(projected, scores, total, float(constant / np.sqrt(total / run.length)))
+    constant = solution[-1, -1] + run.measured.mean()
+    offset = float(constant / np.sqrt(total / run.length))
+    means = np.append(solution[-1, :-1], constant)
+    return Moments(projected, scores, total, offset, solution[:-1, -1], means, run.length)
+
+
+def first_state(run: Run, model: LinearModel) -> Array:
+    """The state in which the record begins, (n,): zero where the run starts at rest, else the one that fits best."""
+    if run.starts_at_rest:
+        return np.zeros(len(model.B[0]))
+    systems = _with_releases(discretise(model, run.sample_rate, run.hold))
+    released = moments_of(run, _products(run, systems, 0, 1.0), 0).release
+    return np.asarray(np.diag(systems.start[1:]) * released)
 
 
 def output(run: Run, model: LinearModel) -> Array:

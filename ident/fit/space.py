@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
 import numpy as np
@@ -105,6 +106,9 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     stated = all(run.gain is not None and run.specimen is not None for run in runs)
     same = known_for is not None and area is not None and abs(area / known_for - 1) < _SAME_AREA and stated
     typical = _typical(matrix, runs) | {"W": band}
+    strengths = {effect.symbol(effect.strength.name) for effect in preset.effects}
+    shapes = {effect.symbol(p.name): p.value for effect in preset.effects for p in effect.shape}
+    fixed = {name: value for name, value in shapes.items() if name not in given} | fixed
     convention = None
     if not same and "m0" in {scale.name for scale in preset.scales} - fixed.keys() - given.keys() and not _loaded(runs):
         convention, fixed["m0"] = "m0", typical["mL"]
@@ -118,8 +122,8 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
             parameter = parameter.within(lower, upper)
             axes.append(Axis(scale.name, lower, upper, parameter.logarithmic))
         else:
-            axes.append(Axis(scale.name, scale.lower, scale.upper, logarithmic=True, scale=scale.equation))
-    _refuse_bad_values(fixed)
+            axes.append(Axis(scale.name, scale.lower, scale.upper, scale.logarithmic, scale.equation))
+    _refuse_bad_values(fixed, strengths | shapes.keys())
     order = tuple(scale.name for scale in preset.scales)
     return Space(tuple(axes), order, fixed, typical, convention, scale_free=not same)
 
@@ -133,10 +137,10 @@ def _typical(matrix: Matrix, runs: tuple[Run, ...]) -> dict[str, float]:
     each = [conditions(run, matrix.actuator) for run in runs]
     mean = {name: float(np.mean([values[name] for values in each])) for name in each[0]}
     mean["Kp"] = float(np.exp(np.mean([np.log(abs(values["Kp"])) for values in each])))
-    return mean | {"mL": mean["mL"] or 1.0}
+    return mean | {"mL": mean["mL"] or 1.0, "X": float(np.mean([np.std(run.measured) for run in runs]))}
 
 
-def _refuse_bad_values(fixed: Mapping[str, float]) -> None:
+def _refuse_bad_values(fixed: Mapping[str, float], of_effects: AbstractSet[str]) -> None:
     for name, value in fixed.items():
-        if not np.isfinite(value) or value <= 0:
+        if not np.isfinite(value) or (value <= 0 and name not in of_effects):
             raise Unusable("bad-value", f"{name} = {value:g}", "values held fixed", "give a positive finite value")

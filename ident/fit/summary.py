@@ -3,27 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.effect import parameter_name
 from ident.fit.objective import UNSTABLE, Local, Objective
+from ident.fit.output_error import OutputError
 from ident.fit.record import Moments
 from ident.fit.result import Combination, Estimate, FitResult, Generation, RunError, Undetermined
 from ident.fit.settings import Settings
 from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
 from ident.matrix import Run
 from ident.presets.preset import Combined
+from ident.simulate import MOST
 
 Array = NDArray[np.float64]
 _SHARE_SCALE = ("c0", "Ka", "Cl")  # without a known force (m0, c0) × s and (Ka, Cl) / s change nothing
 
 
 def summarise(
-    objective: Objective,
+    objective: Objective | OutputError,
     settings: Settings,
     point: Array,
     here: Local,
@@ -39,11 +41,17 @@ def summarise(
     space, matrix, preset = objective.space, objective.matrix, objective.preset
     values = {name: float(found[0]) for name, found in space.values(point[None]).items()}
     verify_runs = matrix.of_use("verify")
-    verify = replace(objective, runs=verify_runs).exact(point, sensitivities=False).runs if verify_runs else ()
-    fit_errors, verify_errors = _run_errors(objective.runs, here.runs), _run_errors(verify_runs, verify)
+    verify = objective.fresh(verify_runs).exact(point, sensitivities=False).runs if verify_runs else ()
+    own = objective.fresh(objective.runs).exact(point, sensitivities=False).runs if preset.effects else here.runs
+    fit_errors, verify_errors = _run_errors(objective.runs, own), _run_errors(verify_runs, verify)
     found = covariance(here, point, valley)
-    relative = {name: found.relative(_value(objective, name)) for name in space.names}
-    weak = [name for name in space.names if relative[name] > DETERMINED]
+    strengths = {effect.symbol(p.name) for effect in preset.effects for p in effect.parameters}
+    relative = {name: found.relative(_value(objective, name)) for name in space.names if name not in strengths}
+    deviation = {name: values[name] * error for name, error in relative.items()}
+    deviation |= {name: found.deviation(_value(objective, name)) for name in space.names if name in strengths}
+    ranges = {name: upper - lower for name, (lower, upper) in space.bounds(values).items()}
+    weak = [name for name in relative if relative[name] > DETERMINED]
+    weak += [name for name in deviation if name in strengths and deviation[name] > DETERMINED * ranges[name]]
     if space.convention:
         weak = [*weak, *(name for name in _SHARE_SCALE if name in relative and name not in weak), space.convention]
     label = _labels(objective)
@@ -51,7 +59,7 @@ def summarise(
         model=preset.name,
         effects=settings.effects,
         parameters={
-            label[name][0]: _estimate(objective, name, values, relative, point, name in weak) for name in space.order
+            label[name][0]: _estimate(objective, name, values, deviation, point, name in weak) for name in space.order
         },
         correlation=found.correlation({label[name][0]: _value(objective, name) for name in space.names}),
         determined=tuple(_determined(objective, found, relative, values)) if weak else (),
@@ -84,38 +92,38 @@ def _mean(runs: Sequence[RunError], what: str) -> float | None:
     return float(np.mean([getattr(run, what) for run in runs])) if runs else None
 
 
-def _labels(objective: Objective) -> dict[str, tuple[str, str]]:
+def _labels(objective: Objective | OutputError) -> dict[str, tuple[str, str]]:
     """Name and unit under which a parameter is reported: a ratio to the area where the area is unknown."""
-    plain = {parameter.name: (parameter.name, parameter.unit) for parameter in objective.preset.parameters}
+    plain = {p.name: (parameter_name(p.name), p.unit) for p in objective.preset.parameters}
     known = objective.matrix.actuator.piston_area is not None
     return plain if known else plain | dict(objective.preset.without_area or {})
 
 
-def _value(objective: Objective, name: str) -> Callable[[Array], Array]:
+def _value(objective: Objective | OutputError, name: str) -> Callable[[Array], Array]:
     return lambda points: objective.space.values(points)[name]
 
 
 def _estimate(
-    objective: Objective,
+    objective: Objective | OutputError,
     name: str,
     values: Mapping[str, float],
-    relative: Mapping[str, float],
+    deviation: Mapping[str, float],
     point: Array,
     weak: bool,
 ) -> Estimate:
     parameter, value = objective.preset.parameter(name), values[name]
     unit = _labels(objective)[name][1]
-    if name not in relative:
+    if name not in deviation:
         return Estimate(value, unit, None, value, value, False, parameter.symbol, parameter.meaning, fixed=True)
     lower, upper = objective.space.bounds(values)[name]
-    error = None if weak else value * relative[name]
+    error = None if weak else deviation[name]
     place = float(point[objective.space.names.index(name)])
     at_bound = not 1e-6 < place < 1 - 1e-6
     return Estimate(value, unit, error, lower, upper, at_bound, parameter.symbol, parameter.meaning)
 
 
 def _determined(
-    objective: Objective, found: Covariance, relative: Mapping[str, float], values: Mapping[str, float]
+    objective: Objective | OutputError, found: Covariance, relative: Mapping[str, float], values: Mapping[str, float]
 ) -> Iterator[Combination]:
     """Where a parameter is not determined: the parameters and combinations that are."""
     label, space = _labels(objective), objective.space
@@ -135,16 +143,18 @@ def _determined(
             yield Combination(combined.text.replace("**", "^"), value, combined.unit, value * error)
 
 
-def _reason(objective: Objective, name: str, relative: Mapping[str, float]) -> str:
+def _reason(objective: Objective | OutputError, name: str, relative: Mapping[str, float]) -> str:
     if name == objective.space.convention:
         return "no specimen of known mass, stiffness or damping gives forces a scale; held at 1 kg by convention"
     if objective.space.convention and name in _SHARE_SCALE:
         return "known at best as a ratio to the moving mass, which is a convention here"
+    if name not in relative:
+        return "any strength in its bounds explains these runs as well"
     size = "not seen by these runs" if relative[name] > 10 else f"standard error {relative[name]:.0%} of the value"
     return f"{size}; other parameters make up for it (see what is determined)"
 
 
-def _notes(objective: Objective, floors: Mapping[str, float | None], here: Local) -> list[str]:
+def _notes(objective: Objective | OutputError, floors: Mapping[str, float | None], here: Local) -> list[str]:
     notes = list(objective.matrix.notices)
     if objective.space.scale_free and objective.space.axes:
         notes.append(
@@ -158,6 +168,9 @@ def _notes(objective: Objective, floors: Mapping[str, float | None], here: Local
                      "so no part of the spectrum shows the noise alone; repeat a run to measure it.")  # fmt: skip
     else:
         notes.append("Noise floor from the spectrum above the command's band, taken as white: a lower bound.")
+    if isinstance(objective, OutputError) and objective.coarse:
+        notes.append(f"{objective.coarse} of the tried parameter vectors had a mode too fast for {MOST} steps a sample; "
+                     "it is followed only roughly.")  # fmt: skip
     if objective.unstable:
         notes.append(f"{objective.unstable} of the tried parameter vectors made the loop unstable; they cost, no more.")
     if not np.isfinite(here.error):
@@ -165,7 +178,7 @@ def _notes(objective: Objective, floors: Mapping[str, float | None], here: Local
     return notes
 
 
-def _evolution(objective: Objective, state: Mapping[str, Any]) -> tuple[Generation, ...]:
+def _evolution(objective: Objective | OutputError, state: Mapping[str, Any]) -> tuple[Generation, ...]:
     """The generations with their populations in SI, to five digits: enough to draw."""
     out = []
     for index, entry in enumerate(state["history"]):

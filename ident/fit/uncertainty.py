@@ -38,18 +38,23 @@ class Covariance:
     def relative(self, quantity: Callable[[Array], Array]) -> float:
         """Relative standard error of a positive quantity, a function of points (v, p) → (v,)."""
         along = np.ptp(np.log(quantity(self.valley))) if len(self.valley) else 0.0
-        return float(np.sqrt(max(self._log(quantity, quantity), 0.0) + along**2))
+        return float(np.sqrt(max(self._joint(self._gradient(quantity), self._gradient(quantity)), 0.0) + along**2))
+
+    def deviation(self, quantity: Callable[[Array], Array]) -> float:
+        """Standard error of a quantity of any sign."""
+        along = np.ptp(quantity(self.valley)) if len(self.valley) else 0.0
+        return float(np.hypot(np.sqrt(max(self._joint(self._slope(quantity), self._slope(quantity)), 0.0)), along))
 
     def correlation(self, quantities: Mapping[str, Callable[[Array], Array]]) -> dict[str, dict[str, float]]:
         """Correlations of quantities by name."""
-        deviation = {name: max(self.relative(q), 1e-300) for name, q in quantities.items()}
+        slopes = {name: self._slope(q) for name, q in quantities.items()}
+        deviation = {name: np.sqrt(max(self._joint(d, d), 1e-300)) for name, d in slopes.items()}
         return {
-            a: {b: float(np.clip(self._log(f, g) / deviation[a] / deviation[b], -1, 1)) for b, g in quantities.items()}
-            for a, f in quantities.items()
+            a: {b: float(np.clip(self._joint(df, dg) / deviation[a] / deviation[b], -1, 1)) for b, dg in slopes.items()}
+            for a, df in slopes.items()
         }
 
-    def _log(self, f: Callable[[Array], Array], g: Callable[[Array], Array]) -> float:
-        df, dg = self._gradient(f), self._gradient(g)
+    def _joint(self, df: Array, dg: Array) -> float:
         # What only rounding moves along a blind direction is not blind.
         lost = [
             np.where(np.abs(d) > 1e-5 * np.linalg.norm(h), d, 0.0)
@@ -57,17 +62,20 @@ class Covariance:
         ]
         return float(df @ self.seen @ dg + _BLIND**2 * (lost[0] @ lost[1]))
 
-    def _gradient(self, quantity: Callable[[Array], Array]) -> Array:
+    def _slope(self, quantity: Callable[[Array], Array]) -> Array:
         p, step = len(self.point), 1e-6
-        ends = np.log(quantity(np.concatenate([self.point + step * np.eye(p), self.point - step * np.eye(p)])))
+        ends = quantity(np.concatenate([self.point + step * np.eye(p), self.point - step * np.eye(p)]))
         return np.asarray((ends[:p] - ends[p:]) / (2 * step))
+
+    def _gradient(self, quantity: Callable[[Array], Array]) -> Array:
+        return self._slope(lambda points: np.log(quantity(points)))
 
 
 def covariance(here: Local, point: Array, valley: Array) -> Covariance:
     """The covariance at the optimum."""
     p = len(point)
     H, S = np.zeros((p, p)), np.zeros((p, p))
-    for run in here.runs:
+    for run in here.terms:
         weight = weight_of(run)
         H += weight * run.gram[:p, :p]
         S += weight**2 * run.scores.T @ run.scores

@@ -1,5 +1,9 @@
 """The models by name: each a paper's choice of stages, with its citation."""
 
+from collections.abc import Sequence
+from functools import lru_cache
+
+from ident.effects import EFFECTS, effect
 from ident.errors import Unusable
 from ident.presets.first_order import FIRST_ORDER
 from ident.presets.preset import Preset, Scale
@@ -8,11 +12,18 @@ from ident.presets.qian2014 import QIAN2014
 PRESETS: dict[str, Preset] = {preset.name: preset for preset in (QIAN2014, FIRST_ORDER)}
 
 
-def preset(name: str) -> Preset:
-    """The preset called `name`; raises Unusable with the names there are."""
+def preset(name: str, effects: Sequence[str] = ()) -> Preset:
+    """The preset called `name` with these effects of the catalogue; raises Unusable with the names there are."""
     if name not in PRESETS:
         raise Unusable("unknown-model", f"no model {name!r}", "model", f"choose from {', '.join(PRESETS)}")
-    return PRESETS[name]
+    return _with_effects(name, frozenset(effects))
+
+
+@lru_cache(maxsize=256)
+def _with_effects(name: str, effects: frozenset[str]) -> Preset:
+    for wanted in effects:
+        effect(wanted)
+    return PRESETS[name].with_effects(tuple(known for known in EFFECTS if known.name in effects))
 
 
 __all__ = ["PRESETS", "Preset", "Scale", "preset"]

@@ -8,8 +8,14 @@ from ident.stages.stage import stage
 
 TRACKING_LAG = stage(
     "load",
-    (Quantity("x", "m", "position"),),
-    ("x' = (gain * u - x) / tau", "the closed loop follows its command like a single lag"),
+    (
+        Quantity("x", "m", "position"),
+        Quantity("v", "m/s", "speed"),
+        Quantity("X", "m", "position of what the transducer is fixed to"),
+    ),
+    ("v = (gain * u - x) / tau", "the closed loop follows its command like a single lag"),
+    ("x' = v", "position is the integral of speed"),
+    ("X = x", "the transducer's frame is rigid"),
 )
 
 FIRST_ORDER = Preset(

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from ident.chain import CONDITIONS, Chain
+from ident.chain import CONDITIONS, Chain, unfit
+from ident.effect import Effect, parameter_name
 from ident.errors import Unusable
 from ident.expression import Equation
 from ident.parameter import Parameter
@@ -15,14 +16,15 @@ from ident.parameter import Parameter
 class Scale:
     """How to search a parameter of a machine of unknown size: value = ratio × `text`, `lower` ≤ ratio ≤ `upper`.
 
-    `text` may read conditions (their typical value over the runs), parameters that stand before it, and W, the
-    angular frequency up to which the command excites the machine (rad/s).
+    `text` may read conditions (their typical value over the runs), parameters that stand before it, W, the angular
+    frequency up to which the command excites the machine (rad/s), and X, the output's standard deviation.
     """
 
     name: str
     text: str
     lower: float
     upper: float
+    logarithmic: bool = True
 
     @property
     def equation(self) -> Equation:
@@ -63,6 +65,7 @@ class Preset:
     without_area: Mapping[str, tuple[str, str]] | None = None
     combinations: tuple[Combined, ...] = ()
     notes: tuple[str, ...] = ()
+    effects: tuple[Effect, ...] = ()
 
     def __post_init__(self) -> None:
         known = {parameter.name for parameter in self.parameters} | CONDITIONS.keys()
@@ -75,20 +78,80 @@ class Preset:
                 "declare a parameter and a scale for each name",
             )
 
+    def with_effects(self, effects: tuple[Effect, ...]) -> Preset:
+        """The model with effects added to its chain; their parameters are called effect__parameter in the equations.
+
+        Raises Unusable where the model has no place for an effect.
+        """
+        if not effects:
+            return self
+        added = tuple(
+            replace(parameter, name=effect.symbol(parameter.name))
+            for effect in effects
+            for parameter in effect.parameters
+        )
+        known = {parameter.name for parameter in (*self.parameters, *added)} | CONDITIONS.keys()
+        for effect in effects:
+            if set(self.chain.with_effects((effect,)).symbols) - known:
+                raise unfit(effect)
+        return replace(
+            self,
+            chain=self.chain.with_effects(effects),
+            parameters=(*self.parameters, *added),
+            scales=(*self.scales, *(scale_of(effect, p) for effect in effects for p in effect.parameters)),
+            effects=effects,
+        )
+
+    @property
+    def core(self) -> Chain:
+        """The chain without effects: linear."""
+        return self.chain.with_effects(())
+
     @property
     def equations(self) -> tuple[Equation, ...]:
         """Every equation of the model, in the order of the chain."""
         return self.chain.equations
 
     def parameter(self, name: str) -> Parameter:
-        """The parameter called `name`, also under its name without area; raises Unusable with the names there are."""
+        """The parameter called `name`, also under its name without area, or an effect's by its name alone.
+
+        Raises Unusable with the names there are.
+        """
         for parameter in self.parameters:
             alias = (self.without_area or {}).get(parameter.name, ("", ""))[0]
-            if name in (parameter.name, alias):
+            if name in (parameter.name, parameter_name(parameter.name), alias):
                 return parameter
+        for effect in self.effects:
+            for parameter in effect.parameters:
+                if name == f"{effect.name}.{parameter.symbol}" or (
+                    name == effect.name and parameter == effect.strength
+                ):
+                    return self.parameter(effect.symbol(parameter.name))
         raise Unusable(
             "unknown-parameter",
             f"model {self.name} has no parameter {name!r}",
             "bounds or values",
-            f"choose from {', '.join(p.name for p in self.parameters)}",
+            f"choose from {', '.join(parameter_name(p.name) for p in self.parameters)}",
         )
+
+
+_FORCE = "(c0 + m0*W)*W*X"
+_SCALES = {
+    "1": ("1", None), "s": ("1/W", 3.0), "1/s": ("W", 1.0), "m": ("Kp*X", 0.5), "1/m": ("1/(Kp*X)", 3.0),
+    "s/m": ("1/(Kp*X*W)", 5.0), "N": (_FORCE, 0.3), "N/m^3": (f"{_FORCE}/X**3", 0.3),
+    "N*s^2/m^2": ("(c0 + m0*W)/(W*X)", 1.0), "m/Pa": (f"Kp*X*A/({_FORCE})", 1.0), "1/Pa": (f"A/({_FORCE})", 1.0),
+    "s/m^3": ("1/(A*W*X)", 1.0), "m^3/(s*Pa^0.5)": (f"A*W*X/sqrt({_FORCE}/A)", 1.0), "1/m^2": ("1/X**2", 1.0),
+    "m/N": (f"X/({_FORCE})", 1.0),
+}  # fmt: skip
+"""For a machine of unknown size: what a strength of each unit is measured by, and how much of it is searched."""
+
+
+def scale_of(effect: Effect, parameter: Parameter) -> Scale:
+    """How to search an effect's parameter for a machine of another size than its bounds were stated for."""
+    text, reach = _SCALES.get(parameter.unit, ("1", None))
+    if effect.place not in ("valve", "spool") and parameter.unit == "m":
+        text = "X"
+    if reach is None:
+        return Scale(effect.symbol(parameter.name), "1", parameter.lower, parameter.upper, logarithmic=False)
+    lower = -reach if parameter.lower < 0 else 0.0
+    return Scale(effect.symbol(parameter.name), text, lower, reach, logarithmic=False)

@@ -1,10 +1,33 @@
-"""Load: from the load pressure to the motion of rod and specimen."""
+"""Load: from the driving force to the motion of rod and specimen."""
 
 from ident.stages.stage import Quantity, stage
 
 MASS_SPRING_DAMPER = stage(
     "load",
-    (Quantity("v", "m/s", "piston speed"), Quantity("x", "m", "piston position")),
-    ("v' = (A * P - (c0 + cL) * v - k * x) / (m0 + mL)", "rod and specimen move together (Qian et al. 2014, eq. 6)"),
+    (
+        Quantity("v", "m/s", "piston speed"),
+        Quantity("x", "m", "piston position"),
+        Quantity("xL", "m", "position of the specimen"),
+        Quantity("xk", "m", "stretch of the specimen's spring"),
+        Quantity("S", "N", "reaction of the specimen's spring and damper"),
+        Quantity("R", "N", "resistance to the rod"),
+        Quantity("Ff", "N", "largest dry friction force"),
+        Quantity("M", "kg", "mass that dry friction has to stop"),
+        Quantity("f", "N", "dry friction force; at standstill only what holds the rod"),
+        Quantity("a", "m/s^2", "acceleration of the rod"),
+        Quantity("F", "N", "force on the specimen"),
+        Quantity("X", "m", "position of what the transducer is fixed to"),
+    ),
+    ("xL = x", "the specimen moves with the rod"),
+    ("xk = xL", "the spring has no play"),
+    ("S = k * xk + cL * v", "spring and damper of the specimen"),
+    ("R = c0 * v", "viscous damping of the actuator"),
+    ("Ff = 0", "no dry friction"),
+    ("M = m0 + mL", "rod and specimen stop together"),
+    ("f = dry(Ff, v, a, M)", "friction takes at most the momentum that is there"),
+    ("a = (D - R - f - S) / (m0 + mL)", "rod and specimen move together (Qian et al. 2014, eq. 6)"),
+    ("v' = a", "speed is the integral of acceleration"),
     ("x' = v", "position is the integral of speed"),
+    ("F = S + mL * a", "what a load cell between rod and specimen measures"),
+    ("X = x", "the transducer's frame is rigid"),
 )

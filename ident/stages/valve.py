@@ -4,6 +4,12 @@ from ident.stages.stage import Quantity, stage
 
 FIRST_ORDER_VALVE = stage(
     "valve",
-    (Quantity("q", "m", "valve output, in the unit of the drive signal"),),
-    ("q' = (e - q) / tau", "first-order lag of the pilot stage, gain moved into Z0 (Qian et al. 2014, eq. 1)"),
+    (
+        Quantity("q1", "m", "output of the pilot stage, in the unit of the drive signal"),
+        Quantity("dq", "m/s", "its rate"),
+        Quantity("q", "m", "valve output, in the unit of the drive signal"),
+    ),
+    ("dq = (e - q1) / tau", "first-order lag of the pilot stage, gain moved into Z0 (Qian et al. 2014, eq. 1)"),
+    ("q1' = dq", "the pilot stage integrates its rate"),
+    ("q = q1", "nothing behind the lag"),
 )

@@ -1,0 +1,14 @@
+"""The recorded displacement lags what the controller sees."""
+
+from ident.effect import Effect
+from ident.parameter import Parameter
+
+ACQUISITION_LAG = Effect(
+    name="acquisition_lag",
+    place="sensor",
+    meaning="the recorded displacement lags what the controller sees",
+    strength=Parameter("time_constant", "T", "s", 0.0, 3e-3, 0.0, "time constant of the recorder"),
+    texts=("y = lag(y, T)",),
+    looks="the same lag at every gain and specimen, with some loss of magnitude",
+    source="anti-aliasing filter of the recorder",
+)

@@ -1,0 +1,14 @@
+"""The drive signal is limited to 1/a."""
+
+from ident.effect import Effect
+from ident.parameter import Parameter
+
+COMMAND_LIMIT = Effect(
+    name="command_limit",
+    place="controller",
+    meaning="the drive signal is limited to 1/a",
+    strength=Parameter("inverse_limit", "a", "1/m", 0.0, 200.0, 0.0, "inverse of the largest drive signal"),
+    texts=("e = e / max(1, a * abs(e))",),
+    looks="large amplitudes and gains lag and are cut, small ones are not; clipped speed",
+    source="Khalil, Nonlinear Systems, saturation",
+)

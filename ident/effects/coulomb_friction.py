@@ -1,0 +1,14 @@
+"""Dry friction of seals and guides, which sticks."""
+
+from ident.effect import Effect
+from ident.parameter import Parameter
+
+COULOMB_FRICTION = Effect(
+    name="coulomb_friction",
+    place="load",
+    meaning="dry friction of seals and guides, which sticks",
+    strength=Parameter("force", "Fc", "N", 0.0, 200.0, 0.0, "dry friction force"),
+    texts=("Ff = Ff + Fc",),
+    looks="flat tops where the speed changes sign; magnitude falls and lag grows at small amplitudes",
+    source="Strano and Terzo, Fc sgn v",
+)

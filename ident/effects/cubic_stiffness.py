@@ -1,0 +1,14 @@
+"""The specimen's spring hardens or softens."""
+
+from ident.effect import Effect
+from ident.parameter import Parameter
+
+CUBIC_STIFFNESS = Effect(
+    name="cubic_stiffness",
+    place="load",
+    meaning="the specimen's spring hardens or softens",
+    strength=Parameter("stiffness", "k3", "N/m^3", -1e11, 1e11, 0.0, "cubic stiffness of the specimen"),
+    texts=("S = S + k3 * xL**3",),
+    looks="static gain and resonance change with amplitude",
+    source="Duffing",
+)

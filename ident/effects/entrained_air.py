@@ -1,0 +1,17 @@
+"""Air in the oil makes it softer at low pressure."""
+
+from ident.effect import Effect
+from ident.parameter import Parameter
+
+ENTRAINED_AIR = Effect(
+    name="entrained_air",
+    place="pressure",
+    meaning="air in the oil makes it softer at low pressure",
+    strength=Parameter(
+        "content", "alpha", "1", 0.0, 5.0, 0.0, "relative compressibility that the air adds at low pressure"
+    ),
+    texts=("Ke = Ke * (1 + alpha / (1 + (P / Pr)**2))",),
+    shape=(Parameter("pressure", "Pr", "Pa", 1e5, 2e7, 2e6, "pressure at which half of the effect is gone"),),
+    looks="the oil-column resonance rises with amplitude and load",
+    source="phenomenological; effective bulk modulus",
+)

@@ -1,0 +1,16 @@
+"""The opening saturates."""
+
+from ident.effect import Effect
+from ident.parameter import Parameter
+
+FLOW_SATURATION = Effect(
+    name="flow_saturation",
+    place="spool",
+    meaning="the opening saturates",
+    strength=Parameter(
+        "inverse_opening", "a", "1/m", 0.0, 300.0, 0.0, "inverse of the opening at which the flow bends"
+    ),
+    texts=("w = w / sqrt(1 + (a * w)**2)",),
+    looks="bandwidth falls at large amplitudes and gains; rounded peaks of speed",
+    source="Kononykhin, speed characteristic",
+)

@@ -1,0 +1,16 @@
+"""The flow gain differs between the directions, as with a single-rod cylinder."""
+
+from ident.effect import Effect
+from ident.parameter import Parameter
+
+GAIN_ASYMMETRY = Effect(
+    name="gain_asymmetry",
+    place="spool",
+    meaning="the flow gain differs between the directions, as with a single-rod cylinder",
+    strength=Parameter(
+        "asymmetry", "a", "1", -0.3, 0.3, 0.0, "relative difference of the flow gain of the two directions"
+    ),
+    texts=("w = w * (1 + a * sgn(w))",),
+    looks="one direction faster than the other; even harmonics, and an offset that grows with amplitude",
+    source="Strano and Terzo, slopes kqn and kqp",
+)

@@ -1,0 +1,17 @@
+"""The controller also integrates the error."""
+
+from ident.effect import Effect
+from ident.parameter import Parameter
+
+INTEGRAL_ACTION = Effect(
+    name="integral_action",
+    place="controller",
+    meaning="the controller also integrates the error",
+    strength=Parameter("gain", "Ki", "1/s", 0.0, 50.0, 0.0, "integral gain"),
+    texts=(
+        "i' = r - y_in",
+        "e = e + Kp * Ki * i",
+    ),
+    looks="peaking at low frequency, no mean error whatever the bias; phase lag below a few hertz",
+    source="PI control",
+)

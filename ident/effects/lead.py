@@ -1,0 +1,14 @@
+"""The controller adds the rate of the error."""
+
+from ident.effect import Effect
+from ident.parameter import Parameter
+
+LEAD = Effect(
+    name="lead",
+    place="controller",
+    meaning="the controller adds the rate of the error",
+    strength=Parameter("time", "Td", "s", 0.0, 5e-3, 0.0, "derivative time"),
+    texts=("e = e + Kp * Td * (dr - v_in)",),
+    looks="more bandwidth and damping than the gain explains, growing with frequency",
+    source="PD control",
+)

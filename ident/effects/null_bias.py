@@ -1,0 +1,14 @@
+"""The spool is open at zero drive signal."""
+
+from ident.effect import Effect
+from ident.parameter import Parameter
+
+NULL_BIAS = Effect(
+    name="null_bias",
+    place="spool",
+    meaning="the spool is open at zero drive signal",
+    strength=Parameter("bias", "b", "m", -2e-3, 2e-3, 0.0, "opening at zero drive signal"),
+    texts=("w = w + b",),
+    looks="an offset of each run in proportion to 1/Kp, else nothing in a linear chain",
+    source="Merritt, Hydraulic Control Systems, null shift",
+)

@@ -1,0 +1,19 @@
+"""Friction that first yields like a spring, after Dahl."""
+
+from ident.effect import Effect
+from ident.parameter import Parameter
+
+PRESLIDING_FRICTION = Effect(
+    name="presliding_friction",
+    place="load",
+    meaning="friction that first yields like a spring, after Dahl",
+    strength=Parameter("force", "Fd", "N", 0.0, 200.0, 0.0, "friction force in full slip"),
+    texts=(
+        "z := sgn(x - xr) + (z - sgn(x - xr)) * exp(-abs(x - xr) / xs)",
+        "xr := x",
+        "R = R + Fd * z",
+    ),
+    shape=(Parameter("displacement", "xs", "m", 1e-7, 1e-3, 1e-5, "way over which the force builds up"),),
+    looks="rounded hysteresis at every amplitude; at small motion a spring rather than a stop",
+    source="Dahl 1968: z' = (v - |v| z)/xs, here advanced exactly over the way of a step",
+)

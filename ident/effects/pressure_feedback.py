@@ -1,0 +1,14 @@
+"""The load pressure is fed back to damp the oil column."""
+
+from ident.effect import Effect
+from ident.parameter import Parameter
+
+PRESSURE_FEEDBACK = Effect(
+    name="pressure_feedback",
+    place="controller",
+    meaning="the load pressure is fed back to damp the oil column",
+    strength=Parameter("gain", "kd", "m/Pa", 0.0, 1e-9, 0.0, "gain from load pressure to drive signal"),
+    texts=("e = e - kd * P",),
+    looks="a flatter oil-column resonance; like more leakage, but behind the valve's lag",
+    source="Merritt, Hydraulic Control Systems, dynamic pressure feedback",
+)

@@ -1,0 +1,14 @@
+"""The recorded displacement is scaled wrongly, outside the loop."""
+
+from ident.effect import Effect
+from ident.parameter import Parameter
+
+SENSOR_GAIN = Effect(
+    name="sensor_gain",
+    place="sensor",
+    meaning="the recorded displacement is scaled wrongly, outside the loop",
+    strength=Parameter("error", "g", "1", -0.1, 0.1, 0.0, "relative error of the recorded displacement"),
+    texts=("y = y * (1 + g)",),
+    looks="the static gain is not 1, alike in all runs",
+    source="calibration",
+)

@@ -1,0 +1,17 @@
+"""The transducer lags, inside the loop."""
+
+from ident.effect import Effect
+from ident.parameter import Parameter
+
+SENSOR_LAG = Effect(
+    name="sensor_lag",
+    place="sensor",
+    meaning="the transducer lags, inside the loop",
+    strength=Parameter("time_constant", "T", "s", 0.0, 3e-3, 0.0, "time constant of the transducer"),
+    texts=(
+        "y_fb = lag(y_fb, T)",
+        "v_fb = lag(v_fb, T)",
+    ),
+    looks="less damping at high gain; the record lags the motion",
+    source="transducer and conditioner",
+)

@@ -1,0 +1,14 @@
+"""The specimen's spring has play."""
+
+from ident.effect import Effect
+from ident.parameter import Parameter
+
+SPECIMEN_FREE_PLAY = Effect(
+    name="specimen_free_play",
+    place="load",
+    meaning="the specimen's spring has play",
+    strength=Parameter("half_width", "g", "m", 0.0, 2e-3, 0.0, "half of the play"),
+    texts=("xk = xk - clip(xk, -g, g)",),
+    looks="no stiffness at small displacements, full stiffness beyond; only with springs",
+    source="clearance in the joint to the spring",
+)

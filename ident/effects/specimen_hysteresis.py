@@ -1,0 +1,21 @@
+"""The specimen yields and dissipates, after Bouc and Wen."""
+
+from ident.effect import Effect
+from ident.parameter import Parameter
+
+SPECIMEN_HYSTERESIS = Effect(
+    name="specimen_hysteresis",
+    place="load",
+    meaning="the specimen yields and dissipates, after Bouc and Wen",
+    strength=Parameter("force", "fy", "N", 0.0, 500.0, 0.0, "yield force"),
+    texts=(
+        "z' = v / xy * (1 - abs(z)**n * (0.5 + 0.5 * sgn(v * z)))",
+        "S = S + fy * z",
+    ),
+    shape=(
+        Parameter("yield_displacement", "xy", "m", 1e-5, 1e-2, 5e-4, "displacement at yield"),
+        Parameter("exponent", "n", "1", 1.0, 5.0, 1.0, "sharpness of the yield"),
+    ),
+    looks="loops of force over displacement; stiffness that falls with amplitude",
+    source="Bouc 1967, Wen 1976",
+)

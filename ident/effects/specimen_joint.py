@@ -1,0 +1,22 @@
+"""The whole specimen sits behind a springy joint."""
+
+from ident.effect import Effect
+from ident.parameter import Parameter
+
+SPECIMEN_JOINT = Effect(
+    name="specimen_joint",
+    place="load",
+    meaning="the whole specimen sits behind a springy joint",
+    strength=Parameter("compliance", "s", "m/N", 0.0, 1e-5, 0.0, "compliance of the joint, 1/kj"),
+    texts=(
+        "Fp := Fh",
+        "Fh := F",
+        "xL = xL - s * Fp",
+        "G = (mL * (D - R - f) / m0 + S + k * (x - xL)) / (1 + k * s + mL / m0)",
+        "F = lag2(G, s * cL / (1 + k * s + mL / m0), s * mL / (1 + k * s + mL / m0))",
+        "a = (D - R - f - F) / m0",
+        "M = m0 + where(s > 0, 0, mL)",
+    ),
+    looks="a second resonance that depends on the specimen's mass; none without specimen",
+    source="two masses and a spring: mL x2'' = kj (x - x2) - S, solved for the force F = kj (x - x2), which stays regular for s = 1/kj = 0 and mL = 0",
+)

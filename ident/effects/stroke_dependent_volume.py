@@ -1,0 +1,22 @@
+"""The oil volumes change along the stroke."""
+
+from ident.effect import Effect
+from ident.parameter import Parameter
+
+STROKE_DEPENDENT_VOLUME = Effect(
+    name="stroke_dependent_volume",
+    place="pressure",
+    meaning="the oil volumes change along the stroke",
+    strength=Parameter(
+        "curvature",
+        "kappa",
+        "1/m^2",
+        0.0,
+        200.0,
+        0.0,
+        "relative fall of the compressibility for each square metre of stroke",
+    ),
+    texts=("Ke = Ke * (1 - kappa * x**2)",),
+    looks="stiffer oil away from mid-stroke; invisible at millimetres",
+    source="Merritt, Hydraulic Control Systems, chamber volumes",
+)

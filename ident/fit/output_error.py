@@ -1,0 +1,249 @@
+"""Eq. (17) of a set of runs under a chain with effects: every run is simulated, for populations and for the polish.
+
+The first state of a record that starts moving is a nuisance of its run: it begins at the linear model's and follows
+with each step of the polish, by the sensitivities to it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.chain import Chain, conditions
+from ident.fit.objective import STEP, UNSTABLE, Local, local
+from ident.fit.record import Moments, first_state, moments_of
+from ident.fit.space import Space
+from ident.linear import linear_model
+from ident.matrix import Matrix, Run
+from ident.parallel import cores, each
+from ident.presets import Preset
+from ident.simulate import MOST, Simulation, rates, steps_needed
+
+Array = NDArray[np.float64]
+_TOGETHER = 256  # lanes simulated in one go: memory stays small, the cores stay busy
+_BLOCKS = 32  # of a record: see ident.fit.record
+_REACH = 1e-3  # of a state's size, for sensitivities to the first state
+_SETTLING = 3  # rounds in which the first states of a model are found
+
+
+@dataclass
+class OutputError:
+    """The fitness of a preset with effects on runs, over a search space; the interface is that of Objective.
+
+    `evaluations` counts parameter vectors, `unstable` those that were unstable at some run, `coarse` those with a mode
+    too fast for the finest step.
+    """
+
+    preset: Preset
+    matrix: Matrix
+    runs: tuple[Run, ...]
+    space: Space
+    band: float
+    evaluations: int = 0
+    unstable: int = 0
+    coarse: int = 0
+    starts: dict[str, Array] = field(default_factory=dict)
+
+    @property
+    def chain(self) -> Chain:
+        """The chain with its effects."""
+        return self.preset.chain
+
+    def prepare(self) -> None:
+        """Compile the kernels, which their first use does."""
+        self.errors(np.full((1, len(self.space.axes)), 0.5))
+        self.evaluations = self.unstable = self.coarse = 0
+
+    def errors(self, points: Array) -> Array:
+        """Eq. (17) averaged over runs at points of the space, (v, p) → (v,)."""
+        self.evaluations += len(points)
+        values = self.space.values(points)
+        steps = self._steps(values)
+        errors = np.empty(len(points))
+        for level in np.unique(steps):
+            of_level = np.flatnonzero(steps == level)
+            part = {name: value[of_level] for name, value in values.items()}
+            errors[of_level] = self._errors(part, len(of_level), int(level))
+        self.unstable += int(np.sum(errors >= UNSTABLE))
+        return errors
+
+    def _errors(self, values: Mapping[str, Array], vectors: int, steps: int) -> Array:
+        def of_runs(runs: tuple[Run, ...]) -> Array:
+            measured = np.column_stack([run.measured for run in runs])[:, :, None]
+            sums = np.zeros((2, len(runs), vectors))
+            mean = measured.mean(axis=0)
+            for rows, first, last in self._simulation(runs, values, steps).outputs():
+                residual = measured[first:last] - mean - rows
+                sums[0] += residual.sum(axis=0)
+                sums[1] += np.einsum("nrv,nrv->rv", residual, residual)
+            n = len(measured)
+            with np.errstate(invalid="ignore", over="ignore"):
+                variance = sums[1] / n - (sums[0] / n) ** 2
+                found = np.sqrt(np.maximum(variance, 0.0)) / np.std(measured, axis=0)
+            return np.where(np.isfinite(found), found, np.inf)
+
+        by_run = np.concatenate(each(of_runs, list(self._together(vectors))))
+        errors = np.where(np.all(np.isfinite(by_run), axis=0), by_run.mean(axis=0), UNSTABLE)
+        return np.minimum(errors, UNSTABLE)
+
+    def approximate(self, point: Array) -> Local:
+        """The same as :meth:`exact`: there is no shortcut for a chain with effects."""
+        return self.exact(point)
+
+    def exact(self, point: Array, sensitivities: bool = True) -> Local:
+        """The objective at one point, with sensitivities by differences; infinite where a run is unstable."""
+        p = len(point) if sensitivities else 0
+        # A step that would leave the cube goes inwards; the sign is taken back below.
+        signs = np.where(point + STEP > 1.0, -1.0, 1.0)[:p]
+        cloud = np.concatenate([point[None], point + (STEP * np.diag(signs) if p else np.empty((0, len(point))))])
+        values = self.space.values(cloud)
+        self.evaluations += len(cloud)
+        steps = int(self._steps(values).max())
+        flip = np.append(signs, 1.0)
+        self._begin({name: float(value[0]) for name, value in values.items()})
+        found: dict[str, Moments] = {}
+        for _ in range(1 if sensitivities else _SETTLING):
+            todo = list(self._together(p + 1 + len(self.chain.states)))
+            parts = each(lambda runs: self._moments(runs, values, p, steps), todo)
+            found = {
+                run.id: m for runs, part in zip(todo, parts, strict=True) for run, m in zip(runs, part, strict=True)
+            }
+            if not any(len(moments.release) for moments in found.values()):
+                break
+            for run in self.runs:
+                self._follow(run, found[run.id])
+        ordered = [found[run.id] for run in self.runs]
+        turned = [
+            replace(m, gram=m.gram * flip[:, None] * flip, scores=m.scores * flip[:-1], means=m.means * flip)
+            for m in ordered
+        ]
+        return local(turned, with_means=True)
+
+    def fresh(self, runs: tuple[Run, ...]) -> OutputError:
+        """The same for other runs, which know nothing of this search."""
+        return replace(self, runs=runs, starts={}, evaluations=0, unstable=0, coarse=0)
+
+    def outputs(self, point: Array) -> dict[str, Array]:
+        """The model's output of each run, with the first state that fits best."""
+        self.exact(point, sensitivities=False)
+        values = self.space.values(point[None])
+        steps = int(self._steps(values).max())
+
+        def of_runs(runs: tuple[Run, ...]) -> Array:
+            blocks = [rows[:, :, 0] for rows, _, _ in self._simulation(runs, values, steps).outputs()]
+            return np.concatenate(blocks).T
+
+        todo = list(self._together(1))
+        found = zip(todo, each(of_runs, todo), strict=True)
+        return {run.id: y for runs, outputs in found for run, y in zip(runs, outputs, strict=True)}
+
+    def _moments(self, runs: tuple[Run, ...], values: Mapping[str, Array], p: int, steps: int) -> list[Moments]:
+        """The moments of runs of one length, from one simulation of all of them."""
+        moving = not all(run.starts_at_rest for run in runs)
+        states = len(self.chain.states) if moving else 0
+        start = None
+        wide = dict(values)
+        if moving:
+            wide = {name: np.concatenate([value, np.repeat(value[:1], states)]) for name, value in values.items()}
+            start = np.repeat(np.array([self.start(run) for run in runs])[:, None], p + 1 + states, axis=1)
+            for i in range(states):
+                start[:, p + 1 + i, i] += self._reach[i]
+        length = max(16, -(-runs[0].length // _BLOCKS))
+        blocks: list[list[Array]] = [[] for _ in runs]
+        order = np.array([*range(1, p + 1 + states), p + 1 + states, 0])
+        scale = np.array([*[STEP] * p, *[1.0] * (states + 2)])
+        means = [run.measured.mean() for run in runs]
+        for rows, first, last in self._simulation(runs, wide, steps, start).outputs(length):
+            for i, run in enumerate(runs):
+                columns = np.column_stack([rows[:, i], np.ones(last - first)])
+                columns[:, 1 : p + 1 + states] -= columns[:, :1]
+                columns[:, 0] = run.measured[first:last] - means[i] - columns[:, 0]
+                products = (columns.T @ columns)[np.ix_(order, order)]
+                blocks[i].append(products / scale[:, None] / scale)
+        return [moments_of(run, np.array(block), p) for run, block in zip(runs, blocks, strict=True)]
+
+    def _simulation(
+        self, runs: tuple[Run, ...], values: Mapping[str, Array], steps: int, start: Array | None = None
+    ) -> Simulation:
+        known = [conditions(run, self.matrix.actuator) for run in runs]
+        stacked = {name: np.array([entry[name] for entry in known])[:, None] for name in known[0]}
+        vectors = len(next(iter(values.values())))
+        if start is None and not all(run.starts_at_rest for run in runs):
+            start = np.repeat(np.array([self.start(run) for run in runs])[:, None], vectors, axis=1)
+        return Simulation(self.chain, runs, stacked | {n: v[None] for n, v in values.items()}, steps, start)
+
+    # First states -----------------------------------------------------------------------------------------------
+
+    def start(self, run: Run) -> Array:
+        """The states in which a run begins, (n,)."""
+        return self.starts.get(run.id, np.zeros(len(self.chain.states)))
+
+    def _begin(self, values: Mapping[str, float]) -> None:
+        """Take the first states that are not known yet from the linear model at `values`."""
+        core = self.preset.core
+        for run in self.runs:
+            if not run.starts_at_rest and run.id not in self.starts:
+                found = first_state(run, linear_model(core, values, run, self.matrix.actuator))
+                known = dict(zip(core.states, found, strict=True))
+                self.starts[run.id] = np.array([known.get(name, 0.0) for name in self.chain.states])
+
+    def _follow(self, run: Run, found: Moments) -> None:
+        if len(found.release) and np.all(np.isfinite(found.release)):
+            self.starts[run.id] = self.start(run) + self._reach * found.release
+
+    @cached_property
+    def _reach(self) -> Array:
+        """A small step of each state: of the size that the first states have, or of the output's for others."""
+        size = float(np.mean([np.std(run.measured) for run in self.runs]))
+        known = np.array([np.abs(start) for start in self.starts.values()])
+        largest = known.max(axis=0) if len(known) else np.zeros(len(self.chain.states))
+        return np.asarray(_REACH * np.where(largest > 0, largest, size))
+
+    # Shares ------------------------------------------------------------------------------------------------------
+
+    def _together(self, vectors: int) -> Iterator[tuple[Run, ...]]:
+        """Runs that are simulated in one go: of one length, sample rate, output and kind of start."""
+        groups: dict[tuple[object, ...], list[Run]] = {}
+        for run in self.runs:
+            groups.setdefault((run.length, run.sample_rate, run.output, run.starts_at_rest), []).append(run)
+        for runs in groups.values():
+            most = max(1, _TOGETHER // vectors)
+            shares = -(-len(runs) // most)
+            shares = min(len(runs), max(shares, cores()))
+            for share in np.array_split(np.arange(len(runs)), shares):
+                yield tuple(runs[i] for i in share)
+
+    def _steps(self, values: Mapping[str, Array]) -> NDArray[np.int64]:
+        """Steps a sample for each vector, by the fastest mode of the linear core and the effects at small signals."""
+        vectors = len(next(iter(values.values())))
+        fastest = np.zeros(vectors)
+        for run in self._extreme:
+            known = {name: np.full(vectors, value) for name, value in conditions(run, self.matrix.actuator).items()}
+            fastest = np.maximum(fastest, rates(self.chain, known | dict(values), run.output) / run.sample_rate)
+        self.coarse += int(np.sum(fastest > MOST))
+        return steps_needed(fastest, 1.0)
+
+    @cached_property
+    def _extreme(self) -> tuple[Run, ...]:
+        """For each specimen the run of largest gain: the others are no faster."""
+        chosen: dict[object, Run] = {}
+        for run in self.runs:
+            key = (run.specimen, run.sample_rate)
+            if key not in chosen or run.Kp > chosen[key].Kp:
+                chosen[key] = run
+        return tuple(chosen.values())
+
+
+def shortened(runs: Sequence[Run], samples: int) -> tuple[Run, ...]:
+    """The runs for a search, at most about `samples` in all: noise is cut after its first part, other runs are kept.
+
+    The first part of a sweep would not show what the rest does.
+    """
+    total = sum(run.length for run in runs)
+    if total <= samples:
+        return tuple(runs)
+    return tuple(run.part(0, max(512, run.length * samples // total)) if run.kind == "blwn" else run for run in runs)
