@@ -9,7 +9,7 @@ from benchmarks import material, plain_scipy
 from benchmarks.table import Table, seconds_of
 from ident.chain import conditions
 from ident.presets import PRESETS
-from ident.simulate import discretise, respond
+from ident.recursion import discretise, respond
 from tests.reference import qian_reference as reference
 
 VECTORS = 64

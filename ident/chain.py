@@ -211,6 +211,11 @@ class Chain:
                 wanted |= equation.names
         return tuple(reversed(kept))
 
+    def reads(self, name: str) -> bool:
+        """Whether a rate or memory depends on a quantity, or calls a function of this name."""
+        needed = (*self.needed(next(iter(self.outputs))), *(e for e in self.equations if e.is_rate))
+        return any(name in {n.id for n in ast.walk(e.tree) if isinstance(n, ast.Name)} for e in needed)
+
     def signal(self, output: str) -> str:
         """The signal that the channel `output` shows; raises Unusable with the channels there are."""
         if output not in self.outputs:

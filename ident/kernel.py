@@ -1,7 +1,7 @@
 """The compiled simulation of a chain with its effects: generated from the equations, one vector a SIMD lane.
 
 Classical Runge-Kutta steps of order 4, sixteen systems side by side. What an equation writes with `lag`, `lag2` and
-`delay` is advanced exactly over each stage for an input that is a line or parabola through the stages' values, so that
+`delay` is advanced exactly over each stage for an input that is a parabola through its values every half step, so that
 a time constant may go to zero without making the equations stiff, and is an exact identity there. Dry friction is a
 force held over a step: what would stop the mass at its end, at most the limit; so it sticks.
 
@@ -84,6 +84,7 @@ class _Writer:
     rows: int = 0
     temporaries: int = 0
     shift: ast.expr | None = None
+    written: set[str] = field(default_factory=set)
     keys: dict[tuple[str, ...], str] = field(default_factory=dict)
 
     def kernel(self) -> Kernel:
@@ -120,7 +121,7 @@ class _Writer:
                 fixed[equation.target] = ast.Constant(0.0)
                 continue
             equation = equation.with_values(fixed)
-            bare = isinstance(equation.tree, ast.Constant | ast.Name) and equation.names <= self._symbols
+            bare = isinstance(equation.tree, ast.Constant | ast.Name) and equation.names <= {*self._symbols, INPUT}
             if (bare or self._is_constant(equation.tree)) and not equation.is_memory:
                 fixed[equation.target] = equation.tree
             else:
@@ -162,6 +163,7 @@ class _Writer:
         for key, known in self.filters.items():
             for i in range(known.order):
                 self._write(f"b[{(known.first + i) * LANES} + lane]", f"{key}_{'zp'[i]}_4")
+            self._write(f"b[{(known.first + known.order) * LANES} + lane]", f"{key}_x_m")
         for row in inputs.values():
             self._write(f"b[{row * LANES} + lane]", f"b[{(row + 1) * LANES} + lane]")
             self._write(f"b[{(row + 1) * LANES} + lane]", f"b[{(row + 2) * LANES} + lane]")
@@ -205,30 +207,47 @@ class _Writer:
         for equation in needed:
             found = friction(equation)
             if found and stage == "1":
-                limit, speed, acceleration, mass = (ast.parse(text, mode="eval").body for text in found)
-                self._without(equation.target, acceleration, needed)
-                top, inverse = self._temporary(self._lower(limit, "1")), self._text(f"1.0 / {STEP}")
-                free = f"{inverse} * {self._lower(speed, '1')} + {self._lower(acceleration, 'f')}"
-                stops = self._temporary(f"{self._lower(mass, '1')} * ({free})")
-                held = f"{top} if {stops} > {top} else (-{top} if {stops} < -{top} else {stops})"
-                self._write(f"{equation.target}_1", held)
+                self._friction(equation.target, found, needed)
             elif found:
                 self._write(f"{equation.target}_{stage}", f"{equation.target}_1")
             else:
                 self._write(f"{equation.target}_{stage}", self._lower(equation.tree, stage))
 
-    def _without(self, force: str, acceleration: ast.expr, needed: Sequence[Equation]) -> None:
-        """What the acceleration depends on, at the start of the step and without friction, under the stage "f"."""
-        wanted, order = {n.id for n in ast.walk(acceleration) if isinstance(n, ast.Name)}, []
-        for equation in reversed(needed):
-            if equation.target in wanted and equation.target != force:
-                order.append(equation)
-                wanted |= equation.names
+    def _friction(self, force: str, found: tuple[str, str, str, str], needed: Sequence[Equation]) -> None:
+        """Dry friction as its mean over the step.
+
+        Without friction the mass would have the acceleration a. If it goes on sliding, friction has its limit. If it
+        stops inside the step it either stays, and friction takes just the momentum that is there, or it turns, after
+        the share θ of the step, and friction with it. Where the limit depends on the speed it is taken in mid-step.
+        """
+        limit, speed, acceleration, mass = (ast.parse(text, mode="eval").body for text in found)
         self._write(f"{force}_f", "0.0")
-        for equation in reversed(order):
+        for equation in _behind(_names(acceleration), needed, {force}):
             self._write(f"{equation.target}_f", self._lower(equation.tree, "f"))
+        free = self._temporary(self._lower(acceleration, "f"))
+        v, m = self._temporary(self._lower(speed, "1")), self._temporary(self._lower(mass, "1"))
+        of_limit = _behind(_names(limit), needed, {force})
+        for stage in ("1", "m") if _names(speed) & frozenset().union(*(e.names for e in of_limit)) else ("1",):
+            if stage == "m":
+                middle = f"{v} + {self._text(f'0.5 * {STEP}')} * ({free} - {force}_1 / {m})"
+                self._write(f"{next(iter(_names(speed)))}_m", middle)
+                for equation in of_limit:
+                    self._write(f"{equation.target}_m", self._lower(equation.tree, "m"))
+            top = self._temporary(self._lower(limit, stage))
+            self._write(f"{force}_1", self._mean_friction(top, v, free, m))
+
+    def _mean_friction(self, top: str, v: str, a: str, m: str) -> str:
+        drive = self._temporary(f"{m} * {a}")
+        momentum = self._temporary(f"{m} * {self._text(f'1.0 / {STEP}')} * {v}")
+        against = f"(-1.0 if {drive} > 0.0 else 1.0)"
+        s = self._temporary(f"1.0 if {v} > 0.0 else (-1.0 if {v} < 0.0 else {against})")
+        stops = self._temporary(f"{momentum} + {drive}")
+        pushed = self._temporary(f"{drive} if {drive} > 0.0 else -{drive}")
+        turned = self._temporary(f"{s} * {top} * (2.0 * {s} * {momentum} / ({pushed} + {top} + 1e-300) - 1.0)")
+        return f"{s} * {top} if {s} * {stops} > {top} else ({stops} if {pushed} <= {top} else {turned})"
 
     def _write(self, target: str, value: str) -> None:
+        self.written.add(target)
         self.lines.append(f"{target} = {value}")
 
     def _temporary(self, value: str) -> str:
@@ -252,6 +271,8 @@ class _Writer:
         if name.endswith("__old"):
             return name
         if stage == "f" and (name in self.chain.states or name in (INPUT, INPUT_RATE, FORCE)):
+            return f"{name}_1"
+        if stage == "m" and f"{name}_m" not in self.written:
             return f"{name}_1"
         return f"{name}_{stage}"
 
@@ -368,9 +389,16 @@ class _Writer:
         value = f"{key}_x_{stage}"
         self._write(value, self._lower(x, stage))
         memory = [f"b[{(known.first + i) * LANES} + lane]" for i in range(order)]
-        through = {"f": ["f"], "1": ["1"], "2": ["1", "2"], "3": ["1", "3"], "4": ["1", "3", "4"]}[stage]
-        terms = [*memory, *(f"{key}_x_{s}" for s in through)]
-        first = known.first + order + {"f": 0, "1": 0, "2": 1, "3": 1, "4": 2}[stage] * order * (order + 3)
+        before = f"b[{(known.first + order) * LANES} + lane]"
+        inputs = {name: f"{key}_x_{name}" for name in "f1234"}
+        through = {
+            "f": [inputs["f"]], "1": [inputs["1"]], "2": [before, inputs["1"], inputs["2"]],
+            "3": [before, inputs["1"], inputs["3"]], "4": [inputs["1"], f"{key}_x_m", inputs["4"]],
+        }  # fmt: skip
+        if stage == "4":  # their errors of second order cancel
+            self._write(f"{key}_x_m", f"0.5 * ({inputs['2']} + {inputs['3']})")
+        terms = [*memory, *through[stage]]
+        first = known.first + order + 1 + {"f": 0, "1": 0, "2": 1, "3": 1, "4": 2}[stage] * order * (order + 3)
         for i in range(order):
             row = first + i * (order + 3)
             gains = [f"b[{(row + j) * LANES} + lane]" for j in range(len(terms))]
@@ -405,9 +433,23 @@ def advance(b, commands, forces, where, first, last, every, out, stride):
 """
 
 
+def _names(node: ast.expr) -> frozenset[str]:
+    return frozenset(n.id for n in ast.walk(node) if isinstance(n, ast.Name))
+
+
+def _behind(names: frozenset[str], equations: Sequence[Equation], but: set[str]) -> list[Equation]:
+    """The equations that these names depend on, in order."""
+    wanted, found = set(names), []
+    for equation in reversed(equations):
+        if equation.target in wanted and equation.target not in but:
+            found.append(equation)
+            wanted |= equation.names
+    return found[::-1]
+
+
 def filter_rows(order: int) -> int:
-    """Rows of a filter in the buffer: its memory, then the gains of start, half and whole step."""
-    return order + 3 * order * (order + 3)
+    """Rows of a filter in the buffer: states, its input half a step ago, gains of start, half and whole step."""
+    return order + 1 + 3 * order * (order + 3)
 
 
 def _folded(node: ast.expr, plain: Mapping[str, float]) -> ast.expr:

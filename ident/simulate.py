@@ -10,7 +10,7 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from ident.chain import FORCE, INPUT, STEP, Chain
+from ident.chain import FORCE, INPUT, INPUT_RATE, STEP, Chain, friction
 from ident.kernel import HELD, LANES, SHARE, Filter, Kernel, constant, kernel
 from ident.matrix import Run
 
@@ -104,9 +104,11 @@ class Simulation:
             rows[row] = constant(node, values)
         for known in built.filters:
             _pack_filter(rows, known, values)
+        undelayed = np.full(lanes, True) if built.shift is None else np.broadcast_to(constant(built.shift, values) == 0, (lanes,))
         for name, first in built.inputs.items():
             record = commands if name == INPUT else forces
-            rows[first], rows[first + 1] = record[where - 1], record[where]
+            # The first value did not jump there: what the command did before the record is not known.
+            rows[first], rows[first + 1] = record[np.where(undelayed, where, where - 1)], record[where]
         if self.start is not None:
             for i, name in enumerate(self.chain.states):
                 rows[built.states[name]] = _filled(self.start[..., i].ravel(), lanes)
@@ -121,7 +123,7 @@ class Simulation:
         for name, row in built.memories.items():
             rows[row] = found[name]
         for known_filter in built.filters:
-            rows[known_filter.first] = constant(known_filter.input, found)
+            rows[known_filter.first] = rows[known_filter.first + known_filter.order] = constant(known_filter.input, found)
 
 
 def _at_rest(chain: Chain, known: Mapping[str, Any]) -> dict[str, Any]:
@@ -130,7 +132,7 @@ def _at_rest(chain: Chain, known: Mapping[str, Any]) -> dict[str, Any]:
     values = dict(known) | {f"{name}__old": 0.0 for name in chain.memories}
     for _ in range(2):
         for equation in chain.signals:
-            values[equation.target] = equation.value(values)
+            values[equation.target] = 0.0 if friction(equation) else equation.value(values)
         values |= {f"{name}__old": values[name] for name in copies}
     return values
 
@@ -156,18 +158,20 @@ def _fine(run: Run, channel: str, steps: int, before: int) -> Array:
         fine = np.interp(np.arange((len(samples) - 1) * steps + 1) / steps, np.arange(len(samples)), samples)
     else:
         fine = samples
-    front = 0.0 if channel == INPUT and run.starts_at_rest else fine[0]
-    return np.concatenate([np.full(before, front), fine, np.full(steps + 2, fine[-1])])
+    front = np.full(before, 0.0 if channel == INPUT and run.starts_at_rest else fine[0])
+    if front[-1] != fine[0] and run.hold == "linear":
+        front[-1] -= 0.5 * (fine[0] - front[-1])  # the lines to and from it have the area of a jump at the start
+    return np.concatenate([front, fine, np.full(steps + 2, fine[-1])])
 
 
 # Filters ----------------------------------------------------------------------------------------------------------
 
 
 def _pack_filter(rows: Array, known: Filter, values: Mapping[str, Array]) -> None:
-    """The gains of a filter over half a step (input a line) and a whole step (a parabola), exactly.
+    """The gains of a filter over half a step and a whole step, exactly for an input that is a parabola.
 
-    Rows of a block: for each state, the gains of the states at the start, then of the inputs. A filter without any
-    time constant passes its input on.
+    Rows of a block: for each state, the gains of the states at the start, then of three inputs half a step apart, the
+    last where the block ends. A filter without any time constant passes its input on.
     """
     order, lanes = known.order, rows.shape[1]
     coefficients = np.array([np.broadcast_to(constant(node, values), (lanes,)) for node in known.coefficients])
@@ -176,7 +180,7 @@ def _pack_filter(rows: Array, known: Filter, values: Mapping[str, Array]) -> Non
     case = np.ravel(case)
     block = order * (order + 3)
     gains = np.array([_gains(entry[:-1], float(entry[-1])) for entry in cases.T])  # (cases, 3 blocks)
-    first = known.first + order
+    first = known.first + order + 1
     rows[first : first + 3 * block] = gains[case].T
 
 
@@ -185,11 +189,15 @@ def _gains(coefficients: Array, step: float) -> Array:
     order = len(coefficients)
     start, half, whole = (np.zeros((order, order + 3)) for _ in range(3))
     if not np.any(coefficients > 0):
-        start[0, order] = half[0, order + 1] = whole[0, order + 2] = 1.0
+        start[0, order] = half[0, order + 2] = whole[0, order + 2] = 1.0
         return np.concatenate([start.ravel(), half.ravel(), whole.ravel()])
     start[:, :order] = np.eye(order)
     phi, constant_, ramp, parabola = _responses(coefficients, step / 2)
-    half[:, :order], half[:, order], half[:, order + 1] = phi, constant_ - ramp, ramp
+    # x₋, x0, x1 at −1, 0, 1: x = x0 + (x1 − x₋) σ/2 + (x1 − 2 x0 + x₋) σ²/2
+    half[:, :order] = phi
+    half[:, order] = (parabola - ramp) / 2
+    half[:, order + 1] = constant_ - parabola
+    half[:, order + 2] = (parabola + ramp) / 2
     phi, constant_, ramp, parabola = _responses(coefficients, step)
     whole[:, :order] = phi
     # x0, xm, x1 at 0, ½, 1: x = x0 + (−3 x0 + 4 xm − x1) σ + (2 x0 − 4 xm + 2 x1) σ²
@@ -238,10 +246,16 @@ def rates(chain: Chain, values: Mapping[str, Any], output: str) -> Array:
     return np.asarray(np.abs(np.linalg.eigvals(jacobian)).max(axis=-1))
 
 
-def steps_needed(fastest: Array, sample_rate: float) -> NDArray[np.int64]:
-    """Steps a sample, a power of two up to :data:`MOST`, with which eigenvalues `fastest` (1/s) are followed."""
-    ratio = np.maximum(fastest / sample_rate / FINE, 1.0)
-    return np.minimum(2 ** np.ceil(np.log2(ratio)), MOST).astype(np.int64)
+def steps_needed(chain: Chain, fastest: Array, hold: str) -> NDArray[np.int64]:
+    """Steps a sample, a power of two up to :data:`MOST`, for eigenvalues `fastest` (radians a sample).
+
+    Kinks of effects ask for more, and so does a held command whose jumps act at once or between the samples.
+    """
+    least = max((effect.steps for effect in chain.effects), default=1)
+    if hold == "zoh" and any(chain.reads(name) for name in (INPUT_RATE, "delay")):
+        least = max(least, 2)
+    ratio = np.maximum(fastest / FINE, least)
+    return np.asarray(np.minimum(2 ** np.ceil(np.log2(ratio)), MOST).astype(np.int64))
 
 
 def responses(

@@ -14,4 +14,5 @@ BACKLASH = Effect(
     ),
     looks="phase lag and lost magnitude at small amplitudes, the same at every frequency; flat tops",
     source="Kononykhin, block b; play operator",
+    steps=2,
 )

@@ -11,4 +11,5 @@ COMMAND_LIMIT = Effect(
     texts=("e = e / max(1, a * abs(e))",),
     looks="large amplitudes and gains lag and are cut, small ones are not; clipped speed",
     source="Khalil, Nonlinear Systems, saturation",
+    steps=2,
 )

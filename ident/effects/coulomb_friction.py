@@ -11,4 +11,5 @@ COULOMB_FRICTION = Effect(
     texts=("Ff = Ff + Fc",),
     looks="flat tops where the speed changes sign; magnitude falls and lag grows at small amplitudes",
     source="Strano and Terzo, Fc sgn v",
+    steps=2,
 )

@@ -11,4 +11,5 @@ SPOOL_STICTION = Effect(
     texts=("dq = where(abs(e - q1) < s, 0, dq)",),
     looks="steps and small limit cycles at small amplitudes; hardly seen at large ones",
     source="stiction of the spool; dither is its remedy",
+    steps=4,
 )

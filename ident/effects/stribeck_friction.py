@@ -12,4 +12,5 @@ STRIBECK_FRICTION = Effect(
     shape=(Parameter("speed", "vs", "m/s", 1e-4, 0.5, 5e-3, "speed at which the excess falls to 1/e"),),
     looks="sticking and jumps at small amplitudes and low frequency",
     source="Stribeck; Armstrong-Helouvry et al. 1994",
+    steps=2,
 )

@@ -225,7 +225,8 @@ class OutputError:
             known = {name: np.full(vectors, value) for name, value in conditions(run, self.matrix.actuator).items()}
             fastest = np.maximum(fastest, rates(self.chain, known | dict(values), run.output) / run.sample_rate)
         self.coarse += int(np.sum(fastest > MOST))
-        return steps_needed(fastest, 1.0)
+        holds = {run.hold for run in self.runs}
+        return np.max([steps_needed(self.chain, fastest, hold) for hold in holds], axis=0)
 
     @cached_property
     def _extreme(self) -> tuple[Run, ...]:

@@ -12,7 +12,7 @@ import pytest
 from ident.chain import Chain
 from ident.expression import Equation
 from ident.presets import PRESETS
-from ident.simulate import discretise, respond
+from ident.recursion import discretise, respond
 from tests.reference import qian_reference as reference
 
 CHAIN = PRESETS["qian2014"].chain
