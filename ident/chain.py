@@ -1,7 +1,8 @@
 """The chain: stages and effects put together into one model, and its linearisation.
 
-A chain is a set of equations. Each state has a rate, each memory and signal an expression; signals are put in an order
-in which every one is known before it is read, so that loops (feedback, pressure against flow) close through states only.
+A chain is a set of equations. Each state has a rate, each memory and signal an expression; signals are put in an
+order in which every one is known before it is read, so that loops (feedback, pressure against flow) close through
+states only.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from numpy.typing import NDArray
 from ident.effect import Effect
 from ident.errors import Unusable
 from ident.expression import FUNCTIONS, Equation
+from ident.linear import LinearModel
 from ident.matrix import Actuator, Run, Specimen
 from ident.stages import Quantity, Stage
 
@@ -44,59 +46,6 @@ def conditions(run: Run, actuator: Actuator) -> dict[str, float]:
     specimen = run.specimen or Specimen()
     area = 1.0 if actuator.piston_area is None else actuator.piston_area
     return {"Kp": run.Kp, "mL": specimen.mass, "k": specimen.stiffness, "cL": specimen.damping, "A": area}
-
-
-@dataclass(frozen=True)
-class LinearModel:
-    """ẋ = A x + B u, y = C x + D u for a batch of parameter vectors and runs.
-
-    `system` is [[A, B], [C, D]], shape (n + 1, n + 1, ...), the batch last: one coefficient of the whole batch lies
-    together in memory. A (..., n, n), B (..., n), C (..., n) and D (...) are views of it.
-    """
-
-    system: Array
-
-    @classmethod
-    def of(cls, A: Array, B: Array, C: Array, D: Array) -> LinearModel:
-        """From batches of matrices of the shapes above."""
-        top = np.concatenate([A, B[..., None]], axis=-1)
-        bottom = np.concatenate([C, D[..., None]], axis=-1)[..., None, :]
-        return cls(np.moveaxis(np.concatenate([top, bottom], axis=-2), (-2, -1), (0, 1)))
-
-    @property
-    def A(self) -> Array:
-        """System matrix (..., n, n)."""
-        return np.moveaxis(self.system[:-1, :-1], (0, 1), (-2, -1))
-
-    @property
-    def B(self) -> Array:
-        """Input vector (..., n)."""
-        return np.moveaxis(self.system[:-1, -1], 0, -1)
-
-    @property
-    def C(self) -> Array:
-        """Output vector (..., n)."""
-        return np.moveaxis(self.system[-1, :-1], 0, -1)
-
-    @property
-    def D(self) -> Array:
-        """Feed-through (...)."""
-        return np.asarray(self.system[-1, -1])
-
-    def frequency_response(self, frequency: Array) -> NDArray[np.complex128]:
-        """G(jω) = C (jωI − A)⁻¹ B + D at `frequency` in Hz, shape (f,) → (..., f).
-
-        The states are scaled first: in SI they differ by ten decades, which would cost digits in the solution.
-        """
-        s = 2j * np.pi * np.asarray(frequency)
-        A, B, C = self.A, self.B, self.C
-        scale = np.abs(np.linalg.solve(np.abs(s).max() * np.eye(A.shape[-1]) - 1j * A, B[..., None])[..., 0])
-        scale = np.where(scale > 0, scale, 1.0)
-        A, B, C = A * scale[..., None, :] / scale[..., :, None], B / scale, C * scale
-        resolvent = s[:, None, None] * np.eye(A.shape[-1]) - A[..., None, :, :]
-        states = np.linalg.solve(resolvent, np.broadcast_to(B[..., None, :, None], (*resolvent.shape[:-1], 1)))[..., 0]
-        response: NDArray[np.complex128] = np.einsum("...fn,...n->...f", states, C) + self.D[..., None]
-        return response
 
 
 @dataclass(frozen=True)
@@ -271,6 +220,12 @@ class Chain:
         """Which entries of the system matrix can be other than zero, found at generic values of every symbol."""
         generic = {name: np.sqrt(2.0 + i) for i, name in enumerate(self.symbols)}
         return tuple(tuple(bool(entry) for entry in row) for row in self.linearise(generic, output).system)
+
+
+def linear_model(chain: Chain, values: Mapping[str, float], run: Run, actuator: Actuator) -> LinearModel:
+    """The linearised chain under the conditions of a run, as a batch of one."""
+    known = conditions(run, actuator) | dict(values)
+    return chain.linearise({name: np.array([known[name]]) for name in chain.symbols}, run.output)
 
 
 def unfit(effect: Effect) -> Unusable:

@@ -10,14 +10,14 @@ import numpy as np
 import scipy.signal
 from numpy.typing import NDArray
 
-from ident.chain import LinearModel
+from ident.chain import linear_model
 from ident.effect import parameter_name
 from ident.errors import Unusable
 from ident.fit.output_error import OutputError
 from ident.fit.record import output
 from ident.fit.result import FitResult
 from ident.fit.space import Space
-from ident.linear import linear_model
+from ident.linear import LinearModel
 from ident.matrix import Actuator, Matrix, Run
 from ident.parallel import each
 from ident.presets import Preset

@@ -19,8 +19,8 @@ class Effect:
     other parameters, held at their defaults unless a fit is told to free them. `equations` redefine signals of the
     chain and give the rates and memories of the effect's own states. An equation reads a signal that its effect
     redefines as it was left by what stands before, every other name in its final value, and a memory of the effect in
-    the equation of a memory as it was at the start of the step. `looks` says what the effect looks like in data, `steps`
-    into how many a sample has to be divided so that its kinks are met closely enough.
+    the equation of a memory as it was at the start of the step. `looks` says what the effect looks like in data,
+    `steps` into how many a sample has to be divided so that its kinks are met closely enough.
 
     Raises Unusable where place or strength are not of that form.
     """

@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from ident.chain import LinearModel
 from ident.compiled import function
+from ident.linear import LinearModel
 
 Array = NDArray[np.float64]
 LANES = 16

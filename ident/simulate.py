@@ -104,7 +104,11 @@ class Simulation:
             rows[row] = constant(node, values)
         for known in built.filters:
             _pack_filter(rows, known, values)
-        undelayed = np.full(lanes, True) if built.shift is None else np.broadcast_to(constant(built.shift, values) == 0, (lanes,))
+        undelayed = (
+            np.full(lanes, True)
+            if built.shift is None
+            else np.broadcast_to(constant(built.shift, values) == 0, (lanes,))
+        )
         for name, first in built.inputs.items():
             record = commands if name == INPUT else forces
             # The first value did not jump there: what the command did before the record is not known.
@@ -123,7 +127,9 @@ class Simulation:
         for name, row in built.memories.items():
             rows[row] = found[name]
         for known_filter in built.filters:
-            rows[known_filter.first] = rows[known_filter.first + known_filter.order] = constant(known_filter.input, found)
+            rows[known_filter.first] = rows[known_filter.first + known_filter.order] = constant(
+                known_filter.input, found
+            )
 
 
 def _at_rest(chain: Chain, known: Mapping[str, Any]) -> dict[str, Any]:

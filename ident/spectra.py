@@ -21,7 +21,7 @@ import scipy.signal
 from numba import njit
 from numpy.typing import NDArray
 
-from ident.chain import LinearModel
+from ident.linear import LinearModel
 from ident.matrix import Run
 from ident.parallel import each
 from ident.recursion import LANES, Recursion, advance, discretise

@@ -13,10 +13,10 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
+from ident.chain import linear_model
 from ident.compare import modelled
 from ident.errors import Unusable
 from ident.fit.record import output
-from ident.linear import linear_model
 from ident.matrix import Actuator, Matrix, Run, Specimen
 from ident.presets import Preset
 from ident.presets import preset as preset_called
@@ -106,7 +106,8 @@ def simulate_matrix(
         np.savez(out / "runs" / f"{plan.id}.npz", command=u, displacement=x)
         entries.append(_entry(plan))
     report(Progress("simulate", len(todo), len(todo)))
-    notes = f"simulated with the model {preset}, seed {seed}, noise {noise:g} of each output{_listed(effects)}; not measured"
+    what = f"seed {seed}, noise {noise:g} of each output{_listed(effects)}"
+    notes = f"simulated with the model {preset}, {what}; not measured"
     machine = {"serial": serial, "name": "simulated", "piston_area": "497 mm^2", "notes": notes}
     (out / "matrix.yaml").write_text(yaml.safe_dump({"actuator": machine, "runs": entries}, sort_keys=False))
 

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain import LinearModel
 from ident.compiled import function
+from ident.linear import LinearModel
 
 Array = NDArray[np.float64]
 Pattern = tuple[tuple[bool, ...], ...]

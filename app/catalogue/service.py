@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from dataclasses import asdict
 
 from ident.effects import EFFECTS
-from ident.expression import Equation, mathml
+from ident.expression import Equation
+from ident.mathml import mathml
 from ident.parameter import Parameter
 from ident.presets import PRESETS
 from schemas.catalogue import EffectView, EquationView, ModelView, ParameterView

@@ -11,8 +11,8 @@ from app.pages.figure_forms import FigureForm, forms
 from app.pages.fit_view import Determined, ErrorRow, ParameterRow, combination_rows, error_rows, parameter_rows
 from app.pages.job_view import settings_facts
 from app.pages.run_view import Conditions, conditions
-from ident.expression import mathml
 from ident.fit.result import FitResult, Undetermined
+from ident.mathml import mathml
 from ident.presets import PRESETS
 from schemas.fit import FitView
 from schemas.matrix import MatrixView

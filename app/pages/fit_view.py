@@ -9,8 +9,8 @@ from markupsafe import Markup, escape
 
 from app.pages import numbers
 from ident.errors import Unusable
-from ident.expression import mathml
 from ident.fit.result import Estimate, FitResult
+from ident.mathml import mathml
 
 
 @dataclass(frozen=True)

@@ -18,5 +18,5 @@ SPECIMEN_JOINT = Effect(
         "M = m0 + where(s > 0, 0, mL)",
     ),
     looks="a second resonance that depends on the specimen's mass; none without specimen",
-    source="two masses and a spring: mL x2'' = kj (x - x2) - S, solved for the force F = kj (x - x2), which stays regular for s = 1/kj = 0 and mL = 0",
+    source="mL x2'' = kj (x - x2) - S, solved for F = kj (x - x2): regular for s = 1/kj = 0",
 )

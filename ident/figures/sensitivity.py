@@ -10,13 +10,13 @@ import altair as alt
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.chain import linear_model
 from ident.compare import fitted, response
 from ident.figures import words
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel
 from ident.figures.thin import decade_ticks, excited_band, significant
 from ident.fit.result import FitResult
-from ident.linear import linear_model
 from ident.matrix import Actuator, Run, Specimen
 
 MULTIPLES = tuple(float(value) for value in np.geomspace(0.1, 10, 11))

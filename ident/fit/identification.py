@@ -172,10 +172,10 @@ class Identification:
         def progress(count: int, error: float) -> None:
             self.report(Progress("polish", count, 40, error))
 
-        ends = [polish(self.searched.approximate, start, progress) for start in starts]
+        ends = [polish(self.searched.approximate, start, progress, self.searched.accept) for start in starts]
         point, best = min(ends, key=lambda end: end[1].error)
         valley = np.array([end for end, there in ends if there.error <= best.error * (1 + _SAME)])
-        return *polish(self.objective.exact, point, progress), valley
+        return *polish(self.objective.exact, point, progress, self.objective.accept), valley
 
 
 def _distinct(points: Array) -> list[Array]:

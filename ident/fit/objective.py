@@ -15,9 +15,10 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain import LinearModel, conditions
+from ident.chain import conditions
 from ident.fit.record import Moments, moments
 from ident.fit.space import Space
+from ident.linear import LinearModel
 from ident.matrix import Matrix, Run
 from ident.parallel import cores, each
 from ident.presets import Preset
@@ -174,6 +175,9 @@ class Objective:
         stacked = {name: np.array([entry[name] for entry in known])[:, None] for name in known[0]}
         batch = stacked | {name: value[None] for name, value in values.items()}
         return self.preset.chain.linearise(batch, runs[0].output)
+
+    def accept(self, here: Local) -> None:
+        """Nothing is to be remembered of a point."""
 
     @property
     def band(self) -> float:

@@ -13,11 +13,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain import Chain, conditions
+from ident.chain import Chain, conditions, linear_model
 from ident.fit.objective import STEP, UNSTABLE, Local, local
 from ident.fit.record import Moments, first_state, moments_of
 from ident.fit.space import Space
-from ident.linear import linear_model
 from ident.matrix import Matrix, Run
 from ident.parallel import cores, each
 from ident.presets import Preset
@@ -105,23 +104,29 @@ class OutputError:
         steps = int(self._steps(values).max())
         flip = np.append(signs, 1.0)
         self._begin({name: float(value[0]) for name, value in values.items()})
+        with np.errstate(over="ignore", invalid="ignore"):
+            found = self._found(values, p, steps)
+        return local([_turned(found[run.id], flip) for run in self.runs], with_means=True)
+
+    def _found(self, values: Mapping[str, Array], p: int, steps: int) -> dict[str, Moments]:
+        """The moments of every run by its id; without sensitivities the first states are followed to their end."""
         found: dict[str, Moments] = {}
-        for _ in range(1 if sensitivities else _SETTLING):
+        for _ in range(1 if p else _SETTLING):
             todo = list(self._together(p + 1 + len(self.chain.states)))
             parts = each(lambda runs: self._moments(runs, values, p, steps), todo)
             found = {
                 run.id: m for runs, part in zip(todo, parts, strict=True) for run, m in zip(runs, part, strict=True)
             }
-            if not any(len(moments.release) for moments in found.values()):
+            if p or not any(len(moments.release) for moments in found.values()):
                 break
             for run in self.runs:
                 self._follow(run, found[run.id])
-        ordered = [found[run.id] for run in self.runs]
-        turned = [
-            replace(m, gram=m.gram * flip[:, None] * flip, scores=m.scores * flip[:-1], means=m.means * flip)
-            for m in ordered
-        ]
-        return local(turned, with_means=True)
+        return found
+
+    def accept(self, here: Local) -> None:
+        """Go on from the first states that were found at a point."""
+        for run, found in zip(self.runs, here.runs, strict=True):
+            self._follow(run, found)
 
     def fresh(self, runs: tuple[Run, ...]) -> OutputError:
         """The same for other runs, which know nothing of this search."""
@@ -226,7 +231,7 @@ class OutputError:
             fastest = np.maximum(fastest, rates(self.chain, known | dict(values), run.output) / run.sample_rate)
         self.coarse += int(np.sum(fastest > MOST))
         holds = {run.hold for run in self.runs}
-        return np.max([steps_needed(self.chain, fastest, hold) for hold in holds], axis=0)
+        return np.asarray(np.max([steps_needed(self.chain, fastest, hold) for hold in holds], axis=0))
 
     @cached_property
     def _extreme(self) -> tuple[Run, ...]:
@@ -237,6 +242,14 @@ class OutputError:
             if key not in chosen or run.Kp > chosen[key].Kp:
                 chosen[key] = run
         return tuple(chosen.values())
+
+
+def _turned(found: Moments, flip: Array) -> Moments:
+    """The moments with the signs of the steps taken back."""
+    if not np.isfinite(found.error):
+        return found
+    gram, scores = found.gram * flip[:, None] * flip, found.scores * flip[:-1]
+    return replace(found, gram=gram, scores=scores, means=found.means * flip)
 
 
 def shortened(runs: Sequence[Run], samples: int) -> tuple[Run, ...]:

@@ -15,14 +15,17 @@ _CONVERGED = 1e-10  # relative decrease of the error that a further step promise
 
 
 def polish(
-    evaluate: Callable[[Array], Local], start: Array, report: Callable[[int, float], None]
-) -> tuple[Array, Local]:
+    evaluate: Callable[[Array], Local], start: Array, report: Callable[[int, float], None],
+    accept: Callable[[Local], None],
+) -> tuple[Array, Local]:  # fmt: skip
     """The point of the unit cube with the least error near `start`, and the objective there.
 
     A step solves (H + λ diag H) δ = −g on the axes that are free: those at a bound with a gradient that points
-    outwards stay. λ falls tenfold after a step that helped and rises tenfold after one that did not.
+    outwards stay. λ falls tenfold after a step that helped and rises tenfold after one that did not. `accept` is told
+    of each point that is gone on from.
     """
     point, here, damping = start.copy(), evaluate(start), 1e-4
+    accept(here)
     for count in range(_STEPS):
         report(count, here.error)
         free_step = _step(point, here, damping)
@@ -36,6 +39,7 @@ def polish(
         there = evaluate(trial) if promised > 0 else None
         if there is not None and there.error < here.error:
             point, here, damping = trial, there, max(damping / 10, 1e-12)
+            accept(here)
         elif damping > 1e6:
             break
         else:

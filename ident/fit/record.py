@@ -13,12 +13,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain import LinearModel
+from ident.linear import LinearModel
 from ident.matrix import Run
 from ident.recursion import LANES, Recursion, advance, discretise
 
 Array = NDArray[np.float64]
 _BLOCKS = 32  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
+
+_ESCAPED = 1e12  # times the record's power: the model has run away, and its nuisances would explain anything
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,8 @@ def moments(run: Run, model: LinearModel, step: float = 1.0) -> Moments:
 def moments_of(run: Run, blocks: Array, p: int) -> Moments:
     """The moments from sums of products of [J, N, r] of each block, (b, q, q), r taken from the mean-free record."""
     gram = blocks.sum(axis=0)
-    if not np.all(np.isfinite(gram)):
+    total = float(np.sum((run.measured - run.measured.mean()) ** 2))
+    if not np.all(np.isfinite(gram)) or gram[-1, -1] > _ESCAPED * total:
         return Moments(np.full((p + 1, p + 1), np.inf), np.zeros((len(blocks), p)), 1.0, np.inf)
     kept, free = [*range(p), gram.shape[0] - 1], slice(p, gram.shape[0] - 1)
     values, vectors = np.linalg.eigh(gram[free, free])
@@ -67,7 +70,6 @@ def moments_of(run: Run, blocks: Array, p: int) -> Moments:
     remove[free] = -solution
     projected = remove.T @ gram @ remove
     scores = np.einsum("ai,bac,c->bi", remove[:, :p], blocks, remove[:, -1])
-    total = float(np.sum((run.measured - run.measured.mean()) ** 2))
     constant = solution[-1, -1] + run.measured.mean()
     offset = float(constant / np.sqrt(total / run.length))
     means = np.append(solution[-1, :-1], constant)
@@ -80,6 +82,8 @@ def first_state(run: Run, model: LinearModel) -> Array:
         return np.zeros(len(model.B[0]))
     systems = _with_releases(discretise(model, run.sample_rate, run.hold))
     released = moments_of(run, _products(run, systems, 0, 1.0), 0).release
+    if not len(released):  # unstable: no state fits
+        return np.zeros(len(model.B[0]))
     return np.asarray(np.diag(systems.start[1:]) * released)
 
 

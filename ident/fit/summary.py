@@ -169,8 +169,8 @@ def _notes(objective: Objective | OutputError, floors: Mapping[str, float | None
     else:
         notes.append("Noise floor from the spectrum above the command's band, taken as white: a lower bound.")
     if isinstance(objective, OutputError) and objective.coarse:
-        notes.append(f"{objective.coarse} of the tried parameter vectors had a mode too fast for {MOST} steps a sample; "
-                     "it is followed only roughly.")  # fmt: skip
+        notes.append(f"{objective.coarse} of the tried parameter vectors had a mode too fast for {MOST} steps a "
+                     "sample; it is followed only roughly.")  # fmt: skip
     if objective.unstable:
         notes.append(f"{objective.unstable} of the tried parameter vectors made the loop unstable; they cost, no more.")
     if not np.isfinite(here.error):

@@ -164,10 +164,24 @@ def changed(equation: Equation, wanted: int) -> Equation:
     return Equation(f"{left}= {ast.unparse(ast.fix_missing_locations(tree))}", equation.place, equation.meaning)
 
 
+def in_order(equation: Equation) -> list[str]:
+    """The names of an equation as they are visited."""
+    visitor = OnePercentMore(-1)
+    names = []
+    visitor.visit_Name = lambda node: (names.append(node.id), node)[1]  # type: ignore[method-assign]
+    visitor.visit(ast.parse(equation.python, mode="eval"))
+    return names
+
+
+SILENT = {"f", "Ff", "M"}  # dry friction, which a linear chain has none of
+SHOWN = {equation.target for equation in CHAIN.needed("displacement")}
 MUTATIONS = [
     (equation, wanted)
-    for equation in CHAIN.equations
-    for wanted in range(sum(isinstance(node, ast.Name) for node in ast.walk(equation.tree)))
+    for stage in CHAIN.stages
+    for equation in stage.equations
+    if (equation.target in SHOWN or equation.is_rate) and equation.target not in SILENT
+    for wanted, name in enumerate(in_order(equation))
+    if name not in SILENT
 ]
 
 

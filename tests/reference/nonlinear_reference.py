@@ -29,7 +29,7 @@ from tests.reference import qian_reference as linear
 
 Samples = NDArray[np.float64]
 STROKE = 0.1524  # m
-SUBSTEPS = 16  # a sample
+SUBSTEPS = 16  # a sample; for data with noise half of them
 
 
 class Effects(NamedTuple):
@@ -86,7 +86,7 @@ def effects(**values: float) -> Effects:
 
 # ------------------------------------------------------------------------------------------------ the equations
 
-Q, P, V, X, I, ZD, ZF, ZH, Y, YR, Q2, DQ2, X2, V2 = range(14)
+Q, P, V, X, EPS, ZD, ZF, ZH, Y, YR, Q2, DQ2, X2, V2 = range(14)
 STATES = 14
 
 
@@ -100,19 +100,19 @@ def sign(value):
     return 1.0 if value > 0 else (-1.0 if value < 0 else 0.0)
 
 
-@njit
+@njit(cache=True)
 def specimen_reaction(f, cell, x, v, z):
     stretch = x - clipped(x, -f.specimen_free_play_g, f.specimen_free_play_g)
     return cell.stiffness * stretch + cell.damping * v + f.cubic_stiffness_k3 * x**3 + f.specimen_hysteresis_fy * z
 
 
-@njit
-def force_on_specimen(f, cell, s):
+@njit(cache=True)
+def force_on_specimen(f, s):
     """The force in the joint (N); only with a joint."""
     return (s[X] - s[X2]) / f.specimen_joint_s
 
 
-@njit
+@njit(cache=True)
 def massless_position(f, cell, s):
     """Where a specimen without mass is: the joint's force is its reaction, solved by Newton's method."""
     x2 = s[X]
@@ -124,34 +124,34 @@ def massless_position(f, cell, s):
     return x2
 
 
-@njit
+@njit(cache=True)
 def rod_force(plant, f, cell, s):
     """All forces on the rod but dry friction (N), and the mass that they move (kg)."""
     own = plant.A * s[P] - plant.c0 * s[V] - f.quadratic_damping_c2 * s[V] * abs(s[V]) + f.static_load_F0
     own -= f.presliding_friction_Fd * s[ZF]
     if f.specimen_joint_s > 0:
-        return own - force_on_specimen(f, cell, s), plant.m0
+        return own - force_on_specimen(f, s), plant.m0
     return own - specimen_reaction(f, cell, s[X], s[V], s[ZH]), plant.m0 + cell.mass
 
 
-@njit
+@njit(cache=True)
 def friction_limit(f, v):
     return f.coulomb_friction_Fc + f.stribeck_friction_dF * np.exp(-((v / f.stribeck_friction_vs) ** 2))
 
 
-@njit
+@njit(cache=True)
 def reading(f, cell, s, acceleration):
     """What the transducer is fixed to (m)."""
     if f.frame_compliance_s == 0:
         return s[X]
     if f.specimen_joint_s > 0:
-        force = force_on_specimen(f, cell, s)
+        force = force_on_specimen(f, s)
     else:
         force = specimen_reaction(f, cell, s[X], s[V], s[ZH]) + cell.mass * acceleration
     return s[X] + f.frame_compliance_s * force
 
 
-@njit
+@njit(cache=True)
 def opening(f, q, play):
     w = clipped(play, q - f.backlash_b, q + f.backlash_b) + f.null_bias_b
     h, a = f.dead_zone_h, f.dead_zone_a
@@ -161,7 +161,7 @@ def opening(f, q, play):
     return w / np.sqrt(1 + (f.flow_saturation_a * w) ** 2)
 
 
-@njit
+@njit(cache=True)
 def derivative(plant, f, cell, u, du, y_late, v_late, mode, play, s, out):
     """Rates of all states; `mode` is the sign of the sliding speed, 0 while the rod sticks. Returns the reading."""
     if f.specimen_joint_s > 0 and cell.mass == 0:
@@ -179,7 +179,7 @@ def derivative(plant, f, cell, u, du, y_late, v_late, mode, play, s, out):
     e = cell.gain * eps
     if f.command_limit_a > 0:
         e = clipped(e, -1 / f.command_limit_a, 1 / f.command_limit_a)
-    e += cell.gain * (f.integral_action_Ki * s[I] + f.lead_Td * (du - v)) - f.pressure_feedback_kd * s[P]
+    e += cell.gain * (f.integral_action_Ki * s[EPS] + f.lead_Td * (du - v)) - f.pressure_feedback_kd * s[P]
     rate = (e - s[Q]) / plant.tau
     rate /= np.sqrt(1 + (f.valve_rate_limit_a * rate) ** 2)
     if abs(e - s[Q]) < f.spool_stiction_s:
@@ -200,7 +200,7 @@ def derivative(plant, f, cell, u, du, y_late, v_late, mode, play, s, out):
     out[P] = (flow - leak - plant.A * s[V]) / soft
     out[V] = acceleration
     out[X] = s[V]
-    out[I] = eps
+    out[EPS] = eps
     out[ZF] = (s[V] - abs(s[V]) * s[ZF]) / f.presliding_friction_xs
     own_v = s[V2] if f.specimen_joint_s > 0 else s[V]
     bent = 0.5 + 0.5 * sign(own_v * s[ZH])
@@ -211,14 +211,14 @@ def derivative(plant, f, cell, u, du, y_late, v_late, mode, play, s, out):
     if f.specimen_joint_s > 0 and cell.mass > 0:
         out[X2] = s[V2]
         reaction = specimen_reaction(f, cell, s[X2], s[V2], s[ZH])
-        out[V2] = (force_on_specimen(f, cell, s) - reaction) / cell.mass
+        out[V2] = (force_on_specimen(f, s) - reaction) / cell.mass
     return seen
 
 
 # ------------------------------------------------------------------------------------------------ the integrator
 
 
-@njit
+@njit(cache=True)
 def kutta(plant, f, cell, t, h, u0, slope, history, mode, play, s, k, trial):
     """One step of Kutta's third-order rule from s, in place."""
     for stage in range(3):
@@ -236,7 +236,7 @@ def kutta(plant, f, cell, t, h, u0, slope, history, mode, play, s, k, trial):
         s[i] += h / 6 * (k[0, i] + 4 * k[1, i] + k[2, i])
 
 
-@njit
+@njit(cache=True)
 def late(history, t):
     """Reading and its rate at an earlier time, from rows (reading, rate) a sub-step; `history[-1, 0]` is the step."""
     if t <= 0:
@@ -250,7 +250,7 @@ def late(history, t):
     return y, (1 - c) * a[1] + c * b[1]
 
 
-@njit
+@njit(cache=True)
 def held_mean(command, t, h, rate):
     """Mean of a held command over a sub-step: a delayed command may jump inside it."""
     edge = np.ceil(t * rate - 1e-9) / rate
@@ -259,7 +259,7 @@ def held_mean(command, t, h, rate):
     return share * command_at(command, t, rate, False) + (1 - share) * late_side
 
 
-@njit
+@njit(cache=True)
 def command_at(command, t, rate, linear_hold):
     if t < 0:
         return 0.0
@@ -269,8 +269,8 @@ def command_at(command, t, rate, linear_hold):
     return command[n] + (t * rate - n) * (command[n + 1] - command[n])
 
 
-@njit
-def mode_of(plant, f, cell, s, before):
+@njit(cache=True)
+def mode_of(plant, f, cell, s):
     """The sign of sliding, 0 for sticking, 2 where there is no dry friction."""
     limit = friction_limit(f, 0.0)
     if limit == 0:
@@ -283,8 +283,10 @@ def mode_of(plant, f, cell, s, before):
     return 1 if force > 0 else -1
 
 
-@njit(nogil=True)
-def integrate(plant, f, cell, command, rate, substeps, linear_hold, outputs):
+@njit(nogil=True, cache=True)
+def integrate(  # noqa: PLR0915  the whole story of a step in one place
+    plant, f, cell, command, rate, substeps, linear_hold, outputs
+):
     """Displacement as recorded (m), force on the specimen (N) and load pressure (Pa) at the samples, into outputs."""
     s, trial, keep = np.zeros(STATES), np.empty(STATES), np.empty(STATES)
     k = np.zeros((3, STATES))
@@ -304,7 +306,7 @@ def integrate(plant, f, cell, command, rate, substeps, linear_hold, outputs):
             slope = 0.0
             if linear_hold:
                 slope = (command_at(command, start + h, rate, True) - u0) / h
-            mode = mode_of(plant, f, cell, s, 0)
+            mode = mode_of(plant, f, cell, s)
             y, v = late(history, t - f.loop_delay_T) if f.loop_delay_T > 0 else (0.0, 0.0)
             seen = derivative(plant, f, cell, u0, slope, y, v, mode, play, s, k[0])
             history[here, 0] = seen
@@ -314,7 +316,7 @@ def integrate(plant, f, cell, command, rate, substeps, linear_hold, outputs):
                 recorded = s[YR] if f.acquisition_lag_T > 0 else seen
                 outputs[0, sample] = recorded * (1 + f.sensor_gain_g)
                 if f.specimen_joint_s > 0:
-                    outputs[1, sample] = force_on_specimen(f, cell, s)
+                    outputs[1, sample] = force_on_specimen(f, s)
                 else:
                     reaction = specimen_reaction(f, cell, s[X], s[V], s[ZH])
                     outputs[1, sample] = reaction + cell.mass * k[0, V]
@@ -339,7 +341,7 @@ def integrate(plant, f, cell, command, rate, substeps, linear_hold, outputs):
                 kutta(plant, f, cell, begun, part, u0 + slope * (h - left), slope, history, mode, play, s, k, trial)
                 s[V] = 0.0
                 left -= part
-                mode = mode_of(plant, f, cell, s, mode)
+                mode = mode_of(plant, f, cell, s)
                 if left < 1e-9 * h:
                     break
             if mode == 0:
@@ -377,7 +379,7 @@ def measure_all(
         number, trial = numbered
         rng = np.random.default_rng([seed, number])
         command = linear.band_limited_noise(round(seconds * linear.SAMPLE_RATE), trial.amplitude, rng)
-        clean = respond(machine, f, trial.cell, command, hold).displacement
+        clean = respond(machine, f, trial.cell, command, hold, substeps=SUBSTEPS // 2).displacement
         noisy = clean + noise * clean.std() * rng.standard_normal(len(clean))
         step = STROKE / 2**bits if bits else 0.0
         return linear.Record(trial, command, np.round(noisy / step) * step if step else noisy)

@@ -1,0 +1,158 @@
+"""Every effect of the catalogue against the independent reference, one harness for all."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+
+from ident.chain import conditions
+from ident.effect import Effect
+from ident.effects import EFFECTS
+from ident.matrix import Actuator, Run, Specimen
+from ident.parameter import Parameter
+from ident.presets import PRESETS, Preset, preset
+from ident.recursion import discretise, respond
+from ident.simulate import responses, steps_needed
+from tests.reference import nonlinear_reference as reference
+from tests.reference import qian_reference as linear
+
+PLANT = linear.Plant()
+CELLS = (linear.Cell(0.98, 67.6e3, 150.0, 7.0), linear.Cell(0.0, 0.0, 0.0, 10.0), linear.Cell(2.67, 0.0, 0.0, 5.0))
+STICKS = {"coulomb_friction", "stribeck_friction", "spool_stiction"}  # in both, in the reference with located events
+LOUD = {"command_limit"}  # at its largest strength the machine no longer follows: half of it is asked for
+SAMPLES = 2048
+
+
+def by_name(effect: Effect) -> str:
+    """The id of a case."""
+    return effect.name
+
+
+def tolerance(effect: Effect) -> float:
+    """Of the output's standard deviation."""
+    return 1e-3 if effect.name in STICKS else 1e-4
+
+
+def command(seed: int) -> np.ndarray:
+    """Half a second of the paper's noise at the middle amplitude."""
+    return linear.band_limited_noise(SAMPLES, 1.27e-3, np.random.default_rng([2014, seed]))
+
+
+def ours(
+    model: Preset, values: Mapping[str, float], cell: linear.Cell, u: np.ndarray, hold: str, output: str = "displacement",
+    steps: int | None = None,
+) -> np.ndarray:  # fmt: skip
+    """The program's output for a machine of Table 4 with some values changed."""
+    specimen = Specimen(cell.mass, cell.stiffness, cell.damping)
+    run = Run("run", "", linear.SAMPLE_RATE, {"command": u, output: np.zeros_like(u)}, specimen=specimen,
+              gain=cell.gain, hold=hold, output=output)  # fmt: skip
+    known = {p.name: p.value for p in model.parameters} | conditions(run, Actuator("", piston_area=PLANT.A))
+    known |= {model.parameter(name).name: value for name, value in values.items()}
+    batch = {name: np.array([[value]]) for name, value in known.items()}
+    count = steps or int(steps_needed(model.chain, np.array([0.2]), hold)[0])
+    return responses(model.chain, [run], batch, count)[:, 0, 0]
+
+
+def strength(effect: Effect) -> float:
+    """The strength at which an effect is compared: its largest."""
+    return effect.strength.upper * (0.5 if effect.name in LOUD else 1.0)
+
+
+def deviations(effect: Effect, factor: float = 1.0) -> list[tuple[float, float]]:
+    """For each cell and hold: (kernel against reference, what the effect does), over the output's standard deviation."""
+    model, found = preset("qian2014", (effect.name,)), []
+    for number, cell in enumerate(CELLS):
+        for hold in ("linear", "zoh"):
+            u = command(number)
+            hidden = reference.named({f"{effect.name}.{effect.strength.symbol}": strength(effect)})
+            expected = reference.respond(PLANT, hidden, cell, u, hold).displacement
+            without = reference.respond(PLANT, reference.Effects(), cell, u, hold).displacement
+            got = ours(model, {effect.name: factor * strength(effect)}, cell, u, hold)
+            size = np.std(expected)
+            found.append((float(np.std(got - expected) / size), float(np.std(without - expected) / size)))
+    return found
+
+
+def test_the_reference_knows_every_effect():
+    """Each parameter of the catalogue is one of the reference's, with the same default."""
+    of_catalogue = {f"{e.name}_{p.symbol}": p.value for e in EFFECTS for p in e.parameters}
+    assert of_catalogue == reference.Effects()._asdict()
+
+
+@pytest.mark.parametrize("effect", EFFECTS, ids=by_name)
+def test_the_kernel_agrees_with_the_reference(effect):
+    """With and without specimen, command straight or held; friction that sticks to 1e-3, everything else to 1e-4."""
+    assert max(miss for miss, _ in deviations(effect)) < tolerance(effect)
+
+
+@pytest.mark.parametrize("effect", EFFECTS, ids=by_name)
+def test_one_percent_of_its_strength_is_seen(effect):
+    """The comparison above is not blind: one coefficient of the kernel 1 % off makes it fail, where it acts at all."""
+    if max(acts for _, acts in deviations(effect)) < 0.02:
+        pytest.skip("the effect changes these short runs by less than 2 %, so 1 % of it is below the tolerance")
+    assert max(miss for miss, _ in deviations(effect, factor=1.01)) > tolerance(effect)
+
+
+@pytest.mark.parametrize("output", ["displacement", "load_pressure", "force"])
+def test_all_effects_off_is_the_chain_without_them(output):
+    """The kernel of the whole catalogue, every strength 0, is the chain's own kernel to 1e-12."""
+    whole = preset("qian2014", tuple(effect.name for effect in EFFECTS))
+    for number, cell in enumerate(CELLS):
+        expected = ours(PRESETS["qian2014"], {}, cell, command(number), "linear", output, steps=1)
+        got = ours(whole, {}, cell, command(number), "linear", output, steps=1)
+        assert np.std(got - expected) <= 1e-12 * np.std(expected)
+
+
+@pytest.mark.parametrize("hold", ["linear", "zoh"])
+def test_all_effects_off_is_the_linear_chain(hold):
+    """With eight steps a sample it is the exact linear response to 1e-9; with one, to 1e-6."""
+    whole = preset("qian2014", tuple(effect.name for effect in EFFECTS))
+    chain = PRESETS["qian2014"].chain
+    for number, cell in enumerate(CELLS):
+        values = {p.name: np.array([p.value]) for p in PRESETS["qian2014"].parameters}
+        specimen = {"mL": cell.mass, "k": cell.stiffness, "cL": cell.damping, "Kp": cell.gain, "A": PLANT.A}
+        model = chain.linearise(values | {name: np.array([value]) for name, value in specimen.items()})
+        exact = respond(discretise(model, linear.SAMPLE_RATE, hold), command(number))[0]
+        for steps, limit in ((8, 1e-9), (1, 1e-6)):
+            assert np.std(ours(whole, {}, cell, command(number), hold, steps=steps) - exact) < limit * np.std(exact)
+
+
+def test_force_and_pressure_agree_with_the_reference():
+    """The other outputs, with effects of several places on at once."""
+    hidden = {"dead_zone.h": 2e-4, "pressure_flow.r": 2e-7, "cubic_stiffness.k3": 5e10, "sensor_lag.T": 1e-3}
+    model = preset("qian2014", tuple(name.partition(".")[0] for name in hidden))
+    expected = reference.respond(PLANT, reference.named(hidden), CELLS[0], command(0), "linear")
+    for output in ("displacement", "force", "load_pressure"):
+        got = ours(model, hidden, CELLS[0], command(0), "linear", output)
+        wanted = getattr(expected, output)
+        assert np.std(got - wanted) < 1e-4 * np.std(wanted)
+
+
+def test_friction_sticks():
+    """A friction force above every driving force holds the rod: it does not creep."""
+    u = 1e-6 * command(0) / 1.27e-3
+    got = ours(preset("qian2014", ("coulomb_friction",)), {"coulomb_friction": 200.0}, CELLS[1], u, "linear")
+    free = ours(PRESETS["qian2014"], {}, CELLS[1], u, "linear")
+    assert np.abs(got).max() < 1e-3 * np.abs(free).max()
+
+
+def test_an_effect_that_finds_nothing_to_act_on_is_refused():
+    """A model without a spool has no dead zone; the refusal says so."""
+    with pytest.raises(Exception, match="nothing that it could act on"):
+        preset("first_order", ("dead_zone",))
+
+
+def test_a_new_effect_is_one_definition():
+    """What a user would add is simulated as it is written, without touching anything else."""
+    sag = Effect(
+        name="sag", place="spool", meaning="gain falls with the square of the opening",
+        strength=Parameter("depth", "d", "1/m^2", 0.0, 1e3, 0.0, "relative fall for each square metre"),
+        texts=("w = w * (1 - d * w**2)",),
+    )  # fmt: skip
+    model = PRESETS["qian2014"].with_effects((sag,))
+    off = ours(model, {"sag": 0.0}, CELLS[0], command(0), "linear")
+    on = ours(model, {"sag": 500.0}, CELLS[0], command(0), "linear")
+    plain = ours(PRESETS["qian2014"], {}, CELLS[0], command(0), "linear")
+    assert np.std(off - plain) <= 1e-12 * np.std(plain) < 1e-4 * np.std(on - plain)

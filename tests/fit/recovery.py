@@ -1,0 +1,113 @@
+"""One hidden effect in the reference's data, and what a fit with that effect makes of it.
+
+As a script it prints the table of every effect:  python -m tests.fit.recovery [EFFECT ...]
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from ident.effect import Effect
+from ident.effects import EFFECTS, effect
+from ident.fit.identification import identify
+from ident.fit.result import FitResult
+from ident.fit.settings import Settings
+from ident.matrix import Actuator, Matrix, Run, Specimen
+from tests.reference import nonlinear_reference as reference
+from tests.reference import qian_reference as linear
+
+NOISE = 0.005
+SECONDS = 2.0
+WANTED = 5 * NOISE  # the error that the linear model is to have
+
+
+@dataclass(frozen=True)
+class Recovery:
+    """The hidden strength, the linear fit and the fit with the effect."""
+
+    effect: Effect
+    truth: float
+    linear: FitResult
+    fit: FitResult
+
+    @property
+    def found(self) -> float:
+        """The strength found."""
+        return self.fit.values[f"{self.effect.name}.{self.effect.strength.name}"]
+
+    @property
+    def std_error(self) -> float:
+        """Its standard error; infinite where the data do not determine it."""
+        return self.fit.parameters[f"{self.effect.name}.{self.effect.strength.name}"].std_error or np.inf
+
+    @property
+    def recovered(self) -> bool:
+        """Within 3 %, or within 3 standard errors."""
+        return abs(self.found - self.truth) <= max(0.03 * abs(self.truth), 3 * self.std_error)
+
+
+def matrix(name: str, strength: float, seed: int, seconds: float = SECONDS, every: int = 1) -> Matrix:
+    """The paper's matrix of 63 + 21 runs with one hidden effect, from the reference, position in 18 bits."""
+    hidden = reference.named({f"{name}.{effect(name).strength.symbol}": strength})
+    records = reference.measure_all(hidden, linear.trials()[::every], seconds=seconds, noise=NOISE, seed=seed)
+    runs = tuple(
+        Run(
+            r.trial.id, "", linear.SAMPLE_RATE, {"command": r.command, "displacement": r.displacement},
+            specimen=Specimen(r.trial.cell.mass, r.trial.cell.stiffness, r.trial.cell.damping),
+            gain=r.trial.cell.gain, kind="blwn", use=r.trial.use,
+        )
+        for r in records
+    )  # fmt: skip
+    return Matrix(Actuator("REFERENCE-1", piston_area=linear.Plant().A), runs)
+
+
+def strength_for(name: str, seed: int, wanted: float = WANTED) -> float:
+    """The strength with which the best linear model is `wanted` off, or the largest that is physical."""
+    top = effect(name).strength.upper
+
+    def error(strength: float) -> float:
+        return float(identify(matrix(name, strength, seed, 1.0, 4), Settings()).error["fit"] or 0)
+
+    if error(top) <= wanted:
+        return top
+    low, high = 0.0, top
+    for _ in range(5):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if error(middle) < wanted else (low, middle)
+    return 0.5 * (low + high)
+
+
+@cache
+def recovery(name: str, seed: int) -> Recovery:
+    """Hide the effect, fit without it and with it."""
+    truth = strength_for(name, seed)
+    data = matrix(name, truth, seed)
+    return Recovery(effect(name), truth, identify(data, Settings()), identify(data, Settings(effects=(name,))))
+
+
+def line(found: Recovery) -> str:
+    """A row of the table."""
+    e = found.effect
+    miss = 100 * (found.found / found.truth - 1)
+    errors = f"{100 * (found.linear.error['fit'] or 0):.2f} | {100 * (found.fit.error['fit'] or 0):.3f} | "
+    errors += f"{100 * (found.fit.error['verify'] or 0):.3f}"
+    share = 100 * found.std_error / abs(found.truth)
+    outcome = "yes" if found.recovered else "NO"
+    return f"| {e.name} | {found.truth:.3g} {e.strength.unit} | {errors} | {miss:+.2f} | {share:.2f} | {outcome} |"
+
+
+if __name__ == "__main__":
+    seed = 1
+    names = [n for n in sys.argv[1:] if not n.startswith("--seed=")] or [e.name for e in EFFECTS]
+    for argument in sys.argv[1:]:
+        if argument.startswith("--seed="):
+            seed = int(argument.removeprefix("--seed="))
+    columns = "effect, hidden strength, error without it in %, with it in %, at Kp = 6 in %, deviation in %"
+    print("| " + " | ".join((*columns.split(", "), "std error in %", "recovered")) + " |")
+    print("|---|---|---|---|---|---|---|---|")
+    for name in names:
+        print(line(recovery(name, seed)), flush=True)
