@@ -58,16 +58,30 @@ def row(option: Any) -> tuple[str, str, str]:
     return f"`{', '.join([*option.opts, *option.secondary_opts])}{metavar}`", default, str(option.help)
 
 
+EFFECTS_HEAD = (
+    "Each has one strength, its first parameter, with which it is off at 0; the others are shapes, held at their",
+    "default unless a fit is given bounds for them. Within a place effects act in the order of this list. An equation",
+    "reads a signal that its effect redefines as it was before; `:=` is a memory, on the right as it was at the start of",
+    "the step; `lag(x, T)` is x/(T s + 1), `lag2(x, a1, a2)` is x/(a2 s² + a1 s + 1), `delay(x, T)` is x(t − T).",
+)
+
+
 def models() -> str:
     """The models and the effects, with equations, units and bounds."""
     lines = ["# Models and effects", NOTE, "", "All quantities are SI.", ""]
     for preset in PRESETS.values():
         lines += model(preset)
-    lines += ["# Effects", ""]
+    lines += ["# Effects", "", *EFFECTS_HEAD, ""]
     for effect in EFFECTS:
-        lines += [f"## {effect.name}", "", f"At the place *{effect.place}*. {effect.meaning}.", ""]
-        lines += [*equations(effect.equations), *parameters((effect.strength, *effect.shape))]
-    return "\n".join(lines if EFFECTS else [*lines, "The catalogue of this version is empty.", ""])
+        lines += [f"## {effect.name}", "", f"At the place *{effect.place}*: {effect.meaning}.", ""]
+        lines += [
+            *(f"    {text}" for text in effect.texts),
+            "",
+            f"In data: {effect.looks}. Source: {effect.source}.",
+            "",
+        ]
+        lines += parameters(effect.parameters)
+    return "\n".join(lines)
 
 
 def model(preset: Preset) -> list[str]:

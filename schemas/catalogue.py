@@ -37,11 +37,13 @@ class ModelView(BaseModel):
 
 
 class EffectView(BaseModel):
-    """An effect of the catalogue."""
+    """An effect of the catalogue: the first parameter is its strength, 0 = off; `looks`: what it looks like in data."""
 
     name: str
     place: str
     meaning: str
+    looks: str
+    source: str
     parameters: list[ParameterView]
     equations: list[EquationView]
 

@@ -28,8 +28,8 @@ def effects() -> list[EffectView]:
     """Every effect of the catalogue."""
     return [
         EffectView(
-            name=effect.name, place=effect.place, meaning=effect.meaning,
-            parameters=_parameters((effect.strength, *effect.shape)), equations=_equations(effect.equations),
+            name=effect.name, place=effect.place, meaning=effect.meaning, looks=effect.looks, source=effect.source,
+            parameters=_parameters(effect.parameters), equations=_equations(effect.equations),
         )
         for effect in EFFECTS
     ]  # fmt: skip

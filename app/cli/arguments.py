@@ -24,7 +24,7 @@ def number(text: str, option: str, form: str) -> float:
         raise Unusable("bad-number", f"{text!r} is not a number", option, f"write {option} {form}") from None
 
 
-def bounds(texts: Sequence[str], model: str) -> dict[str, tuple[float, float]]:
+def bounds(texts: Sequence[str], model: str, effects: Sequence[str] = ()) -> dict[str, tuple[float, float]]:
     """`NAME=LO:HI` as SI bounds; both sides may carry a unit, else they are SI."""
     found = {}
     for text in texts:
@@ -33,24 +33,24 @@ def bounds(texts: Sequence[str], model: str) -> dict[str, tuple[float, float]]:
         if not separator:
             raise Unusable("bad-option", f"cannot read {text!r}", "--bounds", "write --bounds NAME=LO:HI")
         where = f"--bounds {name}"
-        found[name] = (in_si(lower, name, model, where), in_si(upper, name, model, where))
+        found[name] = (in_si(lower, name, model, where, effects), in_si(upper, name, model, where, effects))
     return found
 
 
-def values(texts: Sequence[str], model: str) -> dict[str, float]:
+def values(texts: Sequence[str], model: str, effects: Sequence[str] = ()) -> dict[str, float]:
     """`NAME=VALUE` as SI values; a value may carry a unit, else it is SI."""
     pairs = [split(text, "--set", "NAME=VALUE") for text in texts]
-    return {name: in_si(value, name, model, f"--set {name}") for name, value in pairs}
+    return {name: in_si(value, name, model, f"--set {name}", effects) for name, value in pairs}
 
 
-def in_si(text: str, name: str, model: str, where: str) -> float:
+def in_si(text: str, name: str, model: str, where: str, effects: Sequence[str] = ()) -> float:
     """A value of the model's parameter `name` in SI; the printed unit of Z0 is converted with a notice."""
     from ident.presets import preset
     from ident.quantity import parameter_value, printed_notice
 
     if notice := printed_notice(text):
         print(f"notice: {notice}", file=sys.stderr)
-    return parameter_value(text, preset(model).parameter(name).unit, where)
+    return parameter_value(text, preset(model, effects).parameter(name).unit, where)
 
 
 def method_options(texts: Sequence[str]) -> dict[str, float]:
@@ -59,13 +59,17 @@ def method_options(texts: Sequence[str]) -> dict[str, float]:
     return {name: number(value, "--option", "NAME=VALUE") for name, value in pairs}
 
 
-def effect_values(texts: Sequence[str]) -> dict[str, float]:
-    """`NAME.PARAM=VALUE` as the parameters of effects, SI; raises Unusable for an effect that is not known."""
-    from ident.effects import effect
+def effect_values(texts: Sequence[str], model: str) -> dict[str, float]:
+    """`NAME[.PARAM=VALUE]` as the parameters of effects, SI; a name alone is a fifth of its largest strength.
+
+    Raises Unusable for an effect or parameter that is not known.
+    """
+    from ident.presets import preset
 
     found = {}
     for text in texts:
-        parameter, _, value = text.partition("=")
-        effect(parameter.partition(".")[0])
-        found[parameter] = number(value, "--effect", "NAME.PARAM=VALUE")
+        name, equals, value = text.partition("=")
+        effect = name.partition(".")[0]
+        parameter = preset(model, (effect,)).parameter(name)
+        found[name] = in_si(value, name, model, f"--effect {name}", (effect,)) if equals else parameter.upper / 5
     return found

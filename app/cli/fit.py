@@ -44,12 +44,13 @@ def fit(
     from ident.readers import read_matrix
 
     check_target(json)
+    effects = tuple(effect or [])
     settings = Settings(
         model=model,
-        effects=tuple(effect or []),
+        effects=effects,
         method=method,
-        bounds=read_bounds(bounds or [], model),
-        fixed=read_values(set_ or [], model),
+        bounds=read_bounds(bounds or [], model, effects),
+        fixed=read_values(set_ or [], model, effects),
         load=load,
         seed=seed,
         options=method_options(option or []),

@@ -24,7 +24,7 @@ def simulate(
     """Write a simulated test matrix. It holds 63 runs to fit and 21 at Kp = 6 to verify."""
     from ident.synthesis import simulate_matrix
 
-    effects = effect_values(effect or [])
+    effects = effect_values(effect or [], preset)
     with shown() as report:
         simulate_matrix(out, preset, seconds, seed, noise, effects, report)
     print(f"wrote {out / 'matrix.yaml'}, a simulated matrix; next: servoident check {out}")

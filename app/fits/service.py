@@ -40,7 +40,7 @@ def settings_of(request: FitRequest) -> Settings:
     """The library's settings: numbers are SI, text carries its unit."""
 
     def si(name: str, value: float | str) -> float:
-        parameter = preset(request.model).parameter(name)
+        parameter = preset(request.model, request.effects).parameter(name)
         return float(value) if isinstance(value, int | float) else quantity(value, parameter.unit, name)
 
     return Settings(

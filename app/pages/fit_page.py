@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from markupsafe import Markup
@@ -11,9 +12,10 @@ from app.pages.figure_forms import FigureForm, forms
 from app.pages.fit_view import Determined, ErrorRow, ParameterRow, combination_rows, error_rows, parameter_rows
 from app.pages.job_view import settings_facts
 from app.pages.run_view import Conditions, conditions
+from ident.expression import Equation
 from ident.fit.result import FitResult, Undetermined
 from ident.mathml import mathml
-from ident.presets import PRESETS
+from ident.presets import Preset, preset
 from schemas.fit import FitView
 from schemas.matrix import MatrixView
 
@@ -56,7 +58,7 @@ class FitPageView:
 def fit_page(stored: FitView, matrix: MatrixView) -> FitPageView:
     """The page of a fit of this matrix."""
     fit = FitResult.from_json(stored.result)
-    model = PRESETS[fit.model]
+    model = preset(fit.model, fit.effects)
     known = {run.id: run for run in matrix.runs}
     return FitPageView(
         id=stored.id,
@@ -77,9 +79,18 @@ def fit_page(stored: FitView, matrix: MatrixView) -> FitPageView:
         notes=fit.notes,
         runs=tuple(FittedRun(conditions(known[run.id]), run.error, run.offset) for run in fit.runs if run.id in known),
         figures=forms(matrix.runs, fit),
-        equations=tuple((line.place, line.meaning, Markup(mathml(line.text))) for line in model.equations),
+        equations=tuple((line.place, line.meaning, Markup(mathml(line.text))) for line in _equations(model)),
         facts=_facts(fit),
     )
+
+
+def _equations(model: Preset) -> Iterator[Equation]:
+    """The chain's equations, each place with its effects behind it, as they are written."""
+    for stage in model.chain.stages:
+        yield from stage.equations
+        for effect in model.effects:
+            if effect.place == stage.place:
+                yield from effect.equations
 
 
 def _facts(fit: FitResult) -> tuple[tuple[str, str], ...]:

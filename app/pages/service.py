@@ -17,6 +17,7 @@ from app.pages.matrix_view import counted, matrix_view
 from app.pages.numbers import quantity
 from app.parameters import service as parameters
 from app.parameters.repository import Wanted
+from ident.effects import EFFECTS
 from ident.fit.result import FitResult
 from ident.fit.settings import METHODS
 from ident.presets import PRESETS
@@ -78,6 +79,7 @@ def matrix(context: Context, matrix_id: str) -> Shown:
         "matrix": matrix_view(found),
         "models": [(preset.name, preset.title) for preset in PRESETS.values()],
         "methods": METHODS,
+        "effects": EFFECTS,
         "fits": fit_rows(jobs, sets),
     }
 

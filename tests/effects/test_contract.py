@@ -21,7 +21,7 @@ from tests.reference import qian_reference as linear
 PLANT = linear.Plant()
 CELLS = (linear.Cell(0.98, 67.6e3, 150.0, 7.0), linear.Cell(0.0, 0.0, 0.0, 10.0), linear.Cell(2.67, 0.0, 0.0, 5.0))
 STICKS = {"coulomb_friction", "stribeck_friction", "spool_stiction"}  # in both, in the reference with located events
-LOUD = {"command_limit"}  # at its largest strength the machine no longer follows: half of it is asked for
+SHARE = {"command_limit": 0.5, "specimen_free_play": 0.25}  # of the largest strength, at which little would be left
 SAMPLES = 2048
 
 
@@ -41,8 +41,8 @@ def command(seed: int) -> np.ndarray:
 
 
 def ours(
-    model: Preset, values: Mapping[str, float], cell: linear.Cell, u: np.ndarray, hold: str, output: str = "displacement",
-    steps: int | None = None,
+    model: Preset, values: Mapping[str, float], cell: linear.Cell, u: np.ndarray, hold: str,
+    output: str = "displacement", steps: int | None = None,
 ) -> np.ndarray:  # fmt: skip
     """The program's output for a machine of Table 4 with some values changed."""
     specimen = Specimen(cell.mass, cell.stiffness, cell.damping)
@@ -56,12 +56,12 @@ def ours(
 
 
 def strength(effect: Effect) -> float:
-    """The strength at which an effect is compared: its largest."""
-    return effect.strength.upper * (0.5 if effect.name in LOUD else 1.0)
+    """The strength at which an effect is compared: its largest, where the machine still follows."""
+    return effect.strength.upper * SHARE.get(effect.name, 1.0)
 
 
 def deviations(effect: Effect, factor: float = 1.0) -> list[tuple[float, float]]:
-    """For each cell and hold: (kernel against reference, what the effect does), over the output's standard deviation."""
+    """For each cell and hold: (kernel against reference, what the effect does), over the output's deviation."""
     model, found = preset("qian2014", (effect.name,)), []
     for number, cell in enumerate(CELLS):
         for hold in ("linear", "zoh"):
@@ -125,7 +125,7 @@ def test_force_and_pressure_agree_with_the_reference():
     model = preset("qian2014", tuple(name.partition(".")[0] for name in hidden))
     expected = reference.respond(PLANT, reference.named(hidden), CELLS[0], command(0), "linear")
     for output in ("displacement", "force", "load_pressure"):
-        got = ours(model, hidden, CELLS[0], command(0), "linear", output)
+        got = ours(model, hidden, CELLS[0], command(0), "linear", output, steps=2)
         wanted = getattr(expected, output)
         assert np.std(got - wanted) < 1e-4 * np.std(wanted)
 
@@ -135,7 +135,7 @@ def test_friction_sticks():
     u = 1e-6 * command(0) / 1.27e-3
     got = ours(preset("qian2014", ("coulomb_friction",)), {"coulomb_friction": 200.0}, CELLS[1], u, "linear")
     free = ours(PRESETS["qian2014"], {}, CELLS[1], u, "linear")
-    assert np.abs(got).max() < 1e-3 * np.abs(free).max()
+    assert np.abs(got).max() < 5e-3 * np.abs(free).max()
 
 
 def test_an_effect_that_finds_nothing_to_act_on_is_refused():

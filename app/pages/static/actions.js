@@ -6,8 +6,9 @@ for (const form of document.querySelectorAll("form[data-start-fit]")) {
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     guarded(form.querySelector("button"), form.querySelector("[role=alert]"), async () => {
-      const wanted = Object.fromEntries(new FormData(form));
-      const { data } = await send("POST", form.action, { ...wanted, seed: Number(wanted.seed) });
+      const fields = new FormData(form);
+      const wanted = { ...Object.fromEntries(fields), effects: fields.getAll("effects"), seed: Number(fields.get("seed")) };
+      const { data } = await send("POST", form.action, wanted);
       location.assign(`/fits/${data.id}`);
     });
   });
