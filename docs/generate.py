@@ -61,8 +61,8 @@ def row(option: Any) -> tuple[str, str, str]:
 EFFECTS_HEAD = (
     "Each has one strength, its first parameter, with which it is off at 0; the others are shapes, held at their",
     "default unless a fit is given bounds for them. Within a place effects act in the order of this list. An equation",
-    "reads a signal that its effect redefines as it was before; `:=` is a memory, on the right as it was at the start of",
-    "the step; `lag(x, T)` is x/(T s + 1), `lag2(x, a1, a2)` is x/(a2 s² + a1 s + 1), `delay(x, T)` is x(t − T).",
+    "reads a signal that its effect redefines as it was before; `:=` is a memory, on the right as it was at the start",
+    "of the step; `lag(x, T)` is x/(T s + 1), `lag2(x, a1, a2)` is x/(a2 s² + a1 s + 1), `delay(x, T)` is x(t − T).",
 )
 
 
@@ -74,12 +74,8 @@ def models() -> str:
     lines += ["# Effects", "", *EFFECTS_HEAD, ""]
     for effect in EFFECTS:
         lines += [f"## {effect.name}", "", f"At the place *{effect.place}*: {effect.meaning}.", ""]
-        lines += [
-            *(f"    {text}" for text in effect.texts),
-            "",
-            f"In data: {effect.looks}. Source: {effect.source}.",
-            "",
-        ]
+        lines += [*(f"    {text}" for text in effect.texts), ""]
+        lines += [f"In data: {effect.looks}. Source: {effect.source}.", ""]
         lines += parameters(effect.parameters)
     return "\n".join(lines)
 

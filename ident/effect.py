@@ -20,7 +20,8 @@ class Effect:
     chain and give the rates and memories of the effect's own states. An equation reads a signal that its effect
     redefines as it was left by what stands before, every other name in its final value, and a memory of the effect in
     the equation of a memory as it was at the start of the step. `looks` says what the effect looks like in data,
-    `steps` into how many a sample has to be divided so that its kinks are met closely enough.
+    `steps` into how many a sample has to be divided so that its kinks are met closely enough, `stride` by which share
+    of its range its strength is moved for a sensitivity: far where it acts in jumps.
 
     Raises Unusable where place or strength are not of that form.
     """
@@ -34,6 +35,7 @@ class Effect:
     looks: str = ""
     source: str = ""
     steps: int = 1
+    stride: float = 1e-5
 
     def __post_init__(self) -> None:
         _ = self.equations

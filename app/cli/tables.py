@@ -62,4 +62,4 @@ def error_rows(result: FitResult) -> Iterator[tuple[str, ...]]:
 
 def percent(value: float | None) -> str:
     """A fraction in per cent; a dash where there is none."""
-    return "–" if value is None else f"{100 * value:.3g} %"
+    return "–" if value is None else f"{100 * value:#.3g} %".replace(". %", " %")

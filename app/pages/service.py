@@ -21,6 +21,7 @@ from ident.effects import EFFECTS
 from ident.fit.result import FitResult
 from ident.fit.settings import METHODS
 from ident.presets import PRESETS
+from ident.stages import PLACES
 from schemas.fit import JobView
 from schemas.parameters import ActuatorDetail
 
@@ -79,7 +80,7 @@ def matrix(context: Context, matrix_id: str) -> Shown:
         "matrix": matrix_view(found),
         "models": [(preset.name, preset.title) for preset in PRESETS.values()],
         "methods": METHODS,
-        "effects": EFFECTS,
+        "effects": [(place, [e for e in EFFECTS if e.place == place]) for place in PLACES],
         "fits": fit_rows(jobs, sets),
     }
 

@@ -12,4 +12,5 @@ SPOOL_STICTION = Effect(
     looks="steps and small limit cycles at small amplitudes; hardly seen at large ones",
     source="stiction of the spool; dither is its remedy",
     steps=4,
+    stride=1e-2,
 )

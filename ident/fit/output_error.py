@@ -97,8 +97,9 @@ class OutputError:
         """The objective at one point, with sensitivities by differences; infinite where a run is unstable."""
         p = len(point) if sensitivities else 0
         # A step that would leave the cube goes inwards; the sign is taken back below.
-        signs = np.where(point + STEP > 1.0, -1.0, 1.0)[:p]
-        cloud = np.concatenate([point[None], point + (STEP * np.diag(signs) if p else np.empty((0, len(point))))])
+        signs = np.where(point + self._strides > 1.0, -1.0, 1.0)[:p]
+        moved = point + np.diag(self._strides * signs) if p else np.empty((0, len(point)))
+        cloud = np.concatenate([point[None], moved])
         values = self.space.values(cloud)
         self.evaluations += len(cloud)
         steps = int(self._steps(values).max())
@@ -160,7 +161,7 @@ class OutputError:
         length = max(16, -(-runs[0].length // _BLOCKS))
         blocks: list[list[Array]] = [[] for _ in runs]
         order = np.array([*range(1, p + 1 + states), p + 1 + states, 0])
-        scale = np.array([*[STEP] * p, *[1.0] * (states + 2)])
+        scale = np.array([*self._strides[:p], *[1.0] * (states + 2)])
         means = [run.measured.mean() for run in runs]
         for rows, first, last in self._simulation(runs, wide, steps, start).outputs(length):
             for i, run in enumerate(runs):
@@ -180,6 +181,12 @@ class OutputError:
         if start is None and not all(run.starts_at_rest for run in runs):
             start = np.repeat(np.array([self.start(run) for run in runs])[:, None], vectors, axis=1)
         return Simulation(self.chain, runs, stacked | {n: v[None] for n, v in values.items()}, steps, start)
+
+    @cached_property
+    def _strides(self) -> Array:
+        """How far each axis is moved for a sensitivity."""
+        far = {effect.symbol(effect.strength.name): effect.stride for effect in self.preset.effects}
+        return np.array([far.get(name, STEP) for name in self.space.names])
 
     # First states -----------------------------------------------------------------------------------------------
 
