@@ -62,9 +62,11 @@ def moments_of(run: Run, blocks: Array, p: int) -> Moments:
     if not np.all(np.isfinite(gram)) or gram[-1, -1] > _ESCAPED * total:
         return Moments(np.full((p + 1, p + 1), np.inf), np.zeros((len(blocks), p)), 1.0, np.inf)
     kept, free = [*range(p), gram.shape[0] - 1], slice(p, gram.shape[0] - 1)
-    values, vectors = np.linalg.eigh(gram[free, free])
+    size = np.sqrt(np.maximum(np.diag(gram)[free], 1e-300))
+    values, vectors = np.linalg.eigh(gram[free, free] / size[:, None] / size)
     sound = values > 1e-12 * values[-1]
-    solution = (vectors[:, sound] / values[sound]) @ (vectors[:, sound].T @ gram[free][:, kept])
+    directions = vectors[:, sound] / size[:, None]
+    solution = (directions / values[sound]) @ (directions.T @ gram[free][:, kept])
     remove = np.zeros((gram.shape[0], p + 1))  # columns: J and r with their share of the nuisances taken off
     remove[kept, range(p + 1)] = 1.0
     remove[free] = -solution
