@@ -114,8 +114,8 @@ class Comparison:
 
 def compare(matrix: Matrix, fit: FitResult) -> Comparison:
     """Every run of the matrix against the fitted model. Raises Unusable where the fit is of another model's data."""
-    preset, values = fitted(fit)
-    if preset.effects:
+    preset, matrix, values = fitted(fit, matrix)
+    if not preset.is_linear:
         outputs = modelled(preset, values, matrix)
         return Comparison(matrix, fit, tuple(RunComparison(run, None, outputs[run.id]) for run in matrix.runs))
 
@@ -132,14 +132,18 @@ def modelled(preset: Preset, values: Mapping[str, float], matrix: Matrix) -> dic
     return OutputError(preset, matrix, matrix.runs, nothing, 0.0).outputs(np.empty(0))
 
 
-def fitted(fit: FitResult) -> tuple[Preset, dict[str, float]]:
-    """The model of a fit, and its parameters under the names of the equations. Raises Unusable where one is missing."""
-    preset = preset_called(fit.model, fit.effects)
+def fitted(fit: FitResult, matrix: Matrix) -> tuple[Preset, Matrix, dict[str, float]]:
+    """The model of a fit as it suits a matrix, the matrix with what drives it, and its values by equations' names.
+
+    Raises Unusable where a value is missing.
+    """
+    named = preset_called(fit.model, fit.effects)
+    preset, driven = named.for_matrix(matrix, str(fit.settings.get("load", "none")))
     values = {preset.parameter(name).name: value for name, value in fit.values.items()}
     missing = [parameter_name(p.name) for p in preset.parameters if p.name not in values]
     if missing:
         raise Unusable("bad-fit", f"no value of {', '.join(missing)}", "fit", f"give a fit of model {fit.model}")
-    return preset, values
+    return preset, driven, values
 
 
 def response(fit: FitResult, run: Run, actuator: Actuator, frequency: Array) -> Complex:
@@ -147,5 +151,5 @@ def response(fit: FitResult, run: Run, actuator: Actuator, frequency: Array) -> 
 
     For a run of the matrix, or one whose conditions were changed.
     """
-    preset, values = fitted(fit)
-    return np.asarray(linear_model(preset.core, values, run, actuator).frequency_response(frequency)[0])
+    preset, matrix, values = fitted(fit, Matrix(actuator, (run,)))
+    return np.asarray(linear_model(preset.core, values, matrix.runs[0], actuator).frequency_response(frequency)[0])

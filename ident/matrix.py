@@ -105,6 +105,12 @@ class Run:
         """The loop gain; 1 where the matrix states none."""
         return 1.0 if self.gain is None else self.gain
 
+    def driven_by(self, channel: str) -> Run:
+        """The run with a channel in the place of its command; unchanged where it has none of that name."""
+        if channel not in self.channels:
+            return self
+        return replace(self, channels={**self.channels, "command": self.channels[channel]})
+
     def part(self, first: int, last: int) -> Run:
         """The samples first to last − 1 as a run of their own."""
         return replace(self, channels={name: samples[first:last] for name, samples in self.channels.items()})

@@ -17,7 +17,7 @@ from ident.figures.look import Look
 from ident.figures.render import Chart, Panel
 from ident.figures.thin import decade_ticks, excited_band, significant
 from ident.fit.result import FitResult
-from ident.matrix import Actuator, Run, Specimen
+from ident.matrix import Actuator, Matrix, Run, Specimen
 
 MULTIPLES = tuple(float(value) for value in np.geomspace(0.1, 10, 11))
 POINTS = 90
@@ -103,7 +103,7 @@ def _with_gain(run: Run, factor: float) -> Run:
 
 def _stable(vary: Varied, run: Run, actuator: Actuator, fit: FitResult) -> list[float]:
     """The multiples at which the closed loop is stable: another one has no frequency response to measure."""
-    model, values = fitted(fit)
+    model, _, values = fitted(fit, Matrix(actuator, (run,)))
     models = ((x, linear_model(model.core, values, vary(run, x), actuator)) for x in MULTIPLES)
     return [x for x, linear in models if np.linalg.eigvals(linear.A).real.max() < 0]
 

@@ -41,16 +41,18 @@ class Identification:
     """
 
     def __init__(self, matrix: Matrix, settings: Settings, report: Report = silent) -> None:
-        self.matrix, self.settings, self.report = matrix, settings, report
+        self.settings, self.report = settings, report
         check_settings(settings)
-        self.preset = preset_called(settings.model, settings.effects)
-        self._runs = matrix.of_use("fit")
         _refuse(matrix)
+        named = preset_called(settings.model, settings.effects)
+        self.preset, self.matrix = named.for_matrix(matrix, settings.load)
+        matrix = self.matrix
+        self._runs = matrix.of_use("fit")
         self.options = _options(settings)
         band = excited_band(self._runs)
         space = search_space(self.preset, matrix, settings, band)
         self.objective: Objective | OutputError
-        if self.preset.effects:
+        if not self.preset.is_linear:
             self.objective = OutputError(self.preset, matrix, self._runs, space, band)
             self.searched: Objective | OutputError = self.objective.fresh(shortened(self._runs, _SEARCHED))
         else:
@@ -79,7 +81,7 @@ class Identification:
         axes = len(self.objective.space.axes)
         options = self.options if self.settings.method in ("ga", "paper-ga") else {"population": 1.0}
         state = genetic.begin(axes, self.settings.seed, options)
-        if self.preset.effects and axes and self.settings.method == "ga":
+        if self.preset.effects and axes and self.settings.method == "ga" and self.settings.load == "none":
             state = genetic.around(state, self._linear_point(), self._of_effects)
         return state | {"done": not axes, "best": [] if not axes else None}
 
@@ -90,11 +92,11 @@ class Identification:
 
     @property
     def _linear(self) -> set[str]:
-        return {parameter.name for parameter in preset_called(self.settings.model).parameters}
+        of_effects = {effect.symbol(p.name) for effect in self.preset.effects for p in effect.parameters}
+        return {parameter.name for parameter in self.preset.parameters} - of_effects
 
     def _linear_point(self) -> Array:
         """Where the model without effects fits best, every strength at zero."""
-        plain = preset_called(self.settings.model)
 
         def own(given: Mapping[str, Any]) -> dict[str, Any]:
             names = {name: self.preset.parameter(name).name for name in given}
@@ -102,7 +104,7 @@ class Identification:
 
         settings = replace(self.settings, effects=(), bounds=own(self.settings.bounds), fixed=own(self.settings.fixed))
         found = identify(self.matrix, settings, self.report)
-        values = {plain.parameter(name).name: value for name, value in found.values.items()}
+        values = {self.preset.parameter(name).name: value for name, value in found.values.items()}
         strengths = {p.name: 0.0 for p in self.preset.parameters if p.name not in self._linear}
         return self.objective.space.point({**self.objective.space.fixed, **strengths, **values})
 
@@ -195,8 +197,8 @@ def check_settings(settings: Settings) -> None:
     if settings.method not in METHODS:
         remedy = f"choose from {', '.join(METHODS)}"
         raise Unusable("unknown-method", f"no method {settings.method!r}", "method", remedy)
-    if settings.load != "none":
-        raise Unusable("unknown-load", f"load {settings.load!r} is not known", "load", "use none")
+    if settings.load not in ("none", "force"):
+        raise Unusable("unknown-load", f"load {settings.load!r} is not known", "load", "use force or none")
     for name in (*settings.bounds, *settings.fixed):
         preset.parameter(name)
     _options(settings)
@@ -204,7 +206,8 @@ def check_settings(settings: Settings) -> None:
 
 def _options(settings: Settings) -> dict[str, float]:
     """The method's options, those of the user over the defaults."""
-    default = genetic.WITH_EFFECTS if settings.effects else genetic.DEFAULT
+    simulated = settings.effects or settings.load == "force"
+    default = genetic.WITH_EFFECTS if simulated else genetic.DEFAULT
     known = {"ga": default, "paper-ga": genetic.PAPER}.get(settings.method, {})
     for name, value in settings.options.items():
         if name not in known:
@@ -222,7 +225,7 @@ def _refuse(matrix: Matrix) -> None:
     if not matrix.of_use("fit"):
         raise Unusable("no-fit-runs", "every run is to verify, none to fit", "runs", "mark at least one run use: fit")
     for run in matrix.runs:
-        if "command" not in run.channels:
+        if not {"command", "drive_force"} & run.channels.keys():
             raise Unusable("missing-channel", "no command channel", f"run {run.id}", "name the column of the command")
 
 

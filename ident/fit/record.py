@@ -101,7 +101,8 @@ def output(run: Run, model: LinearModel) -> Array:
     if y.shape[1] == 1:
         return np.ascontiguousarray(y[:, 0])
     free = np.column_stack([y[:, 1:], np.ones(run.length)])
-    coefficients = np.linalg.lstsq(free, run.measured - y[:, 0], rcond=1e-12)[0]
+    size = np.maximum(np.linalg.norm(free, axis=0), 1e-300)
+    coefficients = np.linalg.lstsq(free / size, run.measured - y[:, 0], rcond=1e-12)[0] / size
     return np.asarray(y[:, 0] + y[:, 1:] @ coefficients[:-1])
 
 

@@ -106,11 +106,16 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     stated = all(run.gain is not None and run.specimen is not None for run in runs)
     same = known_for is not None and area is not None and abs(area / known_for - 1) < _SAME_AREA and stated
     typical = _typical(matrix, runs) | {"W": band}
+    if settings.load == "force":  # a mass that would need this force
+        force = float(np.mean([np.std(run.channels["force"]) for run in runs]))
+        typical["mL"] = force / (typical["X"] * band**2)
     strengths = {effect.symbol(effect.strength.name) for effect in preset.effects}
     shapes = {effect.symbol(p.name): p.value for effect in preset.effects for p in effect.shape}
     fixed = {name: value for name, value in shapes.items() if name not in given} | fixed
     convention = None
-    if not same and "m0" in {scale.name for scale in preset.scales} - fixed.keys() - given.keys() and not _loaded(runs):
+    forced = preset.driven_by != "command" or settings.load == "force"
+    free = {scale.name for scale in preset.scales} - fixed.keys() - given.keys()
+    if "m0" in free and not (same or forced or _loaded(runs)):
         convention, fixed["m0"] = "m0", typical["mL"]
     axes = []
     for scale in preset.scales:
@@ -137,7 +142,12 @@ def _typical(matrix: Matrix, runs: tuple[Run, ...]) -> dict[str, float]:
     each = [conditions(run, matrix.actuator) for run in runs]
     mean = {name: float(np.mean([values[name] for values in each])) for name in each[0]}
     mean["Kp"] = float(np.exp(np.mean([np.log(abs(values["Kp"])) for values in each])))
-    return mean | {"mL": mean["mL"] or 1.0, "X": float(np.mean([np.std(run.measured) for run in runs]))}
+    mean |= {"X": _size(runs, "measured"), "U": _size(runs, "command")}
+    return mean | {"mL": mean["mL"] or 1.0}
+
+
+def _size(runs: tuple[Run, ...], of: str) -> float:
+    return float(np.mean([np.std(getattr(run, of)) for run in runs]))
 
 
 def _refuse_bad_values(fixed: Mapping[str, float], of_effects: AbstractSet[str]) -> None:

@@ -42,7 +42,7 @@ def summarise(
     values = {name: float(found[0]) for name, found in space.values(point[None]).items()}
     verify_runs = matrix.of_use("verify")
     verify = objective.fresh(verify_runs).exact(point, sensitivities=False).runs if verify_runs else ()
-    own = objective.fresh(objective.runs).exact(point, sensitivities=False).runs if preset.effects else here.runs
+    own = objective.fresh(objective.runs).exact(point, sensitivities=False).runs if not preset.is_linear else here.runs
     fit_errors, verify_errors = _run_errors(objective.runs, own), _run_errors(verify_runs, verify)
     found = covariance(here, point, valley)
     strengths = {effect.symbol(p.name) for effect in preset.effects for p in effect.parameters}

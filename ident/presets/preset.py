@@ -9,7 +9,9 @@ from ident.chain import CONDITIONS, Chain, unfit
 from ident.effect import Effect, parameter_name
 from ident.errors import Unusable
 from ident.expression import Equation
+from ident.matrix import Matrix
 from ident.parameter import Parameter
+from ident.stages import MASS_SPRING_DAMPER, MEASURED_LOAD
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,9 @@ class Preset:
 
     `bounds_hold_for` is the piston area (m²) of the machine that the parameters' bounds were stated for; another
     machine is searched over `scales`. `without_area` gives the name and unit of what a parameter becomes when the
-    area is unknown. Raises Unusable where an equation reads what is neither a parameter nor a condition.
+    area is unknown. `driven_by` is the channel that drives the model, the command where a run has none of that name;
+    `under_control` the model of the same machine under a controller. Raises Unusable where an equation reads what is
+    neither a parameter nor a condition.
     """
 
     name: str
@@ -66,6 +70,8 @@ class Preset:
     combinations: tuple[Combined, ...] = ()
     notes: tuple[str, ...] = ()
     effects: tuple[Effect, ...] = ()
+    driven_by: str = "command"
+    under_control: Preset | None = None
 
     def __post_init__(self) -> None:
         known = {parameter.name for parameter in self.parameters} | CONDITIONS.keys()
@@ -102,6 +108,34 @@ class Preset:
             effects=effects,
         )
 
+    def for_matrix(self, matrix: Matrix, load: str = "none") -> tuple[Preset, Matrix]:
+        """The model that suits a matrix, and the matrix with what drives that model as its command.
+
+        `load` "force": the measured force takes the place of the specimen's equation. Raises Unusable where it was
+        not measured, or the model has no specimen.
+        """
+        preset = self
+        if matrix.controller is not None and self.under_control is not None:
+            preset = self.under_control.with_effects(self.effects)
+        if preset.driven_by != "command":
+            matrix = replace(matrix, runs=tuple(run.driven_by(preset.driven_by) for run in matrix.runs))
+        return (preset.with_measured_load(matrix), matrix) if load == "force" else (preset, matrix)
+
+    def with_measured_load(self, matrix: Matrix) -> Preset:
+        """The model with the force measured on the specimen in place of the specimen's equation."""
+        bare = [run.id for run in matrix.runs if "force" not in run.channels]
+        if bare:
+            raise Unusable("missing-channel", "no force channel", f"run {bare[0]}", "fit without the measured load")
+        if MASS_SPRING_DAMPER not in self.chain.stages:
+            raise Unusable("unknown-load", f"model {self.name} has no specimen", "load", "use none")
+        stages = tuple(MEASURED_LOAD if stage is MASS_SPRING_DAMPER else stage for stage in self.chain.stages)
+        return replace(self, chain=replace(self.chain, stages=stages))
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether the command alone drives a chain without effects: then a run is reduced once to its spectra."""
+        return not self.effects and MEASURED_LOAD not in self.chain.stages
+
     @property
     def core(self) -> Chain:
         """The chain without effects: linear."""
@@ -127,6 +161,8 @@ class Preset:
                     name == effect.name and parameter == effect.strength
                 ):
                     return self.parameter(effect.symbol(parameter.name))
+        if self.under_control is not None:
+            return self.under_control.with_effects(self.effects).parameter(name)
         raise Unusable(
             "unknown-parameter",
             f"model {self.name} has no parameter {name!r}",

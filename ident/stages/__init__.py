@@ -1,8 +1,9 @@
 """The linear core of each place of the chain; a preset picks one core a place."""
 
 from ident.stages.controller import PROPORTIONAL
+from ident.stages.drive import CASCADE, DIRECT_FORCE, IDEAL_DRIVE
 from ident.stages.flow import LINEAR_FLOW
-from ident.stages.load import MASS_SPRING_DAMPER
+from ident.stages.load import DRIVEN_MASS, MASS_SPRING_DAMPER, MEASURED_LOAD
 from ident.stages.pressure import COMPRESSIBLE
 from ident.stages.sensor import IDEAL_SENSOR
 from ident.stages.spool import RIGID_SPOOL
@@ -10,11 +11,16 @@ from ident.stages.stage import PLACES, Quantity, Stage
 from ident.stages.valve import FIRST_ORDER_VALVE
 
 __all__ = [
+    "CASCADE",
     "COMPRESSIBLE",
+    "DIRECT_FORCE",
+    "DRIVEN_MASS",
     "FIRST_ORDER_VALVE",
+    "IDEAL_DRIVE",
     "IDEAL_SENSOR",
     "LINEAR_FLOW",
     "MASS_SPRING_DAMPER",
+    "MEASURED_LOAD",
     "PLACES",
     "PROPORTIONAL",
     "RIGID_SPOOL",

@@ -31,3 +31,16 @@ MASS_SPRING_DAMPER = stage(
     ("F = S + mL * a", "what a load cell between rod and specimen measures"),
     ("X = x", "the transducer's frame is rigid"),
 )
+
+MEASURED_LOAD = MASS_SPRING_DAMPER.with_equations(
+    ("S = fm", "the load cell's force is what the specimen takes"),
+    ("M = m0", "what is beyond the load cell is in its force"),
+    ("a = (D - R - f - S) / m0", "the rod alone, against the measured force"),
+    ("F = S", "the measured force"),
+)
+"""The load with the measured force in place of the specimen's equation."""
+
+DRIVEN_MASS = MASS_SPRING_DAMPER.with_equations(
+    ("R = c0 * v + k0 * x", "viscous damping and a spring to the ground"),
+)
+"""A mass with spring and damper of its own, beside the specimen's."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ident.errors import Unusable
 from ident.expression import Equation
@@ -42,6 +42,11 @@ class Stage:
                 f"stage {self.place!r}",
                 f"give each published quantity one equation, at one of the places {', '.join(PLACES)}",
             )
+
+    def with_equations(self, *equations: tuple[str, str]) -> Stage:
+        """The stage with other equations for some of its quantities: (text, meaning) pairs."""
+        other = {e.target: e for e in (Equation(text, self.place, meaning) for text, meaning in equations)}
+        return replace(self, equations=tuple(other.get(e.target, e) for e in self.equations))
 
 
 def stage(place: str, publishes: tuple[Quantity, ...], *equations: tuple[str, str]) -> Stage:
