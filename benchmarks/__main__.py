@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from benchmarks import fitness, identification, memory, simulation
+from benchmarks import fitness, identification, kernel, memory, simulation
 from benchmarks.table import Table
 
 ALL: dict[str, Callable[[], Table]] = {
@@ -16,6 +16,7 @@ ALL: dict[str, Callable[[], Table]] = {
     "identification": identification.measure,
     "memory": memory.measure,
     "simulation": simulation.measure,
+    "kernel": kernel.measure,
 }
 PAGE = Path(__file__).parents[1] / "docs" / "benchmarks.md"
 HEAD = """# Benchmarks
