@@ -65,7 +65,7 @@ def fit_page(stored: FitView, matrix: MatrixView) -> FitPageView:
         serial=stored.serial,
         matrix=stored.matrix,
         parent=stored.parent,
-        title=" + ".join((model.title, *fit.effects)),
+        title=" + ".join((model.title, *(name.replace("_", " ") for name in fit.effects))),
         citation=model.citation,
         method=fit.method,
         seed=fit.seed,

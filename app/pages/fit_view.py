@@ -64,7 +64,7 @@ def _parameter(name: str, entry: Estimate, undetermined: bool) -> ParameterRow:
     return ParameterRow(
         name=name,
         symbol=numbers.symbol(name, entry.symbol),
-        meaning=entry.meaning,
+        meaning=_meaning(name, entry),
         unit=numbers.scaled_unit(entry.unit, power),
         value=numbers.fixed(value, places),
         std_error=numbers.fixed(error, places),
@@ -73,6 +73,12 @@ def _parameter(name: str, entry: Estimate, undetermined: bool) -> ParameterRow:
         upper=numbers.trimmed(entry.upper / 10.0**power),
         remark="; ".join(_remarks(entry, undetermined)),
     )
+
+
+def _meaning(name: str, entry: Estimate) -> str:
+    """What the parameter means, with its effect in front."""
+    effect, dot, _ = name.partition(".")
+    return f"{effect.replace('_', ' ')}: {entry.meaning}" if dot else entry.meaning
 
 
 def _remarks(entry: Estimate, undetermined: bool) -> Iterator[str]:

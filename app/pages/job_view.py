@@ -57,7 +57,8 @@ def _words(value: Any) -> str:
     if isinstance(value, dict):
         return "; ".join(f"{name} {_words(entry)}" for name, entry in value.items())
     if isinstance(value, list | tuple):
-        return " to ".join(map(_words, value))
+        between = ", " if any(isinstance(entry, str) for entry in value) else " to "
+        return between.join(map(_words, value))
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
