@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -20,7 +20,7 @@ from ident.fit.result import FitResult
 from ident.fit.settings import METHODS, Settings
 from ident.fit.space import search_space
 from ident.fit.summary import summarise
-from ident.matrix import Matrix
+from ident.matrix import Matrix, Run
 from ident.noise import noise_floors
 from ident.presets import preset as preset_called
 from ident.progress import Progress, Report, silent
@@ -57,6 +57,7 @@ class Identification:
             self.searched: Objective | OutputError = self.objective.fresh(shortened(self._runs, _SEARCHED))
         else:
             self.objective = self.searched = Objective(self.preset, matrix, self._runs, space, Basis(band))
+        self.left_out: tuple[str, ...] = ()
         self._started = time.monotonic()
         self.floors = noise_floors(matrix, band)
         if space.axes:
@@ -81,8 +82,11 @@ class Identification:
         axes = len(self.objective.space.axes)
         options = self.options if self.settings.method in ("ga", "paper-ga") else {"population": 1.0}
         state = genetic.begin(axes, self.settings.seed, options)
-        if self.preset.effects and axes and self.settings.method == "ga" and self.settings.load == "none":
-            state = genetic.around(state, self._linear_point(), self._of_effects)
+        if self.preset.effects and axes:
+            state["linear"] = self._linear_values()
+            if self.settings.method == "ga" and self.settings.load == "none":
+                centre = self.objective.space.point({**self.objective.space.fixed, **state["linear"]})
+                state = genetic.around(state, centre, self._of_effects)
         return state | {"done": not axes, "best": [] if not axes else None}
 
     @property
@@ -95,18 +99,25 @@ class Identification:
         of_effects = {effect.symbol(p.name) for effect in self.preset.effects for p in effect.parameters}
         return {parameter.name for parameter in self.preset.parameters} - of_effects
 
-    def _linear_point(self) -> Array:
-        """Where the model without effects fits best, every strength at zero."""
+    def _linear_values(self) -> dict[str, float]:
+        """What the model without effects finds, every strength at zero."""
 
         def own(given: Mapping[str, Any]) -> dict[str, Any]:
             names = {name: self.preset.parameter(name).name for name in given}
             return {name: given[name] for name in given if names[name] in self._linear}
 
-        settings = replace(self.settings, effects=(), bounds=own(self.settings.bounds), fixed=own(self.settings.fixed))
+        settings = replace(
+            self.settings, effects=(), method="ga", load="none", options={},
+            bounds=own(self.settings.bounds), fixed=own(self.settings.fixed),
+        )  # fmt: skip
         found = identify(self.matrix, settings, self.report)
         values = {self.preset.parameter(name).name: value for name, value in found.values.items()}
-        strengths = {p.name: 0.0 for p in self.preset.parameters if p.name not in self._linear}
-        return self.objective.space.point({**self.objective.space.fixed, **strengths, **values})
+        return {p.name: 0.0 for p in self.preset.parameters if p.name not in self._linear} | values
+
+    def _take_up(self, state: State) -> None:
+        """What every process has to know of a search that may have begun in another."""
+        if isinstance(self.searched, OutputError) and "linear" in state:
+            self.searched.begin(state["linear"])
 
     def finished(self, state: State) -> bool:
         """True when the search is over and only :meth:`finish` remains."""
@@ -115,7 +126,9 @@ class Identification:
     def advance(self, state: State, generations: int) -> State:
         """The state after at most `generations` more; the library searches run to their end at once."""
         if self.settings.method in GENERATIONS and not state["done"]:
+            self._take_up(state)
             return self._library_search(state)
+        self._take_up(state)
         step = genetic.paper_step if self.settings.method == "paper-ga" else genetic.default_step
         for _ in range(generations):
             if state["done"]:
@@ -148,6 +161,7 @@ class Identification:
 
     def finish(self, state: State) -> FitResult:
         """Polish (all methods but the paper's), errors of every run, uncertainty."""
+        self._take_up(state)
         objective = self.objective
         # Counted from the state, so that a search that was cut by a restart counts the same.
         objective.evaluations = int(state["evaluations"])
@@ -162,7 +176,9 @@ class Identification:
             point, here, valley = self._polished(state)
         self.report(Progress("uncertainty", 0, 1, here.error))
         seconds = time.monotonic() - self._started
-        result = summarise(objective, self.settings, point, here, valley, state, self.floors, seconds)
+        result = summarise(
+            self.objective, self.settings, point, here, valley, state, self.floors, seconds, self.left_out
+        )
         self.report(Progress("uncertainty", 1, 1, here.error))
         return result
 
@@ -177,7 +193,27 @@ class Identification:
         ends = [polish(self.searched.approximate, start, progress, self.searched.accept) for start in starts]
         point, best = min(ends, key=lambda end: end[1].error)
         valley = np.array([end for end, there in ends if there.error <= best.error * (1 + _SAME)])
-        return *polish(self.objective.exact, point, progress, self.objective.accept), valley
+        point, here = polish(self.objective.exact, point, progress, self.objective.accept)
+        if isinstance(self.objective, OutputError):
+            self.left_out = bad_runs(self.objective.runs, here)
+            if self.left_out:
+                self.objective.runs = tuple(run for run in self.objective.runs if run.id not in self.left_out)
+                point, here = polish(self.objective.exact, point, progress, self.objective.accept)
+        return point, here, valley
+
+
+def bad_runs(runs: Sequence[Run], here: Local) -> tuple[str, ...]:
+    """The ids of runs that one model cannot explain beside the others: a wrong label, a spoilt record.
+
+    Their error is more than three times the median, and beyond 5 deviations of the errors' logarithms; at most one
+    run in twenty is taken for bad, and none of fewer than five.
+    """
+    if len(runs) < 5:
+        return ()
+    errors = np.log([run.error for run in here.runs])
+    spread = 1.4826 * float(np.median(np.abs(errors - np.median(errors)))) + 1e-3
+    far = (errors - np.median(errors) > np.maximum(5 * spread, np.log(3.0))).nonzero()[0]
+    return tuple(runs[i].id for i in far) if len(far) <= max(1, len(runs) // 20) else ()
 
 
 def _distinct(points: Array) -> list[Array]:

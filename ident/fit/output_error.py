@@ -104,7 +104,7 @@ class OutputError:
         self.evaluations += len(cloud)
         steps = int(self._steps(values).max())
         flip = np.append(signs, 1.0)
-        self._begin({name: float(value[0]) for name, value in values.items()})
+        self.begin({name: float(value[0]) for name, value in values.items()})
         with np.errstate(over="ignore", invalid="ignore"):
             found = self._found(values, p, steps)
         return local([_turned(found[run.id], flip) for run in self.runs], with_means=True)
@@ -194,7 +194,7 @@ class OutputError:
         """The states in which a run begins, (n,)."""
         return self.starts.get(run.id, np.zeros(len(self.chain.states)))
 
-    def _begin(self, values: Mapping[str, float]) -> None:
+    def begin(self, values: Mapping[str, float]) -> None:
         """Take the first states that are not known yet from the linear model at `values`."""
         core = self.preset.core
         for run in self.runs:

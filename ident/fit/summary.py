@@ -33,17 +33,19 @@ def summarise(
     state: Mapping[str, Any],
     floors: Mapping[str, float | None],
     seconds: float,
+    left_out: tuple[str, ...] = (),
 ) -> FitResult:
     """The result of a fit that ended at `point`, where the objective is `here`; `valley` has points as good.
 
-    `floors` is the noise floor of the runs of each use.
+    `floors` is the noise floor of the runs of each use; `left_out` names runs to fit that were not used.
     """
     space, matrix, preset = objective.space, objective.matrix, objective.preset
     values = {name: float(found[0]) for name, found in space.values(point[None]).items()}
     verify_runs = matrix.of_use("verify")
     verify = objective.fresh(verify_runs).exact(point, sensitivities=False).runs if verify_runs else ()
-    own = objective.fresh(objective.runs).exact(point, sensitivities=False).runs if not preset.is_linear else here.runs
-    fit_errors, verify_errors = _run_errors(objective.runs, own), _run_errors(verify_runs, verify)
+    fit_runs = matrix.of_use("fit")
+    own = here.runs if preset.is_linear else objective.fresh(fit_runs).exact(point, sensitivities=False).runs
+    fit_errors, verify_errors = _run_errors(fit_runs, own), _run_errors(verify_runs, verify)
     found = covariance(here, point, valley)
     strengths = {effect.symbol(p.name) for effect in preset.effects for p in effect.parameters}
     relative = {name: found.relative(_value(objective, name)) for name in space.names if name not in strengths}
@@ -74,7 +76,7 @@ def summarise(
         seconds=seconds,
         version=version("servoident"),
         data_hash=matrix.data_hash,
-        notes=tuple(_notes(objective, floors, here)),
+        notes=(*_notes(objective, floors, here), *_bad_runs(fit_errors, left_out)),
         settings=settings.to_json(),
         searched=tuple(label[name][0] for name in space.names),
         evolution=_evolution(objective, state),
@@ -176,6 +178,16 @@ def _notes(objective: Objective | OutputError, floors: Mapping[str, float | None
     if not np.isfinite(here.error):
         notes.append("The model is unstable at these values: its error is reported as 1000.")
     return notes
+
+
+def _bad_runs(errors: Sequence[RunError], left_out: tuple[str, ...]) -> Iterator[str]:
+    typical = float(np.median([run.error for run in errors]))
+    for run in errors:
+        if run.id in left_out:
+            yield (
+                f"Run {run.id} was left out of the fit: its error is {100 * run.error:.3g} %, that of the others "
+                f"typically {100 * typical:.3g} %. Look at its labels and its record."
+            )
 
 
 def _evolution(objective: Objective | OutputError, state: Mapping[str, Any]) -> tuple[Generation, ...]:
