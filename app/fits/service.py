@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import uuid
+from collections.abc import Sequence
 from typing import Any
 
 from app.context import Context
@@ -61,28 +62,33 @@ def resume(context: Context) -> None:
 
 def job(context: Context, job_id: str) -> JobView:
     """A job by id; raises Failure 404."""
-    with context.sessions() as session:
-        row, matrix = repository.job(session, job_id), repository.matrix_of(session, job_id)
-    if row is None or matrix is None:
-        raise missing("job", job_id)
-    return job_view(row, matrix.serial)
+    return job_and_sequence(context, job_id)[0]
 
 
 def job_and_sequence(context: Context, job_id: str) -> tuple[JobView, int]:
-    """A job and the number of changes it has seen."""
+    """A job and the number of changes it has seen; raises Failure 404."""
     with context.sessions() as session:
-        row, matrix = repository.job(session, job_id), repository.matrix_of(session, job_id)
-    if row is None or matrix is None:
+        found = repository.job_of(session, job_id)
+    if found is None:
         raise missing("job", job_id)
-    return job_view(row, matrix.serial), row.sequence
+    return job_view(*found), found[0].sequence
 
 
-def jobs(context: Context, state: str | None, after: str | None, limit: int) -> JobPage:
-    """A page of jobs."""
+def jobs(
+    context: Context, after: str | None, limit: int, *,
+    state: str | None = None, serial: str | None = None, matrix: str | None = None,
+) -> JobPage:  # fmt: skip
+    """A page of jobs: all, or those in a state, of an actuator, of a matrix."""
     with context.sessions() as session:
-        rows = repository.jobs(session, state, keys_of(after, 2), limit)
-    following = cursor(rows[-1].created_at, rows[-1].id) if len(rows) == limit else None
-    return JobPage(items=[job(context, row.id) for row in rows], next=following)
+        found = repository.jobs(session, keys_of(after, 2), limit, state=state, serial=serial, matrix=matrix)
+    following = cursor(found[-1][0].created_at, found[-1][0].id) if len(found) == limit else None
+    return JobPage(items=[job_view(*each) for each in found], next=following)
+
+
+def open_jobs(context: Context, serials: Sequence[str]) -> dict[str, JobView]:
+    """The latest job that has not ended of each of these actuators that has one."""
+    with context.sessions() as session:
+        return {serial: job_view(row, serial) for row, serial in repository.open_jobs(session, serials)}
 
 
 def cancel(context: Context, job_id: str) -> JobView:
