@@ -18,7 +18,7 @@ from ident.fit.identification import check_settings
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.presets import preset
-from ident.quantity import quantity
+from ident.quantity import parameter_value
 from schemas.fit import ComparedRun, ComparisonView, FitRequest, FitView, JobPage, JobView, ProgressView
 
 
@@ -38,17 +38,19 @@ def submit(context: Context, request: FitRequest) -> JobView:
 
 
 def settings_of(request: FitRequest) -> Settings:
-    """The library's settings: numbers are SI, text carries its unit."""
+    """The library's settings: numbers are SI, text may carry a unit. Raises Unusable."""
+    model = preset(request.model, request.effects)
 
     def si(name: str, value: float | str) -> float:
-        parameter = preset(request.model, request.effects).parameter(name)
-        return float(value) if isinstance(value, int | float) else quantity(value, parameter.unit, name)
+        return parameter_value(value, model.parameter(name).unit, name)
 
+    bounds = {name: (si(name, lower), si(name, upper)) for name, (lower, upper) in request.bounds.items()}
+    for name, (lower, upper) in bounds.items():
+        model.parameter(name).within(lower, upper)
     return Settings(
-        model=request.model, effects=tuple(request.effects), method=request.method, seed=request.seed,
-        bounds={name: (si(name, lower), si(name, upper)) for name, (lower, upper) in request.bounds.items()},
-        fixed={name: si(name, value) for name, value in request.set.items()},
-        load=request.load, options=request.options,
+        model=request.model, effects=tuple(request.effects), method=request.method, seed=request.seed, bounds=bounds,
+        fixed={name: si(name, value) for name, value in request.set.items()}, load=request.load,
+        options=request.options,
     )  # fmt: skip
 
 
