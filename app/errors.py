@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import errno
+import json
 import logging
 from typing import Any
 
-from fastapi import FastAPI, Request
+from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
-from fastapi.responses import JSONResponse
+from sqlalchemy.exc import DataError, OperationalError
 from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
 
 from ident.errors import Unusable
 from schemas.problem import Problem
 
 MEDIA = "application/problem+json"
+DISK_FULL = "53100"  # PostgreSQL's state
 _log = logging.getLogger("servoident")
 _TITLES = {
     400: "Bad request", 401: "Token needed", 403: "Not allowed", 404: "Not found", 405: "Method not allowed",
@@ -23,11 +26,11 @@ _TITLES = {
 }  # fmt: skip
 
 
-class Failure(Exception):
-    """A refusal of the service, with its HTTP status."""
+class Failure(HTTPException):
+    """A refusal of the service, with its HTTP status; an HTTPException, which passes through whatever reads a body."""
 
     def __init__(self, status: int, code: str, what: str, where: str, remedy: str) -> None:
-        super().__init__(what)
+        super().__init__(status, what)
         self.status, self.code, self.what, self.where, self.remedy = status, code, what, where, remedy
 
 
@@ -36,13 +39,18 @@ def missing(kind: str, name: str) -> Failure:
     return Failure(404, f"no-such-{kind}", f"there is no {kind} {name!r}", kind, "list them to see which there are")
 
 
-def problem(status: int, code: str, what: str, where: str = "", remedy: str = "", **headers: str) -> JSONResponse:
-    """The response of a failure."""
+def problem(status: int, code: str, what: str, where: str = "", remedy: str = "", **headers: str) -> Response:
+    """The response of a failure, in ASCII: what it cites of a request may be no text that can be encoded."""
     body = Problem(
         type=f"urn:servoident:problem:{code}", title=_TITLES.get(status, "Error"), status=status, code=code,
         detail=what, where=where, remedy=remedy,
     )  # fmt: skip
-    return JSONResponse(body.model_dump(), status, media_type=MEDIA, headers=headers)
+    return Response(json.dumps(body.model_dump()), status, media_type=MEDIA, headers=headers)
+
+
+def refusal(error: Failure, **headers: str) -> Response:
+    """The response of a refusal."""
+    return problem(error.status, error.code, error.what, error.where, error.remedy, **headers)
 
 
 def _documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
@@ -57,32 +65,41 @@ COMMON = _documented(400, 401, 403, 404, 405, 409, 413, 415, 422, 503, 507)
 def install(app: FastAPI) -> None:
     """Answer every exception with a problem document."""
 
-    async def failure(_: Request, error: Exception) -> JSONResponse:
+    async def failure(_: Request, error: Exception) -> Response:
         assert isinstance(error, Failure)
-        return problem(error.status, error.code, error.what, error.where, error.remedy)
+        return refusal(error)
 
-    async def unusable(_: Request, error: Exception) -> JSONResponse:
+    async def unusable(_: Request, error: Exception) -> Response:
         assert isinstance(error, Unusable)
         return problem(422, error.code, error.what, error.where, error.remedy)
 
-    async def invalid(_: Request, error: Exception) -> JSONResponse:
+    async def invalid(_: Request, error: Exception) -> Response:
         assert isinstance(error, RequestValidationError)
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
         return problem(422, "invalid-request", str(first["msg"]), where, "see the OpenAPI document for what is wanted")
 
-    async def plain(_: Request, error: Exception) -> JSONResponse:
-        assert isinstance(error, HTTPException)
-        headers = dict(error.headers or {})
-        return problem(error.status_code, f"http-{error.status_code}", str(error.detail), **headers)
+    async def gone(_: Request, __: Exception) -> Response:  # which nobody reads any more
+        return problem(400, "incomplete", "the request ended before its body did", "body", "send the whole body")
 
-    async def system(request: Request, error: Exception) -> JSONResponse:
-        assert isinstance(error, OSError)
-        if error.errno in (errno.ENOSPC, errno.EDQUOT):
+    async def unstorable(_: Request, __: Exception) -> Response:
+        return problem(422, "unusable-text", "it holds text that cannot be stored", "request", "write plain text")
+
+    async def plain(request: Request, error: Exception) -> Response:
+        assert isinstance(error, HTTPException)
+        headers, remedy = dict(error.headers or {}), "see the OpenAPI document for what there is"
+        code = f"http-{error.status_code}"
+        return problem(error.status_code, code, str(error.detail), request.url.path, remedy, **headers)
+
+    async def system(request: Request, error: Exception) -> Response:
+        if is_full(error):
             return problem(507, "disk-full", "no space is left on the disk", "upload", "free some space and try again")
+        if isinstance(error, OperationalError):
+            _log.error("the database does not answer", exc_info=error)
+            return problem(503, "no-database", "the database does not answer", "service", "try again in a moment")
         return await unexpected(request, error)
 
-    async def unexpected(request: Request, error: Exception) -> JSONResponse:
+    async def unexpected(request: Request, error: Exception) -> Response:
         _log.error("%s %s failed", request.method, request.url.path, exc_info=error)
         return problem(500, "defect", "the request failed by a defect of the program", remedy="see the service's log")
 
@@ -90,5 +107,17 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(Unusable, unusable)
     app.add_exception_handler(RequestValidationError, invalid)
     app.add_exception_handler(HTTPException, plain)
+    app.add_exception_handler(ClientDisconnect, gone)
+    app.add_exception_handler(DataError, unstorable)
+    app.add_exception_handler(UnicodeEncodeError, unstorable)
     app.add_exception_handler(OSError, system)
+    app.add_exception_handler(OperationalError, system)
     app.add_exception_handler(Exception, unexpected)
+
+
+def is_full(error: Exception) -> bool:
+    """True where a disk is full: the system says so, SQLite, or PostgreSQL."""
+    if isinstance(error, OSError):
+        return error.errno in (errno.ENOSPC, errno.EDQUOT)
+    cause = getattr(error, "orig", None)
+    return "disk is full" in str(cause) or getattr(cause, "sqlstate", "") == DISK_FULL

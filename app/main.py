@@ -57,6 +57,7 @@ def create_app(settings: Settings) -> FastAPI:
 
 
 def _start(context: Context) -> None:
+    context.storage.tidy()
     context.jobs.launch()
     resume(context)
 

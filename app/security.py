@@ -10,7 +10,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import HTMLResponse, RedirectResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.errors import problem
+from app.errors import Failure, problem, refusal
 from app.settings import Settings
 
 COOKIE = "servoident"
@@ -66,9 +66,7 @@ class Guard:
                            "open the service's own page")  # fmt: skip
         length = headers.get("content-length", "0")
         if not length.isdecimal() or int(length) > self.settings.largest_upload:
-            allowed = self.settings.largest_upload >> 20
-            return problem(413, "too-large", f"more than {allowed} MB are declared", "Content-Length",
-                           "upload fewer or shorter runs at a time", connection="close")  # fmt: skip
+            return refusal(self._too_large("declared", "Content-Length"), connection="close")
         return None if scope["path"] in OPEN else self._token_refusal(scope, headers)
 
     def _token_refusal(self, scope: Scope, headers: Headers) -> ASGIApp | None:
@@ -94,11 +92,17 @@ class Guard:
                        "open the address that the service printed, or send Authorization: Bearer TOKEN",
                        **{"WWW-Authenticate": "Bearer"})  # fmt: skip
 
+    def _too_large(self, how: str, where: str) -> Failure:
+        most = self.settings.largest_upload >> 20
+        return Failure(
+            413, "too-large", f"more than {most} MB are {how}", where, "upload fewer or shorter runs at a time"
+        )
+
     def _right(self, token: str) -> bool:
         return hmac.compare_digest(token.encode(), self.settings.token.encode())
 
     def _limited(self, receive: Receive) -> Receive:
-        """Count a body that declared no length; past the limit the client is gone for the application."""
+        """Count a body that declared no length; it is refused past the limit."""
         taken = 0
 
         async def limited() -> Message:
@@ -106,7 +110,7 @@ class Guard:
             message = await receive()
             taken += len(message.get("body", b""))
             if taken > self.settings.largest_upload:
-                return {"type": "http.disconnect"}
+                raise self._too_large("sent", "body")
             return message
 
         return limited

@@ -4,19 +4,31 @@ from __future__ import annotations
 
 import hashlib
 import os
+import shutil
 import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
 _CHUNK = 1 << 20
+_STAGED = "staged-"  # beginning of the names of folders that wait for a verdict
+_FORGOTTEN = 86_400  # s after which such a folder belongs to a process that was killed
 
 
 class Storage:
     """A folder of blobs that only grows. A blob is there whole or not at all."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
+    def __init__(self, folder: Path, behind: Storage | None = None) -> None:
+        self.folder, self.behind = folder, behind
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+
+    @contextmanager
+    def staged(self) -> Iterator[Storage]:
+        """A store in front of this one; at the end its blobs are gone, but for those that were kept."""
+        with tempfile.TemporaryDirectory(dir=self.folder, prefix=_STAGED) as folder:
+            yield Storage(Path(folder), self)
 
     def put(self, content: BinaryIO) -> str:
         """Store a stream and return its SHA-256. Raises OSError where the disk is full; then nothing is left."""
@@ -29,14 +41,33 @@ class Storage:
                     file.write(chunk)
                 file.flush()
                 os.fsync(file.fileno())
-            target = self.path(digest.hexdigest())
-            target.parent.mkdir(mode=0o700, exist_ok=True)
-            os.replace(temporary, target)
+            self._move(temporary, digest.hexdigest())
         except BaseException:
             Path(temporary).unlink(missing_ok=True)
             raise
         return digest.hexdigest()
 
+    def keep(self) -> None:
+        """Move every blob of a staged store to the one behind it."""
+        assert self.behind is not None
+        for blob in self.folder.glob("*/*"):
+            self.behind._move(blob, blob.name)
+
     def path(self, sha256: str) -> Path:
         """Where a blob lies."""
+        own = self._place(sha256)
+        return own if self.behind is None or own.exists() else self.behind.path(sha256)
+
+    def tidy(self) -> None:
+        """Remove what processes that were killed in the middle of an upload have left."""
+        for folder in self.folder.glob(f"{_STAGED}*"):
+            if time.time() - folder.stat().st_mtime > _FORGOTTEN:
+                shutil.rmtree(folder, ignore_errors=True)
+
+    def _place(self, sha256: str) -> Path:
         return self.folder / sha256[:2] / sha256
+
+    def _move(self, file: str | Path, sha256: str) -> None:
+        target = self._place(sha256)
+        target.parent.mkdir(mode=0o700, exist_ok=True)
+        os.replace(file, target)

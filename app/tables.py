@@ -50,7 +50,7 @@ class JobRow(Base):
     id: Mapped[str] = mapped_column(String(64), primary_key=True)
     kind: Mapped[str] = mapped_column(String(20), default="fit")
     state: Mapped[str] = mapped_column(String(20), default="queued", index=True)
-    matrix: Mapped[str] = mapped_column(ForeignKey("matrices.id"))
+    matrix: Mapped[str] = mapped_column(ForeignKey("matrices.id"), index=True)
     parent: Mapped[str | None] = mapped_column(String(64))
     settings: Mapped[dict[str, Any]]
     progress: Mapped[dict[str, Any]] = mapped_column(default=dict)

@@ -1,8 +1,10 @@
 """Fits and the jobs that make them."""
 
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
+
+Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 
 
 class FitRequest(BaseModel):
@@ -14,9 +16,9 @@ class FitRequest(BaseModel):
     effects: list[str] = Field(default_factory=list, max_length=50)
     method: str = "ga"
     seed: int = Field(default=0, ge=0, lt=2**31)
-    bounds: dict[str, tuple[float | str, float | str]] = Field(default_factory=dict)
-    set: dict[str, float | str] = Field(default_factory=dict)
-    options: dict[str, float] = Field(default_factory=dict)
+    bounds: dict[str, tuple[Finite | str, Finite | str]] = Field(default_factory=dict)
+    set: dict[str, Finite | str] = Field(default_factory=dict)
+    options: dict[str, Finite] = Field(default_factory=dict)
     load: str = "none"
     parent: str | None = None
 

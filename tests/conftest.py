@@ -1,8 +1,12 @@
-"""What several test folders share: the measured data, the long forms of slow tests."""
+"""What several test folders share: the command line, the measured data, the long forms of slow tests."""
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -27,3 +31,36 @@ def measured_data() -> Path:
     if not folder.is_dir():
         pytest.skip(f"no measured data: {folder} does not exist")
     return folder
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a command left behind."""
+
+    returncode: int
+    stdout: str
+    stderr: str
+
+
+Program = Callable[..., Outcome]
+
+
+@pytest.fixture(scope="session")
+def servoident(tmp_path_factory) -> Iterator[Program]:
+    """The command line, run in this process (a new one would spend seconds on imports)."""
+    from app.cli.program import main
+
+    own = pytest.MonkeyPatch()
+    for name in ("XDG_STATE_HOME", "XDG_DATA_HOME"):
+        own.setenv(name, str(tmp_path_factory.mktemp("state")))
+    for name in ("SERVOIDENT_DATA", "SERVOIDENT_TOKEN", "SERVOIDENT_SERVER", "SERVOIDENT_DATABASE"):
+        own.delenv(name, raising=False)
+
+    def run(*arguments: object) -> Outcome:
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), pytest.raises(SystemExit) as ended:
+            main([str(argument) for argument in arguments])
+        return Outcome(ended.value.code, out.getvalue(), err.getvalue())
+
+    yield run
+    own.undo()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sqlalchemy import func, or_, select
-from sqlalchemy.orm import Session
+from sqlalchemy.orm import Session, defer
 
 from app.tables import ActuatorRow, FitRow, MatrixRow
 
@@ -28,30 +28,28 @@ def page(session: Session, text: str | None, batch: str | None, after: str | Non
     return session.scalars(query).all()
 
 
-def matrices(session: Session, serial: str) -> Sequence[MatrixRow]:
-    """An actuator's matrices, newest first."""
-    query = select(MatrixRow).where(MatrixRow.serial == serial).order_by(MatrixRow.created_at.desc())
+def matrices(session: Session, serial: str) -> Sequence[str]:
+    """Ids of an actuator's matrices, newest first."""
+    query = select(MatrixRow.id).where(MatrixRow.serial == serial).order_by(MatrixRow.created_at.desc())
     return session.scalars(query).all()
 
 
 def fits(session: Session, serial: str) -> Sequence[FitRow]:
-    """An actuator's fits, newest first."""
+    """An actuator's fits without their results, newest first."""
     query = select(FitRow).where(FitRow.serial == serial).order_by(FitRow.created_at.desc())
-    return session.scalars(query).all()
+    return session.scalars(query.options(defer(FitRow.result))).all()
 
 
-def current(session: Session, serial: str) -> FitRow | None:
-    """The approved parameter set in force."""
-    return session.scalar(select(FitRow).where(FitRow.serial == serial, FitRow.current.is_(True)))
+def current(session: Session, serials: Sequence[str]) -> dict[str, FitRow]:
+    """The approved parameter sets in force, without the fits' results, by serial number."""
+    query = select(FitRow).where(FitRow.serial.in_(serials), FitRow.current.is_(True))
+    return {row.serial: row for row in session.scalars(query.options(defer(FitRow.result)))}
 
 
-def counts(session: Session, serial: str) -> tuple[int, int]:
-    """Numbers of matrices and of fits."""
-    matrices = session.scalar(select(func.count()).select_from(MatrixRow).where(MatrixRow.serial == serial))
-    fits = session.scalar(select(func.count()).select_from(FitRow).where(FitRow.serial == serial))
-    return matrices or 0, fits or 0
-
-
-def approved(session: Session) -> Sequence[FitRow]:
-    """The current sets of all actuators."""
-    return session.scalars(select(FitRow).where(FitRow.current.is_(True)).order_by(FitRow.serial)).all()
+def counts(session: Session, serials: Sequence[str]) -> tuple[dict[str, int], dict[str, int]]:
+    """Numbers of matrices and of fits by serial number; who has none is not in it."""
+    matrices, fits = (
+        dict(session.execute(select(serial, func.count()).where(serial.in_(serials)).group_by(serial)).all())
+        for serial in (MatrixRow.serial, FitRow.serial)
+    )
+    return matrices, fits

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from sqlalchemy.orm import Session
 
 from app.actuators import repository
@@ -18,25 +20,41 @@ def listed(context: Context, text: str | None, batch: str | None, after: str | N
     keys = keys_of(after, 1)
     with context.sessions() as session:
         rows = repository.page(session, text, batch, keys[0] if keys else None, limit)
-        items = [_view(session, row) for row in rows]
+        items = _views(session, rows)
     return ActuatorPage(items=items, next=cursor(rows[-1].serial) if len(rows) == limit else None)
+
+
+def brief(context: Context, serial: str) -> ActuatorView:
+    """One actuator without its history; raises Failure 404."""
+    with context.sessions() as session:
+        return _views(session, [_find(session, serial)])[0]
 
 
 def get(context: Context, serial: str) -> ActuatorDetail:
     """One actuator with every set and matrix; raises Failure 404."""
     with context.sessions() as session:
-        row = repository.find(session, serial)
-        if row is None:
-            raise missing("actuator", serial)
+        row = _find(session, serial)
         sets = [set_view(fit, row) for fit in repository.fits(session, serial)]
-        matrices = [matrix.id for matrix in repository.matrices(session, serial)]
-        return ActuatorDetail(**_view(session, row).model_dump(), sets=sets, matrix_ids=matrices)
+        matrices = list(repository.matrices(session, serial))
+        return ActuatorDetail(**_views(session, [row])[0].model_dump(), sets=sets, matrix_ids=matrices)
 
 
-def _view(session: Session, row: ActuatorRow) -> ActuatorView:
-    current = repository.current(session, row.serial)
-    matrices, fits = repository.counts(session, row.serial)
-    return ActuatorView(
-        serial=row.serial, name=row.name, batch=row.batch, piston_area=row.piston_area, created_at=row.created_at,
-        matrices=matrices, fits=fits, current=set_view(current, row) if current else None,
-    )  # fmt: skip
+def _find(session: Session, serial: str) -> ActuatorRow:
+    row = repository.find(session, serial)
+    if row is None:
+        raise missing("actuator", serial)
+    return row
+
+
+def _views(session: Session, rows: Sequence[ActuatorRow]) -> list[ActuatorView]:
+    serials = [row.serial for row in rows]
+    current = repository.current(session, serials)
+    matrices, fits = repository.counts(session, serials)
+    return [
+        ActuatorView(
+            serial=row.serial, name=row.name, batch=row.batch, piston_area=row.piston_area, created_at=row.created_at,
+            matrices=matrices.get(row.serial, 0), fits=fits.get(row.serial, 0),
+            current=set_view(current[row.serial], row) if row.serial in current else None,
+        )
+        for row in rows
+    ]  # fmt: skip

@@ -17,5 +17,5 @@ def approve(
     """Make a fit the current parameter set of its serial number. Older sets stay."""
     from urllib.parse import quote
 
-    stored = request(server, token, "POST", f"/fits/{quote(fit, safe='')}/approve").json()
+    stored = request(server, token, "POST", f"/fits/{quote(fit, safe='', errors='surrogateescape')}/approve").json()
     print(f"fit {stored['id']} is the current parameter set of {stored['serial']}")

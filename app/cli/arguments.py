@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Sequence
 
@@ -17,11 +18,14 @@ def split(text: str, option: str, form: str) -> tuple[str, str]:
 
 
 def number(text: str, option: str, form: str) -> float:
-    """A plain number; raises Unusable that shows the `form` of the option."""
+    """A plain finite number; raises Unusable that shows the `form` of the option."""
     try:
-        return float(text)
+        value = float(text)
     except ValueError:
-        raise Unusable("bad-number", f"{text!r} is not a number", option, f"write {option} {form}") from None
+        value = math.nan
+    if not math.isfinite(value):
+        raise Unusable("bad-number", f"{text!r} is not a number", option, f"write {option} {form}")
+    return value
 
 
 def bounds(texts: Sequence[str], model: str, effects: Sequence[str] = ()) -> dict[str, tuple[float, float]]:

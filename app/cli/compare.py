@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json as json_format
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -43,14 +43,20 @@ def compare(
 
 def read_fit(path: Path) -> FitResult:
     """A fit from its JSON file; raises Unusable where it is not one."""
+    from pydantic import TypeAdapter, ValidationError
+
     from ident.fit.result import FitResult
 
     try:
-        return FitResult.from_json(json_format.loads(path.read_bytes()))
-    except (ValueError, TypeError, KeyError, AttributeError):
+        result = TypeAdapter(FitResult).validate_json(path.read_bytes())
+        sound = all(math.isfinite(value) for value in result.values.values())
+    except ValidationError:
+        sound = False
+    if not sound:
         raise Unusable(
             "bad-fit", "not the JSON of a fit", str(path), "give the file that `servoident fit --json FILE` wrote"
-        ) from None
+        )
+    return result
 
 
 def show(rows: list[tuple[str, str, float, float]], error: Any) -> None:

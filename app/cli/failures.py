@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import traceback
+from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -14,14 +16,25 @@ from ident.errors import Cancelled, Unusable
 
 UNUSABLE = 2
 INTERRUPTED = 130
+UNREAD = 141  # as the system ends a program whose reader has gone (128 + SIGPIPE)
 DEFECT = 70  # EX_SOFTWARE of sysexits.h: neither the input nor the user is to blame
 
 
 def report(error: BaseException) -> int:
     """Print `error` as one line on standard error; returns the exit status that belongs to it."""
+    if isinstance(error, OSError) and error.filename is None:
+        silence()
+    if isinstance(error, BrokenPipeError):
+        return UNREAD
     status, text = explain(error)
     print(f"servoident: {' '.join(text.split())}", file=sys.stderr)
     return status
+
+
+def silence() -> None:
+    """Send what is left of standard output nowhere: it could not be written, and would fail again at the end."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def explain(error: BaseException) -> tuple[int, str]:
@@ -35,6 +48,8 @@ def explain(error: BaseException) -> tuple[int, str]:
             return UNUSABLE, f"{error.format_message().rstrip('.')}; `servoident --help` shows what there is"
         case OSError() if error.filename is not None:
             return UNUSABLE, f"{error.filename}: {error.strerror}; check the name, the permissions and the free space"
+        case OSError() if error.errno in (errno.ENOSPC, errno.EDQUOT):
+            return UNUSABLE, f"output: {error.strerror}; check the free space where it goes"
         case MemoryError():
             return UNUSABLE, "the machine has too little memory for this matrix; use fewer or shorter runs"
         case _:
@@ -46,7 +61,7 @@ def kept(error: BaseException) -> str:
     log = error_log()
     try:
         log.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
-        with log.open("a") as file:
+        with log.open("a", encoding="utf-8", errors="backslashreplace") as file:
             print(datetime.now(UTC).isoformat(timespec="seconds"), *sys.argv, file=file)
             traceback.print_exception(error, file=file)
     except OSError as failure:

@@ -31,7 +31,9 @@ def fit(
         typer.Option("--set", metavar="NAME=VALUE", help="Hold a parameter, SI or with unit; may be repeated."),
     ] = None,
     load: Annotated[str, typer.Option(help="force: drive the load by the measured force; none: do not.")] = "none",
-    seed: Annotated[int, typer.Option(help="Seed of the search: the same seed gives the same result.")] = 0,
+    seed: Annotated[
+        int, typer.Option(min=0, max=2**31 - 1, help="Seed of the search: the same seed gives the same result.")
+    ] = 0,
     option: Annotated[
         list[str] | None,
         typer.Option(metavar="NAME=VALUE", help="Setting of the method, such as keep=0.5; may be repeated."),

@@ -11,7 +11,7 @@ from app.cli.approve import approve
 from app.cli.check import check
 from app.cli.compare import compare
 from app.cli.demo import demo
-from app.cli.failures import INTERRUPTED, report
+from app.cli.failures import INTERRUPTED, UNREAD, report
 from app.cli.fit import fit
 from app.cli.migrate import migrate
 from app.cli.query import query
@@ -45,6 +45,9 @@ def main(arguments: list[str] | None = None) -> NoReturn:
         status = program(given or ["--help"], prog_name="servoident", standalone_mode=False)
         if status == INTERRUPTED:
             raise KeyboardInterrupt
+        sys.stdout.flush()
+    except SystemExit as ended:  # typer ends so, with the status of a failed check, where the reader of a pipe has gone
+        sys.exit(UNREAD if isinstance(ended.__context__, BrokenPipeError) else ended.code)
     except (Exception, KeyboardInterrupt) as error:
         sys.exit(report(error))
     sys.exit(status if isinstance(status, int) else 0)

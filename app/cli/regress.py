@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,6 +11,7 @@ import typer
 from app.cli.output import check_target, write_bytes
 from app.cli.place import Data, Database, settings
 from app.cli.progress import shown
+from ident.errors import Unusable
 
 if TYPE_CHECKING:
     from app.regress.recheck import Recheck
@@ -30,6 +32,8 @@ def regress(
     from app.regress.service import regress as rechecks_of
 
     check_target(junit)
+    if not 0 <= tolerance < math.inf:
+        raise Unusable("bad-number", f"{tolerance:g} is no tolerance", "--tolerance", "give 0 or a number above")
     with shown() as report:
         rechecks = list(rechecks_of(settings(data, database), tolerance, report))
     if junit is not None:

@@ -34,6 +34,10 @@ def request(server: str, token: str, method: str, path: str, **content: Any) -> 
     url = f"{server.rstrip('/')}/api/v1{path}"
     try:
         answer = httpx.request(method, url, headers=headers, timeout=PATIENCE, **content)
+    except UnicodeEncodeError:
+        raise Unusable(
+            "bad-token", "it is not plain ASCII", "--token", "give the token that the service printed"
+        ) from None
     except (httpx.HTTPError, httpx.InvalidURL) as error:
         remedy = "start it with `servoident serve`, or give its address with --server"
         raise Unusable("no-service", f"no answer from the service ({error})", server, remedy) from None

@@ -22,20 +22,18 @@ def revise(
     from urllib.parse import quote
 
     body = read_changes(changes)
-    stored = request(server, token, "POST", f"/matrices/{quote(matrix, safe='')}/revisions", json=body).json()
+    stored = request(
+        server, token, "POST", f"/matrices/{quote(matrix, safe='', errors='surrogateescape')}/revisions", json=body
+    ).json()
     print(f"matrix {stored['id']} of {stored['serial']}: a revision of {stored['parent']}")
 
 
 def read_changes(path: Path) -> dict[str, Any]:
     """The changes as plain data; raises Unusable where the file is no YAML mapping."""
-    import yaml
-
     from ident.errors import Unusable
+    from ident.readers.strict_yaml import read_yaml
 
-    try:
-        changes = yaml.safe_load(path.read_bytes())
-    except (yaml.YAMLError, ValueError):
-        changes = None
+    changes = read_yaml(path.read_bytes(), str(path))
     if not isinstance(changes, dict):
         remedy = "write runs: {RUN: {gain: 7}} or actuator: {batch: B1}"
         raise Unusable("bad-changes", "not a YAML mapping of changes", str(path), remedy)

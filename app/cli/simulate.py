@@ -13,7 +13,7 @@ def simulate(
     out: Annotated[Path, typer.Argument(metavar="OUT", help="Folder to write, with matrix.yaml and runs/.")],
     preset: Annotated[str, typer.Option(help="Model that is simulated.")] = "qian2014",
     seconds: Annotated[float, typer.Option(help="Length of each run in s.")] = 30.0,
-    seed: Annotated[int, typer.Option(help="Seed of the command and of the noise.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Seed of the command and of the noise.")] = 0,
     noise: Annotated[
         float, typer.Option(help="White noise: its standard deviation relative to each run's output.")
     ] = 0.005,

@@ -31,20 +31,35 @@ def upload(
 
 
 def files_of(matrix: Path) -> list[tuple[str, Path]]:
-    """The .zip, or the description and the files that it names, by their names inside the matrix."""
-    import yaml
+    """The .zip, or the description and the files that it names, by their names inside the matrix.
 
-    from ident.errors import Unusable
+    Raises Unusable where a file is not what reading the matrix here would accept: nothing else leaves this machine.
+    """
+    from ident.readers.archive import Archive
+    from ident.readers.description import describe
+    from ident.readers.limits import LIMITS
+    from ident.readers.source import DESCRIPTION, Folder
 
-    if matrix.is_dir():
-        matrix = matrix / "matrix.yaml"
-    if matrix.suffix == ".zip":
+    if not matrix.is_dir() and matrix.name != DESCRIPTION:
+        Archive(matrix, matrix.name).close()
         return [(matrix.name, matrix)]
-    try:
-        description = yaml.safe_load(matrix.read_bytes())
-        names = {str(run["file"]) for run in description["runs"]}
-    except (yaml.YAMLError, ValueError, TypeError, KeyError):
-        remedy = "see what `servoident check` says about it"
-        raise Unusable("bad-description", "not a description of runs with a file each", str(matrix), remedy) from None
-    limits = {str(description["limits"])} if description.get("limits") else set()
-    return [("matrix.yaml", matrix), *((name, matrix.parent / name) for name in sorted(names | limits))]
+    folder = matrix if matrix.is_dir() else matrix.parent
+    described = describe(Folder(folder).read(DESCRIPTION, LIMITS.description), LIMITS)
+    names = {run.labels.file for run in described.runs} | ({described.limits} if described.limits else set())
+    return [(name, own_file(folder, name)) for name in (DESCRIPTION, *sorted(names))]
+
+
+def own_file(folder: Path, name: str) -> Path:
+    """Where a file of a matrix folder lies. Raises Unusable for a link, for what is no file, and for a large one."""
+    from ident.errors import Unusable
+    from ident.readers.limits import LIMITS, check_size
+
+    path = folder
+    for part in name.split("/"):
+        path = path / part
+        if path.is_symlink():
+            raise Unusable("symbolic-link", f"{part!r} is a symbolic link", name, "put the file itself there")
+    if not path.is_file():
+        raise Unusable("missing-file", "there is no such file", name, "add it or correct the name")
+    check_size(path.stat().st_size, LIMITS.file, "the file", name)
+    return path

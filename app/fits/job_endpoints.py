@@ -25,7 +25,7 @@ def listed(
     here: Here, state: str | None = None, cursor: str | None = None, limit: Annotated[int, Query(ge=1, le=200)] = 50
 ) -> JobPage:
     """Jobs, newest first."""
-    return service.jobs(here, state, cursor, limit)
+    return service.jobs(here, cursor, limit, state=state)
 
 
 @router.get("/{job}")

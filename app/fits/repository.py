@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from sqlalchemy import select, tuple_, update
+from sqlalchemy import Select, select, tuple_, update
 from sqlalchemy.orm import Session
 
 from app.tables import FitRow, JobRow, MatrixRow, ValueRow, now
 
+OPEN = ("queued", "running")
 ENDED = ("succeeded", "failed", "cancelled")
+JobOf = tuple[JobRow, str]
+"""A job and the serial number of the actuator that it is about."""
 
 
 def add_job(session: Session, job: str, matrix: str, settings: dict[str, Any], parent: str | None) -> JobRow:
@@ -30,25 +33,39 @@ def matrix_of(session: Session, job_id: str) -> MatrixRow | None:
     return session.scalar(select(MatrixRow).join(JobRow, JobRow.matrix == MatrixRow.id).where(JobRow.id == job_id))
 
 
-def jobs(session: Session, state: str | None, after: tuple[str, ...] | None, limit: int) -> Sequence[JobRow]:
-    """Jobs, newest first."""
-    query = select(JobRow).order_by(JobRow.created_at.desc(), JobRow.id.desc()).limit(limit)
-    if state is not None:
-        query = query.where(JobRow.state == state)
+def job_of(session: Session, job_id: str) -> JobOf | None:
+    """A job by id, with its actuator's serial number."""
+    found = session.execute(_jobs().where(JobRow.id == job_id)).one_or_none()
+    return None if found is None else (found[0], found[1])
+
+
+def jobs(
+    session: Session, after: tuple[str, ...] | None, limit: int, *,
+    state: str | None = None, serial: str | None = None, matrix: str | None = None,
+) -> Sequence[JobOf]:  # fmt: skip
+    """Jobs, newest first: all, or those in a state, of an actuator, of a matrix."""
+    query = _jobs().order_by(JobRow.created_at.desc(), JobRow.id.desc()).limit(limit)
+    for column, wanted in ((JobRow.state, state), (MatrixRow.serial, serial), (JobRow.matrix, matrix)):
+        if wanted is not None:
+            query = query.where(column == wanted)
     if after is not None:
         query = query.where(tuple_(JobRow.created_at, JobRow.id) < after)
-    return session.scalars(query).all()
+    return [(job, of) for job, of in session.execute(query)]
 
 
-def jobs_of(session: Session, serial: str) -> Sequence[JobRow]:
-    """Jobs on the matrices of an actuator, newest first."""
-    query = select(JobRow).join(MatrixRow, JobRow.matrix == MatrixRow.id).where(MatrixRow.serial == serial)
-    return session.scalars(query.order_by(JobRow.created_at.desc())).all()
+def open_jobs(session: Session, serials: Sequence[str]) -> Sequence[JobOf]:
+    """Jobs of these actuators that have not ended, oldest first."""
+    query = _jobs().where(JobRow.state.in_(OPEN), MatrixRow.serial.in_(serials)).order_by(JobRow.created_at)
+    return [(job, of) for job, of in session.execute(query)]
+
+
+def _jobs() -> Select[JobRow, str]:
+    return select(JobRow, MatrixRow.serial).join(MatrixRow, JobRow.matrix == MatrixRow.id)
 
 
 def unfinished(session: Session) -> Sequence[str]:
     """Jobs that have not ended."""
-    return session.scalars(select(JobRow.id).where(JobRow.state.not_in(ENDED)).order_by(JobRow.created_at)).all()
+    return session.scalars(select(JobRow.id).where(JobRow.state.in_(OPEN)).order_by(JobRow.created_at)).all()
 
 
 def change_job(session: Session, job_id: str, **values: Any) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import uuid
+from collections.abc import Sequence
 from typing import Any
 
 from app.context import Context
@@ -17,7 +18,7 @@ from ident.fit.identification import check_settings
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.presets import preset
-from ident.quantity import quantity
+from ident.quantity import parameter_value
 from schemas.fit import ComparedRun, ComparisonView, FitRequest, FitView, JobPage, JobView, ProgressView
 
 
@@ -37,17 +38,19 @@ def submit(context: Context, request: FitRequest) -> JobView:
 
 
 def settings_of(request: FitRequest) -> Settings:
-    """The library's settings: numbers are SI, text carries its unit."""
+    """The library's settings: numbers are SI, text may carry a unit. Raises Unusable."""
+    model = preset(request.model, request.effects)
 
     def si(name: str, value: float | str) -> float:
-        parameter = preset(request.model, request.effects).parameter(name)
-        return float(value) if isinstance(value, int | float) else quantity(value, parameter.unit, name)
+        return parameter_value(value, model.parameter(name).unit, name)
 
+    bounds = {name: (si(name, lower), si(name, upper)) for name, (lower, upper) in request.bounds.items()}
+    for name, (lower, upper) in bounds.items():
+        model.parameter(name).within(lower, upper)
     return Settings(
-        model=request.model, effects=tuple(request.effects), method=request.method, seed=request.seed,
-        bounds={name: (si(name, lower), si(name, upper)) for name, (lower, upper) in request.bounds.items()},
-        fixed={name: si(name, value) for name, value in request.set.items()},
-        load=request.load, options=request.options,
+        model=request.model, effects=tuple(request.effects), method=request.method, seed=request.seed, bounds=bounds,
+        fixed={name: si(name, value) for name, value in request.set.items()}, load=request.load,
+        options=request.options,
     )  # fmt: skip
 
 
@@ -61,28 +64,33 @@ def resume(context: Context) -> None:
 
 def job(context: Context, job_id: str) -> JobView:
     """A job by id; raises Failure 404."""
-    with context.sessions() as session:
-        row, matrix = repository.job(session, job_id), repository.matrix_of(session, job_id)
-    if row is None or matrix is None:
-        raise missing("job", job_id)
-    return job_view(row, matrix.serial)
+    return job_and_sequence(context, job_id)[0]
 
 
 def job_and_sequence(context: Context, job_id: str) -> tuple[JobView, int]:
-    """A job and the number of changes it has seen."""
+    """A job and the number of changes it has seen; raises Failure 404."""
     with context.sessions() as session:
-        row, matrix = repository.job(session, job_id), repository.matrix_of(session, job_id)
-    if row is None or matrix is None:
+        found = repository.job_of(session, job_id)
+    if found is None:
         raise missing("job", job_id)
-    return job_view(row, matrix.serial), row.sequence
+    return job_view(*found), found[0].sequence
 
 
-def jobs(context: Context, state: str | None, after: str | None, limit: int) -> JobPage:
-    """A page of jobs."""
+def jobs(
+    context: Context, after: str | None, limit: int, *,
+    state: str | None = None, serial: str | None = None, matrix: str | None = None,
+) -> JobPage:  # fmt: skip
+    """A page of jobs: all, or those in a state, of an actuator, of a matrix."""
     with context.sessions() as session:
-        rows = repository.jobs(session, state, keys_of(after, 2), limit)
-    following = cursor(rows[-1].created_at, rows[-1].id) if len(rows) == limit else None
-    return JobPage(items=[job(context, row.id) for row in rows], next=following)
+        found = repository.jobs(session, keys_of(after, 2), limit, state=state, serial=serial, matrix=matrix)
+    following = cursor(found[-1][0].created_at, found[-1][0].id) if len(found) == limit else None
+    return JobPage(items=[job_view(*each) for each in found], next=following)
+
+
+def open_jobs(context: Context, serials: Sequence[str]) -> dict[str, JobView]:
+    """The latest job that has not ended of each of these actuators that has one."""
+    with context.sessions() as session:
+        return {serial: job_view(row, serial) for row, serial in repository.open_jobs(session, serials)}
 
 
 def cancel(context: Context, job_id: str) -> JobView:

@@ -7,7 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request, Response
 from fastapi.concurrency import run_in_threadpool
 from starlette.datastructures import UploadFile
-from starlette.formparsers import MultiPartException
+from starlette.exceptions import HTTPException
 
 from app.context import Here
 from app.errors import COMMON, Failure
@@ -42,26 +42,29 @@ async def upload(request: Request, here: Here, key: Key = None) -> Response:
         )
     try:
         form = await request.form(max_files=20_000, max_fields=100)
-    except (MultiPartException, ValueError) as error:
-        raise Failure(400, "bad-form", str(error), "body", "send a multipart form with files") from None
-    files = {part.filename or "": part.file for _, part in form.multi_items() if isinstance(part, UploadFile)}
+    except Failure:
+        raise
+    except HTTPException as error:
+        raise Failure(400, "bad-form", error.detail, "body", "send a multipart form with files") from None
+    parts = [(part.filename or "", part.file) for _, part in form.multi_items() if isinstance(part, UploadFile)]
+    files = dict(parts)
     if not files:
         raise Failure(422, "no-files", "the form holds no file", "body", "add one .zip, or matrix.yaml and its files")
+    if len(files) < len(parts):
+        raise Failure(422, "duplicate-file", "two files of the form have one name", "body", "give each its own name")
 
     def act() -> tuple[int, dict[str, object], str]:
         stored, new = service.upload(here, files)
         return (201 if new else 200), stored.model_dump(), f"/api/v1/matrices/{stored.id}"
 
-    asked = fingerprint("upload", sorted((name, part.size) for name, part in _parts(form)))
+    def answer() -> Response:
+        asked = "" if key is None else fingerprint("upload", service.digests(files))
+        return once(here.sessions, key, asked, act)
+
     try:
-        return await run_in_threadpool(once, here.sessions, key, asked, act)
+        return await run_in_threadpool(answer)
     finally:
         await form.close()
-
-
-def _parts(form: object) -> list[tuple[str, UploadFile]]:
-    items = form.multi_items()  # type: ignore[attr-defined]
-    return [(part.filename or "", part) for _, part in items if isinstance(part, UploadFile)]
 
 
 @router.get("")

@@ -42,4 +42,5 @@ def add(
     session.flush()
     added = MatrixRow(id=matrix, serial=actuator.serial, parent=parent, source=source, summary=summary)
     session.add(added)
+    session.flush()
     return added

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 from collections import OrderedDict
 from collections.abc import Mapping
@@ -15,16 +16,19 @@ from sqlalchemy.exc import IntegrityError
 from app.context import Context
 from app.errors import missing
 from app.matrices import repository
-from app.matrices.stored import DESCRIPTION_LIMIT, opened, read_stored
+from app.matrices.stored import opened, read_stored
 from app.paging import cursor, keys_of
 from app.storage import Storage
 from app.tables import MatrixRow
 from ident.check import check
 from ident.errors import Unusable
 from ident.matrix import Matrix, Run
+from ident.readers.limits import LIMITS
 from ident.readers.source import DESCRIPTION, inside
+from ident.readers.strict_yaml import read_yaml
 from schemas.matrix import FindingView, MatrixPage, MatrixView, Revision, RunView
 
+LONGEST = 200  # characters of a serial number or batch
 _KEPT = 2  # matrices in memory: one may take 130 MB
 _cache: OrderedDict[tuple[str, str], Matrix] = OrderedDict()
 _lock = Lock()
@@ -33,50 +37,73 @@ _lock = Lock()
 def upload(context: Context, files: Mapping[str, BinaryIO]) -> tuple[MatrixView, bool]:
     """Store a matrix from one .zip, or from matrix.yaml and its files by name; True where it is new.
 
-    Raises Unusable; then nothing is recorded.
+    Raises Unusable; then nothing is kept.
     """
-    storage = context.storage
-    if len(files) == 1 and DESCRIPTION not in files:
-        source: dict[str, Any] = {"zip": storage.put(next(iter(files.values())))}
-    else:
-        source = {"files": {inside(name, "upload"): storage.put(content) for name, content in files.items()}}
-    return record(context, source, None)
+    with context.storage.staged() as staged:
+        if len(files) == 1 and DESCRIPTION not in files:
+            source: dict[str, Any] = {"zip": staged.put(next(iter(files.values())))}
+        else:
+            source = {"files": {inside(name, "upload"): staged.put(content) for name, content in files.items()}}
+        return _record(context, staged, source, None)
 
 
-def record(context: Context, source: dict[str, Any], parent: str | None) -> tuple[MatrixView, bool]:
-    """Read, check and record a stored source."""
-    matrix = read_stored(context.storage, source)
+def digests(files: Mapping[str, BinaryIO]) -> dict[str, str]:
+    """The SHA-256 of each file, which is left at its beginning."""
+    found = {}
+    for name, content in files.items():
+        found[name] = hashlib.file_digest(content, "sha256").hexdigest()  # type: ignore[arg-type]
+        content.seek(0)
+    return found
+
+
+def _record(context: Context, staged: Storage, source: dict[str, Any], parent: str | None) -> tuple[MatrixView, bool]:
+    """Read and check a source; keep its blobs and record it where it is new."""
+    matrix = read_stored(staged, source)
+    for name in ("serial", "batch"):
+        length = len(getattr(matrix.actuator, name))
+        if length > LONGEST:
+            raise Unusable("too-long", f"{length} characters where {LONGEST} fit", f"actuator {name}", "shorten it")
     identity = matrix.data_hash[:32]
     with context.sessions() as session:
         known = repository.find(session, identity)
         if known is not None:
             return view(known), False
-        row = repository.add(session, identity, matrix.actuator, source, summary(matrix), parent)
         try:
+            row = repository.add(session, identity, matrix.actuator, source, summary(matrix), parent)
+            staged.keep()
             session.commit()
         except IntegrityError:  # the same upload twice at the same moment
             session.rollback()
             return get(context, identity), False
-        _remember(context, identity, matrix)
-        return view(row), True
+    _keep((str(context.storage.folder), identity), matrix)
+    return view(row), True
 
 
 def revise(context: Context, matrix: str, revision: Revision) -> tuple[MatrixView, bool]:
     """A new matrix with other labels, units or signs and the same raw bytes."""
     row = find(context, matrix)
     with opened(context.storage, row.source) as files:
-        description = yaml.safe_load(files.read(DESCRIPTION, DESCRIPTION_LIMIT))
-    _merge(description.setdefault("actuator", {}), revision.actuator)
-    runs = {str(run.get("id")): run for run in description["runs"]}
+        description = read_yaml(files.read(DESCRIPTION, LIMITS.description), DESCRIPTION)
+    _merge(description["actuator"], revision.actuator)
+    runs = {str(run["id"]): run for run in description["runs"]}
     for name, changes in revision.runs.items():
         if name not in runs:
             raise Unusable(
                 "unknown-run", f"there is no run {name!r}", "runs", f"choose from {', '.join(list(runs)[:20])}"
             )
         _merge(runs[name], changes)
-    text = yaml.safe_dump(description, sort_keys=False, allow_unicode=True).encode()
-    sha256 = context.storage.put(io.BytesIO(text))
-    return record(context, {**row.source, "description": sha256}, matrix)
+    with context.storage.staged() as staged:
+        sha256 = staged.put(io.BytesIO(_yaml(description)))
+        return _record(context, staged, {**row.source, "description": sha256}, matrix)
+
+
+def _yaml(description: dict[str, Any]) -> bytes:
+    try:
+        return yaml.safe_dump(description, sort_keys=False, allow_unicode=True).encode()
+    except (RecursionError, UnicodeEncodeError):
+        raise Unusable(
+            "bad-revision", "the changes cannot be written as YAML", "runs", "keep to the matrix format"
+        ) from None
 
 
 def _merge(target: dict[str, Any], changes: Mapping[str, Any]) -> None:
@@ -127,10 +154,6 @@ def load_row(storage: Storage, row: MatrixRow) -> Matrix:
     matrix = read_stored(storage, row.source)
     _keep(key, matrix)
     return matrix
-
-
-def _remember(context: Context, identity: str, matrix: Matrix) -> None:
-    _keep((str(context.storage.folder), identity), matrix)
 
 
 def _keep(key: tuple[str, str], matrix: Matrix) -> None:

@@ -9,7 +9,7 @@ from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.readers import read_source
 from ident.readers.archive import Archive
-from ident.readers.limits import LIMITS, check_size
+from ident.readers.limits import check_size
 from ident.readers.source import DESCRIPTION, inside, read_regular
 
 
@@ -65,6 +65,3 @@ class opened:  # noqa: N801  used as a function in a with statement
     def __exit__(self, *_: object) -> None:
         if self.archive is not None:
             self.archive.close()
-
-
-DESCRIPTION_LIMIT = LIMITS.description

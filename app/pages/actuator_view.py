@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from app.pages import numbers
@@ -84,12 +84,10 @@ def _symbol(model: str, name: str) -> str:
         return name
 
 
-def fit_rows(jobs: Iterable[JobView], sets: Sequence[ParameterSetView]) -> tuple[FitRow, ...]:
-    """Jobs newest first, each with the errors of the set that it made."""
+def fit_rows(jobs: Iterable[JobView], sets: Iterable[ParameterSetView]) -> tuple[FitRow, ...]:
+    """A row a job, with the errors of the set that it made."""
     made = {entry.id: entry for entry in sets}
-    rows = [_fit_row(job, made.pop(job.id, None)) for job in jobs]
-    older = [_older(entry) for entry in made.values()]  # their jobs are on a later page
-    return (*rows, *older)
+    return tuple(_fit_row(job, made.get(job.id)) for job in jobs)
 
 
 def _fit_row(job: JobView, made: ParameterSetView | None) -> FitRow:
@@ -106,14 +104,6 @@ def _fit_row(job: JobView, made: ParameterSetView | None) -> FitRow:
         error_verify=made.error_verify if made else None,
         made=job.created_at,
     )
-
-
-def _older(made: ParameterSetView) -> FitRow:
-    state, text = _fit_state("succeeded", made)
-    return FitRow(
-        id=made.id, state=state, state_text=text, model=made.model, method="–", seed="–",
-        error_fit=made.error_fit, error_verify=made.error_verify, made=made.created_at,
-    )  # fmt: skip
 
 
 def _fit_state(state: str, made: ParameterSetView | None) -> tuple[str, str]:

@@ -21,9 +21,9 @@ def actuators(request: Request, here: Here, q: str = "", cursor: str | None = No
 
 
 @router.get("/actuators/{serial:path}")
-def actuator(request: Request, here: Here, serial: str) -> HTMLResponse:
+def actuator(request: Request, here: Here, serial: str, cursor: str | None = None) -> HTMLResponse:
     """One actuator: the set in force, its fits and its matrices."""
-    return page(request, "actuator.html", **service.actuator(here, serial))
+    return page(request, "actuator.html", **service.actuator(here, serial, cursor))
 
 
 @router.get("/upload")
@@ -33,9 +33,9 @@ def upload(request: Request) -> HTMLResponse:
 
 
 @router.get("/matrices/{matrix}")
-def matrix(request: Request, here: Here, matrix: str) -> HTMLResponse:
+def matrix(request: Request, here: Here, matrix: str, cursor: str | None = None) -> HTMLResponse:
     """A matrix: findings, runs, and the form that starts a fit."""
-    return page(request, "matrix.html", **service.matrix(here, matrix))
+    return page(request, "matrix.html", **service.matrix(here, matrix, cursor))
 
 
 @router.get("/jobs")

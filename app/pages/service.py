@@ -9,7 +9,7 @@ from app.context import Context
 from app.errors import Failure
 from app.fits import service as fits
 from app.matrices import service as matrices
-from app.pages.actuator_view import ActuatorRow, actuator_row, fit_rows
+from app.pages.actuator_view import actuator_row, fit_rows
 from app.pages.fit_page import FitPageView, fit_page
 from app.pages.fit_view import parameter_rows
 from app.pages.job_view import JobPageView, job_page
@@ -22,41 +22,42 @@ from ident.fit.result import FitResult
 from ident.fit.settings import METHODS
 from ident.presets import PRESETS
 from ident.stages import PLACES
-from schemas.fit import JobView
-from schemas.parameters import ActuatorDetail
+from schemas.parameters import ActuatorView
 
 Shown = dict[str, Any]
-_MOST = 200  # jobs looked through for those of one actuator or matrix
+_ROWS = 50  # of a table before its next page
 
 
 def actuator_list(context: Context, query: str, cursor: str | None) -> Shown:
     """Actuators whose serial number, name or batch holds the query."""
-    found = actuators.listed(context, query or None, None, cursor, 50)
-    open_jobs = [job for state in ("queued", "running") for job in fits.jobs(context, state, None, _MOST).items]
-    waiting = {job.serial: job for job in open_jobs}
-
-    def row(serial: str) -> ActuatorRow:
-        actuator = next(item for item in found.items if item.serial == serial)
-        newest = parameters.page(context, Wanted(serial=serial), None, 1).items
-        return actuator_row(actuator, newest[0] if newest else None, waiting.get(serial))
-
-    return {"rows": [row(item.serial) for item in found.items], "query": query, "more": found.next}
+    found = actuators.listed(context, query or None, None, cursor, _ROWS)
+    serials = [actuator.serial for actuator in found.items]
+    newest, waiting = parameters.newest(context, serials), fits.open_jobs(context, serials)
+    rows = [actuator_row(each, newest.get(each.serial), waiting.get(each.serial)) for each in found.items]
+    return {"rows": rows, "query": query, "more": found.next}
 
 
-def actuator(context: Context, serial: str) -> Shown:
-    """The set in force, every fit and matrix; raises Failure 404."""
-    found = actuators.get(context, serial)
-    stored = matrices.listed(context, serial, None, 50).items
+def actuator(context: Context, serial: str, cursor: str | None) -> Shown:
+    """The set in force, fits and matrices; raises Failure 404."""
+    found = actuators.brief(context, serial)
+    stored = matrices.listed(context, serial, None, _ROWS).items
     return {
         "actuator": found,
         "facts": _facts(found),
         "approved": _approved(context, found),
-        "fits": fit_rows((job for job in _jobs(context) if job.serial == serial), found.sets),
+        **_fits(context, cursor, serial=serial),
         "matrices": [(entry, counted(entry.findings) or "none") for entry in stored],
     }
 
 
-def _facts(found: ActuatorDetail) -> list[tuple[str, str]]:
+def _fits(context: Context, cursor: str | None, **of: str) -> Shown:
+    """Fits and the jobs that are to make them, newest first, with the number of the next page."""
+    jobs = fits.jobs(context, cursor, _ROWS, **of)
+    made = parameters.page(context, Wanted(ids=[job.id for job in jobs.items]), None, _ROWS).items
+    return {"fits": fit_rows(jobs.items, made), "more": jobs.next}
+
+
+def _facts(found: ActuatorView) -> list[tuple[str, str]]:
     return [
         ("Name", found.name or "not stated"),
         ("Batch", found.batch or "not stated"),
@@ -64,30 +65,26 @@ def _facts(found: ActuatorDetail) -> list[tuple[str, str]]:
     ]
 
 
-def _approved(context: Context, found: ActuatorDetail) -> Any:
+def _approved(context: Context, found: ActuatorView) -> Any:
     if found.current is None:
         return ()
     return parameter_rows(FitResult.from_json(fits.get(context, found.current.id).result))
 
 
-def matrix(context: Context, matrix_id: str) -> Shown:
+def matrix(context: Context, matrix_id: str, cursor: str | None) -> Shown:
     """Findings, runs, what a fit may choose, and the fits of this matrix; raises Failure 404."""
-    found = matrices.get(context, matrix_id)
-    jobs = [job for job in _jobs(context) if job.matrix == matrix_id]
-    made = {job.id for job in jobs}
-    sets = [entry for entry in actuators.get(context, found.serial).sets if entry.id in made]
     return {
-        "matrix": matrix_view(found),
+        "matrix": matrix_view(matrices.get(context, matrix_id)),
         "models": [(preset.name, preset.title) for preset in PRESETS.values()],
         "methods": METHODS,
         "effects": [(place, [e for e in EFFECTS if e.place == place]) for place in PLACES],
-        "fits": fit_rows(jobs, sets),
+        **_fits(context, cursor, matrix=matrix_id),
     }
 
 
 def job_list(context: Context, cursor: str | None) -> Shown:
     """Jobs, newest first."""
-    found = fits.jobs(context, None, cursor, 50)
+    found = fits.jobs(context, cursor, _ROWS)
     return {"jobs": [job_page(job) for job in found.items], "more": found.next}
 
 
@@ -98,7 +95,3 @@ def fit(context: Context, fit_id: str) -> FitPageView | JobPageView:
     except Failure:
         return job_page(fits.job(context, fit_id))
     return fit_page(found, matrices.get(context, found.matrix))
-
-
-def _jobs(context: Context) -> list[JobView]:
-    return fits.jobs(context, None, None, _MOST).items

@@ -6,15 +6,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from sqlalchemy import Select, select, tuple_
-from sqlalchemy.orm import Session
+from sqlalchemy.orm import Session, aliased, defer
 
 from app.tables import ActuatorRow, FitRow, ValueRow
+
+Query = Select[FitRow, ActuatorRow]
+SetOf = tuple[FitRow, ActuatorRow]
+"""A parameter set and its actuator."""
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """Which sets: by serial, batch, model, time of approval, and ranges of any parameter (SI)."""
+    """Which sets: by id, serial, batch, model, time of approval, and ranges of any parameter (SI)."""
 
+    ids: Sequence[str] | None = None
     serial: str | None = None
     batch: str | None = None
     model: str | None = None
@@ -26,22 +31,32 @@ class Wanted:
     highest: Mapping[str, float] = field(default_factory=dict)
 
 
-def sets(
-    session: Session, wanted: Wanted, after: tuple[str, ...] | None, limit: int
-) -> Sequence[tuple[FitRow, ActuatorRow]]:
+def sets(session: Session, wanted: Wanted, after: tuple[str, ...] | None, limit: int) -> Sequence[SetOf]:
     """Sets with their actuators, newest first."""
-    query = select(FitRow, ActuatorRow).join(ActuatorRow, ActuatorRow.serial == FitRow.serial)
-    query = _ranges(_filters(query, wanted), wanted)
+    query = _ranges(_filters(_sets(), wanted), wanted)
     if after is not None:
         query = query.where(tuple_(FitRow.created_at, FitRow.id) < after)
     query = query.order_by(FitRow.created_at.desc(), FitRow.id.desc()).limit(limit)
     return [(fit, actuator) for fit, actuator in session.execute(query).all()]
 
 
-Query = Select[FitRow, ActuatorRow]
+def newest(session: Session, serials: Sequence[str]) -> Sequence[SetOf]:
+    """The newest set of each of these actuators."""
+    own = aliased(FitRow)
+    latest = select(own.id).where(own.serial == ActuatorRow.serial).order_by(own.created_at.desc(), own.id.desc())
+    query = _sets().where(ActuatorRow.serial.in_(serials), FitRow.id == latest.limit(1).scalar_subquery())
+    return [(fit, actuator) for fit, actuator in session.execute(query)]
+
+
+def _sets() -> Query:
+    """Sets without the fits' results, which are long."""
+    query = select(FitRow, ActuatorRow).join(ActuatorRow, ActuatorRow.serial == FitRow.serial)
+    return query.options(defer(FitRow.result))
 
 
 def _filters(query: Query, wanted: Wanted) -> Query:
+    if wanted.ids is not None:
+        query = query.where(FitRow.id.in_(wanted.ids))
     if wanted.serial is not None:
         query = query.where(FitRow.serial == wanted.serial)
     if wanted.batch is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
@@ -67,6 +67,12 @@ def page(context: Context, wanted: Wanted, after: str | None, limit: int) -> Par
         items = [view(fit, actuator) for fit, actuator in rows]
     following = cursor(items[-1].created_at, items[-1].id) if len(items) == limit else None
     return ParameterSetPage(items=items, next=following)
+
+
+def newest(context: Context, serials: Sequence[str]) -> dict[str, ParameterSetView]:
+    """The newest parameter set of each of these actuators that has one."""
+    with context.sessions() as session:
+        return {fit.serial: view(fit, actuator) for fit, actuator in repository.newest(session, serials)}
 
 
 def csv_text(context: Context, wanted: Wanted) -> str:

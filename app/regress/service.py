@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from app.database import connect, reachable, sessions
+from app.database import connect, reachable, sessions, shown
 from app.matrices.service import load_row
 from app.regress.recheck import Recheck, recheck
 from app.regress.repository import approved
@@ -26,7 +26,9 @@ def regress(settings: Settings, tolerance: float, report: Report) -> Iterator[Re
     engine = connect(settings.database)
     if not reachable(engine):
         remedy = "check its address, and bring it up to date with `servoident migrate`"
-        raise Unusable("no-database", "the database does not answer or is not up to date", settings.database, remedy)
+        raise Unusable(
+            "no-database", "the database does not answer or is not up to date", shown(settings.database), remedy
+        )
     with sessions(engine)() as session:
         sets = approved(session)
     storage = Storage(settings.data / "blobs")

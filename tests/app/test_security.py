@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import errno
 import io
-import os
 from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
 
 from app.storage import Storage
-from tests.app.conftest import TOKEN, zipped
+from tests.app.conftest import TOKEN
 
 
 @pytest.mark.parametrize("host", ["evil.example", "127.0.0.1.evil.example", "", "127.0.0.1:9999"])
@@ -48,36 +46,8 @@ def test_every_answer_has_a_strict_policy(service: TestClient) -> None:
     assert headers["cache-control"] == "no-store"
 
 
-def test_two_gigabytes_are_refused_by_their_declaration(service: TestClient) -> None:
-    answer = service.post("/api/v1/matrices", content=b"", headers={"Content-Length": str(2 << 30)})
-    assert (answer.status_code, answer.json()["code"]) == (413, "too-large")
-
-
-def test_a_full_disk_leaves_nothing_half_stored(service: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
-    storage = service.app.state.context.storage
-    before = sorted(storage.folder.rglob("*"))
-
-    def full(_: int) -> None:
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    monkeypatch.setattr(os, "fsync", full)
-    answer = service.post("/api/v1/matrices", files={"files": ("a.zip", zipped("SW-FULL"))})
-    assert (answer.status_code, answer.json()["code"]) == (507, "disk-full")
-    assert sorted(storage.folder.rglob("*")) == before
-    assert service.get("/api/v1/actuators/SW-FULL").status_code == 404
-
-
 def test_the_data_folder_is_private(service: TestClient) -> None:
     assert service.app.state.context.settings.data.stat().st_mode & 0o077 == 0
-
-
-@pytest.mark.parametrize("body", [b"", b"not a zip", zipped()[:500], zipped()[:-30]])
-def test_a_broken_upload_is_told_in_words_and_not_recorded(service: TestClient, body: bytes) -> None:
-    before = service.get("/api/v1/matrices?limit=200").json()["items"]
-    answer = service.post("/api/v1/matrices", files={"files": ("a.zip", body)})
-    assert answer.status_code == 422
-    assert answer.json()["remedy"]
-    assert service.get("/api/v1/matrices?limit=200").json()["items"] == before
 
 
 def test_a_blob_is_whole_or_absent(tmp_path: Path) -> None:

@@ -101,31 +101,6 @@ def test_the_same_key_is_answered_once(service: TestClient, matrix: str) -> None
     assert (other.status_code, other.json()["code"]) == (409, "key-in-use")
 
 
-@pytest.mark.parametrize(
-    ("change", "code"),
-    [
-        ({"model": "no-such"}, "unknown-model"),
-        ({"method": "no-such"}, "unknown-method"),
-        ({"effects": ["no-such"]}, "unknown-effect"),
-        ({"bounds": {"nope": [1, 2]}}, "unknown-parameter"),
-        ({"bounds": {"tau": ["1 kg", "2 kg"]}}, None),
-        ({"options": {"keep": 0.5}}, "unknown-option"),
-        ({"seed": -1}, "invalid-request"),
-        ({"surprise": 1}, "invalid-request"),
-    ],
-)
-def test_a_fit_that_cannot_be_is_refused_before_it_is_queued(
-    service: TestClient, matrix: str, change: dict[str, object], code: str | None
-) -> None:
-    before = service.get("/api/v1/jobs?limit=1").json()["items"][0]["id"]
-    answer = service.post("/api/v1/fits", json={"matrix": matrix} | change)
-    assert answer.status_code == 422
-    assert answer.headers["content-type"] == "application/problem+json"
-    assert answer.json()["remedy"]
-    assert code is None or answer.json()["code"] == code
-    assert service.get("/api/v1/jobs?limit=1").json()["items"][0]["id"] == before
-
-
 def test_models_come_with_their_mathematics(service: TestClient) -> None:
     models = {model["name"]: model for model in service.get("/api/v1/models").json()}
     assert "m^4/s" in models["qian2014"]["parameters"][0]["unit"]

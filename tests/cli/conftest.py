@@ -1,47 +1,10 @@
-"""A small matrix and the program as its users run it."""
+"""A small matrix and its fit, written by the program."""
 
 from __future__ import annotations
 
-import contextlib
-import io
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-
-from app.cli.program import main
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What a command left behind."""
-
-    returncode: int
-    stdout: str
-    stderr: str
-
-
-Program = Callable[..., Outcome]
-
-
-@pytest.fixture(scope="session")
-def servoident(tmp_path_factory) -> Iterator[Program]:
-    """The command line, run in this process (a new one would spend seconds on imports)."""
-    own = pytest.MonkeyPatch()
-    for name in ("XDG_STATE_HOME", "XDG_DATA_HOME"):
-        own.setenv(name, str(tmp_path_factory.mktemp("state")))
-    for name in ("SERVOIDENT_DATA", "SERVOIDENT_TOKEN", "SERVOIDENT_SERVER", "SERVOIDENT_DATABASE"):
-        own.delenv(name, raising=False)
-
-    def run(*arguments: object) -> Outcome:
-        out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), pytest.raises(SystemExit) as ended:
-            main([str(argument) for argument in arguments])
-        return Outcome(ended.value.code, out.getvalue(), err.getvalue())
-
-    yield run
-    own.undo()
 
 
 @pytest.fixture(scope="session")

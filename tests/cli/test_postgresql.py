@@ -8,6 +8,7 @@ import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
+import httpx
 import pytest
 
 from tests.cli.running import Service, free_port, running
@@ -56,6 +57,9 @@ def test_a_service_and_a_worker_share_the_queue(servoident, database, matrix, tm
         running("worker", "--executor", "second", *place, until="waiting for jobs"),
     ):
         service = Service(said, tmp_path)
+        _, server, _, token = service.options
+        nul = httpx.get(f"{server}/api/v1/actuators/%00", headers={"Authorization": f"Bearer {token}"})
+        assert (nul.status_code, nul.json()["code"]) == (422, "unusable-text")  # SQLite would have looked for it
         stored = servoident("upload", matrix, *service.options)
         assert stored.returncode == 0, stored.stderr
         identity = stored.stdout.split()[1]
