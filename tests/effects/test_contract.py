@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 
 import numpy as np
 import pytest
@@ -60,18 +61,23 @@ def strength(effect: Effect) -> float:
     return effect.strength.upper * SHARE.get(effect.name, 1.0)
 
 
+@cache
+def expected(name: str, symbol: str, value: float, number: int, hold: str) -> np.ndarray:
+    """The reference's displacement."""
+    hidden = reference.named({f"{name}.{symbol}": value})
+    return reference.respond(PLANT, hidden, CELLS[number], command(number), hold).displacement
+
+
 def deviations(effect: Effect, factor: float = 1.0) -> list[tuple[float, float]]:
     """For each cell and hold: (kernel against reference, what the effect does), over the output's deviation."""
     model, found = preset("qian2014", (effect.name,)), []
     for number, cell in enumerate(CELLS):
         for hold in ("linear", "zoh"):
-            u = command(number)
-            hidden = reference.named({f"{effect.name}.{effect.strength.symbol}": strength(effect)})
-            expected = reference.respond(PLANT, hidden, cell, u, hold).displacement
-            without = reference.respond(PLANT, reference.Effects(), cell, u, hold).displacement
-            got = ours(model, {effect.name: factor * strength(effect)}, cell, u, hold)
-            size = np.std(expected)
-            found.append((float(np.std(got - expected) / size), float(np.std(without - expected) / size)))
+            wanted = expected(effect.name, effect.strength.symbol, strength(effect), number, hold)
+            without = expected(effect.name, effect.strength.symbol, 0.0, number, hold)
+            got = ours(model, {effect.name: factor * strength(effect)}, cell, command(number), hold)
+            size = np.std(wanted)
+            found.append((float(np.std(got - wanted) / size), float(np.std(without - wanted) / size)))
     return found
 
 
@@ -100,9 +106,9 @@ def test_all_effects_off_is_the_chain_without_them(output):
     """The kernel of the whole catalogue, every strength 0, is the chain's own kernel to 1e-12."""
     whole = preset("qian2014", tuple(effect.name for effect in EFFECTS))
     for number, cell in enumerate(CELLS):
-        expected = ours(PRESETS["qian2014"], {}, cell, command(number), "linear", output, steps=1)
+        plain = ours(PRESETS["qian2014"], {}, cell, command(number), "linear", output, steps=1)
         got = ours(whole, {}, cell, command(number), "linear", output, steps=1)
-        assert np.std(got - expected) <= 1e-12 * np.std(expected)
+        assert np.std(got - plain) <= 1e-12 * np.std(plain)
 
 
 @pytest.mark.parametrize("hold", ["linear", "zoh"])
@@ -123,10 +129,10 @@ def test_force_and_pressure_agree_with_the_reference():
     """The other outputs, with effects of several places on at once."""
     hidden = {"dead_zone.h": 2e-4, "pressure_flow.r": 2e-7, "cubic_stiffness.k3": 5e10, "sensor_lag.T": 1e-3}
     model = preset("qian2014", tuple(name.partition(".")[0] for name in hidden))
-    expected = reference.respond(PLANT, reference.named(hidden), CELLS[0], command(0), "linear")
+    shown = reference.respond(PLANT, reference.named(hidden), CELLS[0], command(0), "linear")
     for output in ("displacement", "force", "load_pressure"):
         got = ours(model, hidden, CELLS[0], command(0), "linear", output, steps=2)
-        wanted = getattr(expected, output)
+        wanted = getattr(shown, output)
         assert np.std(got - wanted) < 1e-4 * np.std(wanted)
 
 
