@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from app.cli.numbers import percent
 from ident.progress import Progress, Report
 
 SILENCE = 5.0  # s between two plain lines of one stage
@@ -68,4 +69,4 @@ class Lines:
 
 def error_text(progress: Progress) -> str:
     """The error so far, in per cent."""
-    return "" if progress.error is None else f"error {100 * progress.error:.3g} %"
+    return "" if progress.error is None else f"error {percent(progress.error)}"

@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from app.cli.numbers import percent
 from ident.fit.result import Estimate, FitResult
 
 
@@ -58,8 +59,3 @@ def error_rows(result: FitResult) -> Iterator[tuple[str, ...]]:
     yield "model", *(percent(result.error.get(use)) for use in uses)
     yield "noise floor", *(percent(result.noise_floor.get(use)) for use in uses)
     yield "offset", *(percent(result.offset.get(use)) for use in uses)
-
-
-def percent(value: float | None) -> str:
-    """A fraction in per cent; a dash where there is none."""
-    return "–" if value is None else f"{100 * value:#.3g} %".replace(". %", " %")

@@ -16,6 +16,7 @@ from ident.fit.identification import identify
 from ident.fit.settings import Settings
 from ident.presets import PRESETS
 from ident.readers import read_matrix
+from tests.running import process
 
 ROOT = Path(__file__).parents[2]
 FIT, VERIFY = 0.041, 0.0375  # the authors' own linear model leaves 0.052
@@ -98,19 +99,14 @@ def test_a_determined_combination_does_not_depend_on_the_seed(folder, by_library
 
 def test_the_main_job_over_http(folder, tmp_path, by_library):
     """Upload, job, stored set, Bode plot: the same answer as the library's."""
-    from tests.faults.test_kill import Service
-
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
         for path in sorted(p for p in folder.rglob("*") if p.is_file()):
             archive.write(path, path.relative_to(folder))
-    service = Service(tmp_path / "service")
-    try:
+    with process(tmp_path / "service") as service:
         stored = service.client.post("/matrices", files={"files": ("mts.zip", buffer.getvalue())})
         assert stored.status_code == 201
-        answer = service.client.post("/fits", json={"matrix": stored.json()["id"]})
-        assert answer.status_code == 202
-        job = answer.headers["Location"].rsplit("/", 1)[-1]
+        job = service.fit(stored.json()["id"])
         assert service.ended(job)["state"] == "succeeded"
 
         result = service.client.get(f"/fits/{job}").json()["result"]
@@ -125,5 +121,3 @@ def test_the_main_job_over_http(folder, tmp_path, by_library):
         assert bode.headers["content-type"].startswith("image/svg+xml")
         assert bode.text.startswith("<svg")
         assert bode.text.count("<path") > 4
-    finally:
-        service.kill()

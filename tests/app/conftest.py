@@ -15,8 +15,8 @@ from fastapi.testclient import TestClient
 from app.main import create_app
 from app.settings import Settings
 from tests.reference import qian_reference as reference
+from tests.running import TOKEN
 
-TOKEN = "a-token-for-tests"
 DESCRIPTION = """
 actuator: {serial: SW-1, batch: B1, piston_area: 497 mm^2}
 runs:

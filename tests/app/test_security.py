@@ -9,7 +9,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from app.storage import Storage
-from tests.app.conftest import TOKEN
+from tests.running import TOKEN
 
 
 @pytest.mark.parametrize("host", ["evil.example", "127.0.0.1.evil.example", "", "127.0.0.1:9999"])

@@ -3,29 +3,18 @@
 from __future__ import annotations
 
 import shutil
-import socket
-import subprocess
-import sys
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-import httpx
 import pytest
 
-from tests.app.conftest import TOKEN, zipped
+from tests.app.conftest import zipped
+from tests.running import Service, process
 
 CHROMIUM = "/usr/bin/chromium"
 HERE = Path(__file__).resolve().parent
 SCREENSHOTS = HERE.parents[1] / "build" / "screenshots"
-SERVE = """
-import sys
-from pathlib import Path
-from app.main import run
-from app.settings import Settings
-run(Settings(data=Path(sys.argv[1]), port=int(sys.argv[2]), token=sys.argv[3]))
-"""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -44,43 +33,15 @@ def browser_type_launch_args() -> dict[str, object]:
     return {"executable_path": CHROMIUM, "args": [*quiet, "--disable-sync", "--no-first-run", "--disable-extensions"]}
 
 
-@dataclass(frozen=True)
-class Site:
-    """A service as a process of its own, its address, and a client with the token."""
-
-    address: str
-    client: httpx.Client
-
-
-def serve(data: Path) -> Iterator[Site]:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    process = subprocess.Popen([sys.executable, "-c", SERVE, str(data), str(port), TOKEN])
-    address = f"http://127.0.0.1:{port}"
-    client = httpx.Client(base_url=f"{address}/api/v1", headers={"Authorization": f"Bearer {TOKEN}"}, timeout=120)
-    try:
-        for _ in range(600):
-            try:
-                if client.get("/ready").status_code == 200:
-                    break
-            except httpx.TransportError:
-                time.sleep(0.1)
-        yield Site(address, client)
-    finally:
-        client.close()
-        process.terminate()
-        process.wait(20)
-
-
 @pytest.fixture(scope="session")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     """A service for all tests."""
-    yield from serve(tmp_path_factory.mktemp("site"))
+    with process(tmp_path_factory.mktemp("site")) as service:
+        yield service
 
 
 @pytest.fixture(scope="session")
-def matrix(site: Site) -> str:
+def matrix(site: Service) -> str:
     """An uploaded matrix of nine runs."""
     answer = site.client.post("/matrices", files={"files": ("matrix.zip", zipped("SW/1 <b>"))})
     assert answer.status_code == 201, answer.text
@@ -88,11 +49,11 @@ def matrix(site: Site) -> str:
 
 
 @pytest.fixture(scope="session")
-def fitted(site: Site, matrix: str) -> str:
+def fitted(site: Service, matrix: str) -> str:
     """A finished fit of it."""
-    job = site.client.post("/fits", json={"matrix": matrix}).json()
-    assert '"state":"succeeded"' in site.client.get(f"/jobs/{job['id']}/events").text
-    return str(job["id"])
+    job = site.fit(matrix)
+    assert site.ended(job)["state"] == "succeeded"
+    return job
 
 
 @dataclass
@@ -110,7 +71,7 @@ def watch(page, site) -> Iterator[Watch]:
     page.on("console", lambda message: seen.complaints.append(message.text) if message.type != "log" else None)
     page.on("pageerror", lambda error: seen.complaints.append(str(error)))
     page.on("request", lambda request: seen.requests.append(request.url))
-    page.goto(f"{site.address}/?token={TOKEN}")
+    page.goto(f"{site.address}/?token={site.token}")
     yield seen
     assert seen.complaints == []
     foreign = [url for url in seen.requests if not url.startswith((site.address, "data:", "blob:"))]

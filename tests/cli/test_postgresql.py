@@ -8,10 +8,9 @@ import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
-import httpx
 import pytest
 
-from tests.cli.running import Service, free_port, running
+from tests.running import Service, command, free_port
 
 SERVERS = sorted(Path("/usr/lib/postgresql").glob("*/bin/pg_ctl"))
 pytestmark = pytest.mark.skipif(not SERVERS, reason="PostgreSQL is not installed (apt-get install postgresql)")
@@ -53,17 +52,16 @@ def test_a_service_and_a_worker_share_the_queue(servoident, database, matrix, tm
     """Fits of one matrix all end well, and an approved one is found by its serial number and rechecked."""
     place = ("--database", database, "--data", tmp_path)
     with (
-        running("serve", "--port", free_port(), *place, until="token=") as said,
-        running("worker", "--executor", "second", *place, until="waiting for jobs"),
+        command("serve", "--port", free_port(), *place, until="token=") as line,
+        command("worker", "--executor", "second", *place, until="waiting for jobs"),
     ):
-        service = Service(said, tmp_path)
-        _, server, _, token = service.options
-        nul = httpx.get(f"{server}/api/v1/actuators/%00", headers={"Authorization": f"Bearer {token}"})
+        service = Service.that_said(line)
+        nul = service.client.get("/actuators/%00")
         assert (nul.status_code, nul.json()["code"]) == (422, "unusable-text")  # SQLite would have looked for it
         stored = servoident("upload", matrix, *service.options)
         assert stored.returncode == 0, stored.stderr
         identity = stored.stdout.split()[1]
-        jobs = [service.call("POST", "/fits", json={"matrix": identity, "seed": seed}) for seed in (1, 2)]
+        jobs = [service.fit(identity, seed=seed) for seed in (1, 2)]
         ended = [service.ended(job) for job in jobs]
         assert [job["state"] for job in ended] == ["succeeded", "succeeded"]
         assert servoident("approve", ended[0]["fit"], *service.options).returncode == 0

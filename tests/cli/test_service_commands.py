@@ -5,20 +5,32 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from xml.etree import ElementTree
 
-import httpx
 import pytest
 
-from tests.cli.running import Service, free_port, running
+from tests.running import Service, command, free_port
 
 
 @pytest.fixture(scope="module")
-def service(tmp_path_factory) -> Iterator[Service]:
-    """`servoident serve` in a process of its own."""
-    data = tmp_path_factory.mktemp("data")
-    with running("serve", "--port", free_port(), "--data", data, "--allow-host", "lab.example", until="token=") as said:
-        yield Service(said, data)
+def data(tmp_path_factory) -> Path:
+    """The service's data folder."""
+    return tmp_path_factory.mktemp("data")
+
+
+@pytest.fixture(scope="module")
+def said(data) -> Iterator[str]:
+    """The line that `servoident serve` prints, while it runs."""
+    arguments = ("--port", free_port(), "--data", data, "--allow-host", "lab.example")
+    with command("serve", *arguments, until="token=") as line:
+        yield line
+
+
+@pytest.fixture(scope="module")
+def service(said) -> Service:
+    """That service, for its clients."""
+    return Service.that_said(said)
 
 
 @pytest.fixture(scope="module")
@@ -32,22 +44,20 @@ def stored(service, servoident, matrix) -> dict:
 @pytest.fixture(scope="module")
 def fitted(service, stored) -> str:
     """The id of a finished fit of it."""
-    job = service.ended(service.call("POST", "/fits", json={"matrix": stored["id"], "set": {"m0": "4.25 kg"}}))
+    job = service.ended(service.fit(stored["id"], set={"m0": "4.25 kg"}))
     assert job["state"] == "succeeded", job
     return job["fit"]
 
 
-def test_serve_prints_an_address_on_this_machine_only(service):
+def test_serve_prints_an_address_on_this_machine_only(said):
     """The loopback address, with a token."""
-    assert re.search(r"http://127\.0\.0\.1:\d+/\?token=\S{20,}", service.said)
+    assert re.search(r"http://127\.0\.0\.1:\d+/\?token=\S{20,}", said)
 
 
 @pytest.mark.parametrize(("host", "status"), [("lab.example", 200), ("other.example", 403)])
 def test_only_names_that_were_allowed_are_served(service, host, status):
     """A name given with --allow-host works; any other is refused, whatever it resolves to."""
-    _, server, _, token = service.options
-    headers = {"Host": host, "Authorization": f"Bearer {token}"}
-    assert httpx.get(f"{server}/api/v1/jobs", headers=headers).status_code == status
+    assert service.client.get("/jobs", headers={"Host": host}).status_code == status
 
 
 def test_an_uploaded_folder_is_the_matrix(stored, matrix):
@@ -70,12 +80,12 @@ def test_a_revision_is_a_new_matrix_with_the_mended_label(service, servoident, s
     (tmp_path / "changes.yaml").write_text(f"runs: {{{run}: {{gain: 9}}}}")
     done = servoident("revise", stored["id"], tmp_path / "changes.yaml", *service.options)
     assert done.returncode == 0, done.stderr
-    revised = service.get(f"/matrices/{done.stdout.split()[1]}")
+    revised = service.client.get(f"/matrices/{done.stdout.split()[1]}").json()
     assert revised["parent"] == stored["id"]
     assert {one["id"]: one["gain"] for one in revised["runs"]}[run] == 9
 
 
-def test_an_approved_fit_is_what_a_query_finds_and_what_regress_rechecks(service, servoident, fitted, tmp_path):
+def test_an_approved_fit_is_what_a_query_finds_and_what_regress_rechecks(service, data, servoident, fitted, tmp_path):
     """Approve, query by serial and range, recheck: the whole way of a parameter set."""
     assert servoident("approve", fitted, *service.options).returncode == 0
     told = servoident("query", "--serial", "SIM-0001", "--range", "Z0=2e-6:3e-6", *service.options, "--json", "-")
@@ -87,7 +97,7 @@ def test_an_approved_fit_is_what_a_query_finds_and_what_regress_rechecks(service
     assert fitted in servoident("query", *service.options).stdout
 
     junit = tmp_path / "junit.xml"
-    done = servoident("regress", "--data", service.data, "--junit", junit)
+    done = servoident("regress", "--data", data, "--junit", junit)
     assert done.returncode == 0, done.stdout + done.stderr
     suite = ElementTree.parse(junit).getroot()
     assert (suite.get("tests"), suite.get("failures"), suite.get("errors")) == ("1", "0", "0")
@@ -111,6 +121,6 @@ def test_a_wrong_token_is_told(service, servoident):
 
 def test_demo_identifies_a_simulated_actuator(tmp_path):
     """The address is printed when the identification has begun; the serial number says what it is."""
-    with running("demo", "--port", 8765, "--data", tmp_path, until="token=") as said:
-        jobs = Service(said, tmp_path).get("/jobs")
+    with command("demo", "--port", 8765, "--data", tmp_path, until="token=") as line:
+        jobs = Service.that_said(line).client.get("/jobs").json()
     assert [job["serial"] for job in jobs["items"]] == ["DEMO-0001"]
