@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ident.chain import Chain, conditions, linear_model
 from ident.fit.objective import STEP, UNSTABLE, Local, local
+from ident.fit.products import add_products
 from ident.fit.record import Moments, first_state, moments_of
 from ident.fit.space import Space
 from ident.matrix import Matrix, Run
@@ -159,18 +160,15 @@ class OutputError:
             for i in range(states):
                 start[:, p + 1 + i, i] += self._reach[i]
         length = max(16, -(-runs[0].length // _BLOCKS))
-        blocks: list[list[Array]] = [[] for _ in runs]
-        order = np.array([*range(1, p + 1 + states), p + 1 + states, 0])
+        records = np.column_stack([run.measured - run.measured.mean() for run in runs])
         scale = np.array([*self._strides[:p], *[1.0] * (states + 2)])
-        means = [run.measured.mean() for run in runs]
+        blocks = []
         for rows, first, last in self._simulation(runs, wide, steps, start).outputs(length):
-            for i, run in enumerate(runs):
-                columns = np.column_stack([rows[:, i], np.ones(last - first)])
-                columns[:, 1 : p + 1 + states] -= columns[:, :1]
-                columns[:, 0] = run.measured[first:last] - means[i] - columns[:, 0]
-                products = (columns.T @ columns)[np.ix_(order, order)]
-                blocks[i].append(products / scale[:, None] / scale)
-        return [moments_of(run, np.array(block), p) for run, block in zip(runs, blocks, strict=True)]
+            sums = np.zeros((len(runs), p + states + 2, p + states + 2))
+            add_products(rows, records[first:last], p, sums)
+            blocks.append((sums + np.tril(sums, -1).transpose(0, 2, 1)) / scale[:, None] / scale)
+        by_run = np.array(blocks).transpose(1, 0, 2, 3)
+        return [moments_of(run, block, p) for run, block in zip(runs, by_run, strict=True)]
 
     def _simulation(
         self, runs: tuple[Run, ...], values: Mapping[str, Array], steps: int, start: Array | None = None
