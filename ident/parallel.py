@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
@@ -12,6 +13,7 @@ from threadpoolctl import ThreadpoolController
 
 Item = TypeVar("Item")
 Outcome = TypeVar("Outcome")
+_NAME = "servoident"
 
 
 def cores() -> int:
@@ -26,7 +28,7 @@ def _controller() -> ThreadpoolController:
 
 @lru_cache
 def _pool() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(cores(), thread_name_prefix="servoident")
+    return ThreadPoolExecutor(cores(), thread_name_prefix=_NAME)
 
 
 def each(function: Callable[[Item], Outcome], items: Iterable[Item]) -> list[Outcome]:
@@ -36,6 +38,8 @@ def each(function: Callable[[Item], Outcome], items: Iterable[Item]) -> list[Out
     and with it the answer, from one machine to the next.
     """
     todo = list(items)
+    if threading.current_thread().name.startswith(_NAME):  # already side by side with others, and they hold the pool
+        return [function(item) for item in todo]
     with _controller().limit(limits=1, user_api="blas"):
         if cores() == 1 or len(todo) < 2:
             return [function(item) for item in todo]

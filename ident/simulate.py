@@ -11,6 +11,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from ident.chain import FORCE, INPUT, INPUT_RATE, STEP, Chain, friction
+from ident.effect import Effect
 from ident.kernel import HELD, LANES, SHARE, Filter, Kernel, constant, kernel
 from ident.matrix import Run
 
@@ -252,12 +253,13 @@ def rates(chain: Chain, values: Mapping[str, Any], output: str) -> Array:
     return np.asarray(np.abs(np.linalg.eigvals(jacobian)).max(axis=-1))
 
 
-def steps_needed(chain: Chain, fastest: Array, hold: str) -> NDArray[np.int64]:
+def steps_needed(chain: Chain, fastest: Array, hold: str, on: Sequence[Effect]) -> NDArray[np.int64]:
     """Steps a sample, a power of two up to :data:`MOST`, for eigenvalues `fastest` (radians a sample).
 
-    Kinks of effects ask for more, and so does a held command whose jumps act at once or between the samples.
+    Kinks of effects that are on ask for more, and so does a held command whose jumps act at once or between the
+    samples.
     """
-    least = max((effect.steps for effect in chain.effects), default=1)
+    least = max((effect.steps for effect in on), default=1)
     if hold == "zoh" and any(chain.reads(name) for name in (INPUT_RATE, "delay")):
         least = max(least, 2)
     ratio = np.maximum(fastest / FINE, least)

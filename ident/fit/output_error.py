@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.chain import Chain, conditions, linear_model
+from ident.effect import Effect
 from ident.fit.objective import STEP, UNSTABLE, Local, local
-from ident.fit.products import add_products
+from ident.fit.products import add_products, project
 from ident.fit.record import Moments, first_state, moments_of
 from ident.fit.space import Space
 from ident.matrix import Matrix, Run
@@ -26,6 +27,7 @@ from ident.simulate import MOST, Simulation, rates, steps_needed
 Array = NDArray[np.float64]
 _TOGETHER = 256  # lanes simulated in one go: memory stays small, the cores stay busy
 _BLOCKS = 32  # of a record: see ident.fit.record
+_LARGEST = 1e30  # a sum of squares beyond it is of a model that ran away
 _REACH = 1e-3  # of a state's size, for sensitivities to the first state
 _SETTLING = 3  # rounds in which the first states of a model are found
 
@@ -150,6 +152,17 @@ class OutputError:
 
     def _moments(self, runs: tuple[Run, ...], values: Mapping[str, Array], p: int, steps: int) -> list[Moments]:
         """The moments of runs of one length, from one simulation of all of them."""
+        blocks = self._products(runs, values, self._strides[:p], steps)
+        return [moments_of(run, block, p) for run, block in zip(runs, blocks, strict=True)]
+
+    def _products(
+        self, runs: tuple[Run, ...], values: Mapping[str, Array], strides: Array, steps: int, blocks: int = _BLOCKS
+    ) -> Array:  # fmt: skip
+        """Σ of products of [J, N, 1, r] of runs of one length and of each block of them, (runs, blocks, q, q).
+
+        J are the differences of the vectors behind the first to it, over `strides`.
+        """
+        p = len(strides)
         moving = not all(run.starts_at_rest for run in runs)
         states = len(self.chain.states) if moving else 0
         start = None
@@ -159,16 +172,39 @@ class OutputError:
             start = np.repeat(np.array([self.start(run) for run in runs])[:, None], p + 1 + states, axis=1)
             for i in range(states):
                 start[:, p + 1 + i, i] += self._reach[i]
-        length = max(16, -(-runs[0].length // _BLOCKS))
+        length = max(16, -(-runs[0].length // blocks))
         records = np.column_stack([run.measured - run.measured.mean() for run in runs])
-        scale = np.array([*self._strides[:p], *[1.0] * (states + 2)])
-        blocks = []
+        scale = np.array([*strides, *[1.0] * (states + 2)])
+        found = []
         for rows, first, last in self._simulation(runs, wide, steps, start).outputs(length):
             sums = np.zeros((len(runs), p + states + 2, p + states + 2))
-            add_products(rows, records[first:last], p, sums)
-            blocks.append((sums + np.tril(sums, -1).transpose(0, 2, 1)) / scale[:, None] / scale)
-        by_run = np.array(blocks).transpose(1, 0, 2, 3)
-        return [moments_of(run, block, p) for run, block in zip(runs, by_run, strict=True)]
+            add_products(rows, records[first:last], sums)
+            found.append((sums + np.tril(sums, -1).transpose(0, 2, 1)) / scale[:, None] / scale)
+        return np.array(found).transpose(1, 0, 2, 3)
+
+    def differences(self, values: Mapping[str, Array], strides: Array) -> tuple[Array, Array]:
+        """The products of [d, r] of each run, (runs, p+1, p+1), and their means, for the first of `values`.
+
+        d are the other vectors' outputs less the first one's, over `strides`; what is free in each record is projected
+        out. A vector that is unstable at a run has nothing but zeros there. Kinks are met at whole samples.
+        """
+        p, steps = len(strides), int(self._steps(values, kinks=False).max())
+        self.begin({name: float(value[0]) for name, value in values.items()})
+
+        def of_share(runs: tuple[Run, ...]) -> tuple[Array, Array]:
+            with np.errstate(over="ignore", invalid="ignore"):
+                sums = self._products(runs, values, strides, steps, blocks=1)[:, 0]
+            power = np.abs(np.diagonal(sums, axis1=1, axis2=2))
+            sound = np.where(power < _LARGEST, 1.0, 0.0)
+            gram, shares = project(np.where(sound[:, :, None] * sound[:, None, :] > 0, sums, 0.0), p)
+            means = shares[:, -1] + np.append(np.zeros(p), 1.0) * np.array([[run.measured.mean()] for run in runs])
+            return gram, means
+
+        todo = list(self._together(p + 1 + len(self.chain.states)))
+        parts = each(of_share, todo)
+        order = {run.id: i for i, run in enumerate(run for runs in todo for run in runs)}
+        where = [order[run.id] for run in self.runs]
+        return np.concatenate([gram for gram, _ in parts])[where], np.concatenate([mean for _, mean in parts])[where]
 
     def _simulation(
         self, runs: tuple[Run, ...], values: Mapping[str, Array], steps: int, start: Array | None = None
@@ -227,7 +263,7 @@ class OutputError:
             for share in np.array_split(np.arange(len(runs)), shares):
                 yield tuple(runs[i] for i in share)
 
-    def _steps(self, values: Mapping[str, Array]) -> NDArray[np.int64]:
+    def _steps(self, values: Mapping[str, Array], kinks: bool = True) -> NDArray[np.int64]:
         """Steps a sample for each vector, by the fastest mode of the linear core and the effects at small signals."""
         vectors = len(next(iter(values.values())))
         fastest = np.zeros(vectors)
@@ -236,7 +272,13 @@ class OutputError:
             fastest = np.maximum(fastest, rates(self.chain, known | dict(values), run.output) / run.sample_rate)
         self.coarse += int(np.sum(fastest > MOST))
         holds = {run.hold for run in self.runs}
-        return np.asarray(np.max([steps_needed(self.chain, fastest, hold) for hold in holds], axis=0))
+        on = [effect for effect in self.preset.effects if kinks and self._is_on(effect, values)]
+        return np.asarray(np.max([steps_needed(self.chain, fastest, hold, on) for hold in holds], axis=0))
+
+    def _is_on(self, effect: Effect, values: Mapping[str, Array]) -> bool:
+        """Whether an effect is searched, or held at a strength that is not zero."""
+        name = effect.symbol(effect.strength.name)
+        return name in self.space.names or bool(np.any(values[name]))
 
     @cached_property
     def _extreme(self) -> tuple[Run, ...]:
@@ -253,8 +295,11 @@ def _turned(found: Moments, flip: Array) -> Moments:
     """The moments with the signs of the steps taken back."""
     if not np.isfinite(found.error):
         return found
+    p = len(flip) - 1
     gram, scores = found.gram * flip[:, None] * flip, found.scores * flip[:-1]
-    return replace(found, gram=gram, scores=scores, means=found.means * flip)
+    wide = np.concatenate([flip[:p], np.ones(found.blocks.shape[-1] - p)])
+    blocks = found.blocks * wide[:, None] * wide
+    return replace(found, gram=gram, scores=scores, means=found.means * flip, blocks=blocks)
 
 
 def shortened(runs: Sequence[Run], samples: int) -> tuple[Run, ...]:

@@ -16,13 +16,13 @@ _CONVERGED = 1e-10  # relative decrease of the error that a further step promise
 
 def polish(
     evaluate: Callable[[Array], Local], start: Array, report: Callable[[int, float], None],
-    accept: Callable[[Local], None],
+    accept: Callable[[Local], None], converged: float = _CONVERGED,
 ) -> tuple[Array, Local]:  # fmt: skip
     """The point of the unit cube with the least error near `start`, and the objective there.
 
     A step solves (H + λ diag H) δ = −g on the axes that are free: those at a bound with a gradient that points
     outwards stay. λ falls tenfold after a step that helped and rises tenfold after one that did not. `accept` is told
-    of each point that is gone on from.
+    of each point that is gone on from; `converged` is the relative decrease below which no further step is worth it.
     """
     point, here, damping = start.copy(), evaluate(start), 1e-4
     accept(here)
@@ -34,7 +34,7 @@ def polish(
         promised = -(here.gradient @ step + 0.5 * step @ here.curvature @ step)
         # A step cut at a bound may promise nothing where a shorter one does.
         cut = bool(np.any(trial != point + free_step))
-        if not promised > _CONVERGED * here.error and not cut:
+        if not promised > converged * here.error and not cut:
             break
         there = evaluate(trial) if promised > 0 else None
         if there is not None and there.error < here.error:

@@ -28,7 +28,8 @@ class Moments:
     """Σ of products of [J, r] with the nuisances projected out, (p+1, p+1), and the score JᵀR of each block, (b, p).
 
     `total` is Σ (x_m − mean)²; `offset` the difference of means over the standard deviation; `release` how much of
-    each nuisance but the mean the record holds; `means` the means of [J, r], `length` the number of samples.
+    each nuisance but the mean the record holds; `means` the means of [J, r], `length` the number of samples; `blocks`
+    the sums of products of [J, N, 1, r] of each block, before anything is projected out, (b, q, q).
     """
 
     gram: Array
@@ -38,6 +39,7 @@ class Moments:
     release: Array = field(default_factory=lambda: np.empty(0))
     means: Array = field(default_factory=lambda: np.empty(0))
     length: int = 0
+    blocks: Array = field(default_factory=lambda: np.empty((0, 0, 0)), repr=False)
 
     @property
     def error(self) -> float:
@@ -75,7 +77,7 @@ def moments_of(run: Run, blocks: Array, p: int) -> Moments:
     constant = solution[-1, -1] + run.measured.mean()
     offset = float(constant / np.sqrt(total / run.length))
     means = np.append(solution[-1, :-1], constant)
-    return Moments(projected, scores, total, offset, solution[:-1, -1], means, run.length)
+    return Moments(projected, scores, total, offset, solution[:-1, -1], means, run.length, blocks)
 
 
 def first_state(run: Run, model: LinearModel) -> Array:

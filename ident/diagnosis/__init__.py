@@ -1,0 +1,1 @@
+"""What a fitted model lacks: candidates predicted, refitted, and judged on data that no fit saw."""

@@ -1,0 +1,118 @@
+"""Adding what is missing, one effect at a time, with a look back after each.
+
+Forward: the best of the ranking is added while it helps beyond chance. Backward: what the model can do without since
+is taken out. In the end each effect that was added is weighed against everything that could stand in its place: a
+better one replaces it, those as good by chance are its group.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ident.diagnosis.chance import gain
+from ident.diagnosis.models import Models, Refit
+from ident.diagnosis.ranking import Candidate, Report, rank
+
+MOST = 6  # effects that are added
+_ROUNDS = 3  # of replacing
+
+
+@dataclass
+class Addition:
+    """The way from the fitted model to the one that explains the data.
+
+    `steps` are the refits, the fitted model first; `ranking` the first ranking; `groups` for each added effect the
+    effects that the data cannot tell from it, itself included, best first.
+    """
+
+    models: Models
+    base: Refit
+    most: int
+    report: Report
+    steps: list[Refit] = field(default_factory=list)
+    ranking: list[Candidate] = field(default_factory=list)
+    groups: dict[str, list[Candidate]] = field(default_factory=dict)
+
+    @property
+    def found(self) -> Refit:
+        """The last step."""
+        return self.steps[-1]
+
+    @property
+    def added(self) -> tuple[str, ...]:
+        """The effects that the last step has over the fitted model."""
+        return tuple(name for name in self.found.effects if name not in self.base.effects)
+
+    def run(self) -> Addition:
+        """Add, take out, replace, until nothing helps."""
+        self.steps = [self.base]
+        seen: set[frozenset[str]] = set()
+        for _ in range(_ROUNDS):
+            self._forward()
+            if frozenset(self.added) in seen or not self._replaced():
+                break
+            seen.add(frozenset(self.added))
+        return self
+
+    def _rank(self, base: Refit, thorough: bool) -> list[Candidate]:
+        return rank(self.models, base, [n for n in self.models.effects if n not in base.effects], self.report, thorough)
+
+    def _forward(self) -> None:
+        while len(self.added) < self.most:
+            first = not self.ranking
+            ranking = self._rank(self.found, thorough=first)
+            if first:
+                self.ranking = ranking
+            best = ranking[0]
+            if best.refit is None or not best.helps:
+                break
+            self.steps.append(best.refit)
+            if self._backward(best.effect):
+                break
+
+    def _backward(self, latest: str) -> bool:
+        """Take out what the model can do without; True where that leads back to where it was."""
+        for name in self.added:
+            if name == latest:
+                continue
+            here = self.found
+            effects = tuple(e for e in here.effects if e != name)
+            less = self.models.refit(effects, _without(here.values, name))
+            if less.finite and not gain(less.held_out, here.held_out).beyond_chance:
+                back = any(set(step.effects) == set(effects) for step in self.steps)
+                self.steps.append(less)
+                if back:
+                    return True
+        return False
+
+    def _replaced(self) -> bool:
+        """Weigh each added effect against what could stand in its place; True where one was replaced."""
+        self.groups = {}
+        for name in self.added:
+            here = self.found
+            ranking = self.ranking
+            if len(here.effects) - len(self.base.effects) > 1 or self.ranking[0].refit is not here:
+                effects = tuple(e for e in here.effects if e != name)
+                others = self.models.refit(effects, _without(here.values, name))
+                ranking = self._rank(others, thorough=False)
+            best = next((c for c in ranking if c.refit is not None), None)
+            if best is None or best.refit is None:
+                continue
+            if best.effect != name and gain(here.held_out, best.refit.held_out).beyond_chance:
+                self.steps.append(best.refit)
+                return True
+            self.groups[name] = _group(name, here, ranking)
+        return False
+
+
+def _without(values: Mapping[str, float], effect: str) -> dict[str, float]:
+    return {name: value for name, value in values.items() if not name.startswith(f"{effect}__")}
+
+
+def _group(name: str, here: Refit, ranking: list[Candidate]) -> list[Candidate]:
+    """The candidates that are no worse than the best but by chance, the effect itself first where it is among them."""
+    refits = [c for c in ranking if c.refit is not None]
+    best = min([here, *(c.refit for c in refits if c.refit)], key=lambda r: r.held_out.score)
+    alike = [c for c in refits if c.refit and gain(c.refit.held_out, best.held_out).within_chance]
+    return sorted(alike, key=lambda c: (c.effect != name, c.score))

@@ -1,0 +1,164 @@
+"""What each effect that is off would take off the error, from the responses of the fitted model to it: at once.
+
+The fitted model is simulated with the effect at a few strengths over its range. Each change of the output, and the
+sensitivities to the parameters that are on already, are fitted to the residual: that is the error after adding the
+effect, to first order in the parameters, and a start for the refit. Strengths that are a share of the range, never
+tiny ones: kinks need room, and what approaches zero as a fast time constant would be stiff.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import chain
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.diagnosis.held_out import bounded_step
+from ident.diagnosis.models import Models, Refit
+from ident.fit.objective import STEP
+from ident.fit.output_error import OutputError
+from ident.parallel import each
+
+Array = NDArray[np.float64]
+SAMPLES = 65_536
+_LADDER = (0.01, 0.03, 0.1, 0.3, 1.0)  # of the way from off to each bound
+_TOGETHER = 5  # effects simulated in one go
+_REACH = 2.0  # by which factor a response may be scaled: beyond, it would be another strength's
+_ROUNDS = 3  # of weighting each run by what it is left with
+
+
+@dataclass(frozen=True)
+class Outlook:
+    """Eq. (17) averaged over the runs, the root mean square of their offsets, and the score of both together."""
+
+    error: float
+    offset: float
+    score: float
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """An effect's predicted error and offset, the same without it, and the values from which to refit with it.
+
+    All on the beginnings of the records; `runs` is their number.
+    """
+
+    effect: str
+    after: Outlook
+    before: Outlook
+    runs: int
+    start: Mapping[str, float]
+
+    @property
+    def fall(self) -> float:
+        """Relative fall of the error."""
+        return 1.0 - self.after.error / self.before.error
+
+    @property
+    def nats(self) -> float:
+        """By how much the runs' offsets become more likely."""
+        return self.runs * float(np.log(self.before.offset / self.after.offset))
+
+
+def predict(models: Models, base: Refit, names: Sequence[str]) -> list[Prediction]:
+    """What adding each effect to the refitted model promises, in the order of the names."""
+    fitness = models.fitness((*base.effects, *names), SAMPLES, whole=True)
+    shares = [list(names[i : i + _TOGETHER]) for i in range(0, len(names), _TOGETHER)]
+    return list(chain.from_iterable(each(lambda share: _predicted(models, fitness, base, share), shares)))
+
+
+def _predicted(models: Models, fitness: OutputError, base: Refit, names: list[str]) -> list[Prediction]:
+    """The predictions of a few effects, simulated in one go."""
+    off = {symbol: value for symbol, value in models.off.items() if symbol not in base.values}
+    known = {**off, **base.values}
+    trials = [(name, strength) for name in names for strength in _strengths(fitness, models.strength(name), known)]
+    values, strides = _cloud(base, known, [(models.strength(name), strength) for name, strength in trials])
+    gram, means = fitness.differences(values, strides)
+    records = _Records(np.array([np.sum((r.measured - r.measured.mean()) ** 2) for r in fitness.runs]),
+                       np.array([r.length for r in fitness.runs]))  # fmt: skip
+    p, last = len(base.point), len(strides)
+    before, _ = _after(*_columns(gram, means, [*range(p), last]), records, base.point, p)
+    best = {name: (before, np.zeros(p + 1), strength) for name, strength in reversed(trials)}
+    for i, (name, strength) in enumerate(trials):
+        part, of_part = _columns(gram, means, [*range(p), p + i, last])
+        if part[:, p, p].any():
+            after, step = _after(part, of_part, records, base.point, p)
+            if after.score < best[name][0].score:
+                best[name] = (after, step, strength)
+    return [
+        Prediction(name, after, before, len(gram), _start(models, base, name, step, strength))
+        for name, (after, step, strength) in ((name, best[name]) for name in names)
+    ]
+
+
+def _start(models: Models, base: Refit, name: str, step: Array, strength: float) -> dict[str, float]:
+    """The values from which to refit with the effect."""
+    p = len(base.point)
+    point = np.clip(base.point + step[:p], 0.0, 1.0)
+    start = {key: float(value[0]) for key, value in base.space.values(point[None]).items()}
+    return {**base.values, **start, models.strength(name): strength * float(step[p])}
+
+
+def _columns(gram: Array, means: Array, columns: list[int]) -> tuple[Array, Array]:
+    kept = np.array(columns)
+    return gram[:, kept[:, None], kept], means[:, kept]
+
+
+def _strengths(fitness: OutputError, symbol: str, values: Mapping[str, float]) -> list[float]:
+    """The strengths to try, SI: shares of the way from off to each bound."""
+    lower, upper = fitness.space.bounds(values)[symbol]
+    ends = [end for end in (upper, lower) if end]
+    return [share * end for end in ends for share in _LADDER]
+
+
+def _cloud(
+    base: Refit, values: Mapping[str, float], trials: Sequence[tuple[str, float]]
+) -> tuple[dict[str, Array], Array]:  # fmt: skip
+    """The fitted model, it with each parameter moved, and it with each strength; the strides of these."""
+    p = len(base.point)
+    signs = np.where(base.point + STEP > 1.0, -1.0, 1.0)
+    points = np.concatenate([base.point[None], base.point + np.diag(STEP * signs)])
+    moved = base.space.values(np.concatenate([points, np.repeat(base.point[None], len(trials), axis=0)]))
+    cloud = {name: np.full(p + 1 + len(trials), value) for name, value in values.items()}
+    cloud |= {name: value for name, value in moved.items() if name in cloud}
+    for i, (symbol, strength) in enumerate(trials):
+        cloud[symbol] = cloud[symbol].copy()
+        cloud[symbol][p + 1 + i] = strength
+    return cloud, np.concatenate([STEP * signs, np.ones(len(trials))])
+
+
+@dataclass(frozen=True)
+class _Records:
+    """The power Σ (x_m − mean)² of each record and its length, (runs,)."""
+
+    totals: Array
+    lengths: Array
+
+
+def _after(
+    gram: Array, means: Array, records: _Records, point: Array, fitted: int
+) -> tuple[Outlook, Array]:  # fmt: skip
+    """What is left after the best step of the `fitted` parameters and, where there is one, the strength's share."""
+    p, runs = gram.shape[-1] - 1, len(gram)
+    here = np.append(point, np.zeros(p - fitted))  # the strength's axis runs from 0 to _REACH
+    scale = np.append(np.ones(fitted), np.full(p - fitted, _REACH))
+    share = runs / records.lengths.sum() if runs > 2 else 0.0
+    offsets = (means - means.mean(axis=0)) / np.sqrt(records.totals / records.lengths)[:, None]
+    of_offsets = offsets.T @ offsets
+    left = gram[:, p, p]
+    step, direction = np.zeros(p), np.append(np.zeros(p), 1.0)
+    for _ in range(_ROUNDS):
+        weights = 1.0 / np.sqrt(np.maximum(left, 1e-24 * records.totals) * records.totals)
+        joint = np.einsum("r,rij->ij", weights, gram)
+        error = float(np.mean(np.sqrt(left / records.totals)))
+        squared = max(float(direction @ of_offsets @ direction), 1e-18 * runs)
+        joint += share * runs * error * of_offsets / squared  # the gradient of the score's second part
+        H, g = joint[:p, :p], -joint[:p, p]
+        step = scale * bounded_step(here / scale, H * scale[:, None] * scale, g * scale)
+        direction = np.append(-step, 1.0)
+        left = np.maximum(np.einsum("i,rij,j->r", direction, gram, direction), 1e-12 * records.totals)
+    error = float(np.mean(np.sqrt(left / records.totals)))
+    offset = float(np.sqrt(max(direction @ of_offsets @ direction, 1e-18 * runs) / runs))
+    return Outlook(error, offset, error * (1.0 + share * float(np.log(offset)))), step

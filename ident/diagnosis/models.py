@@ -1,0 +1,151 @@
+"""The models that a diagnosis compares: one machine's, each with another set of effects, refitted to the same runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.diagnosis.held_out import HeldOut, held_out
+from ident.effect import Effect
+from ident.effects import EFFECTS
+from ident.errors import Unusable
+from ident.fit.objective import Local
+from ident.fit.output_error import OutputError, shortened
+from ident.fit.polish import polish
+from ident.fit.settings import Settings
+from ident.fit.space import Space, search_space
+from ident.matrix import Matrix, Run
+from ident.presets import PRESETS, Preset
+
+Array = NDArray[np.float64]
+_TRIAL = 131_072  # samples of a first refit; the finalists take every sample
+_FINE = 1e-7  # relative promise of a further step below which a refit stops
+_COARSE = 1e-5
+
+
+@dataclass(frozen=True)
+class Refit:
+    """A model with these effects at its optimum: `values` by the equations' names, SI."""
+
+    effects: tuple[str, ...]
+    values: Mapping[str, float]
+    space: Space
+    point: Array
+    here: Local
+
+    @cached_property
+    def held_out(self) -> HeldOut:
+        """Its errors on blocks that were left out in turn."""
+        return held_out(self.point, self.here)
+
+    @property
+    def finite(self) -> bool:
+        """Whether the model is stable on every run."""
+        return bool(np.isfinite(self.here.error))
+
+    @property
+    def error(self) -> float:
+        """Eq. (17) averaged over the runs."""
+        return float(np.mean([run.error for run in self.here.runs]))
+
+    @property
+    def offset(self) -> float:
+        """The mean of the runs' offsets."""
+        return float(np.mean([run.offset for run in self.here.runs]))
+
+
+@dataclass
+class Models:
+    """The models of a preset for the fit runs of a matrix, with effects of the catalogue and of the user.
+
+    `given` are what the user holds fixed or bounds; `left_out` the ids of runs that are not fitted.
+    """
+
+    preset: Preset
+    matrix: Matrix
+    given: Settings
+    band: float
+    effects: Mapping[str, Effect]
+    left_out: frozenset[str] = frozenset()
+    _known: dict[tuple[tuple[str, ...], int, bool], OutputError] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, matrix: Matrix, given: Settings, band: float, custom: Iterable[Effect] = ()) -> Models:
+        """The models of the settings' preset with every effect that it has a place for."""
+        preset, matrix = PRESETS[given.model].for_matrix(matrix, given.load)
+        known = {effect.name: effect for effect in (*EFFECTS, *custom) if _fits(preset, effect)}
+        return cls(preset, matrix, given, band, known)
+
+    @property
+    def runs(self) -> tuple[Run, ...]:
+        """The runs that are fitted."""
+        return tuple(run for run in self.matrix.of_use("fit") if run.id not in self.left_out)
+
+    def without(self, runs: Iterable[str]) -> Models:
+        """The same models, fitted to fewer runs."""
+        return replace(self, left_out=self.left_out | frozenset(runs), _known={})
+
+    @cached_property
+    def _whole(self) -> Preset:
+        """The preset with every effect."""
+        return self.preset.with_effects(tuple(self.effects.values()))
+
+    @cached_property
+    def off(self) -> dict[str, float]:
+        """The values of all effects' parameters where they are off, by the equations' names."""
+        return {effect.symbol(p.name): p.value for effect in self.effects.values() for p in effect.parameters}
+
+    def strength(self, effect: str) -> str:
+        """The name of an effect's strength in the equations."""
+        return self.effects[effect].symbol(self.effects[effect].strength.name)
+
+    def fitness(self, effects: tuple[str, ...], samples: int = 0, whole: bool = False) -> OutputError:
+        """The objective of the model with these effects, on records of at most `samples` in all where that is given.
+
+        `whole`: simulated by the kernel of the whole catalogue, the other effects off, instead of one of its own.
+        """
+        key = (effects, samples, whole)
+        if key not in self._known:
+            on = set(effects)
+            only = tuple(e for name, e in self.effects.items() if name in on)
+            model = self._whole if whole else self.preset.with_effects(only)
+            off = {self.strength(e.name): 0.0 for e in model.effects if e.name not in on}
+            given = replace(self.given, fixed={**self.given.fixed, **off})
+            space = search_space(model, self.matrix, given, self.band)
+            runs = shortened(self.runs, samples) if samples else self.runs
+            self._known[key] = OutputError(model, self.matrix, runs, space, self.band)
+        return self._known[key]
+
+    def refit(self, effects: tuple[str, ...], start: Mapping[str, float], samples: int = 0) -> Refit:
+        """The optimum near `start`, on shortened records where `samples` is given."""
+        fitness = self.fitness(effects, samples)
+        known = {p.name: p.value for p in fitness.preset.parameters} | dict(start)
+        point = fitness.space.point({**known, **fitness.space.fixed})
+        point, here = polish(fitness.exact, point, _silent, fitness.accept, _COARSE if samples else _FINE)
+        off = {symbol for name, e in self.effects.items() if name not in effects for symbol in map(e.symbol, _names(e))}
+        values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}
+        return Refit(effects, values, fitness.space, point, here)
+
+    def trial(self, effects: tuple[str, ...], start: Mapping[str, float]) -> Refit:
+        """A first refit on the beginnings of the records."""
+        return self.refit(effects, start, _TRIAL)
+
+
+def _fits(preset: Preset, effect: Effect) -> bool:
+    try:
+        preset.with_effects((effect,))
+    except Unusable:
+        return False
+    return True
+
+
+def _names(effect: Effect) -> list[str]:
+    return [parameter.name for parameter in effect.parameters]
+
+
+def _silent(_count: int, _error: float) -> None:
+    """Report nothing."""

@@ -1,0 +1,88 @@
+"""The effects that are off, ranked: predicted at once, contenders refitted, finalists judged on held-out data."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+from ident.diagnosis.chance import VISIBLE, WORTHWHILE, Gain, gain
+from ident.diagnosis.instant import Prediction, predict
+from ident.diagnosis.models import Models, Refit
+from ident.parallel import each
+
+_CONTENDERS, _FEW = 12, 6
+_NEAR = 1.3  # times the best predicted error: the contenders for a further effect
+_FINALISTS = 5
+_CLOSE = 1.05  # times the best trial's error: also a finalist
+_PROMISING = 0.3 * WORTHWHILE  # relative fall of the score that is worth a refit
+_NATS = 3.0  # of the offsets, too
+Report = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect, what it promises, its refit on all records where it came that far, and what that gains."""
+
+    prediction: Prediction
+    trial: Refit | None = None
+    refit: Refit | None = None
+    gain: Gain | None = None
+
+    @property
+    def effect(self) -> str:
+        """The name of the effect."""
+        return self.prediction.effect
+
+    @property
+    def helps(self) -> bool:
+        """Whether adding it helps beyond chance."""
+        return self.gain is not None and self.gain.beyond_chance
+
+    @property
+    def score(self) -> tuple[int, float]:
+        """What it is sorted by: finalists by the held-out score, then trials, then predictions."""
+        if self.refit is not None:
+            return 0, self.refit.held_out.score
+        return (1, self.trial.here.error) if self.trial is not None else (2, self.prediction.after.score)
+
+
+def rank(models: Models, base: Refit, names: Iterable[str], report: Report, thorough: bool = True) -> list[Candidate]:
+    """The candidates, best first. `thorough`: more are refitted, and also where nothing promises to help."""
+    report("predicting", 0, 1)
+    predictions = sorted(predict(models, base, list(names)), key=lambda p: p.after.score)
+    contenders = predictions[:_CONTENDERS]
+    if not thorough:
+        near = _NEAR * predictions[0].after.error
+        contenders = [p for p in predictions[:_FEW] if _promises(p) and p.after.error < near]
+    done = 0
+
+    def trial(prediction: Prediction) -> Candidate:
+        nonlocal done
+        refit = models.trial((*base.effects, prediction.effect), prediction.start)
+        done += 1
+        report("trying", done, len(contenders) + _FINALISTS)
+        return Candidate(prediction, refit if refit.finite else None)
+
+    tried = sorted(each(trial, contenders), key=lambda candidate: candidate.score)
+    best = tried[0].score[1] if tried else 0.0
+    sure = _FINALISTS if thorough else 2
+    finalists = [c for i, c in enumerate(tried) if c.trial and (i < sure or c.score[1] < _CLOSE * best)]
+
+    def final(candidate: Candidate) -> Candidate:
+        nonlocal done
+        assert candidate.trial is not None
+        refit = models.refit((*base.effects, candidate.effect), candidate.trial.values)
+        done += 1
+        report("confirming", done, len(contenders) + len(finalists))
+        if not refit.finite:
+            return replace(candidate, trial=None)
+        return replace(candidate, refit=refit, gain=gain(base.held_out, refit.held_out))
+
+    confirmed = {candidate.effect: candidate for candidate in (*tried, *each(final, finalists))}
+    rest = [confirmed.get(p.effect, Candidate(p)) for p in predictions]
+    return sorted(rest, key=lambda candidate: candidate.score)
+
+
+def _promises(prediction: Prediction) -> bool:
+    """Whether a prediction is worth a refit: by a part of what is asked for in the end."""
+    return prediction.fall > _PROMISING or (prediction.nats > _NATS and prediction.before.offset > VISIBLE)
