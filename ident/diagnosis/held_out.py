@@ -22,7 +22,7 @@ from ident.fit.products import project
 from ident.fit.record import Moments
 
 Array = NDArray[np.float64]
-Indices = NDArray[np.signedinteger]
+Indices = NDArray[np.intp]
 CHUNKS, FOLDS = 8, 4
 _LOST = 1e-7  # relative to the largest eigenvalue of the scaled H: a direction that a fold does not see stays
 
@@ -79,9 +79,7 @@ def held_out(point: Array, here: Local) -> HeldOut:
 
 def _chunk_of(run: Moments) -> Indices:
     """For each block of a run the chunk that it is in."""
-    count = len(run.blocks)
-    chunks: Indices = np.arange(count) * CHUNKS // count
-    return chunks
+    return np.asarray(np.arange(len(run.blocks)) * CHUNKS // len(run.blocks), dtype=np.intp)
 
 
 def _fold_of(run: Moments) -> Indices:
@@ -101,7 +99,7 @@ def _by_chunk(run: Moments, step: Array, nuisances: Array | None) -> Array:
     direction = np.append(-step, 1.0)
     full = np.concatenate([direction[:-1], -nuisances @ direction, direction[-1:]])
     by_block = np.einsum("i,bij,j->b", full, run.blocks, full)
-    return np.bincount(_chunk_of(run), np.maximum(by_block, 0.0), CHUNKS)
+    return np.asarray(np.bincount(_chunk_of(run), np.maximum(by_block, 0.0), CHUNKS), dtype=np.float64)
 
 
 def _step(point: Array, here: Local, parts: list[tuple[Array, Array]]) -> Array:

@@ -89,6 +89,11 @@ class Models:
         """The same models, fitted to fewer runs."""
         return replace(self, left_out=self.left_out | frozenset(runs), _known={})
 
+    def model(self, effects: Iterable[str]) -> Preset:
+        """The preset with these effects, in the order of the catalogue."""
+        on = set(effects)
+        return self.preset.with_effects(tuple(effect for name, effect in self.effects.items() if name in on))
+
     @cached_property
     def _whole(self) -> Preset:
         """The preset with every effect."""
@@ -111,8 +116,7 @@ class Models:
         key = (effects, samples, whole)
         if key not in self._known:
             on = set(effects)
-            only = tuple(e for name, e in self.effects.items() if name in on)
-            model = self._whole if whole else self.preset.with_effects(only)
+            model = self._whole if whole else self.model(on)
             off = {self.strength(e.name): 0.0 for e in model.effects if e.name not in on}
             given = replace(self.given, fixed={**self.given.fixed, **off})
             space = search_space(model, self.matrix, given, self.band)
