@@ -9,6 +9,8 @@ from __future__ import annotations
 import ast
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
+from types import CodeType
 from typing import Any
 
 from ident.chain import FORCE, INPUT, INPUT_RATE, STEP, Chain
@@ -168,8 +170,13 @@ def _folded(node: ast.expr, plain: Mapping[str, float]) -> ast.expr:
 
 def constant(node: ast.expr, values: Mapping[str, Any]) -> Any:
     """The value of an expression of symbols for all lanes."""
-    return eval(compile(ast.Expression(ast.fix_missing_locations(node)), "<constant>", "eval"),
-                {"__builtins__": {}, **FUNCTIONS}, dict(values))  # fmt: skip
+    return eval(_code(node), {"__builtins__": {}, **FUNCTIONS}, dict(values))
+
+
+@lru_cache(maxsize=8192)
+def _code(node: ast.expr) -> CodeType:
+    """An expression that passed the grammar, compiled for Python: the same ones are asked for in every simulation."""
+    return compile(ast.Expression(ast.fix_missing_locations(node)), "<constant>", "eval")
 
 
 def named(name: str) -> ast.Name:
