@@ -113,7 +113,8 @@ def _panel(rows: list[dict[str, Any]], y: alt.Scale, look: Look, axis: str) -> P
     values = [row["value"] for row in rows]
     line = alt.Scale(type="linear", domain=[values[0], values[-1]], padding=10, nice=False)
     scale = alt.Scale(type="log", domain=line.domain, padding=10, nice=False) if axis in ("runs", "seconds") else line
-    x = alt.X("x:Q", scale=scale, axis=alt.Axis(title=TITLES[axis], values=values))
+    digits = ".1~f" if axis == "seconds" else "d"
+    x = alt.X("x:Q", scale=scale, axis=alt.Axis(title=TITLES[axis], values=values, format=digits))
     time = alt.Axis(title="Time (ms)" if first else None, labels=first, values=list(DECADES), format="~r")
     base = alt.Chart(alt.InlineData(values=data))
     drawn = base.mark_line(color=look.series[0], strokeWidth=2, point={"color": look.series[0], "size": 36})

@@ -19,7 +19,7 @@ from tests.reference import qian_reference as linear
 PLANT = linear.Plant()
 RATE = 512.0  # Hz: few kinks of the command, so that the adaptive integrator is quick; the reference's step is its own
 STEPS = round(reference.SUBSTEPS * linear.SAMPLE_RATE / RATE)  # sub-steps a sample: 1/65536 s, as everywhere
-SAMPLES, LONG = 78, 512
+SAMPLES, LONG = 60, 512
 RUNS = ((linear.Cell(0.98, 67.6e3, 150.0, 7.0), "linear"), (linear.Cell(0.0, 36.3e3, 300.0, 10.0), "zoh"))
 
 
