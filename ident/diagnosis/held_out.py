@@ -24,12 +24,14 @@ from ident.fit.record import Moments
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 CHUNKS, FOLDS = 8, 4
+_FINER = 32  # chunks of a record where there are fewer records than CHUNKS
+_FAR = 0.05  # of an axis: a longer step is beyond what one linearisation tells, and is damped
 _LOST = 1e-7  # relative to the largest eigenvalue of the scaled H: a direction that a fold does not see stays
 
 
 @dataclass(frozen=True)
 class HeldOut:
-    """Σ of squared residuals of each run and chunk, (runs, CHUNKS), and the power of each record, (runs,).
+    """Σ of squared residuals of each run and chunk, (runs, chunks), and the power of each record, (runs,).
 
     `means` (runs,) are the runs' offsets over their standard deviations, less what they have in common: the zero of
     the transducer.
@@ -64,26 +66,23 @@ class HeldOut:
 
 def held_out(point: Array, here: Local) -> HeldOut:
     """The held-out errors at the optimum `point` of the unit cube."""
-    folds = [_fold_of(run) for run in here.runs]
-    squares = np.array([_by_chunk(run, np.zeros(len(point)), None) for run in here.runs])
+    count = CHUNKS if len(here.runs) >= CHUNKS else min(_FINER, *(len(run.blocks) for run in here.runs), _FINER)
+    chunks = [_chunk_of(run, count) for run in here.runs]
+    squares = np.zeros((len(here.runs), count))
     for fold in range(FOLDS):
-        parts = [_projected(run, of != fold) for run, of in zip(here.runs, folds, strict=True)]
+        parts = [_projected(run, of % FOLDS != fold) for run, of in zip(here.runs, chunks, strict=True)]
         step = _step(point, here, parts)
-        for i, (run, (_, nuisances)) in enumerate(zip(here.runs, parts, strict=True)):
-            inside = np.arange(CHUNKS) % FOLDS == fold
-            squares[i, inside] = _by_chunk(run, step, nuisances)[inside]
+        inside = np.arange(count) % FOLDS == fold
+        for i, (run, of, (_, nuisances)) in enumerate(zip(here.runs, chunks, parts, strict=True)):
+            squares[i, inside] = _by_chunk(run, of, count, step, nuisances)[inside]
     means = np.array([run.offset for run in here.runs])
     totals = np.array([run.total for run in here.runs])
     return HeldOut(squares, totals, means - means.mean(), sum(run.length for run in here.runs))
 
 
-def _chunk_of(run: Moments) -> Indices:
+def _chunk_of(run: Moments, count: int) -> Indices:
     """For each block of a run the chunk that it is in."""
-    return np.asarray(np.arange(len(run.blocks)) * CHUNKS // len(run.blocks), dtype=np.intp)
-
-
-def _fold_of(run: Moments) -> Indices:
-    return _chunk_of(run) % FOLDS
+    return np.asarray(np.arange(len(run.blocks)) * count // len(run.blocks), dtype=np.intp)
 
 
 def _projected(run: Moments, used: NDArray[np.bool_]) -> tuple[Array, Array]:
@@ -92,14 +91,12 @@ def _projected(run: Moments, used: NDArray[np.bool_]) -> tuple[Array, Array]:
     return gram[0], shares[0]
 
 
-def _by_chunk(run: Moments, step: Array, nuisances: Array | None) -> Array:
-    """Σ of squares of r − Jδ − Nν over each chunk, (CHUNKS,)."""
-    if nuisances is None:
-        _, nuisances = _projected(run, np.full(len(run.blocks), True))
+def _by_chunk(run: Moments, chunks: Indices, count: int, step: Array, nuisances: Array) -> Array:
+    """Σ of squares of r − Jδ − Nν over each chunk, (count,)."""
     direction = np.append(-step, 1.0)
     full = np.concatenate([direction[:-1], -nuisances @ direction, direction[-1:]])
     by_block = np.einsum("i,bij,j->b", full, run.blocks, full)
-    return np.asarray(np.bincount(_chunk_of(run), np.maximum(by_block, 0.0), CHUNKS), dtype=np.float64)
+    return np.asarray(np.bincount(chunks, np.maximum(by_block, 0.0), count), dtype=np.float64)
 
 
 def _step(point: Array, here: Local, parts: list[tuple[Array, Array]]) -> Array:
@@ -112,7 +109,12 @@ def _step(point: Array, here: Local, parts: list[tuple[Array, Array]]) -> Array:
     for weight, gram in terms:
         H += weight * gram[:p, :p]
         g -= weight * gram[:p, p]
-    return bounded_step(point, H, g)
+    damping, largest = 0.0, float(np.diag(H).max()) if p else 0.0
+    while True:
+        step = bounded_step(point, H + damping * largest * np.eye(p), g)
+        if not p or np.abs(step).max() <= _FAR or damping > 1.0:
+            return step
+        damping = max(10 * damping, 1e-9)
 
 
 def bounded_step(point: Array, H: Array, g: Array) -> Array:
