@@ -5,7 +5,7 @@ D the difference of the squared residuals of a chunk, in units of its run's erro
 standard error, or the sum of signed ranks of D over its (Wilcoxon), whichever is larger: ranks see what helps nearly
 everywhere by very different amounts. It also has to stand without the run that gains most: what only one run asks for
 is a doubt about that run, not physics. An effect that is not there makes held-out data worse in the mean, so that the
-bar is passed by chance far less often than the 33 × 2e-4 of a test at zero mean.
+bar is passed by chance far less often than a test at zero mean would let expect; docs/diagnosis.md has the rate.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from scipy.stats import rankdata
 from ident.diagnosis.held_out import HeldOut
 
 Array = NDArray[np.float64]
-BEYOND_CHANCE = 3.5  # standard deviations
+BEYOND_CHANCE = 3.0  # standard deviations
 WORTHWHILE = 1e-3  # relative fall of the error: less is not worth a parameter, however certain
 ALIKE = 3.0  # standard deviations below which two refits differ by chance
 _OFFSET_GAIN = 10.0  # nats by which the runs' offsets become more likely
 _OFFSET_ALIKE = 4.5  # nats: three deviations
 _ALIKE_NATS = 2 * ALIKE**2  # where white noise of σ separates outputs f, g by ALIKE deviations: |f − g|² = 36 σ²
 VISIBLE = 3e-4  # of the standard deviation: offsets below are nobody's concern
-_SINGLE = 3.0  # standard deviations that are to be left without the run that gains most
+_SINGLE = 2.5  # standard deviations that are to be left without the run that gains most
 
 
 @dataclass(frozen=True)
