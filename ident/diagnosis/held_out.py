@@ -30,6 +30,7 @@ Mask = NDArray[np.bool_]
 CHUNKS, FOLDS = 8, 4
 _FINER = 32  # chunks of a record where there are fewer records than CHUNKS
 _FAR = 0.01  # of an axis: a longer step is beyond what one linearisation tells
+_STEPS = 5  # of a fit without a fold: it starts close by
 _ENOUGH = 1e-5  # relative promise of a further step below which the fit without a fold stops
 _LOST = 1e-7  # relative to the largest eigenvalue of the scaled H: a direction that a fold does not see stays
 
@@ -102,7 +103,7 @@ def _without(
     def of_used(trial: Array) -> Local:
         return _partly(evaluate(trial), used)
 
-    end, _ = polish(of_used, point, lambda _count, _error: None, lambda _local: None, _ENOUGH)
+    end, _ = polish(of_used, point, lambda _count, _error: None, lambda _local: None, _ENOUGH, _STEPS)
     there = evaluate(end)
     return there, np.zeros(len(point)), [_projected(run, of) for run, of in zip(there.runs, used, strict=True)]
 

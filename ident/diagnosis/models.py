@@ -23,8 +23,8 @@ from ident.presets import PRESETS, Preset
 
 Array = NDArray[np.float64]
 _TRIAL = 131_072  # samples of a first refit; the finalists take every sample
-_FINE = 1e-7  # relative promise of a further step below which a refit stops
-_COARSE = 1e-5
+_FITTING = 1e-7, 20  # relative promise of a further step below which a refit stops, and its most steps
+_TRYING = 1e-5, 10
 _SHARES = (1.0, 0.5, 0.2)  # of the way to a predicted start
 
 
@@ -131,7 +131,7 @@ class Models:
         fitness = self.fitness(effects, samples)
         known = {p.name: p.value for p in fitness.preset.parameters} | dict(start)
         point = fitness.space.point({**known, **fitness.space.fixed})
-        point, here = polish(fitness.exact, point, _silent, fitness.accept, _COARSE if samples else _FINE)
+        point, here = polish(fitness.exact, point, _silent, fitness.accept, *(_TRYING if samples else _FITTING))
         off = {symbol for name, e in self.effects.items() if name not in effects for symbol in map(e.symbol, _names(e))}
         values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}
         return Refit(effects, values, fitness.space, point, here, fitness)
