@@ -12,6 +12,7 @@ from __future__ import annotations
 import ast
 import keyword
 import math
+import re
 from collections.abc import Callable, Mapping
 from functools import reduce
 from typing import Any
@@ -59,6 +60,8 @@ _NODES = (ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.Compare, ast.IfExp, ast.Call, 
 _LONGEST, _DEEPEST, _MOST = 1000, 40, 300  # of what a user writes: characters, levels, quantities and operations
 _LARGEST = 1e60  # a number beyond it is no quantity of a machine
 _HIGHEST = 10.0  # power
+_FOREIGN = re.compile(r"[^A-Za-z0-9_ +\-*/()<>=!^.,:']")
+_JOINED = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![eE][+-]?\d)[A-Za-z_]")
 _ONLY = "only numbers, names, + - * / **, comparisons and functions"
 
 
@@ -91,16 +94,18 @@ def refused(character: int, what: str, remedy: str = "mend it there") -> Unusabl
 
 
 def _refuse_text(text: str) -> None:
-    foreign = next((i for i, letter in enumerate(text) if not (letter.isascii() and letter.isprintable())), None)
-    if foreign is not None:
-        raise refused(foreign, f"the character {text[foreign]!a} is not of plain ASCII", "write a letter or sign of it")
     if len(text) > _LONGEST:
         raise refused(_LONGEST, f"longer than {_LONGEST} characters", "write a shorter equation")
+    if foreign := _FOREIGN.search(text):
+        what = f"the character {foreign[0]!a} has no meaning here"
+        raise refused(foreign.start(), what, "use letters, digits and + - * / ** ( ) < > = , .")
+    if joined := _JOINED.search(text):
+        raise refused(joined.end() - 1, "a number runs into a name", "write an operator between them, as in 2 * w")
 
 
 def _misread(text: str, start: int, error: Exception) -> Unusable:
-    column = getattr(error, "offset", None) or 1
-    at = min(max(start + column - 1, 0), max(len(text) - 1, 0))
+    column, end = getattr(error, "offset", None), len(text.rstrip())
+    at = min(start + column - 1, end) if column else end
     message = str(getattr(error, "msg", "")).lower()
     if not text[start:].strip():
         return refused(start, "expected an expression, found nothing", "write what the quantity is")
@@ -110,7 +115,8 @@ def _misread(text: str, start: int, error: Exception) -> Unusable:
         return refused(at, "the bracket that closes here was never opened", "open it, or take it away")
     if isinstance(error, RecursionError | MemoryError) or "nested" in message:
         return refused(start, "nested too deeply", f"use at most {_DEEPEST} levels")
-    return refused(at, f"expected a number, a name or an operator, found {text[at : at + 12]!r}")
+    found = repr(text[at : at + 12]) if at < end else "the end"
+    return refused(at, f"expected a number, a name or an operator, found {found}")
 
 
 def _refuse_size(text: str, start: int, body: ast.expr) -> None:
