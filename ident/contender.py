@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 Deviation = Callable[[float], float]
 """From the standard deviation of an output to that of its noise."""
 _SAMPLES = 65_536  # of the runs there are, from which their information is taken
-_PRIOR = 12.0  # of an axis of the unit cube before anything was measured: 1 over the variance between its bounds
+PRIOR = 12.0  # of an axis of the unit cube before anything was measured: 1 over the variance between its bounds
 
 
 def deviation_of_noise(runs: Sequence[Run], band: float, noise: float) -> Deviation:
@@ -83,7 +83,7 @@ class Contender:
             m.gram[:p, :p] / self.deviation(float(np.std(r.measured))) ** 2
             for m, r in zip(here.runs, runs, strict=True)
         ]
-        return np.asarray(longer * np.sum([t for t in terms if np.all(np.isfinite(t))], axis=0) + _PRIOR * np.eye(p))
+        return np.asarray(longer * np.sum([t for t in terms if np.all(np.isfinite(t))], axis=0) + PRIOR * np.eye(p))
 
     @cached_property
     def runs(self) -> tuple[Run, ...]:

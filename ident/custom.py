@@ -57,9 +57,16 @@ def definition_of(source: str | bytes | Definition, name: str = "") -> dict[str,
         data = read_yaml(text[:_LARGEST], "effect") if len(text) <= _LARGEST else None
     else:
         data = dict(source) if isinstance(source, Mapping) else source
-    if not isinstance(data, dict) or len(json.dumps(data, default=str)) > _LARGEST:
+    if not isinstance(data, dict) or not _plain(data):
         raise Unusable("not-an-effect", "not the definition of an effect", "effect", "write place: … and what follows")
     return {"name": re.sub(r"[\s-]+", "_", name), **{key: value for key, value in data.items() if value is not None}}
+
+
+def _plain(data: Mapping[str, Any]) -> bool:
+    try:
+        return len(json.dumps(data, default=str)) <= _LARGEST
+    except (ValueError, RecursionError):
+        return False
 
 
 def read_effect(source: str | bytes | Definition, name: str = "", model: str = "") -> Effect:

@@ -3,37 +3,34 @@
 With y_a, y_b the outputs of two models, J the sensitivities of b, σ the noise and H what the runs there are say of b's
 parameters, the models differ after refitting b to first order, H holding it back, by
 
-    χ² = min over δ of |y_a − y_b − J δ|²/σ² + δᵀ H δ = rᵀr/σ² − gᵀ (G + H)⁻¹ g,   G = JᵀJ/σ²,  g = Jᵀr/σ²
+    χ² = min over δ within the bounds of |y_a − y_b − J δ|²/σ² + δᵀ H δ
 
-and √χ² is the separation in standard deviations. A run tells ½ ln det(I + H⁻¹G) nats of the parameters (D-optimality).
+and √χ² is the separation in standard deviations. With G = JᵀJ/σ² a run tells
+½ ln det(I + H⁻¹G) nats of the parameters (D-optimality).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import permutations, product
-from typing import Any
+from itertools import permutations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.contender import Contender, deviation_of_noise
+from ident.contender import PRIOR, Contender, deviation_of_noise
+from ident.diagnosis.held_out import bounded_step
 from ident.errors import Unusable
-from ident.excitation import KINDS, PERIODIC, SIGNALS
+from ident.excitation import KINDS
 from ident.experiment import Experiment
 from ident.fit.record import Moments
 from ident.matrix import Matrix, Run
+from ident.possible_runs import possible_runs
 from ident.presets import Preset
 from ident.spectra import excited_band
 
 Array = NDArray[np.float64]
-_LARGER = 1.5  # times the largest amplitude of the matrix is the most that is proposed
-_STROKE = 0.45  # of the stroke, to either side, is the most that a command may reach
-_SPECIMENS, _GAINS, _AMPLITUDES = 6, 4, 4
-_SHARES = (1 / 30, 1 / 8, 1 / 3)  # of the band, where sines and saw-teeth are tried
 _TRIAL = 4096  # samples on which runs are judged
-_LONGEST = 60.0  # s
 _SURE = 1e4  # χ² beyond which a pair is apart and does not count more
 _SEPARATE = 1.0  # standard deviations below which telling models apart is hopeless, and knowledge is sought instead
 _RUNAWAY = 10.0  # times the command's size: the model does not hold there
@@ -67,7 +64,7 @@ def propose(
     `noise` is the relative noise floor. Raises Unusable where no model is given or none can be run.
     """
     contenders = _contenders(models, matrix, noise)
-    worths = _judged(contenders, list(candidates(contenders[0].matrix, contenders[0].band, seed)))
+    worths = _judged(contenders, list(possible_runs(contenders[0].matrix, contenders[0].band, seed)))
     if not worths:
         raise Unusable("no-experiment", "the models are stable in no run that could be proposed", "models",
                        "fit the models again")  # fmt: skip
@@ -88,7 +85,7 @@ def ranked(
 ) -> list[Worth]:
     """Every run that was weighed, the one that separates the models best first."""
     contenders = _contenders(models, matrix, noise)
-    worths = _judged(contenders, list(candidates(contenders[0].matrix, contenders[0].band, seed)))
+    worths = _judged(contenders, list(possible_runs(contenders[0].matrix, contenders[0].band, seed)))
     return sorted(worths, key=lambda worth: worth.rank, reverse=True)
 
 
@@ -104,55 +101,6 @@ def _contenders(models: Sequence[tuple[Preset, Mapping[str, float]]], matrix: Ma
         band = excited_band(runs)
         found.append(Contender(suited, dict(values), driven, band, deviation_of_noise(runs, band, noise)))
     return found
-
-
-# What could be run ------------------------------------------------------------------------------------------------
-
-
-def candidates(matrix: Matrix, band: float, seed: int = 0) -> Iterator[Experiment]:
-    """The runs that the lab could add: specimens of the matrix, gains and amplitudes of it and between, four signals.
-
-    No gain beyond those of the matrix, no amplitude above 1.5 times its largest nor beyond the stroke.
-    """
-    runs = matrix.runs
-    first = runs[0]
-    seconds = min(float(np.median([run.duration for run in runs])), _LONGEST if first.time_unit == "s" else 65536.0)
-    specimens = _spread([*dict.fromkeys(run.specimen for run in runs)], _SPECIMENS)
-    stated = sorted({run.gain for run in runs if run.gain is not None})
-    gains: list[float | None] = [*_between(stated, _GAINS)] or [None]
-    sizes = sorted(_rms(run) for run in runs)
-    within = _between([float(f"{size:.3g}") for size in (sizes[0], sizes[-1])], _AMPLITUDES)
-    amplitudes = [within[0] / 2, *within, _LARGER * sizes[-1]]
-    edge = min(band / (2 * np.pi) / 1.25, 0.4 * first.sample_rate)  # the band has a margin that the command has not
-    for specimen, gain, amplitude, signal in product(specimens, gains, amplitudes, SIGNALS):
-        for share in _SHARES if signal in PERIODIC else (1.0,):
-            found = Experiment(specimen, gain, amplitude, signal, share * edge, seconds, first.sample_rate, seed,
-                               first.units.get("command", "m"), first.time_unit)  # fmt: skip
-            if share * edge * seconds >= 2 and _within_stroke(found, matrix.actuator.stroke):
-                yield found
-
-
-def _rms(run: Run) -> float:
-    return float(np.sqrt(np.mean((run.command - run.command.mean()) ** 2)))
-
-
-def _between(values: Sequence[float], count: int) -> list[float]:
-    """The values, evenly spread where there are many, with geometric means between where there are few."""
-    found = sorted(set(values))
-    while 1 < len(found) < count and found[-1] > 1.02 * found[0]:
-        widest = max(range(len(found) - 1), key=lambda i: found[i + 1] / found[i])
-        found.insert(widest + 1, float(f"{np.sqrt(found[widest] * found[widest + 1]):.3g}"))
-    return _spread(found, count)
-
-
-def _spread(values: Sequence[Any], count: int) -> list[Any]:
-    if len(values) <= count:
-        return list(values)
-    return [values[round(i * (len(values) - 1) / (count - 1))] for i in range(count)]
-
-
-def _within_stroke(experiment: Experiment, stroke: float | None) -> bool:
-    return stroke is None or float(np.abs(experiment.command()).max()) <= _STROKE * stroke
 
 
 # What a run would tell --------------------------------------------------------------------------------------------
@@ -204,17 +152,20 @@ def _pairs(
     for a, b in permutations(range(len(contenders)), 2):
         moments = contenders[b].moments(_recorded(runs, outputs[a]))
         sigma = [contenders[b].deviation(float(np.std(outputs[a][run.id]))) for run in runs]
-        chi = [_chi_squared(m, s, contenders[b].information, longer) for m, s in zip(moments, sigma, strict=True)]
+        known, point = contenders[b].information, contenders[b].point
+        chi = [_chi_squared(longer * m.gram / s**2, known, point) for m, s in zip(moments, sigma, strict=True)]
         key = frozenset((a, b))
         found[key] = found.get(key, 0.0) + 0.5 * np.array(chi)
     return np.array(list(found.values())).T.reshape(len(runs), -1)
 
 
-def _chi_squared(m: Moments, sigma: float, known: Array, longer: float = 1.0) -> float:
-    if not np.all(np.isfinite(m.gram)):
+def _chi_squared(gram: Array, known: Array, point: Array) -> float:
+    """What is left of the products of [J, r], in units of the noise, after the refit within the bounds."""
+    if not np.all(np.isfinite(gram)):
         return 0.0
-    gram = longer * m.gram / sigma**2
-    return max(0.0, float(gram[-1, -1] - gram[:-1, -1] @ np.linalg.solve(gram[:-1, :-1] + known, gram[:-1, -1])))
+    H, g = gram[:-1, :-1] + known, gram[:-1, -1]
+    step = bounded_step(point, H, -g)
+    return max(0.0, float(gram[-1, -1] - 2 * g @ step + step @ H @ step))
 
 
 def _told(
@@ -232,20 +183,22 @@ def _told(
 
 
 def _so_far(contenders: Sequence[Contender]) -> float | None:
-    """The separation of the closest models by the runs there are."""
+    """The separation of the closest models by the runs there are, the mean of both being the machine."""
     if len(contenders) < 2:
         return None
-    separations = []
-    for a, b in permutations(contenders, 2):
+    found: dict[frozenset[int], float] = {}
+    for (i, a), (j, b) in permutations(enumerate(contenders), 2):
         runs = [run for run in b.runs if run.starts_at_rest]
         outputs = a.outputs(runs) if runs else {}
         if not runs or not all(_sound(outputs[run.id], run) for run in runs):
             return None
         moments = b.moments(_recorded(runs, outputs))
-        gram = sum(m.gram / b.deviation(float(np.std(outputs[r.id]))) ** 2 for m, r in zip(moments, runs, strict=True))
-        joint = replace(moments[0], gram=np.asarray(gram))
-        separations.append(np.sqrt(_chi_squared(joint, 1.0, 12.0 * np.eye(len(b.point)))))
-    return float(min(separations))
+        sigma = [b.deviation(float(np.std(outputs[run.id]))) for run in runs]
+        gram = np.sum([m.gram / s**2 for m, s in zip(moments, sigma, strict=True)], axis=0)
+        longer = sum(run.length for run in b.matrix.of_use("fit")) / sum(run.length for run in runs)
+        chi = _chi_squared(longer * gram, PRIOR * np.eye(len(b.point)), b.point)
+        found[frozenset((i, j))] = found.get(frozenset((i, j)), 0.0) + 0.5 * chi
+    return float(np.sqrt(min(found.values())))
 
 
 def _text(found: Experiment, contenders: Sequence[Contender], tells_apart: bool) -> str:
