@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 import scipy.signal
 from numpy.typing import NDArray
@@ -21,6 +23,13 @@ def excitation(signal: str, rms: float, samples: int, rate: float, frequency: fl
     `frequency` is the upper edge of noise and multisine, the frequency of a sine or saw-tooth. The saw-tooth rises and
     falls with constant speed. Zero at both ends.
     """
+    shape = _shape(signal, samples, rate, frequency, seed)
+    return np.asarray(shape * rms)
+
+
+@lru_cache(maxsize=16)
+def _shape(signal: str, samples: int, rate: float, frequency: float, seed: int) -> Array:
+    """The signal with an RMS of 1."""
     t = np.arange(samples) / rate
     rng = np.random.default_rng([len(signal), seed])
     match signal:
@@ -33,7 +42,7 @@ def excitation(signal: str, rms: float, samples: int, rate: float, frequency: fl
         case _:
             u = scipy.signal.sawtooth(2 * np.pi * frequency * t + 0.5 * np.pi, width=0.5)
     u = u * _ramp(samples)
-    return np.asarray(u * (rms / np.sqrt(np.mean(u**2))))
+    return np.asarray(u / np.sqrt(np.mean(u**2)))
 
 
 def _noise(samples: int, rate: float, edge: float, rng: np.random.Generator) -> Array:

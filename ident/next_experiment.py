@@ -204,7 +204,8 @@ def _so_far(contenders: Sequence[Contender]) -> float | None:
 def _text(found: Experiment, contenders: Sequence[Contender], tells_apart: bool) -> str:
     names = [" + ".join(e.name for e in c.preset.effects) or "no effect" for c in contenders]
     if tells_apart and found.separation is not None:
-        said = f"After refitting, {' and '.join(names)} then differ by {found.separation:.3g} standard deviations"
+        listed = " and ".join([", ".join(names[:-1]), names[-1]])
+        said = f"After refitting, {listed} then differ by {found.separation:.3g} standard deviations"
         said += " of the noise"
         if found.so_far is not None:
             said += f"; the runs so far tell them apart by {found.so_far:.3g}"

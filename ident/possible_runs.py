@@ -14,7 +14,7 @@ from ident.matrix import Matrix, Run
 
 _LARGER = 1.5  # times the largest amplitude of the matrix is the most that is proposed
 _STROKE = 0.45  # of the stroke, to either side, is the most that a command may reach
-_SPECIMENS, _GAINS, _AMPLITUDES = 6, 4, 4
+_SPECIMENS, _GAINS, _AMPLITUDES = 4, 3, 3
 _SHARES = (1 / 30, 1 / 8, 1 / 3)  # of the band, where sines and saw-teeth are tried
 _LONGEST = {"s": 60.0, "sample": 65536.0}
 
