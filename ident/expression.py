@@ -71,6 +71,8 @@ class Equation:
 
     def renamed(self, names: Mapping[str, str], target: str) -> Equation:
         """The same equation with other names for what it reads, and another target."""
+        if target == self.target and not self.names & names.keys():
+            return self
         values = {name: ast.Name(other, ast.Load()) for name, other in names.items()}
         sign = "' = " if self.is_rate else " := " if self.is_memory else " = "
         return Equation(f"{target}{sign}{_replaced(self.python, values)}", self.place, self.meaning)

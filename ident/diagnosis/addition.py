@@ -55,6 +55,28 @@ class Addition:
             seen.add(frozenset(self.added))
         return self
 
+    def alike(self) -> list[Candidate]:
+        """The candidates of the first ranking that help and are no worse than its best but by chance, best first."""
+        best = self.ranking[0].refit if self.ranking else None
+        if best is None or not self.ranking[0].helps:
+            return []
+        return [c for c in self.ranking if c.refit and gain(c.refit.held_out, best.held_out).within_chance]
+
+    def ladder(self) -> list[tuple[str | None, Refit]]:
+        """From the fitted model to the last, one effect a step, without the detours: what was added, and the refit."""
+        rungs: list[tuple[str | None, Refit]] = [(None, self.base)]
+        known = {frozenset(step.effects): step for step in self.steps}
+        for i, name in enumerate(self.added):
+            effects = (*self.base.effects, *self.added[: i + 1])
+            step = known.get(frozenset(effects))
+            if step is None:
+                values = dict(self.found.values)
+                for other in self.added[i + 1 :]:
+                    values = _without(values, other)
+                step = self.models.refit(effects, values)
+            rungs.append((name, step))
+        return rungs
+
     def _rank(self, base: Refit, thorough: bool) -> list[Candidate]:
         return rank(self.models, base, [n for n in self.models.effects if n not in base.effects], self.report, thorough)
 

@@ -175,6 +175,7 @@ def constant(node: ast.expr, values: Mapping[str, Any]) -> Any:
 
 @lru_cache(maxsize=8192)
 def _code(node: ast.expr) -> CodeType:
+    """An expression that passed the grammar, compiled for Python: the same ones are asked for in every simulation."""
     return compile(ast.Expression(ast.fix_missing_locations(node)), "<constant>", "eval")
 
 

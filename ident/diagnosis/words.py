@@ -1,0 +1,58 @@
+"""What a diagnosis says, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from ident.diagnosis.ranking import Candidate
+from ident.diagnosis.suspects import Suspect
+from ident.effect import Effect
+
+
+def why(candidate: Candidate, effect: Effect, before: float, floor: float | None, best: bool) -> str:
+    """Why the data speak for or against an effect; `before` is the held-out error without it."""
+    if candidate.refit is None or candidate.gain is None:
+        share = 100 * candidate.prediction.fall
+        return f"Predicted to take {share:.2g} % off the error, less than others; it was not refitted."
+    after, found = candidate.refit.held_out.error, candidate.gain
+    change = f"On data held out from the fit the error goes from {percent(before)} to {percent(after)}"
+    if not found.beyond_chance:
+        return (
+            f"{change}, {found.deviations:.1f} standard errors: no more than chance. It would show as: {effect.looks}."
+        )
+    near = f", with the noise floor at {percent(floor)}" if floor is not None else ""
+    first = "No other effect does better. " if best else ""
+    if abs(found.share) < 1e-3:
+        return f"{first}The error stays, but the runs' offsets become explained: {effect.looks}."
+    return f"{change} ({found.deviations:.0f} standard errors){near}. {first}It shows as: {effect.looks}."
+
+
+def verdict_text(
+    added: Sequence[str], groups: Sequence[tuple[str, ...]], suspects: Sequence[Suspect], unexplained: bool,
+    errors: Mapping[str, float | None], before: float,
+) -> str:  # fmt: skip
+    """The verdict in a few sentences."""
+    parts = []
+    if added:
+        names = " and ".join(", ".join(name.replace("_", " ") for name in added).rsplit(", ", 1))
+        parts.append(
+            f"The model lacks {names}: with it the error falls from {percent(before)} to {percent(errors['fit'])}"
+            + (f" ({percent(errors['verify'])} on verify runs)." if errors.get("verify") is not None else ".")
+        )
+    elif not unexplained:
+        parts.append(f"Nothing is missing: the error of {percent(before)} is the noise's.")
+    else:
+        parts.append(f"No effect of the catalogue lowers the error of {percent(before)} beyond chance.")
+    for group in groups:
+        names = ", ".join(name.replace("_", " ") for name in group)
+        parts.append(f"This matrix cannot tell apart: {names}; their refits differ by less than chance.")
+    for suspect in suspects:
+        parts.append(f"Run {suspect.run} is doubted ({suspect.what}): {suspect.evidence}.")
+    if unexplained:
+        parts.append("Something is left that none of the listed effects explains.")
+    return " ".join(parts)
+
+
+def percent(value: float | None) -> str:
+    """A fraction in per cent."""
+    return "–" if value is None else f"{100 * value:.3g} %"
