@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ident.chain import FORCE, INPUT, INPUT_RATE, STEP, Chain, friction
 from ident.effect import Effect
+from ident.grammar import TIME
 from ident.kernel import HELD, LANES, SHARE, Filter, Kernel, constant, kernel
 from ident.matrix import Run
 
@@ -128,7 +129,7 @@ class Simulation:
     def _settle(self, rows: Array, built: Kernel, values: Mapping[str, Array], command: Array) -> None:
         """What remembers, as if the machine had stood where it starts."""
         known = dict(values) | {name: rows[row] for name, row in built.states.items()}
-        known |= {INPUT: command, "du": np.zeros_like(command), FORCE: np.zeros_like(command)}
+        known |= {INPUT: command, "du": np.zeros_like(command), FORCE: np.zeros_like(command), TIME: 0.0}
         found = _at_rest(self.chain, known)
         for name, row in built.memories.items():
             rows[row] = found[name]

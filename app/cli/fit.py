@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from app.cli.arguments import bounds as read_bounds
-from app.cli.arguments import method_options
+from app.cli.arguments import definitions, method_options
 from app.cli.arguments import values as read_values
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
@@ -20,6 +20,10 @@ def fit(
     model: Annotated[str, typer.Option(help="Model to identify.")] = "qian2014",
     effect: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Effect to add to the model; may be repeated.")
+    ] = None,
+    custom: Annotated[
+        list[Path] | None,
+        typer.Option(metavar="EFFECT.yaml", help="Own effect to add, defined in a file; may be repeated."),
     ] = None,
     method: Annotated[str, typer.Option(help=f"One of {', '.join(METHODS)}.")] = "ga",
     bounds: Annotated[
@@ -41,21 +45,25 @@ def fit(
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the fit as JSON; - is stdout.")] = None,
 ) -> None:
     """Identify the parameters of a model. With standard errors, and the error on runs that no fit saw."""
+    from ident.custom import preset_with
     from ident.fit.identification import identify
     from ident.fit.settings import Settings
     from ident.readers import read_matrix
 
     check_target(json)
-    effects = tuple(effect or [])
+    own = definitions(custom or [])
+    effects = (*(effect or []), *(definition["name"] for definition in own))
+    preset = preset_with(model, effects, own)
     settings = Settings(
         model=model,
         effects=effects,
         method=method,
-        bounds=read_bounds(bounds or [], model, effects),
-        fixed=read_values(set_ or [], model, effects),
+        bounds=read_bounds(bounds or [], preset),
+        fixed=read_values(set_ or [], preset),
         load=load,
         seed=seed,
         options=method_options(option or []),
+        custom=own,
     )
     with shown() as report:
         result = identify(read_matrix(matrix), settings, report)

@@ -13,11 +13,11 @@ from app.matrices import service as matrices
 from app.paging import cursor, keys_of
 from app.tables import FitRow, JobRow, now
 from ident.compare import compare
+from ident.custom import definition_of, preset_with
 from ident.figures import MEDIA, figure, render
 from ident.fit.identification import check_settings
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
-from ident.presets import preset
 from ident.quantity import parameter_value
 from schemas.fit import ComparedRun, ComparisonView, FitRequest, FitView, JobPage, JobView, ProgressView
 
@@ -39,7 +39,9 @@ def submit(context: Context, request: FitRequest) -> JobView:
 
 def settings_of(request: FitRequest) -> Settings:
     """The library's settings: numbers are SI, text may carry a unit. Raises Unusable."""
-    model = preset(request.model, request.effects)
+    own = tuple(definition_of(definition) for definition in request.custom)
+    effects = tuple(dict.fromkeys((*request.effects, *(str(definition["name"]) for definition in own))))
+    model = preset_with(request.model, effects, own)
 
     def si(name: str, value: float | str) -> float:
         return parameter_value(value, model.parameter(name).unit, name)
@@ -48,7 +50,7 @@ def settings_of(request: FitRequest) -> Settings:
     for name, (lower, upper) in bounds.items():
         model.parameter(name).within(lower, upper)
     return Settings(
-        model=request.model, effects=tuple(request.effects), method=request.method, seed=request.seed, bounds=bounds,
+        model=request.model, effects=effects, custom=own, method=request.method, seed=request.seed, bounds=bounds,
         fixed={name: si(name, value) for name, value in request.set.items()}, load=request.load,
         options=request.options,
     )  # fmt: skip
