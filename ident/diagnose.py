@@ -155,7 +155,7 @@ class Work:
         rungs: list[Rung] = []
         before: Refit | None = None
         for added, refit in addition.ladder():
-            found = None if before is None else gain(before.held_out, refit.held_out).deviations
+            found = None if before is None else gain(before.held_out, refit.held_out).nats
             rungs.append(Rung(added, self._errors(addition.models, refit), refit.held_out.offset,
                               self._parameters(addition.models, refit), found))  # fmt: skip
             before = refit
@@ -186,7 +186,8 @@ def _evidence(candidate: Candidate, effect: Effect) -> dict[str, Any]:
         "confirmed": candidate.refit is not None,
         "fall": found.share if found else None,
         "deviations": found.deviations if found else None,
-        "without_best_run": found.without_best_run if found else None,
+        "nats": found.nats if found else None,
+        "nats_without_best_run": found.nats_without if found else None,
         "offset_nats": found.offset if found else None,
         "beyond_chance": found.beyond_chance if found else None,
         "looks": effect.looks,

@@ -1,11 +1,14 @@
 """When one refit is better than another beyond chance.
 
-Two models are compared on the same held-out chunks, pair by pair, so that what both cannot explain falls out. With
-D the difference of the squared residuals of a chunk, in units of its run's error, and L the logarithm of their ratio,
-the gain is the mean of D over its standard error, or that of L, whichever is larger: L sees what helps nearly everywhere
-by very different amounts. It also has to stand without the run that gains most: what only one run asks for
-is a doubt about that run, not physics. An effect that is not there makes held-out data worse in the mean, so that the
-bar is passed by chance far less often than a test at zero mean would let expect; docs/diagnosis.md has the rate.
+Two models are compared on the same held-out chunks, pair by pair, so that what both cannot explain falls out. By how
+much the held-out data become more likely is, with n the number of samples that tell something new,
+
+    G = n log(error before / error after)   in nats
+
+and the mean gain of a chunk over its standard error says how steadily. Either may be beyond chance: G counts where the
+residual is noise and a few chunks gain much, the other where the residual is a slow pattern, of which few samples tell
+something new. A parameter that is of no use lowers both. What helps has to help without the run that gains most, too,
+or without that chunk, where there are few runs: what only one run asks for is a doubt about that run, not physics.
 """
 
 from __future__ import annotations
@@ -18,37 +21,47 @@ from numpy.typing import NDArray
 from ident.diagnosis.held_out import HeldOut
 
 Array = NDArray[np.float64]
-BEYOND_CHANCE = 3.0  # standard deviations
+BEYOND_CHANCE = 10.0  # nats: one in 20,000 by chance, if only the best of a large number could tell
 WORTHWHILE = 1e-3  # relative fall of the error: less is not worth a parameter, however certain
 ALIKE = 3.0  # standard deviations below which two refits differ by chance
-_OFFSET_GAIN = 10.0  # nats by which the runs' offsets become more likely
 _OFFSET_ALIKE = 4.5  # nats: three deviations
 _ALIKE_NATS = 2 * ALIKE**2  # where white noise of σ separates outputs f, g by ALIKE deviations: |f − g|² = 36 σ²
 VISIBLE = 3e-4  # of the standard deviation: offsets below are nobody's concern
-_SINGLE = 2.5  # standard deviations that are to be left without the run that gains most
+_SINGLE = 5.0  # nats that are to be left without the run that gains most
+_STEADY = 3.0  # deviations of the mean gain of the chunks that are beyond chance by themselves
+_SINGLE_STEADY = 2.5  # deviations that are to be left without the run that gains most
+_UNSTEADY = 1.5  # deviations below which it is a few chunks against the rest
 
 
 @dataclass(frozen=True)
 class Gain:
-    """How much better one refit is than another: relative fall of the error, its deviations, nats of the offsets."""
+    """How much better one refit is than another on data that neither saw.
+
+    `share` is the relative fall of the error, `nats` by how much the data become more likely, `deviations` the mean
+    gain of a chunk over its standard error, both also without the run that gains most; `offset` are the nats of the
+    runs' offsets, `visible` whether these are large enough to matter.
+    """
 
     share: float
+    nats: float
+    nats_without: float
     deviations: float
-    without_best_run: float
+    deviations_without: float
     offset: float
     visible: bool
-    likelihood: float  # nats by which the records become more likely, for white noise
 
     @property
     def beyond_chance(self) -> bool:
         """Whether the better one would be chosen again with other noise."""
-        of_error = self.deviations > BEYOND_CHANCE and self.share > WORTHWHILE and self.without_best_run > _SINGLE
-        return of_error or (self.visible and self.offset > _OFFSET_GAIN and self.deviations > -ALIKE)
+        likely = self.nats > BEYOND_CHANCE and self.nats_without > _SINGLE and self.deviations > _UNSTEADY
+        steady = self.deviations > _STEADY and self.deviations_without > _SINGLE_STEADY
+        of_error = self.share > WORTHWHILE and (likely or steady)
+        return of_error or (self.visible and self.offset > BEYOND_CHANCE and self.nats > -_SINGLE)
 
     @property
     def within_chance(self) -> bool:
         """Whether the two cannot be told apart."""
-        same_errors = self.deviations < ALIKE and self.likelihood < _ALIKE_NATS
+        same_errors = self.deviations < ALIKE and self.nats < _ALIKE_NATS
         return same_errors and (self.offset < _OFFSET_ALIKE or not self.visible)
 
 
@@ -56,24 +69,33 @@ def gain(before: HeldOut, after: HeldOut) -> Gain:
     """What `after` gains over `before`."""
     weights = 1.0 / (np.maximum(np.minimum(before.errors, after.errors), 1e-12) * before.totals)
     difference = (before.squares - after.squares) * weights[:, None]
-    least = 1e-12 * before.totals[:, None]
-    ratio = np.log((before.squares + least) / (after.squares + least))
-    best = int(np.argmax(difference.sum(axis=1)))
-    others = np.arange(len(difference)) != best if len(difference) > 2 else np.full(len(difference), True)
+    best = np.zeros(difference.shape, dtype=bool)
+    if len(difference) > 2:
+        best[int(np.argmax(difference.sum(axis=1)))] = True
+    else:
+        best.flat[int(np.argmax(difference))] = True
     n = len(before.means)
-    nats = n * float(np.log(max(before.offset, 1e-12) / max(after.offset, 1e-12))) if n > 2 else 0.0
+    offset = n * float(np.log(max(before.offset, 1e-12) / max(after.offset, 1e-12))) if n > 2 else 0.0
     share = 1.0 - after.error / before.error if before.error > 0 else 0.0
     visible = max(before.offset, after.offset) > VISIBLE
-    likelihood = float(before.samples / 2 * np.log(before.error / after.error)) if after.error > 0 else 0.0
+    everything = np.zeros(difference.shape, dtype=bool)
     return Gain(
-        share, _surer(difference, ratio), _surer(difference[others], ratio[others]), nats, visible, 2.0 * likelihood
+        share,
+        _nats(before, after, everything),
+        _nats(before, after, best),
+        _deviations(difference),
+        _deviations(difference[~best]),
+        offset,
+        visible,
     )
 
 
-def _surer(difference: Array, ratio: Array) -> float:
-    """The deviations of the differences, or of the ratios' logarithms where both agree and these are surer."""
-    of_mean, of_ratio = _deviations(difference), _deviations(ratio)
-    return max(of_mean, of_ratio) if of_mean > 0 else of_mean
+def _nats(before: HeldOut, after: HeldOut, but: NDArray[np.bool_]) -> float:
+    """By how much the held-out data, without some chunks, become more likely."""
+    errors = [
+        float(np.mean(np.sqrt(np.where(but, 0.0, side.squares).sum(axis=1) / side.totals))) for side in (before, after)
+    ]
+    return before.independent * float(np.log(max(errors[0], 1e-12) / max(errors[1], 1e-12)))
 
 
 def _deviations(values: Array) -> float:

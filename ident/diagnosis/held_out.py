@@ -40,13 +40,14 @@ class HeldOut:
     """Σ of squared residuals of each run and chunk, (runs, chunks), and the power of each record, (runs,).
 
     `means` (runs,) are the runs' offsets over their standard deviations, less what they have in common: the zero of
-    the transducer.
+    the transducer. `independent` is how many of the `samples` tell something new, the residual being correlated.
     """
 
     squares: Array
     totals: Array
     means: Array
     samples: int
+    independent: float
 
     @cached_property
     def errors(self) -> Array:
@@ -70,7 +71,7 @@ class HeldOut:
         return self.error * (1.0 + share * float(np.log(max(self.offset, 1e-9))))
 
 
-def held_out(point: Array, here: Local, evaluate: Callable[[Array], Local]) -> HeldOut:
+def held_out(point: Array, here: Local, evaluate: Callable[[Array], Local], independent: float) -> HeldOut:
     """The held-out errors at the optimum `point` of the unit cube; `evaluate` is the objective."""
     few = len(here.runs) < CHUNKS
     count = min(_FINER, *(len(run.blocks) for run in here.runs), _FINER) if few else CHUNKS
@@ -84,7 +85,7 @@ def held_out(point: Array, here: Local, evaluate: Callable[[Array], Local]) -> H
             squares[i, inside] = _by_chunk(run, of, count, step, remove)[inside]
     means = np.array([run.offset for run in here.runs])
     totals = np.array([run.total for run in here.runs])
-    return HeldOut(squares, totals, means - means.mean(), sum(run.length for run in here.runs))
+    return HeldOut(squares, totals, means - means.mean(), sum(run.length for run in here.runs), independent)
 
 
 Parts = list[tuple[Array, Array]]
@@ -173,3 +174,14 @@ def bounded_step(point: Array, H: Array, g: Array) -> Array:
         step[free[out]] = np.clip(there[out], 0.0, 1.0) - point[free[out]]
         free = free[~out]
     return step
+
+
+def independent_samples(residual: Array) -> float:
+    """How many samples of a residual (n,) tell something new: n / Σ ρ_k² over all lags k (Bartlett 1946)."""
+    n, r = len(residual), residual - residual.mean()
+    power = np.abs(np.fft.rfft(r, 2 * n)) ** 2
+    correlation = np.fft.irfft(power)[: n // 4]
+    if not correlation[0] > 0:
+        return float(n)
+    rho = correlation / correlation[0]
+    return float(n / max(2.0 * np.sum(rho**2) - 1.0, 1.0))

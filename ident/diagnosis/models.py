@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.held_out import HeldOut, held_out
+from ident.diagnosis.held_out import HeldOut, held_out, independent_samples
 from ident.effect import Effect
 from ident.effects import EFFECTS
 from ident.errors import Unusable
@@ -42,7 +42,9 @@ class Refit:
     @cached_property
     def held_out(self) -> HeldOut:
         """Its errors on blocks that were left out in turn."""
-        return held_out(self.point, self.here, self.fitness.exact)
+        outputs = self.fitness.outputs(self.point)
+        independent = sum(independent_samples(run.measured - outputs[run.id]) for run in self.fitness.runs)
+        return held_out(self.point, self.here, self.fitness.exact, independent)
 
     @property
     def finite(self) -> bool:

@@ -55,19 +55,19 @@ class Ranked:
 class Rung:
     """A step of the ladder: what was added (None: the fitted model), the errors after it, the parameters.
 
-    `deviations` tell by how many standard errors the step lowered the held-out error.
+    `nats` tell by how much the step made the held-out data more likely.
     """
 
     added: str | None
     error: Errors
     offset: float
     parameters: Mapping[str, Found]
-    deviations: float | None
+    nats: float | None
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data."""
         return {
-            "added": self.added, "error": dict(self.error), "offset": self.offset, "deviations": self.deviations,
+            "added": self.added, "error": dict(self.error), "offset": self.offset, "nats": self.nats,
             "parameters": {n: p.to_json() for n, p in self.parameters.items()},
         }  # fmt: skip
 

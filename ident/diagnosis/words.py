@@ -24,7 +24,7 @@ def why(candidate: Candidate, effect: Effect, before: float, floor: float | None
     first = "No other effect does better. " if best else ""
     if abs(found.share) < 1e-3:
         return f"{first}The error stays, but the runs' offsets become explained: {effect.looks}."
-    return f"{change} ({found.deviations:.0f} standard errors){near}. {first}It shows as: {effect.looks}."
+    return f"{change}{near}. {first}It shows as: {effect.looks}."
 
 
 def verdict_text(
