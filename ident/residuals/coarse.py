@@ -7,8 +7,10 @@ on both sides of an equation still obeys it.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.linalg
 from numba import njit
 from numpy.typing import NDArray
 
@@ -34,19 +36,43 @@ def averaged(samples: Array, count: int) -> Array:
     return np.asarray(samples[:whole].reshape(-1, count).mean(axis=1))
 
 
-def responses(models: Sequence[LinearModel], rate: float, inputs: Array, start: Array | None = None) -> Array:
-    """Outputs of models with common A and B, (samples, inputs, models), for `inputs` (samples, b) joined by lines.
+@dataclass(frozen=True)
+class Response:
+    """Linear models with common A and B in discrete time, their inputs joined by lines: Φ, Γ0, Γ1, C (m, n), D (m).
 
-    `start` is the state at the first sample, (n,), zero where None.
+    The states are in units of `scale`, (n,): in SI they differ by ten decades, which would cost time and digits.
     """
-    known = discretise(models[0], rate, "linear")
-    C = np.array([model.C[0] for model in models])
-    D = np.array([model.D[0] for model in models])
-    first = np.zeros(known.phi.shape[-1]) if start is None else start
-    scale = np.maximum(np.abs(known.gamma0[0]) + np.abs(known.gamma1[0]), 1e-300)  # states differ by ten decades
-    phi = known.phi[0] * scale[None, :] / scale[:, None]
-    gains = known.gamma0[0] / scale, known.gamma1[0] / scale
-    return np.asarray(_respond(phi, *gains, C * scale, D, first / scale, np.ascontiguousarray(inputs)))
+
+    phi: Array
+    gamma0: Array
+    gamma1: Array
+    C: Array
+    D: Array
+    scale: Array
+
+    @classmethod
+    def of(cls, models: Sequence[LinearModel], rate: float) -> Response:
+        """The models, each a batch of one, at `rate` Hz."""
+        A, B = models[0].A[0], models[0].B[0]
+        _, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
+        B = B / scale
+        size = np.abs(B).max() or 1.0
+        scale, B = scale * size, B / size
+        C = np.array([model.C for model in models])[:, 0] * scale
+        D = np.array([model.D[0] for model in models])
+        scaled = LinearModel.of((A * scale / scale[:, None])[None], B[None], C[:1], D[:1])
+        known = discretise(scaled, rate, "linear")
+        return cls(known.phi[0], known.gamma0[0], known.gamma1[0], C, D, scale)
+
+    def only(self, count: int) -> Response:
+        """The first `count` of the models."""
+        return replace(self, C=self.C[:count], D=self.D[:count])
+
+    def to(self, inputs: Array, start: Array | None = None) -> Array:
+        """The outputs (samples, b, m) for inputs (samples, b); `start` is the state at the first sample, (n,)."""
+        first = np.zeros(len(self.scale)) if start is None else start / self.scale
+        rows = np.ascontiguousarray(inputs)
+        return np.asarray(_respond(self.phi, self.gamma0, self.gamma1, self.C, self.D, first, rows))
 
 
 @njit(cache=True, nogil=True)

@@ -21,9 +21,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.compare import Comparison
+from ident.compare import Comparison, fitted
 from ident.parallel import each
-from ident.residuals.coarse import responses
+from ident.residuals.coarse import Response
 from ident.residuals.traces import Trace, Traces, traces
 from ident.residuals.views import View, unit, views
 
@@ -33,6 +33,7 @@ _BLOCKS = 8  # stretches of a record; even ones and odd ones judge each other
 _ROUNDS = 3
 _ABSORBED = 0.98  # share of a response that the parameters explain: then it is theirs
 _LOST = 1e-9  # of the largest eigenvalue
+_LEVEL = 0.05  # of the range of slopes: pieces within it have the same
 _BAND = 1.96  # standard errors of 95 %
 
 
@@ -94,19 +95,12 @@ def curves(comparison: Comparison, of: Comparison | None = None) -> tuple[Curve,
 
     With `of`, another model of the same runs, what that model has beyond the first one: its prediction of the curves.
     """
-    preset = comparison_preset(comparison)
+    preset, _, _ = fitted(comparison.fit, comparison.matrix)
     shown = views(preset)
     instead = None if of is None else {run.run.id: run.modelled for run in of.runs}
     found = traces(comparison, tuple(dict.fromkeys(n for view in shown for n in view.signals)), instead)
     drawn = [curve(found, view) for view in shown]
     return tuple(sorted((c for c in drawn if c is not None), key=lambda c: -c.explained))
-
-
-def comparison_preset(comparison: Comparison) -> Any:
-    """The model of a comparison as it suits its matrix."""
-    from ident.compare import fitted
-
-    return fitted(comparison.fit, comparison.matrix)[0]
 
 
 def curve(found: Traces, view: View) -> Curve | None:
@@ -115,13 +109,14 @@ def curve(found: Traces, view: View) -> Curve | None:
     knots = _knots(np.concatenate([_abscissa(view, signals) for signals in now]))
     if knots is None:
         return None
-    paths = [found.path(view, trace) for trace in found.runs]
-    for round_ in range(_ROUNDS):
-        columns = each(lambda i: _columns(found.runs[i], now[i], view, knots, paths[i]), range(len(now)))
-        normal = _normal(found.runs, columns, len(knots))
+    paths = found.paths(view)
+    normal = _normal(found, view, knots, paths, now)
+    free, solution = _gauge(normal, knots)
+    for _ in range(_ROUNDS - 1):
+        both = zip(found.runs, paths, now, strict=True)
+        now = [_improved(trace, view, knots, solution, path, signals) for trace, path, signals in both]
+        normal = _normal(found, view, knots, paths, now)
         free, solution = _gauge(normal, knots)
-        if round_ < _ROUNDS - 1:
-            now = [_improved(t, view, knots, solution, path, s) for t, path, s in zip(found.runs, paths, now, strict=True)]
     deviation = _deviations(normal, free)
     known = found.actuator.piston_area is not None
     unknown = any(trace.run.units.get(trace.run.output, "m") == "1" for trace in found.runs)
@@ -161,21 +156,23 @@ def _basis(view: View, signals: Mapping[str, Array], knots: Array) -> Array:
     return hats * signals[view.relative][:, None] if view.relative else hats
 
 
-def _columns(trace: Trace, signals: Mapping[str, Array], view: View, knots: Array, path: Sequence[Any]) -> Array:
+def _columns(trace: Trace, signals: Mapping[str, Array], view: View, knots: Array, path: Response) -> Array:
     """[T*h, J, r] without their means, each over the residual's size, (n, knots + p + 1)."""
-    answers = responses(path[:1], trace.rate, _basis(view, signals, knots))[:, :, 0]
+    answers = path.only(1).to(_basis(view, signals, knots))[:, :, 0]
     columns = np.column_stack([answers, trace.sensitivities, trace.residual])
     columns -= columns.mean(axis=0)
     return np.asarray(columns / max(float(np.std(columns[:, -1])), 1e-300))
 
 
-def _normal(runs: Sequence[Trace], columns: Sequence[Array], knots: int) -> _Normal:
-    blocks, odd = [], []
-    for rows in columns:
-        for i, part in enumerate(np.array_split(rows, _BLOCKS)):
-            blocks.append(part.T @ part)
-            odd.append(bool(i % 2))
-    return _Normal(np.array(blocks), np.array(odd), knots)
+def _normal(
+    found: Traces, view: View, knots: Array, paths: Sequence[Response], now: Sequence[Mapping[str, Array]]
+) -> _Normal:
+    def of_run(i: int) -> Array:
+        rows = _columns(found.runs[i], now[i], view, knots, paths[i])
+        return np.array([part.T @ part for part in np.array_split(rows, _BLOCKS)])
+
+    blocks = np.concatenate(each(of_run, range(len(now))))
+    return _Normal(blocks, np.arange(len(blocks)) % 2 == 1, len(knots))
 
 
 def _solve(A: Array, g: Array) -> Array:
@@ -200,7 +197,7 @@ def _gauge(normal: _Normal, knots: Array) -> tuple[Array, Array]:
     free = [shape for shape in (line, level) if _is_absorbed(total, shape, k)]
     y = found[:k].copy()
     if any(shape is line for shape in free):
-        y -= _middle_slope(knots, y) * knots
+        y -= _commonest_slope(knots, y) * knots
     if any(shape is level for shape in free):
         y -= float(np.interp(0.0, knots, y))
     delta = _solve(total[k:-1, k:-1], total[k:-1, -1] - total[k:-1, :k] @ y)
@@ -217,12 +214,14 @@ def _is_absorbed(total: Array, shape: Array, k: int) -> bool:
     return bool(cross @ _solve(total[k:-1, k:-1], cross) > _ABSORBED * power)
 
 
-def _middle_slope(knots: Array, y: Array) -> float:
-    """The slope that half of the range has at most: that of the longest level part, where there is one."""
-    slopes, lengths = np.diff(y) / np.diff(knots), np.diff(knots)
-    order = np.argsort(slopes)
-    share = np.cumsum(lengths[order]) / lengths.sum()
-    return float(np.interp(0.5, share - 0.5 * lengths[order] / lengths.sum(), slopes[order]))
+def _commonest_slope(knots: Array, y: Array) -> float:
+    """The slope that most pieces have, the mean of two where as many have either: the level parts of the curve."""
+    lengths = np.diff(knots)
+    slopes = np.diff(y) / lengths
+    near = np.abs(slopes[:, None] - slopes) <= _LEVEL * np.ptp(slopes)
+    count = near.sum(axis=1)
+    chosen = [float(np.average(slopes[of], weights=lengths[of])) for of in near[count >= 0.8 * count.max()]]
+    return 0.5 * (min(chosen) + max(chosen))
 
 
 def _deviations(normal: _Normal, free: Array) -> Array:
@@ -242,11 +241,11 @@ def _deviations(normal: _Normal, free: Array) -> Array:
 
 
 def _improved(
-    trace: Trace, view: View, knots: Array, solution: Array, path: Sequence[Any], now: Mapping[str, Array]
+    trace: Trace, view: View, knots: Array, solution: Array, path: Response, now: Mapping[str, Array]
 ) -> dict[str, Array]:
     """The signals as the curve and the changed parameters make them; at its own place a signal is meant before it."""
     added = _basis(view, now, knots) @ solution[: len(knots)]
-    answers = responses(path[1:], trace.rate, added[:, None])[:, 0]
+    answers = path.to(added[:, None])[:, 0, 1:]
     delta = solution[len(knots) :]
     out = {}
     for i, name in enumerate(view.signals):

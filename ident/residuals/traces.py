@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.chain import Chain, conditions
-from ident.compare import Comparison, RunComparison, fitted
+from ident.compare import Comparison, fitted
 from ident.errors import Unusable
 from ident.fit.output_error import OutputError
 from ident.fit.record import first_state
@@ -18,11 +19,13 @@ from ident.linear import LinearModel
 from ident.matrix import Actuator, Run
 from ident.parallel import each
 from ident.presets import Preset
-from ident.residuals.coarse import averaged, responses, stride
+from ident.residuals.coarse import Response, averaged, stride
 from ident.residuals.views import View, injected, showing
 from ident.simulate import Simulation
 
 Array = NDArray[np.float64]
+Item = TypeVar("Item")
+Outcome = TypeVar("Outcome")
 _MOST = 400_000  # coarse samples of all runs together; records are cut to their beginnings
 _NUDGE = 1e-4  # relative, for sensitivities
 
@@ -41,6 +44,11 @@ class Trace:
     signals: Mapping[str, Array]
     moved: Mapping[str, Array]
 
+    @property
+    def alike(self) -> object:
+        """What a linear response depends on."""
+        return _alike(self.run, self.rate)
+
 
 @dataclass(frozen=True)
 class Traces:
@@ -52,11 +60,22 @@ class Traces:
     chain: Chain
     runs: tuple[Trace, ...]
 
-    def path(self, view: View, trace: Trace) -> tuple[LinearModel, ...]:
-        """The linear responses from what is added at the view's place to the output and to the view's signals."""
+    def paths(self, view: View) -> list[Response]:
+        """For each run the linear response from what is added at the view's place to the output and to its signals."""
         broken = injected(self.chain, view.at)
-        names = (trace.run.output, *view.signals)
-        return tuple(_linear(broken, self.values, trace.run, self.actuator, name) for name in names)
+
+        def one(trace: Trace) -> Response:
+            names = (trace.run.output, *view.signals)
+            models = [_linear(broken, self.values, trace.run, self.actuator, name) for name in names]
+            return Response.of(models, trace.rate)
+
+        known = _once({trace.alike: trace for trace in self.runs}, one)
+        return [known[trace.alike] for trace in self.runs]
+
+
+def _once(distinct: Mapping[object, Item], of: Callable[[Item], Outcome]) -> dict[object, Outcome]:
+    """One answer for each key."""
+    return dict(zip(distinct, each(of, distinct.values()), strict=True))
 
 
 def traces(comparison: Comparison, signals: Sequence[str], instead: Mapping[str, Array] | None = None) -> Traces:
@@ -77,11 +96,16 @@ def traces(comparison: Comparison, signals: Sequence[str], instead: Mapping[str,
     measured = {run.id: run.measured if instead is None else instead[run.id] for run in known}
     inner = {} if preset.is_linear else _simulated(comparison, preset, tuple(signals), known)
 
+    models = _once(
+        {_alike(run, run.sample_rate / count): run for run in known},
+        lambda run: _cores(chain, preset, values, run, matrix.actuator, tuple(signals), run.sample_rate / count),
+    )
+
     def one(run: Run) -> Trace:
         residual = averaged(measured[run.id] - outputs[run.id], count)[:most]
         rate = run.sample_rate / count
         command = averaged(run.command, count)[:most, None]
-        linear, moved, sensitivities = _cores(chain, preset, values, run, matrix.actuator, tuple(signals), rate, command)
+        linear, moved, sensitivities = _moved(models[_alike(run, rate)], run, tuple(signals), command)
         shown = {name: averaged(inner[name][run.id], count)[:most] for name in inner} or linear
         first = _settled(run, residual, rate)
         cut = {name: samples[first:] for name, samples in shown.items()}
@@ -106,22 +130,32 @@ def _stable(chain: Chain, values: Mapping[str, float], run: Run, actuator: Actua
     return bool(np.linalg.eigvals(A).real.max() < 0)
 
 
+def _alike(run: Run, rate: float) -> object:
+    return run.specimen, run.gain, run.output, rate
+
+
 def _cores(
     chain: Chain, preset: Preset, values: Mapping[str, float], run: Run, actuator: Actuator, signals: tuple[str, ...],
-    rate: float, command: Array,
-) -> tuple[dict[str, Array], dict[str, Array], Array]:  # fmt: skip
-    """The linear core's signals, how they and the output move with each parameter, per relative change."""
-    names = (run.output, *signals)
+    rate: float,
+) -> list[tuple[LinearModel, Response]]:  # fmt: skip
+    """The linear core at the values, and with each of its parameters nudged: output and signals."""
 
-    def shown(at: Mapping[str, float]) -> Array:
-        models = [_linear(chain, at, run, actuator, name) for name in names]
-        return responses(models, rate, command, first_state(run, models[0]))[:, 0]
+    def at(changed: Mapping[str, float]) -> tuple[LinearModel, Response]:
+        models = [_linear(chain, {**values, **changed}, run, actuator, name) for name in (run.output, *signals)]
+        return models[0], Response.of(models, rate)
 
-    base = shown(values)
     searched = [p.name for p in preset.parameters if p.name in chain.symbols and values[p.name] != 0]
-    changes = [(shown({**values, name: values[name] * (1 + _NUDGE)}) - base) / _NUDGE for name in searched]
-    moved = np.stack(changes, axis=1) if changes else np.zeros((len(base), 0, len(names)))
-    inner = {name: base[:, i + 1] for i, name in enumerate(signals)}
+    return [at({}), *(at({name: values[name] * (1 + _NUDGE)}) for name in searched)]
+
+
+def _moved(
+    models: Sequence[tuple[LinearModel, Response]], run: Run, signals: tuple[str, ...], command: Array
+) -> tuple[dict[str, Array], dict[str, Array], Array]:
+    """The linear core's signals, how they and the output move with each parameter, per relative change."""
+    shown = [response.to(command, first_state(run, model))[:, 0] for model, response in models]
+    changes = [(other - shown[0]) / _NUDGE for other in shown[1:]]
+    moved = np.stack(changes, axis=1) if changes else np.zeros((len(command), 0, len(signals) + 1))
+    inner = {name: shown[0][:, i + 1] for i, name in enumerate(signals)}
     return inner, {name: moved[:, :, i + 1] for i, name in enumerate(signals)}, moved[:, :, 0]
 
 
@@ -135,19 +169,15 @@ def _simulated(
     chain = showing(preset.chain, signals)
     steps = int(error._steps(error.space.values(np.empty((1, 0)))).max())
 
-    def of_run(run: Run, name: str) -> Array:
-        channels = {**run.channels, name: run.measured}
-        known = {**conditions(run, matrix.actuator), **values}
-        at = {symbol: np.array([[known[symbol]]]) for symbol in known}
+    def one(entry: tuple[str, Run]) -> Array:
+        name, run = entry
+        known = conditions(run, matrix.actuator) | values
+        at = {symbol: np.array([[value]]) for symbol, value in known.items()}
         start = None if run.starts_at_rest else error.start(run)[None, None]
-        named = replace(run, output=name, channels=channels)
+        named = replace(run, output=name, channels={**run.channels, name: run.measured})
         blocks = Simulation(chain, (named,), at, steps, start).outputs()
         return np.concatenate([rows[:, 0, 0] for rows, _, _ in blocks])
 
-    return {name: dict(zip((r.id for r in runs), each(lambda r, n=name: of_run(r, n), runs), strict=True)) for name in signals}
-
-
-def residual_of(compared: RunComparison) -> Array:
-    """Measured minus model, without its mean, (n,)."""
-    residual = compared.run.measured - compared.modelled
-    return np.asarray(residual - residual.mean())
+    wanted = [(name, run) for name in signals for run in runs]
+    found = dict(zip(((name, run.id) for name, run in wanted), each(one, wanted), strict=True))
+    return {name: {run.id: found[name, run.id] for run in runs} for name in signals}

@@ -75,9 +75,7 @@ def injected(chain: Chain, at: str) -> Chain:
         bare = equation.with_values(zero)
         return Equation(f"{at} = ({bare.python}) + {INPUT}") if equation.target == at else bare
 
-    stages = tuple(
-        replace(stage, equations=tuple(map(other, stage.equations))) for stage in chain.stages
-    )
+    stages = tuple(replace(stage, equations=tuple(map(other, stage.equations))) for stage in chain.stages)
     return replace(chain, stages=stages)
 
 
