@@ -23,11 +23,11 @@ Array = NDArray[np.float64]
 _OVER = 8.0  # samples a period of the band edge
 
 
-def stride(runs: Sequence[Run]) -> int:
-    """Samples that are averaged into one."""
+def stride(runs: Sequence[Run], over: float = _OVER) -> int:
+    """Samples that are averaged into one, so that a period of the band edge keeps `over` of them."""
     band = excited_band(runs) / (2 * np.pi)
     slowest = min(run.sample_rate for run in runs)
-    return max(1, int(slowest / (_OVER * band)))
+    return max(1, int(slowest / (over * band)))
 
 
 def averaged(samples: Array, count: int) -> Array:

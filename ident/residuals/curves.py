@@ -15,7 +15,7 @@ Bands are 95 % from the scores of separate stretches of the records, which holds
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -95,11 +95,19 @@ def curves(comparison: Comparison, of: Comparison | None = None) -> tuple[Curve,
 
     With `of`, another model of the same runs, what that model has beyond the first one: its prediction of the curves.
     """
+    return curves_of(traced(comparison, of))
+
+
+def traced(comparison: Comparison, of: Comparison | None = None) -> Traces:
+    """What moves inside the model, for every signal that a view reads."""
     preset, _, _ = fitted(comparison.fit, comparison.matrix)
-    shown = views(preset)
-    instead = None if of is None else {run.run.id: run.modelled for run in of.runs}
-    found = traces(comparison, tuple(dict.fromkeys(n for view in shown for n in view.signals)), instead)
-    drawn = [curve(found, view) for view in shown]
+    signals = tuple(dict.fromkeys(name for view in views(preset) for name in view.signals))
+    return traces(comparison, signals, None if of is None else {run.run.id: run.modelled for run in of.runs})
+
+
+def curves_of(found: Traces) -> tuple[Curve, ...]:
+    """The curve of every view that the model has the signals for, those that explain most first."""
+    drawn = [curve(found, view) for view in views(found.preset)]
     return tuple(sorted((c for c in drawn if c is not None), key=lambda c: -c.explained))
 
 
@@ -253,10 +261,3 @@ def _improved(
         if name == view.at:
             out[name] -= added
     return dict(now) | out
-
-
-def predicted(comparison: Comparison, candidate: Comparison) -> tuple[Curve, ...]:
-    """The curves that a candidate model predicts for the residual of the first one."""
-    own = {run.run.id for run in candidate.runs}
-    runs = tuple(run for run in comparison.runs if run.run.id in own)
-    return curves(replace(comparison, runs=runs), candidate)

@@ -59,6 +59,12 @@ class Traces:
     values: Mapping[str, float]
     chain: Chain
     runs: tuple[Trace, ...]
+    parameters: tuple[str, ...]
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """The unit of each parameter."""
+        return {parameter.name: parameter.unit for parameter in self.preset.parameters}
 
     def paths(self, view: View) -> list[Response]:
         """For each run the linear response from what is added at the view's place to the output and to its signals."""
@@ -112,7 +118,7 @@ def traces(comparison: Comparison, signals: Sequence[str], instead: Mapping[str,
         steps = {name: samples[first:] for name, samples in moved.items()}
         return Trace(run, rate, residual[first:], sensitivities[first:], cut, steps)
 
-    return Traces(preset, matrix.actuator, values, chain, tuple(each(one, known)))
+    return Traces(preset, matrix.actuator, values, chain, tuple(each(one, known)), _searched(chain, preset, values))
 
 
 def _settled(run: Run, residual: Array, rate: float) -> int:
@@ -144,8 +150,12 @@ def _cores(
         models = [_linear(chain, {**values, **changed}, run, actuator, name) for name in (run.output, *signals)]
         return models[0], Response.of(models, rate)
 
-    searched = [p.name for p in preset.parameters if p.name in chain.symbols and values[p.name] != 0]
-    return [at({}), *(at({name: values[name] * (1 + _NUDGE)}) for name in searched)]
+    names = _searched(chain, preset, values)
+    return [at({}), *(at({name: values[name] * (1 + _NUDGE)}) for name in names)]
+
+
+def _searched(chain: Chain, preset: Preset, values: Mapping[str, float]) -> tuple[str, ...]:
+    return tuple(p.name for p in preset.parameters if p.name in chain.symbols and values[p.name] != 0)
 
 
 def _moved(
