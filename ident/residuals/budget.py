@@ -140,7 +140,7 @@ def _amplitude(run: Run) -> float:
 
 
 def _sums(compared: RunComparison, count: int) -> Array:
-    """Σ of products of [lagged command, r] over even and odd stretches, (2, taps + 1, taps + 1), over the run's power."""
+    """Σ of products of [lagged command, r] over even, over odd stretches, (2, t + 1, t + 1), over the run's power."""
     run = compared.run
     residual = run.measured - compared.modelled
     r, u = averaged(residual - residual.mean(), count), averaged(run.command - run.command.mean(), count)

@@ -28,7 +28,8 @@ from ident.residuals.traces import Trace, Traces, traces
 from ident.residuals.views import View, unit, views
 
 Array = NDArray[np.float64]
-KNOTS = 18
+LEVELS = (0.001, 0.006, 0.02, *(0.055 + 0.89 * i / 15 for i in range(16)), 0.98, 0.994, 0.999)
+"""Shares of the samples below each knot: the ends are seldom visited, and worth a look."""
 _BLOCKS = 8  # stretches of a record; even ones and odd ones judge each other
 _ROUNDS = 3
 _ABSORBED = 0.98  # share of a response that the parameters explain: then it is theirs
@@ -143,10 +144,10 @@ def _abscissa(view: View, signals: Mapping[str, Array]) -> Array:
 
 
 def _knots(samples: Array) -> Array | None:
-    """Knots between which there are equally many samples, the outermost at the extremes."""
+    """Knots at quantiles of the samples; None where these coincide."""
     moving = samples[samples != 0]  # without a specimen its force is zero all the time
-    knots = np.unique(np.quantile(moving, np.linspace(0.001, 0.999, KNOTS))) if len(moving) else moving
-    return knots if len(knots) == KNOTS and np.ptp(knots) > 0 else None
+    knots = np.unique(np.quantile(moving, LEVELS)) if len(moving) else moving
+    return knots if len(knots) == len(LEVELS) and np.ptp(knots) > 0 else None
 
 
 def _hats(s: Array, knots: Array) -> Array:

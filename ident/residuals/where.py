@@ -62,10 +62,13 @@ def where(comparison: Comparison) -> Where:
 def band_edges(runs: Sequence[Run]) -> tuple[float, ...]:
     """Edges of bands: even on a logarithmic axis where the commands have power, one above, up to half the rate."""
     top = excited_band(runs) / (2 * np.pi)
-    bottom = max(top / 100, 2.0 / min(run.duration for run in runs))
+    resolved = 1.5 / min(run.duration for run in runs)
     nyquist = max(run.sample_rate for run in runs) / 2
-    inner = np.geomspace(min(bottom, top / 2), top, _BANDS)
-    return (0.0, *(float(edge) for edge in inner if edge < nyquist), float(nyquist))
+    edges = [0.0]
+    for edge in np.geomspace(min(top / 100, nyquist / 2), min(top, 0.99 * nyquist), _BANDS):
+        if edge - edges[-1] >= resolved:
+            edges.append(float(edge))
+    return (*edges, float(nyquist)) if len(edges) > 1 else (0.0, float(nyquist) / 2, float(nyquist))
 
 
 def in_bands(compared: RunComparison, edges: Sequence[float]) -> tuple[float | None, ...]:
