@@ -16,6 +16,7 @@ from app.cli.fit import fit
 from app.cli.migrate import migrate
 from app.cli.query import query
 from app.cli.regress import regress
+from app.cli.report import report as write_report
 from app.cli.revise import revise
 from app.cli.serve import serve
 from app.cli.simulate import simulate
@@ -23,7 +24,7 @@ from app.cli.token import token
 from app.cli.upload import upload
 from app.cli.worker import worker
 
-LOCAL = (simulate, check, fit, compare)
+LOCAL = (simulate, check, fit, compare, write_report)
 SERVICE = (serve, worker, demo, token, migrate, regress)
 CLIENT = (upload, approve, query, revise)
 

@@ -75,6 +75,8 @@ def _residual_curve(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[s
     shown = chosen(matrix, wish(**filters)) if any(filters.values()) else matrix.of_use("fit") or matrix.runs
     own = _compared(matrix, fit, shown)
     other = options.get("candidate")
+    if other is not None and not isinstance(other, FitResult):
+        raise Unusable("bad-fit", f"candidate is {other!r}", "figure residual-curve", "give a fit")
     predicted = curves(own, _compared(matrix, other, shown)) if other else ()
     return residual_curve(
         curves(own), matrix.actuator, fit, of, candidate=predicted, view=options.get("view"), runs=len(shown),

@@ -83,7 +83,7 @@ def test_compare_writes_every_figure_in_every_format(servoident, matrix, fit_fil
     )
     assert done.returncode == 0, done.stderr
     starts = {"svg": b"<svg", "png": b"\x89PNG", "pdf": b"%PDF", "json": b"{"}
-    for name in ("bode", "time", "evolution", "sensitivity"):
+    for name in ("bode", "time", "evolution", "sensitivity", "residual-map", "residual-curve"):
         for kind, start in starts.items():
             assert (tmp_path / "figures" / f"{name}.{kind}").read_bytes().startswith(start)
     assert len(json.loads((tmp_path / "c.json").read_text())["runs"]) == 84
