@@ -24,8 +24,8 @@ from app.matrices.endpoints import router as matrices
 from app.operation.endpoints import router as operation
 from app.pages import router as pages
 from app.parameters.endpoints import router as parameters
-from app.security import Guard
 from app.report.endpoints import router as report
+from app.security import Guard
 from app.settings import Settings
 from app.storage import Storage
 

@@ -84,7 +84,7 @@ def draw(matrix: Matrix, fit: FitResult, out: Path, candidate: FitResult | None 
 
     out.mkdir(parents=True, exist_ok=True)
     for name in FIGURES:
-        options = {"candidate": candidate} if name == "residual-curve" and candidate is not None else {}
+        options: dict[str, Any] = {"candidate": candidate} if name == "residual-curve" and candidate is not None else {}
         chart = figure(name, matrix, fit, **options)
         for format_ in FORMATS:
             write_bytes(render(chart, format_), out / f"{name}.{format_}")

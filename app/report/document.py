@@ -6,7 +6,7 @@ import re
 from functools import lru_cache
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 from markupsafe import Markup
 
 from app.pages import numbers
@@ -41,7 +41,7 @@ def document(matrix: Matrix, fit: FitResult, diagnosis: Diagnosis | None = None)
     model = preset(fit.model, fit.effects)
     steps = diagnosis.steps if diagnosis else []
     chart = ladder(steps, diagnosis.floor, matrix.actuator, look("light")) if diagnosis and steps else None
-    return _template().render(
+    page: str = _template().render(
         policy=POLICY,
         style=Markup((HERE / "templates" / "report.css").read_text(encoding="utf-8")),
         serial=matrix.actuator.serial,
@@ -65,6 +65,7 @@ def document(matrix: Matrix, fit: FitResult, diagnosis: Diagnosis | None = None)
         ladder=_inline(chart, "ladder") if chart else "",
         seconds=numbers.quantity(fit.seconds, "s"),
     )
+    return page
 
 
 def _drawn(name: str, matrix: Matrix, fit: FitResult) -> Markup | str:
@@ -82,7 +83,7 @@ def _inline(chart: Chart, name: str) -> Markup:
 
 
 @lru_cache
-def _template():  # type: ignore[no-untyped-def]
+def _template() -> Template:
     loader = FileSystemLoader(HERE / "templates")
     made = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     made.filters["percent"] = numbers.percent

@@ -99,8 +99,9 @@ def _extent(curve: Curve) -> tuple[float, ...]:
 def _panel(curve: Curve, names: Sequence[str], look: Look, wide: bool) -> Panel:
     x_unit = words.engineering(curve.x[1:-1], curve.x_unit)[1]
     y_unit = words.engineering(_extent(curve), curve.y_unit)[1]
-    x = alt.X("x:Q", title=words.axis(curve.against, x_unit), scale=alt.Scale(zero=False, nice=False), axis=_axis(6))
-    y = alt.Y("y:Q", title=words.axis(curve.missing, y_unit), scale=alt.Scale(zero=True), axis=_axis(5))
+    across = _axis(words.axis(curve.missing, y_unit), 5)
+    x = alt.X("x:Q", scale=alt.Scale(zero=False, nice=False), axis=_axis(words.axis(curve.against, x_unit), 6))
+    y = alt.Y("y:Q", scale=alt.Scale(zero=True), axis=across)
     colours = [look.series[0], look.series[1]][: len(names)]
     legend = alt.Legend(
         title=None, orient="bottom", symbolType="stroke", symbolStrokeWidth=2, symbolOpacity=1, labelLimit=500
@@ -110,9 +111,7 @@ def _panel(curve: Curve, names: Sequence[str], look: Look, wide: bool) -> Panel:
     seen = base.transform_filter(f"datum.s == '{names[0]}'")
     layers = [
         alt.Chart(alt.NamedData(curve.name)).mark_rule(color=look.faint, strokeWidth=0.8).encode(y=alt.datum(0)),
-        seen.mark_area(opacity=0.25).encode(
-            y=alt.Y("l:Q", title=words.axis(curve.missing, y_unit)), y2="h:Q", color=colour
-        ),
+        seen.mark_area(opacity=0.25).encode(y=alt.Y("l:Q", axis=across), y2="h:Q", color=colour),
         seen.mark_line(strokeWidth=1.8, point=alt.OverlayMarkDef(size=22)).encode(
             y=y, color=colour, tooltip=_tooltip(curve, x_unit, y_unit)
         ),
@@ -135,8 +134,8 @@ def _share(curve: Curve) -> str:
     return f"explains {100 * curve.explained:.0f} %" if curve.explained > 0.005 else "explains nothing"
 
 
-def _axis(ticks: int) -> alt.Axis:
-    return alt.Axis(tickCount=ticks, format=".4~g")
+def _axis(title: str, ticks: int) -> alt.Axis:
+    return alt.Axis(title=title, tickCount=ticks, format=".4~g")
 
 
 def _tooltip(curve: Curve, x_unit: str, y_unit: str) -> list[alt.Tooltip]:

@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 _PERMUTATIONS = 1999
 _CHANCE = 0.05  # over all tests together
 _LEAST = 4  # runs
+_WORTHWHILE = 0.01  # of the value: less is nobody's concern, however certain
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,8 @@ class Point:
 
 @dataclass(frozen=True)
 class Trend:
-    """One parameter against one condition; `clear` where chance would do it once in twenty among all tests."""
+    """One parameter against one condition; `clear` where it moves by a per cent, and chance would do
+    that once in twenty among all tests."""
 
     parameter: str
     unit: str
@@ -60,9 +62,16 @@ def trends(found: Traces) -> tuple[Trend, ...]:
         for i, parameter in enumerate(found.parameters):
             value, unit = found.values[parameter], found.units[parameter]
             points = _points(conditions[name], value * (1 + moved[:, i]))
-            clear = bool(chances[i] <= _CHANCE / (len(tests) * len(found.parameters)))
+            certain = bool(chances[i] <= _CHANCE / (len(tests) * len(found.parameters)))
+            clear = certain and spread(points) >= _WORTHWHILE
             out.append(Trend(parameter, unit, name, points, float(chances[i]), clear))
-    return tuple(sorted(out, key=lambda trend: trend.p))
+    return tuple(sorted(out, key=lambda trend: (trend.p, -spread(trend.points))))
+
+
+def spread(points: Sequence[Point]) -> float:
+    """How far the conditions' values are apart, over their mean."""
+    values = [point.value for point in points]
+    return (max(values) - min(values)) / max(abs(sum(values)) / len(values), 1e-300)
 
 
 def _conditions(runs: Sequence[Run]) -> Mapping[str, list[float]]:
