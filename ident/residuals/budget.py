@@ -1,10 +1,10 @@
 """How much of the error is noise, how much a better linear model could take, how much only a nonlinear one.
 
-The squares of the three add up to that of eq. (17). Linear: a free impulse response from the command to the residual,
-one for each specimen and gain, the same for every amplitude, found on every other stretch of the records and judged
-on the rest, so that what it takes off is no chance. Noise: half the power of the difference between repeats of one
-command; without repeats the spectrum above the command's band, as white noise, which is a lower bound. Nonlinear is
-the rest. What an impulse response of each amplitude's own takes off beyond the common one cannot be linear, and
+The squares of the three add up to that of eq. (17). Linear: a free linear filter of the model's output that explains
+the residual, one for each specimen and gain, the same for every amplitude, found on every other stretch of the records
+and judged on the rest, so that what it takes off is no chance. Noise: half the power of the difference between repeats
+of one command; without repeats the spectrum above the command's band, as white noise, which is a lower bound.
+Nonlinear is the rest. What a filter of each amplitude's own takes off beyond the common one cannot be linear, and
 cannot be noise: it is the lower bound of the nonlinear part.
 """
 
@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from itertools import combinations
+from itertools import combinations, product
 from typing import Any
 
 import numpy as np
@@ -28,12 +28,11 @@ from ident.residuals.coarse import averaged, stride
 from ident.spectra import excited_band
 
 Array = NDArray[np.float64]
-_LENGTHS = (6, 24, 96)  # samples of the impulse response, the best of which is taken
-_AHEAD = 2  # of them before the command: averaging moves time by part of a sample
-_OVER = 3.0  # samples a period of the band edge
+_REACHES = (3, 8, 24)  # samples of the correction to either side of now; the best is taken
+_WIDTH = 2 * _REACHES[-1] + 1
 _STRETCHES = 8
 _SAME = 1e-3  # relative difference of two commands that are one
-_LEVEL = 1e-9  # of the diagonal, against directions that the command does not excite
+_LEVELS = (1e-8, 1e-6, 1e-4, 1e-2)  # of the diagonal, against directions that are hardly excited; the best is taken
 
 
 @dataclass(frozen=True)
@@ -69,7 +68,7 @@ def budget(comparison: Comparison, use: str = "fit") -> Budget:
     if not runs:
         raise Unusable("unstable-model", "the model is unstable at every run", "fit", "fit it to these data first")
     squares = np.array([run.error**2 for run in runs])
-    count = stride([run.run for run in runs], _OVER)
+    count = stride([run.run for run in runs])
     sums = each(lambda run: _sums(run, count), runs)
     common = _left(squares, _gains(sums, [_condition(run.run) for run in runs], squares))
     own = _left(squares, _gains(sums, [(_condition(run.run), _amplitude(run.run)) for run in runs], squares))
@@ -140,48 +139,42 @@ def _amplitude(run: Run) -> float:
 
 
 def _sums(compared: RunComparison, count: int) -> Array:
-    """Σ of products of [lagged command, r] over even, over odd stretches, (2, t + 1, t + 1), over the run's power."""
-    run = compared.run
-    residual = run.measured - compared.modelled
-    r, u = averaged(residual - residual.mean(), count), averaged(run.command - run.command.mean(), count)
-    taps = min(_LENGTHS[-1], max(_LENGTHS[0], len(r) // 6))
-    padded = np.concatenate([np.zeros(taps - 1 - _AHEAD), u, np.zeros(_AHEAD)])
-    lagged = sliding_window_view(padded, taps)[:, ::-1]
+    """Σ of products of [shifted model output, r] over even, over odd stretches, (2, w + 1, w + 1), over the power."""
+    run, model, reach = compared.run, compared.modelled, _REACHES[-1]
+    residual = run.measured - model
+    r, y = averaged(residual - residual.mean(), count), averaged(model - model.mean(), count)
+    shifted = sliding_window_view(np.concatenate([np.zeros(reach), y, np.zeros(reach)]), _WIDTH)
     stretch = np.arange(len(r)) * _STRETCHES // len(r) % 2
-    sums = np.zeros((2, _LENGTHS[-1] + 1, _LENGTHS[-1] + 1))
-    places = [*range(taps), _LENGTHS[-1]]
-    for kind in (0, 1):
-        rows = np.column_stack([lagged, r])[stretch == kind]
-        sums[kind][np.ix_(places, places)] = rows.T @ rows
-    return np.asarray(sums / (len(r) * np.var(run.measured)))
+    rows = np.column_stack([shifted, r])
+    sums = [rows[stretch == kind].T @ rows[stretch == kind] for kind in (0, 1)]
+    return np.asarray(np.array(sums) / (len(r) * np.var(run.measured)))
 
 
 def _gains(sums: Sequence[Array], keys: Sequence[object], squares: Array) -> Array:
-    """What one impulse response for each key takes off each run's squared error, on stretches it was not fitted to."""
+    """What one correction for each key takes off each run's squared error, on stretches that it was not fitted to."""
     best = np.zeros(len(squares))
-    for length in _LENGTHS:
+    groups = [[i for i, other in enumerate(keys) if other == key] for key in dict.fromkeys(keys)]
+    weighted = [np.sum([sums[i] / np.sqrt(squares[i]) for i in members], axis=0) for members in groups]
+    for reach, level in product(_REACHES, _LEVELS):
+        used = np.arange(_REACHES[-1] - reach, _REACHES[-1] + reach + 1)
         gains = np.zeros(len(squares))
-        for key in dict.fromkeys(keys):
-            members = [i for i, other in enumerate(keys) if other == key]
+        for members, total in zip(groups, weighted, strict=True):
             for kind in (0, 1):
-                weighted = [sums[i][1 - kind] / np.sqrt(squares[i]) for i in members]
-                h = _response(np.sum(weighted, axis=0), length)
+                h = _correction(total[1 - kind], used, level)
                 for i in members:
-                    gains[i] += _taken(sums[i][kind], h)
+                    gains[i] += _taken(sums[i][kind], used, h)
         best = gains if _left(squares, gains) < _left(squares, best) else best
     return best
 
 
-def _response(total: Array, length: int) -> Array:
-    A, g = total[:length, :length], total[:length, -1]
-    scale = float(np.trace(A)) / length or 1.0
-    return np.asarray(np.linalg.solve(A + _LEVEL * scale * np.eye(length), g))
+def _correction(total: Array, used: NDArray[np.intp], level: float) -> Array:
+    A, g = total[np.ix_(used, used)], total[used, -1]
+    return np.asarray(np.linalg.solve(A + level * (np.trace(A) / len(used) or 1.0) * np.eye(len(used)), g))
 
 
-def _taken(sums: Array, h: Array) -> float:
-    """Σr² − Σ(r − h*u)²."""
-    n = len(h)
-    return float(2 * h @ sums[:n, -1] - h @ sums[:n, :n] @ h)
+def _taken(sums: Array, used: NDArray[np.intp], h: Array) -> float:
+    """Σr² − Σ(r − h*y)²."""
+    return float(2 * h @ sums[used, -1] - h @ sums[np.ix_(used, used)] @ h)
 
 
 # Noise ------------------------------------------------------------------------------------------------------------

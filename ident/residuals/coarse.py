@@ -23,11 +23,11 @@ Array = NDArray[np.float64]
 _OVER = 8.0  # samples a period of the band edge
 
 
-def stride(runs: Sequence[Run], over: float = _OVER) -> int:
-    """Samples that are averaged into one, so that a period of the band edge keeps `over` of them."""
+def stride(runs: Sequence[Run]) -> int:
+    """Samples that are averaged into one."""
     band = excited_band(runs) / (2 * np.pi)
     slowest = min(run.sample_rate for run in runs)
-    return max(1, int(slowest / (over * band)))
+    return max(1, int(slowest / (_OVER * band)))
 
 
 def averaged(samples: Array, count: int) -> Array:
@@ -75,27 +75,29 @@ class Response:
         return np.asarray(_respond(self.phi, self.gamma0, self.gamma1, self.C, self.D, first, rows))
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, fastmath=True)
 def _respond(phi, gamma0, gamma1, C, D, first, inputs):  # type: ignore[no-untyped-def]
     samples, width = inputs.shape
     n, m = len(first), len(D)
-    out = np.empty((samples, width, m))
-    state = np.empty((width, n))
-    state[:] = first
-    following = np.empty(n)
+    out = np.zeros((samples, width, m))
+    state, following = np.zeros((n, width)), np.zeros((n, width))
+    for i in range(n):
+        state[i] += first[i]
     for k in range(samples):
-        for b in range(width):
-            u = inputs[k, b]
-            for j in range(m):
-                y = D[j] * u
-                for i in range(n):
-                    y += C[j, i] * state[b, i]
-                out[k, b, j] = y
-            if k + 1 < samples:
-                for i in range(n):
-                    s = gamma0[i] * u + gamma1[i] * inputs[k + 1, b]
-                    for j in range(n):
-                        s += phi[i, j] * state[b, j]
-                    following[i] = s
-                state[b] = following
+        for j in range(m):
+            for b in range(width):
+                out[k, b, j] = D[j] * inputs[k, b]
+            for i in range(n):
+                c = C[j, i]
+                for b in range(width):
+                    out[k, b, j] += c * state[i, b]
+        if k + 1 < samples:
+            for i in range(n):
+                for b in range(width):
+                    following[i, b] = gamma0[i] * inputs[k, b] + gamma1[i] * inputs[k + 1, b]
+                for j in range(n):
+                    p = phi[i, j]
+                    for b in range(width):
+                        following[i, b] += p * state[j, b]
+            state, following = following, state
     return out

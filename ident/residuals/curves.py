@@ -108,7 +108,7 @@ def traced(comparison: Comparison, of: Comparison | None = None) -> Traces:
 
 def curves_of(found: Traces) -> tuple[Curve, ...]:
     """The curve of every view that the model has the signals for, those that explain most first."""
-    drawn = [curve(found, view) for view in views(found.preset)]
+    drawn = each(lambda view: curve(found, view), views(found.preset))
     return tuple(sorted((c for c in drawn if c is not None), key=lambda c: -c.explained))
 
 
