@@ -75,7 +75,7 @@ def budget(comparison: Comparison, use: str = "fit") -> Budget:
     measured, floor = _repeats(runs), _floors([run.run for run in runs])
     noise = measured if measured is not None else floor
     parts = _parts(float(np.mean(np.sqrt(squares))), common, own, noise, measured is not None)
-    several = len({_amplitude(run.run) for run in runs}) > 1
+    several = len({(_condition(run.run), _amplitude(run.run)) for run in runs}) > len({_condition(r.run) for r in runs})
     return Budget(
         noise=None if noise is None else parts["noise"][0],
         linear=parts["linear"][0],
@@ -124,7 +124,10 @@ def _notes(measured: bool, floor: bool, several: bool, parts: Mapping[str, tuple
         f"takes, noise is {noise} %, nonlinear {nonlinear} %. Repeat one run with the same command to measure it."
     )
     if not several:
-        yield "One amplitude only: another one would show how much of the rest changes with it."
+        yield (
+            "No specimen and gain was measured at two amplitudes: part of what changes with amplitude counts as linear. "
+            "Measure one at another amplitude."
+        )
 
 
 # Linear corrections -----------------------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 from ident.compare import Comparison, compare
@@ -19,7 +20,15 @@ TRUE = {p.name: p.value for p in preset("qian2014").parameters}
 
 
 @cache
-def compared(name: str, strength: float | None = None, refit: bool = False, **changed: float) -> Comparison:
-    """Seventeen runs of 1 s with a hidden effect against the linear model at the true values, at others, or fitted."""
-    data = matrix(name, HIDDEN[name] if strength is None else strength, 5, 1.0, 5)
-    return compare(data, identify(data, Settings(fixed={} if refit else TRUE | changed)))
+def compared(name: str, strength: float | None = None, all_amplitudes: bool = False, **changed: float) -> Comparison:
+    """Seventeen runs of 1 s with a hidden effect against the linear model at the true values, or at others.
+
+    With `all_amplitudes`, 24 runs of eight conditions at three amplitudes each, the model fitted.
+    """
+    force = HIDDEN[name] if strength is None else strength
+    if all_amplitudes:
+        whole = matrix(name, force, 5, 1.0)
+        data = replace(whole, runs=whole.runs[:24])
+        return compare(data, identify(data, Settings()))
+    data = matrix(name, force, 5, 1.0, 5)
+    return compare(data, identify(data, Settings(fixed=TRUE | changed)))

@@ -48,7 +48,7 @@ def test_parameters_follow_the_amplitude_where_a_dead_zone_is_hidden():
 @pytest.mark.parametrize(
     ("name", "strength", "changed", "part"),
     [
-        ("coulomb_friction", None, {"refit": True}, "nonlinear"),
+        ("coulomb_friction", None, {"all_amplitudes": True}, "nonlinear"),
         ("dead_zone", 0.0, {"tau": 4.6e-3}, "linear"),
         ("dead_zone", 0.0, {}, "noise"),
     ],
@@ -72,7 +72,7 @@ def test_one_random_record_does_not_tell_noise_from_nonlinearity_and_says_so():
     found = budget(replace(base, runs=base.runs[:1]))
     assert found.bounds["noise"][1] > 2 * found.bounds["noise"][0]
     assert any("Repeat one run" in note for note in found.notes)
-    assert any("One amplitude" in note for note in found.notes)
+    assert any("at two amplitudes" in note for note in found.notes)
 
 
 def test_a_repeat_measures_the_noise_also_where_it_lives_in_the_band():
