@@ -125,7 +125,7 @@ def _notes(measured: bool, floor: bool, several: bool, parts: Mapping[str, tuple
     )
     if not several:
         yield (
-            "No specimen and gain was measured at two amplitudes: part of what changes with amplitude counts as linear. "
+            "No specimen and gain was measured at two amplitudes: what changes with amplitude may count as linear. "
             "Measure one at another amplitude."
         )
 

@@ -13,6 +13,7 @@ from ident.fit.settings import Settings
 from ident.presets import preset
 from ident.residuals.coarse import Response
 from ident.residuals.curves import curves
+from ident.residuals.traces import traces
 from ident.residuals.views import VIEWS, injected, showing
 from tests.residuals.conftest import HIDDEN, TRUE, compared
 
@@ -102,6 +103,16 @@ def test_what_is_added_to_the_drive_acts_like_the_command():
     added = Response.of([injected(chain, "e").linearise(values)], 500.0).to(step)[:, 0, 0]
     commanded = Response.of([model], 500.0).to(step)[:, 0, 0]
     assert run.Kp * added == pytest.approx(commanded, rel=1e-6, abs=1e-9)
+
+
+def test_a_model_whose_effect_is_off_moves_inside_as_the_linear_one():
+    """The compiled kernel's drive signal is the linear core's."""
+    base = compared("coulomb_friction")
+    off = Settings(effects=("coulomb_friction",), fixed=TRUE | {"coulomb_friction": 0.0})
+    same = compare(base.matrix, identify(base.matrix, off))
+    for linear, compiled in zip(traces(base, ("w",)).runs, traces(same, ("w",)).runs, strict=True):
+        w = linear.signals["w"]
+        assert compiled.signals["w"] == pytest.approx(w, abs=0.01 * np.std(w))
 
 
 def test_an_unknown_curve_is_refused_with_those_there_are():
