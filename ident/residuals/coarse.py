@@ -71,7 +71,9 @@ class Response:
     def to(self, inputs: Array, start: Array | None = None) -> Array:
         """The outputs (samples, b, m) for inputs (samples, b); `start` is the state at the first sample, (n,)."""
         first = np.zeros(len(self.scale)) if start is None else start / self.scale
-        rows = np.ascontiguousarray(inputs)
+        # Lines between samples lose 1 − sinc² of a sine, a share of (π f/fs)²/3: a twelfth of the second difference.
+        rows = np.array(inputs)
+        rows[1:-1] -= (inputs[2:] - 2 * inputs[1:-1] + inputs[:-2]) / 12
         return np.asarray(_respond(self.phi, self.gamma0, self.gamma1, self.C, self.D, first, rows))
 
 
