@@ -112,7 +112,7 @@ def test_a_model_whose_effect_is_off_moves_inside_as_the_linear_one():
     same = compare(base.matrix, identify(base.matrix, off))
     for linear, compiled in zip(traces(base, ("w",)).runs, traces(same, ("w",)).runs, strict=True):
         w = linear.signals["w"]
-        assert compiled.signals["w"][8:] == pytest.approx(w[8:], abs=0.01 * np.std(w))
+        assert np.std((compiled.signals["w"] - w)[8:]) < 0.005 * np.std(w)
 
 
 def test_an_unknown_curve_is_refused_with_those_there_are():
