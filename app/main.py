@@ -24,6 +24,7 @@ from app.matrices.endpoints import router as matrices
 from app.operation.endpoints import router as operation
 from app.pages import router as pages
 from app.parameters.endpoints import router as parameters
+from app.report.endpoints import router as report
 from app.security import Guard
 from app.settings import Settings
 from app.storage import Storage
@@ -48,7 +49,7 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.context = make_context(settings)
     errors.install(app)
     api = APIRouter(prefix=API)
-    for router in (matrices, actuators, fits, jobs, parameters, catalogue, operation):
+    for router in (matrices, actuators, fits, jobs, report, parameters, catalogue, operation):
         api.include_router(router)
     app.include_router(api)
     app.include_router(pages)

@@ -88,10 +88,87 @@ class ComparedRun(BaseModel):
     offset: float
 
 
+class GroupError(BaseModel):
+    """Eq. (17) on runs, or on parts of every run, with something in common; `value` is the condition in SI."""
+
+    label: str
+    value: float | None
+    runs: int
+    error: float
+    mean: float
+
+
+class BandedRun(BaseModel):
+    """The error of a run in each band, whose squares add up to that of its error; null where no frequency lies."""
+
+    id: str
+    use: str
+    error: float
+    bands: list[float | None]
+
+
+class Bands(BaseModel):
+    """Edges in Hz, one more than bands."""
+
+    edges: list[float]
+    runs: list[BandedRun]
+
+
+class ResidualCurve(BaseModel):
+    """What is missing at a place of the chain against a signal, with its 95 % band; `explained` of the power."""
+
+    name: str
+    missing: str
+    against: str
+    shows: str
+    x_unit: str
+    y_unit: str
+    x: list[float]
+    y: list[float]
+    lower: list[float]
+    upper: list[float]
+    explained: float
+
+
+class TrendPoint(BaseModel):
+    """A parameter refitted to the runs of one condition."""
+
+    condition: float
+    runs: int
+    value: float
+    std_error: float | None
+
+
+class ParameterTrend(BaseModel):
+    """A parameter against a condition; `p` by permutation, `clear` beyond chance among all tests."""
+
+    parameter: str
+    unit: str
+    condition: str
+    points: list[TrendPoint]
+    p: float
+    clear: bool
+
+
+class ErrorBudget(BaseModel):
+    """Parts of eq. (17), combining quadratically; null noise cannot be told and is within nonlinear."""
+
+    noise: float | None
+    linear: float
+    nonlinear: float
+    bounds: dict[str, tuple[float, float]]
+    notes: list[str]
+
+
 class ComparisonView(BaseModel):
-    """A fit against every run of its matrix, recomputed."""
+    """A fit against every run of its matrix, recomputed: where it fails, and what its error is made of."""
 
     fit: str
     error: dict[str, float | None]
     offset: dict[str, float | None]
     runs: list[ComparedRun]
+    bands: Bands
+    groups: dict[str, list[GroupError]]
+    curves: list[ResidualCurve]
+    trends: list[ParameterTrend]
+    budget: ErrorBudget | None

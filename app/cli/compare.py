@@ -23,22 +23,31 @@ def compare(
     fit: Annotated[Path, typer.Option(metavar="FIT.json", help="What `servoident fit --json` wrote.")],
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the errors as JSON; - is stdout.")] = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures: svg, png, pdf, json.")] = None,
+    candidate: Annotated[
+        Path | None, typer.Option(metavar="FIT.json", help="A second fit, drawn over the curves of the residual.")
+    ] = None,
 ) -> None:
-    """Compare a fitted model with every run of a matrix."""
+    """Compare a fitted model with every run of a matrix: error, where it fails, and what the error is made of."""
+    from app.cli.where import show_survey
     from ident.compare import compare as compared
     from ident.readers import read_matrix
+    from ident.residuals.survey import survey
 
     check_target(json)
-    result, read = read_fit(fit), read_matrix(matrix)
+    result, other = read_fit(fit), None if candidate is None else read_fit(candidate)
+    read = read_matrix(matrix)
     comparison = compared(read, result)
+    found = survey(comparison)
     rows = [(run.run.id, run.run.use, run.error, run.offset) for run in comparison.runs]
     if json is not None:
         runs = [dict(zip(("id", "use", "error", "offset"), row, strict=True)) for row in rows]
-        write_json({"error": dict(comparison.error), "offset": dict(comparison.offset), "runs": runs}, json)
+        means = {"error": dict(comparison.error), "offset": dict(comparison.offset)}
+        write_json({**means, "runs": runs, **found.to_json()}, json)
     if json != STANDARD_OUTPUT:
         show(rows, comparison.error)
+        show_survey(found)
     if out is not None:
-        draw(read, result, out)
+        draw(read, result, out, other)
 
 
 def read_fit(path: Path) -> FitResult:
@@ -69,13 +78,14 @@ def show(rows: list[tuple[str, str, float, float]], error: Any) -> None:
     output().print(table(("run", "use", "error", "offset"), lines, numbers=("error", "offset")))
 
 
-def draw(matrix: Matrix, fit: FitResult, out: Path) -> None:
-    """Write every figure in every format to the folder `out`."""
+def draw(matrix: Matrix, fit: FitResult, out: Path, candidate: FitResult | None = None) -> None:
+    """Write every figure in every format to the folder `out`; curves also as `candidate` predicts them."""
     from ident.figures import FIGURES, figure, render
 
     out.mkdir(parents=True, exist_ok=True)
     for name in FIGURES:
-        chart = figure(name, matrix, fit)
+        options: dict[str, Any] = {"candidate": candidate} if name == "residual-curve" and candidate is not None else {}
+        chart = figure(name, matrix, fit, **options)
         for format_ in FORMATS:
             write_bytes(render(chart, format_), out / f"{name}.{format_}")
     print(f"wrote {', '.join(FIGURES)} to {out}")

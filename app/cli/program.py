@@ -17,6 +17,7 @@ from app.cli.migrate import migrate
 from app.cli.next import next_
 from app.cli.query import query
 from app.cli.regress import regress
+from app.cli.report import report as write_report
 from app.cli.revise import revise
 from app.cli.serve import serve
 from app.cli.simulate import simulate
@@ -24,7 +25,7 @@ from app.cli.token import token
 from app.cli.upload import upload
 from app.cli.worker import worker
 
-LOCAL = (simulate, check, fit, compare, next_)
+LOCAL = (simulate, check, fit, compare, next_, write_report)
 SERVICE = (serve, worker, demo, token, migrate, regress)
 CLIENT = (upload, approve, query, revise)
 

@@ -34,7 +34,7 @@ def one(here: Here, fit: str) -> FitView:
 
 @router.get("/{fit}/compare")
 def compared(here: Here, fit: str) -> ComparisonView:
-    """Eq. (17) and offset of every run, recomputed."""
+    """Eq. (17) of every run, recomputed, where the model fails, and what the error is made of."""
     return service.comparison(here, fit)
 
 

@@ -19,6 +19,7 @@ from ident.fit.identification import check_settings
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.quantity import parameter_value
+from ident.residuals.survey import survey
 from schemas.fit import ComparedRun, ComparisonView, FitRequest, FitView, JobPage, JobView, ProgressView
 
 
@@ -136,7 +137,7 @@ def comparison(context: Context, fit_id: str) -> ComparisonView:
     row = find(context, fit_id)
     found = compare(matrices.load(context, row.matrix), FitResult.from_json(row.result))
     runs = [ComparedRun(id=r.run.id, use=r.run.use, error=r.error, offset=r.offset) for r in found.runs]
-    return ComparisonView(fit=fit_id, error=found.error, offset=found.offset, runs=runs)
+    return ComparisonView(fit=fit_id, error=found.error, offset=found.offset, runs=runs, **survey(found).to_json())
 
 
 def drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str, Any]) -> tuple[bytes, str]:
@@ -145,6 +146,10 @@ def drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str
     if kind not in MEDIA:
         raise Failure(404, "no-such-format", f"no figures as {kind!r}", "figure", f"use {', '.join(MEDIA)}")
     theme = options.pop("theme", "light")
+    if options.get("candidate"):
+        options["candidate"] = FitResult.from_json(find(context, str(options["candidate"])).result)
+    else:
+        options.pop("candidate", None)
     matrix = matrices.load(context, row.matrix)
     return render(figure(name, matrix, FitResult.from_json(row.result), theme, **options), kind), MEDIA[kind]
 

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from app.pages.run_view import specimen_of
 from ident.figures import words
 from ident.fit.result import FitResult
+from ident.presets import preset
+from ident.residuals.views import views
 from schemas.matrix import RunView
 
 Choices = tuple[tuple[str, str], ...]
@@ -37,6 +39,8 @@ def forms(runs: Sequence[RunView], fit: FitResult) -> tuple[FigureForm, ...]:
     pictures = [
         FigureForm("bode", "Bode plot", _bode(runs)),
         FigureForm("time", "Time record", (run, Field("start", "Start (s)"), Field("seconds", "Length (s)"))),
+        FigureForm("residual-map", "Where it fails", _conditions(runs)),
+        FigureForm("residual-curve", "What is missing", (Field("view", "Curve", _views(fit)), *_conditions(runs))),
         FigureForm("sensitivity", "Sensitivity", (run,)),
     ]
     if fit.evolution:
@@ -59,6 +63,15 @@ def _bode(runs: Sequence[RunView]) -> tuple[Field, ...]:
         Field("axis", "Frequency axis", (("log", "logarithmic"), ("linear", "linear"))),
     )
     return tuple(field for field in offered if len(field.choices) > 1)
+
+
+def _conditions(runs: Sequence[RunView]) -> tuple[Field, ...]:
+    """The choices of a Bode plot, for figures that by themselves show many runs."""
+    return tuple(field for field in _bode(runs) if field.name in ("kp", "amplitude", "specimen"))
+
+
+def _views(fit: FitResult) -> Choices:
+    return (("", "those that explain most"), *((view.name, view.name) for view in views(preset(fit.model))))
 
 
 def _stated(runs: Sequence[RunView], of: Callable[[RunView], float | None], text: Callable[[float], str]) -> Choices:

@@ -11,21 +11,28 @@ from ident.errors import Unusable
 from ident.figures.bode import bode, readable
 from ident.figures.choose import chosen, wish
 from ident.figures.evolution import evolution
+from ident.figures.ladder import ladder
 from ident.figures.look import Look, look
 from ident.figures.render import MEDIA, Chart, render
+from ident.figures.residual_curve import residual_curve
+from ident.figures.residual_map import residual_map
 from ident.figures.sensitivity import loaded, sensitivity
 from ident.figures.time import time, typical
 from ident.fit.result import FitResult
 from ident.matrix import Matrix, Run
+from ident.residuals.curves import curves
 
-__all__ = ["FIGURES", "MEDIA", "Chart", "figure", "render"]
+__all__ = ["FIGURES", "MEDIA", "Chart", "figure", "ladder", "look", "render"]
 
 
 def figure(name: str, matrix: Matrix, fit: FitResult, theme: str = "light", **options: Any) -> Chart:
     """The chart of that name, "light" or "dark"; only what it shows is computed.
 
     Options, all optional: bode takes run, kp, amplitude, specimen, use, axis; time takes run, start, seconds;
-    evolution takes x, y, generations; sensitivity takes run. Raises Unusable for an unknown name, theme or option.
+    evolution takes x, y, generations; sensitivity takes run; residual-map takes kp, amplitude, specimen, use;
+    residual-curve takes these, view, and candidate, the fit of another model.
+
+    Raises Unusable for an unknown name, theme or option.
     """
     if name not in FIGURES:
         raise Unusable("unknown-figure", f"no figure {name!r}", "figure", f"use one of {', '.join(FIGURES)}")
@@ -58,11 +65,33 @@ def _sensitivity(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str,
     return sensitivity(run, matrix.actuator, fit, of)
 
 
+def _residual_map(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) -> Chart:
+    shown = chosen(matrix, wish(**options)) if any(options.values()) else matrix.runs
+    return residual_map(_compared(matrix, fit, shown), matrix.actuator, fit, of)
+
+
+def _residual_curve(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) -> Chart:
+    filters = {name: value for name, value in options.items() if name not in ("view", "candidate")}
+    shown = chosen(matrix, wish(**filters)) if any(filters.values()) else matrix.of_use("fit") or matrix.runs
+    own = _compared(matrix, fit, shown)
+    other = options.get("candidate")
+    if other is not None and not isinstance(other, FitResult):
+        raise Unusable("bad-fit", f"candidate is {other!r}", "figure residual-curve", "give a fit")
+    predicted = curves(own, _compared(matrix, other, shown)) if other else ()
+    return residual_curve(
+        curves(own), matrix.actuator, fit, of, candidate=predicted, view=options.get("view"), runs=len(shown),
+        candidate_name=" + ".join((other.model, *other.effects)) if other else "",
+    )  # fmt: skip
+
+
+_CONDITIONS = ("kp", "amplitude", "specimen", "use")
 FIGURES: Mapping[str, tuple[Callable[[Matrix, FitResult, Look, Mapping[str, Any]], Chart], tuple[str, ...]]] = {
     "bode": (_bode, ("run", "kp", "amplitude", "specimen", "use", "axis")),
     "time": (_time, ("run", "start", "seconds")),
     "evolution": (_evolution, ("x", "y", "generations")),
     "sensitivity": (_sensitivity, ("run",)),
+    "residual-map": (_residual_map, _CONDITIONS),
+    "residual-curve": (_residual_curve, (*_CONDITIONS, "view", "candidate")),
 }
 """Figures by name, each with the options that it takes."""
 

@@ -46,6 +46,27 @@ def test_the_bode_plot_is_served_in_every_format(service: TestClient, fitted: st
     assert answer.content.startswith(starts[kind])
 
 
+def test_the_comparison_says_where_the_model_fails(service: TestClient, fitted: str) -> None:
+    found = service.get(f"/api/v1/fits/{fitted}/compare").json()
+    assert {curve["name"] for curve in found["curves"]} >= {"spool", "friction", "leakage"}
+    assert found["budget"]["noise"] == pytest.approx(0.005, rel=0.2)
+    assert len(found["bands"]["runs"]) == len(found["runs"])
+
+
+@pytest.mark.parametrize("name", ["residual-map", "residual-curve"])
+def test_where_the_model_fails_is_drawn(service: TestClient, fitted: str, name: str) -> None:
+    assert service.get(f"/api/v1/fits/{fitted}/figures/{name}.svg").content.startswith(b"<svg")
+    assert service.get(f"/api/v1/fits/{fitted}/figures/residual-curve.svg?candidate=nothing").status_code == 404
+
+
+def test_the_report_is_one_page_that_runs_nothing(service: TestClient, fitted: str) -> None:
+    answer = service.get(f"/api/v1/fits/{fitted}/report.html")
+    assert answer.headers["content-type"].startswith("text/html")
+    assert "script-src" not in answer.headers["content-security-policy"]
+    assert "default-src 'none'" in answer.headers["content-security-policy"]
+    assert "SW-1" in answer.text
+
+
 def test_an_approved_set_is_what_the_production_line_finds(service: TestClient, fitted: str) -> None:
     assert service.post(f"/api/v1/fits/{fitted}/approve").json()["current"] is True
     found = service.get("/api/v1/parameter-sets", params={"serial": "SW-1", "Z0.min": "2.5e-6", "Z0.max": "2.7e-6"})

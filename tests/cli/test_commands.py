@@ -83,11 +83,24 @@ def test_compare_writes_every_figure_in_every_format(servoident, matrix, fit_fil
     )
     assert done.returncode == 0, done.stderr
     starts = {"svg": b"<svg", "png": b"\x89PNG", "pdf": b"%PDF", "json": b"{"}
-    for name in ("bode", "time", "evolution", "sensitivity"):
+    for name in ("bode", "time", "evolution", "sensitivity", "residual-map", "residual-curve"):
         for kind, start in starts.items():
             assert (tmp_path / "figures" / f"{name}.{kind}").read_bytes().startswith(start)
-    assert len(json.loads((tmp_path / "c.json").read_text())["runs"]) == 84
+    compared = json.loads((tmp_path / "c.json").read_text())
+    assert len(compared["runs"]) == len(compared["bands"]["runs"]) == 84
+    assert {"amplitude", "gain", "specimen", "direction", "speed"} <= set(compared["groups"])
+    assert {"noise", "linear", "nonlinear", "bounds", "notes"} <= set(compared["budget"])
+    assert "error budget" in done.stdout
     assert "m087-k36-kp6-a05" in done.stdout
+
+
+def test_report_is_one_html_file(servoident, matrix, fit_file, tmp_path):
+    """It names the actuator and is written whole."""
+    done = servoident("report", matrix, "--fit", fit_file, "--out", tmp_path / "report.html")
+    assert done.returncode == 0, done.stderr
+    page = (tmp_path / "report.html").read_text()
+    assert page.startswith("<!doctype html>")
+    assert page.rstrip().endswith("</html>")
 
 
 def test_compare_finds_the_errors_of_the_fit_again(servoident, matrix, fit_file):

@@ -22,6 +22,8 @@ ONE_LINE = [
     (["fit", "MATRIX", "--json", "/nowhere/fit.json"], "/nowhere"),
     (["compare", "MATRIX", "--fit", "nowhere.json"], "nowhere.json"),
     (["compare", "MATRIX", "--fit", __file__], "not the JSON of a fit"),
+    (["report", "MATRIX", "--out", "report.pdf"], ".html"),
+    (["report", "MATRIX", "--out", "r.html", "--diagnosis", __file__], "not the JSON of a diagnosis"),
     (["simulate", "MATRIX"], "not empty"),
     (["simulate", "new", "--effect", "magic"], "magic"),
     (["simulate", "new", "--preset", "unknown"], "unknown"),

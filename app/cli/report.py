@@ -1,0 +1,41 @@
+"""`servoident report`: everything about a fit in one file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app.cli.compare import read_fit
+from app.cli.output import check_target, write_bytes
+from ident.errors import Unusable
+
+
+def report(
+    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")],
+    out: Annotated[Path, typer.Option(metavar="FILE", help="The report, an .html file.")],
+    fit: Annotated[Path | None, typer.Option(metavar="FIT.json", help="Without it the default fit is made.")] = None,
+    diagnosis: Annotated[
+        Path | None, typer.Option(metavar="D.json", help="What `servoident diagnose --json` wrote.")
+    ] = None,
+) -> None:
+    """Write one HTML file with data, error, parameters, figures and diagnosis; it opens without a network."""
+    if out.suffix.lower() not in (".html", ".htm"):
+        raise Unusable("unknown-format", f"no report as {out.suffix or out.name!r}", "--out", "name a file in .html")
+    check_target(out)
+    result = None if fit is None else read_fit(fit)
+    from app.cli.progress import shown
+    from app.report.diagnosis import read_diagnosis
+    from app.report.document import document
+    from ident.fit.identification import identify
+    from ident.fit.settings import Settings
+    from ident.readers import read_matrix
+
+    found = None if diagnosis is None else read_diagnosis(diagnosis)
+    read = read_matrix(matrix)
+    if result is None:
+        with shown() as progress:
+            result = identify(read, Settings(), progress)
+    write_bytes(document(read, result, found).encode(), out)
+    print(f"wrote {out}")

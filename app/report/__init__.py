@@ -1,0 +1,1 @@
+"""One HTML file that tells everything about a fit, and opens without a network."""

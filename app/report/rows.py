@@ -1,0 +1,62 @@
+"""The tables of the report, as text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from app.pages import numbers
+from app.report.diagnosis import Diagnosis
+from ident.residuals.budget import Budget
+from ident.residuals.curves import Curve
+from ident.residuals.trends import Trend
+from ident.residuals.where import Group, Where
+
+Row = tuple[str, ...]
+_MEANS = {
+    "noise": "what no model can take",
+    "linear": "what a better linear model could take",
+    "nonlinear": "what only a nonlinear model could take",
+}
+
+
+def budget_rows(budget: Budget | None) -> tuple[Row, ...]:
+    """Part, what it is, its size, from, to."""
+    if budget is None:
+        return ()
+    sizes = {"noise": budget.noise, "linear": budget.linear, "nonlinear": budget.nonlinear}
+    return tuple(
+        (name, means, "unknown" if sizes[name] is None else numbers.percent(sizes[name]),
+         *(numbers.percent(bound) for bound in budget.bounds[name]))
+        for name, means in _MEANS.items()
+    )  # fmt: skip
+
+
+def group_tables(found: Where) -> dict[str, list[Group]]:
+    """The groups by what they have in common."""
+    tables: dict[str, list[Group]] = {}
+    for group in found.groups:
+        tables.setdefault(group.by, []).append(group)
+    return tables
+
+
+def curve_rows(curves: Sequence[Curve]) -> tuple[Row, ...]:
+    """Name, what is missing, against what, explained."""
+    return tuple((c.name, c.missing, c.against, numbers.percent(max(c.explained, 0.0), 2)) for c in curves)
+
+
+def trend_rows(trends: Sequence[Trend]) -> tuple[Row, ...]:
+    """Parameter, condition, values, p: those that are clear."""
+    return tuple(
+        (t.parameter, t.condition, " → ".join(numbers.quantity(p.value, t.unit) for p in t.points), f"{t.p:.2g}")
+        for t in trends
+        if t.clear
+    )
+
+
+def candidate_rows(diagnosis: Diagnosis) -> tuple[Row, ...]:
+    """Effect, predicted error, errors, why."""
+    return tuple(
+        (c.effect.replace("_", " "), numbers.percent(c.predicted_error),
+         *(numbers.percent(c.error.get(use)) for use in ("fit", "held_out", "verify")), c.why)
+        for c in diagnosis.candidates
+    )  # fmt: skip

@@ -1,0 +1,56 @@
+"""The error after each step of adding effects, on runs to fit and to verify, down to the noise floor."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import altair as alt
+
+from ident.errors import Unusable
+from ident.figures import words
+from ident.figures.look import Look
+from ident.figures.render import Chart
+from ident.matrix import Actuator
+
+Step = tuple[str, float | None, float | None]
+"""Label, error on the runs to fit, error on the runs to verify."""
+
+
+def ladder(steps: Sequence[Step], floor: float | None, actuator: Actuator, look: Look) -> Chart:
+    """Steps from top to bottom, errors (fractions, drawn in per cent) to the right on a logarithmic axis.
+
+    `floor` is the noise floor, drawn as a line. Raises Unusable without a step.
+    """
+    if not steps:
+        raise Unusable("no-steps", "no step to draw", "figure ladder", "give at least the fitted model's error")
+    order = [f"{place}. {label}" if place else label for place, (label, _, _) in enumerate(steps)]
+    rows: list[dict[str, Any]] = [
+        {"step": name, "e": float(f"{100 * error:.4g}"), "u": use, "t": words.percent(error)}
+        for name, (_, fit, verify) in zip(order, steps, strict=True)
+        for use, error in (("runs to fit", fit), ("runs to verify", verify))
+        if error is not None
+    ]
+    uses = [use for use in ("runs to fit", "runs to verify") if any(row["u"] == use for row in rows)]
+    colour = alt.Color("u:N", title=None, scale=alt.Scale(domain=uses, range=list(look.series[: len(uses)])),
+                       legend=alt.Legend(orient="bottom", symbolType="circle"))  # fmt: skip
+    lowest = min([row["e"] for row in rows] + ([100 * floor] if floor else []))
+    scale = alt.Scale(type="log", domain=[0.8 * lowest, 1.5 * max(row["e"] for row in rows)], nice=False)
+    x = alt.X("e:Q", scale=scale, axis=alt.Axis(title="Error, eq. 17 (%)", format="~r", tickCount=6))
+    y = alt.Y("step:N", sort=order, axis=alt.Axis(title=None, labelLimit=320, grid=True, ticks=False, labelFontSize=12))
+    base = alt.Chart(alt.NamedData("steps")).encode(x=x, y=y, color=colour)
+    named = base.transform_filter(f"datum.u == '{uses[-1]}'")
+    layers: list[alt.Chart] = [
+        base.mark_line(strokeWidth=1.5, opacity=0.6).encode(order="row:Q").transform_window(row="row_number()"),
+        base.mark_circle(size=70, opacity=1).encode(tooltip=[alt.Tooltip("step:N", title="Step"), "u:N", "t:N"]),
+        named.mark_text(align="left", dx=7, dy=12, fontSize=11).encode(text="t:N"),
+    ]  # fmt: skip
+    if floor:
+        at = alt.Chart(alt.NamedData("steps")).encode(x=alt.datum(100 * floor))
+        layers.append(at.mark_rule(color=look.ink, strokeDash=[5, 3], strokeWidth=1.3))
+    said = f"dashed: noise floor {words.percent(floor)}" if floor else "noise floor unknown"
+    title = alt.TitleParams(words.headline(actuator, "the error with each effect added"), subtitle=[said])
+    chart: Chart = alt.layer(
+        *layers, width=460, height=max(80, 38 * len(steps)), title=title, datasets={"steps": rows}
+    ).configure(**look.config())
+    return chart

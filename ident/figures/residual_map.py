@@ -1,0 +1,142 @@
+"""The residual of every run in every frequency band, and of the run as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import Any
+
+import altair as alt
+
+from ident.compare import Comparison
+from ident.figures import words
+from ident.figures.look import Look
+from ident.figures.render import Chart, Panel
+from ident.figures.thin import decade_ticks
+from ident.fit.result import FitResult
+from ident.matrix import Actuator, Run
+from ident.residuals.where import Where, stated_amplitude, where
+
+MOST = 100  # rows
+_ROW = 9  # pixels
+
+
+def residual_map(compared: Comparison, actuator: Actuator, fit: FitResult, look: Look) -> Chart:
+    """Runs by amplitude, gain and specimen, over frequency; colour is the error in the band, on a logarithmic scale.
+
+    The squares of a row add up to the square of its error, on the right. Of more than a hundred runs the worst are
+    shown.
+    """
+    found = where(compared)
+    worst = {run.id for run in sorted(found.runs, key=lambda run: -run.error)[:MOST]}
+    runs = {run.run.id: run.run for run in compared.runs if run.run.id in worst}
+    order = sorted(runs, key=lambda name: _place(runs[name]))
+    shown = f"{len(order)} of {len(compared.runs)} runs, the worst" if len(order) < len(compared.runs) else "every run"
+    ends = _ends(found)
+    unit = "Hz" if all(run.time_unit == "s" for run in runs.values()) else "cycles/sample"
+    height = max(60, _ROW * len(order))
+    panels = [_bands(order, ends, unit, look, height), _totals(order, look, height)]
+    title = alt.TitleParams(
+        words.headline(actuator, "where the error is, by run and frequency"),
+        subtitle=[
+            words.verdict(fit),
+            f"{shown}, by amplitude, then Kp, then specimen · last column: all above {found.edges[-2]:.3g} {unit}",
+        ],
+    )
+    data = {"map": _cells(found, runs, ends), "totals": _errors(found, runs)}
+    chart: Chart = (
+        alt.hconcat(*panels, spacing=10, bounds="flush", datasets=data, title=title)
+        .resolve_scale(color="independent")
+        .configure(**look.config())
+    )
+    return chart
+
+
+def _place(run: Run) -> tuple[Any, ...]:
+    specimen = run.specimen
+    return (stated_amplitude(run), run.Kp, *((specimen.stiffness, specimen.mass) if specimen else (0.0, 0.0)), run.id)
+
+
+def _ends(found: Where) -> list[tuple[float, float]]:
+    """Where each band is drawn: the first and the last one as wide as their neighbours."""
+    edges = list(found.edges)
+    ratio = (edges[-2] / edges[1]) ** (1 / max(len(edges) - 3, 1)) if len(edges) > 3 else 2.0
+    edges[0], edges[-1] = edges[1] / ratio, min(edges[-1], edges[-2] * ratio)
+    return list(pairwise(edges))
+
+
+def _cells(found: Where, runs: Mapping[str, Run], ends: Sequence[tuple[float, float]]) -> list[dict[str, Any]]:
+    """r run, f and g ends of the band, e error in per cent."""
+    return [
+        {"r": run.id, "f": _short(f), "g": _short(g), "e": _short(100 * error)}
+        for run in found.runs
+        if run.id in runs
+        for (f, g), error in zip(ends, run.bands, strict=True)
+        if error
+    ]
+
+
+def _errors(found: Where, runs: Mapping[str, Run]) -> list[dict[str, Any]]:
+    return [
+        {"r": run.id, "e": _short(100 * run.error), "u": run.use, "d": words.describe(runs[run.id])}
+        for run in found.runs
+        if run.id in runs
+    ]
+
+
+def _short(value: float) -> float:
+    return float(f"{value:.4g}")
+
+
+def _rows(order: Sequence[str], labels: bool) -> alt.Y:
+    axis = alt.Axis(labels=labels, ticks=False, title=None, labelFontSize=8, labelOverlap=False, domain=False,
+                    labelFlush=False)  # fmt: skip
+    return alt.Y("r:N", sort=list(order), axis=axis, scale=alt.Scale(paddingInner=0.04, paddingOuter=0))
+
+
+def _bands(order: Sequence[str], ends: Sequence[tuple[float, float]], unit: str, look: Look, height: int) -> Panel:
+    lower, upper = ends[0][0], ends[-1][1]
+    axis = alt.Axis(
+        title=f"Frequency ({unit})", values=decade_ticks(lower, ends[-1][0]), format="~r", grid=False, labelOverlap=True
+    )
+    colour = alt.Color(
+        "e:Q",
+        scale=alt.Scale(type="log", range=list(look.ramp), nice=False),
+        legend=alt.Legend(title="Error in the band (%)", orient="top", format="~g", gradientLength=260, tickCount=4),
+    )
+    panel: Panel = (
+        alt.Chart(alt.NamedData("map"), width=520, height=height)
+        .mark_rect()
+        .encode(
+            x=alt.X("f:Q", scale=alt.Scale(type="log", domain=[lower, upper], nice=False), axis=axis),
+            x2="g:Q",
+            y=_rows(order, labels=True),
+            color=colour,
+            tooltip=[
+                alt.Tooltip("r:N", title="Run"),
+                alt.Tooltip("f:Q", title=f"From ({unit})", format=".3g"),
+                alt.Tooltip("g:Q", title=f"To ({unit})", format=".3g"),
+                alt.Tooltip("e:Q", title="Error (%)", format=".3g"),
+            ],
+        )
+    )
+    return panel
+
+
+def _totals(order: Sequence[str], look: Look, height: int) -> Panel:
+    colour = alt.Color(
+        "u:N",
+        scale=alt.Scale(domain=["fit", "verify"], range=list(look.series[:2])),
+        legend=alt.Legend(title="Runs to", orient="top", symbolType="square"),
+    )
+    panel: Panel = (
+        alt.Chart(alt.NamedData("totals"), width=120, height=height)
+        .mark_bar()
+        .encode(
+            x=alt.X("e:Q", axis=alt.Axis(title="Error (%)", tickCount=4, format="~g"), scale=alt.Scale(zero=True)),
+            y=_rows(order, labels=False),
+            color=colour,
+            tooltip=[alt.Tooltip("d:N", title="Run"), alt.Tooltip("e:Q", title="Error (%)", format=".3g")],
+        )
+    )
+    return panel

@@ -1,0 +1,214 @@
+"""How much of the error is noise, how much a better linear model could take, how much only a nonlinear one.
+
+The squares of the three add up to that of eq. (17). Linear: a free linear filter of the model's output that explains
+the residual, one for each specimen and gain, the same for every amplitude, found on every other stretch of the records
+and judged on the rest, so that what it takes off is no chance. Noise: half the power of the difference between repeats
+of one command; without repeats the spectrum above the command's band, as white noise, which is a lower bound.
+Nonlinear is the rest. What a filter of each amplitude's own takes off beyond the common one cannot be linear, and
+cannot be noise: it is the lower bound of the nonlinear part.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from itertools import combinations, product
+from typing import Any
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+
+from ident.compare import Comparison, RunComparison
+from ident.errors import Unusable
+from ident.matrix import Run
+from ident.noise import noise_floor
+from ident.parallel import each
+from ident.residuals.coarse import averaged, stride
+from ident.spectra import excited_band
+
+Array = NDArray[np.float64]
+_REACHES = (3, 8, 24)  # samples of the correction to either side of now; the best is taken
+_WIDTH = 2 * _REACHES[-1] + 1
+_STRETCHES = 8
+_SAME = 1e-3  # relative difference of two commands that are one
+_LEVELS = (1e-8, 1e-6, 1e-4, 1e-2)  # of the diagonal, against directions that are hardly excited; the best is taken
+
+
+@dataclass(frozen=True)
+class Budget:
+    """The parts of eq. (17) as fractions, combining quadratically; `bounds` are (lower, upper) of each.
+
+    `noise` is None where nothing tells it: then it is within `nonlinear`, up to its upper bound.
+    """
+
+    noise: float | None
+    linear: float
+    nonlinear: float
+    bounds: Mapping[str, tuple[float, float]]
+    notes: tuple[str, ...]
+
+    @property
+    def error(self) -> float:
+        """Eq. (17) averaged over the runs."""
+        return float(np.sqrt((self.noise or 0.0) ** 2 + self.linear**2 + self.nonlinear**2))
+
+    def to_json(self) -> dict[str, Any]:
+        """As plain JSON data."""
+        return asdict(self) | {"bounds": {name: list(pair) for name, pair in self.bounds.items()}}
+
+
+def budget(comparison: Comparison, use: str = "fit") -> Budget:
+    """The error budget of the runs of a use, or of all runs where there are none of it.
+
+    Raises Unusable where the model is unstable at every run.
+    """
+    runs = [run for run in comparison.runs if np.all(np.isfinite(run.modelled)) and run.error > 0]
+    runs = [run for run in runs if run.run.use == use] or runs
+    if not runs:
+        raise Unusable("unstable-model", "the model is unstable at every run", "fit", "fit it to these data first")
+    squares = np.array([run.error**2 for run in runs])
+    count = stride([run.run for run in runs])
+    sums = each(lambda run: _sums(run, count), runs)
+    common = _left(squares, _gains(sums, [_condition(run.run) for run in runs], squares))
+    own = _left(squares, _gains(sums, [(_condition(run.run), _amplitude(run.run)) for run in runs], squares))
+    measured, floor = _repeats(runs), _floors([run.run for run in runs])
+    noise = measured if measured is not None else floor
+    parts = _parts(float(np.mean(np.sqrt(squares))), common, own, noise, measured is not None)
+    several = len({(_condition(run.run), _amplitude(run.run)) for run in runs}) > len({_condition(r.run) for r in runs})
+    return Budget(
+        noise=None if noise is None else parts["noise"][0],
+        linear=parts["linear"][0],
+        nonlinear=parts["nonlinear"][1],
+        bounds=parts,
+        notes=tuple(_notes(measured is not None, floor is not None, several, parts)),
+    )
+
+
+def _left(squares: Array, gains: Array) -> float:
+    """Eq. (17) averaged over the runs after what was gained."""
+    return float(np.mean(np.sqrt(np.maximum(squares - gains, 0.0))))
+
+
+def _parts(
+    error: float, common: float, own: float, noise: float | None, measured: bool
+) -> dict[str, tuple[float, float]]:
+    """(lower, upper) of each part; `common` and `own` are the errors with a linear correction shared, and each its."""
+    rest = min(common, error)
+    least = min(noise or 0.0, rest)
+    proven = min(_apart(rest, own), _apart(rest, least))
+    most = least if measured else _apart(rest, proven)
+    return {
+        "noise": (least, most),
+        "linear": (_apart(error, rest), _apart(_apart(error, least), proven)),
+        "nonlinear": (_apart(rest, most), _apart(rest, least)),
+    }
+
+
+def _apart(whole: float, part: float) -> float:
+    """What is left when a part is taken off, quadratically."""
+    return float(np.sqrt(max(whole**2 - part**2, 0.0)))
+
+
+def _notes(measured: bool, floor: bool, several: bool, parts: Mapping[str, tuple[float, float]]) -> Iterator[str]:
+    if measured:
+        yield "Noise from repeats of the same command: what does not repeat."
+        return
+    if floor:
+        yield "Noise from the spectrum above the command's band, taken as white: a lower bound."
+    else:
+        yield "Noise unknown: no part of the spectrum shows it alone. It is within the nonlinear part."
+    noise, nonlinear = (" to ".join(f"{100 * bound:.3g}" for bound in parts[name]) for name in ("noise", "nonlinear"))
+    yield (
+        "Random commands without a repeat cannot tell noise in the band from nonlinearity: of what no linear model "
+        f"takes, noise is {noise} %, nonlinear {nonlinear} %. Repeat one run with the same command to measure it."
+    )
+    if not several:
+        yield (
+            "No specimen and gain was measured at two amplitudes: what changes with amplitude may count as linear. "
+            "Measure one at another amplitude."
+        )
+
+
+# Linear corrections -----------------------------------------------------------------------------------------------
+
+
+def _condition(run: Run) -> object:
+    return run.specimen, run.gain
+
+
+def _amplitude(run: Run) -> float:
+    return float(f"{np.std(run.command):.1e}")
+
+
+def _sums(compared: RunComparison, count: int) -> Array:
+    """Σ of products of [shifted model output, r] over even, over odd stretches, (2, w + 1, w + 1), over the power."""
+    run, model, reach = compared.run, compared.modelled, _REACHES[-1]
+    residual = run.measured - model
+    r, y = averaged(residual - residual.mean(), count), averaged(model - model.mean(), count)
+    shifted = sliding_window_view(np.concatenate([np.zeros(reach), y, np.zeros(reach)]), _WIDTH)
+    stretch = np.arange(len(r)) * _STRETCHES // len(r) % 2
+    rows = np.column_stack([shifted, r])
+    sums = [rows[stretch == kind].T @ rows[stretch == kind] for kind in (0, 1)]
+    return np.asarray(np.array(sums) / (len(r) * np.var(run.measured)))
+
+
+def _gains(sums: Sequence[Array], keys: Sequence[object], squares: Array) -> Array:
+    """What one correction for each key takes off each run's squared error, on stretches that it was not fitted to."""
+    best = np.zeros(len(squares))
+    groups = [[i for i, other in enumerate(keys) if other == key] for key in dict.fromkeys(keys)]
+    weighted = [np.sum([sums[i] / np.sqrt(squares[i]) for i in members], axis=0) for members in groups]
+    for reach, level in product(_REACHES, _LEVELS):
+        used = np.arange(_REACHES[-1] - reach, _REACHES[-1] + reach + 1)
+        gains = np.zeros(len(squares))
+        for members, total in zip(groups, weighted, strict=True):
+            for kind in (0, 1):
+                h = _correction(total[1 - kind], used, level)
+                for i in members:
+                    gains[i] += _taken(sums[i][kind], used, h)
+        best = gains if _left(squares, gains) < _left(squares, best) else best
+    return best
+
+
+def _correction(total: Array, used: NDArray[np.intp], level: float) -> Array:
+    A, g = total[np.ix_(used, used)], total[used, -1]
+    return np.asarray(np.linalg.solve(A + level * (np.trace(A) / len(used) or 1.0) * np.eye(len(used)), g))
+
+
+def _taken(sums: Array, used: NDArray[np.intp], h: Array) -> float:
+    """Σr² − Σ(r − h*y)²."""
+    return float(2 * h @ sums[used, -1] - h @ sums[np.ix_(used, used)] @ h)
+
+
+# Noise ------------------------------------------------------------------------------------------------------------
+
+
+def _repeats(runs: Sequence[RunComparison]) -> float | None:
+    """Noise over the standard deviation, averaged over the runs, from pairs of runs of one command; None without."""
+    groups: dict[object, list[Run]] = {}
+    for compared in runs:
+        groups.setdefault(_condition(compared.run), []).append(compared.run)
+    pairs = [pair for members in groups.values() for pair in combinations(members, 2) if _same(*pair)]
+    if not pairs:
+        return None
+    powers = [0.5 * float(np.var(_cut(b.measured, a) - _cut(a.measured, b))) for a, b in pairs]
+    return float(np.mean([np.sqrt(np.mean(powers)) / np.std(run.run.measured) for run in runs]))
+
+
+def _cut(samples: Array, other: Run) -> Array:
+    return samples[: other.length]
+
+
+def _same(a: Run, b: Run) -> bool:
+    """One command, measured twice: not the same record under two names."""
+    if a.sample_rate != b.sample_rate or abs(a.length - b.length) > 0.1 * a.length:
+        return False
+    u, v = _cut(a.command, b), _cut(b.command, a)
+    different = not np.array_equal(_cut(a.measured, b), _cut(b.measured, a))
+    return different and bool(np.std(u - v) < _SAME * np.std(u))
+
+
+def _floors(runs: Sequence[Run]) -> float | None:
+    band = excited_band(runs)
+    found = [floor for floor in (noise_floor(run, band) for run in runs) if floor is not None]
+    return float(np.mean(found)) if len(found) == len(runs) else None

@@ -1,0 +1,48 @@
+"""Everything that says where a fitted model fails, in one object."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from ident.compare import Comparison
+from ident.errors import Unusable
+from ident.residuals.budget import Budget, budget
+from ident.residuals.curves import Curve, curves_of, traced
+from ident.residuals.trends import Trend, trends
+from ident.residuals.where import Where, where
+
+
+@dataclass(frozen=True)
+class Survey:
+    """Errors by condition, the curves that explain most first, parameters that follow a condition, the budget."""
+
+    where: Where
+    curves: tuple[Curve, ...]
+    trends: tuple[Trend, ...]
+    budget: Budget | None
+
+    def to_json(self) -> dict[str, Any]:
+        """As plain JSON data."""
+        groups: dict[str, list[dict[str, Any]]] = {}
+        for group in self.where.groups:
+            groups.setdefault(group.by, []).append({k: v for k, v in asdict(group).items() if k != "by"})
+        return {
+            "bands": {"edges": list(self.where.edges), "runs": [asdict(run) for run in self.where.runs]},
+            "groups": groups,
+            "curves": [curve.to_json() for curve in self.curves],
+            "trends": [asdict(trend) for trend in self.trends],
+            "budget": None if self.budget is None else self.budget.to_json(),
+        }
+
+
+def survey(comparison: Comparison) -> Survey:
+    """Where the model fails on the runs that it is stable at."""
+    shown = where(comparison)
+    try:
+        found = traced(comparison)
+        return Survey(shown, curves_of(found), trends(found), budget(comparison))
+    except Unusable as error:
+        if error.code != "unstable-model":
+            raise
+        return Survey(shown, (), (), None)
