@@ -1,0 +1,88 @@
+"""Least squares by Levenberg-Marquardt, with what it says about the values: deviations and correlations."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.bench.model import Model
+from ident.bench.residual import Residual
+
+Array = NDArray[np.float64]
+_CONVERGED = 1e-5  # relative decrease of the sum of squares that a further step promises
+_STEPS = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Where the sum of squares is least: the model, its values by name, and their covariance, (p, p)."""
+
+    model: Model
+    values: dict[str, float]
+    covariance: Array
+    point: Array
+    evaluations: int
+    cost: float  # mean square of the scaled residual
+
+    def deviation(self, of: Mapping[str, float]) -> float:
+        """Standard deviation of a quantity whose derivatives by the values are `of`."""
+        gradient = np.array([of.get(name, 0.0) for name in self.values])
+        return float(np.sqrt(max(gradient @ self.covariance @ gradient, 0.0)))
+
+    @property
+    def deviations(self) -> dict[str, float]:
+        """Standard deviation of each value."""
+        return {name: self.deviation({name: 1.0}) for name in self.values}
+
+    @property
+    def correlation(self) -> dict[str, dict[str, float]]:
+        """Correlation of each pair of values."""
+        spread = np.sqrt(np.maximum(np.diag(self.covariance), 1e-300))
+        related = np.clip(self.covariance / spread[:, None] / spread, -1.0, 1.0)
+        names = list(self.values)
+        return {a: {b: float(related[i, j]) for j, b in enumerate(names)} for i, a in enumerate(names)}
+
+
+def solve(problem: Residual, steps: int = _STEPS, start: Array | None = None) -> Solution:
+    """The least sum of squares near `start`, by steps (JᵀJ + λ diag) δ = −Jᵀr."""
+    point = problem.origin if start is None else start.copy()
+    r, J = problem.with_jacobian(point)
+    damping, evaluations = 1e-4, 1
+    for _ in range(steps):
+        gradient, H = J.T @ r, J.T @ J
+        scale = np.sqrt(np.maximum(np.diag(H), 1e-12 * max(float(np.diag(H).max()), 1e-300)))
+        system = H / scale[:, None] / scale + damping * np.eye(len(H))
+        step = -np.linalg.solve(system, gradient / scale) / scale
+        promised = -(2 * gradient @ step + step @ H @ step)
+        if not promised > _CONVERGED * float(r @ r):
+            break
+        there = problem(point + np.clip(step, -0.7, 0.7))
+        evaluations += 1
+        if there @ there < r @ r:
+            point, damping = point + np.clip(step, -0.7, 0.7), max(damping / 10, 1e-9)
+            r, J = problem.with_jacobian(point)
+        elif damping > 1e4:
+            break
+        else:
+            damping *= 10
+    return _solution(problem, point, r, J, evaluations)
+
+
+def _solution(problem: Residual, point: Array, r: Array, J: Array, evaluations: int) -> Solution:
+    unit = np.array([problem.unit(name, point) for name in problem.names])
+    covariance = _covariance(r, J) * unit[:, None] * unit
+    cost = float(r @ r) / max(len(r), 1)
+    return Solution(problem.at(point), problem.values(point), covariance, point, evaluations, cost)
+
+
+def _covariance(r: Array, J: Array, blocks: int = 64) -> Array:
+    """H⁻¹ (Σ scores of blocks) H⁻¹: residuals of neighbouring samples are alike, so their number is no measure."""
+    H = J.T @ J
+    scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
+    inverse = np.linalg.pinv(H / scale[:, None] / scale, rcond=1e-12) / scale[:, None] / scale
+    edges = np.linspace(0, len(r), min(blocks, len(r)) + 1).astype(int)
+    scores = np.array([J[a:b].T @ r[a:b] for a, b in zip(edges[:-1], edges[1:], strict=True)])
+    return np.asarray(inverse @ (scores.T @ scores) @ inverse)

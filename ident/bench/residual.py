@@ -1,0 +1,180 @@
+"""The model against the bench's records: one residual vector, for every fitter, for uncertainty and for diagnosis.
+
+Each record yields position residuals and, where its cavities were measured at a static test, pressure residuals. What
+a record does not tell is taken off: the mean of each part (where the actuator stood, the offset of a pressure gauge).
+Each residual is divided by what it cannot be below: the step of the converter or the noise of the gauge, and a share
+of the record's own size, so that small signals are not drowned by the table's imperfections at large ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.bench.model import Model
+from ident.bench.records import Record
+from ident.bench.speed_table import SpeedTable
+from ident.parallel import each
+
+Array = NDArray[np.float64]
+IMPERFECT = 2e-3  # of a record's standard deviation
+_SETTLED = 0.25  # s at the start of a record that its unknown past may have shaped
+_STEP = 1e-4  # relative, of a difference
+_REACH = {"I0": 1e-2, "delay": 1e-2, "second_lag": 1e-2, "stiction": 1e5, "load": 1e7}
+"""The natural size of what may be zero or negative; everything else is positive and moved by a share of itself."""
+
+
+def rate_wanted(record: Record) -> float:
+    """Hz at which a record still holds what the model can show: the lag is exact at any rate."""
+    return max(200.0, 100.0 * (record.frequency or 0.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Observed:
+    """One record as it is compared: reduced, with the samples used and their scales."""
+
+    record: Record
+    parts: tuple[tuple[int, int], ...]
+    position_scale: float
+    pressure_scale: float | None
+
+    @classmethod
+    def of(cls, record: Record, position: bool = True, pressure: bool = True, rate: float = 0.0) -> Observed:
+        """The record with position, pressure or both, at `rate` (Hz) or what it needs."""
+        small = record.reduced(rate or rate_wanted(record))
+        skip = _unsettled(small)
+        parts = tuple((max(a, skip), b) for a, b in small.parts if b - max(a, skip) >= 8)
+        used = np.concatenate([small.position[a:b] for a, b in parts]) if parts else small.position
+        scale = float(np.hypot(max(record.resolution / np.sqrt(12.0), 1e-7), IMPERFECT * np.std(used)))
+        noise = None
+        if pressure and small.pressure is not None and small.kind == "static":
+            noise = float(np.std(np.diff(small.pressure)) / np.sqrt(2.0)) + 1.0
+        return cls(small, parts, scale if position else np.inf, noise)
+
+    @property
+    def start(self) -> float:
+        """Where the actuator stands first, m."""
+        return float(self.record.position[0])
+
+    def residual(self, model: Model) -> Array:
+        """Everything compared, scaled: position part by part, then pressure."""
+        answer = model.answer(self.record.current, self.record.rate, self.record.hold, self.start, steps=1)
+        pieces = []
+        if np.isfinite(self.position_scale):
+            for first, end in self.parts:
+                difference = answer.position[first:end] - self.record.position[first:end]
+                pieces.append((difference - difference.mean()) / self.position_scale)
+        if self.pressure_scale is not None and self.record.pressure is not None:
+            for first, end in self.parts:
+                difference = answer.pressure[first:end] - self.record.pressure[first:end]
+                pieces.append((difference - difference.mean()) / self.pressure_scale)
+        return np.concatenate(pieces)
+
+    @cached_property
+    def reach(self) -> float:
+        """The largest current, which says what of the table is seen."""
+        return float(np.max(np.abs(self.record.current)))
+
+
+def _unsettled(record: Record) -> int:
+    """Samples at the start that the unknown past of lag and play may have shaped.
+
+    A sine is compared from its second period on, others after a quarter of a second.
+    """
+    if record.kind == "frequency" and record.frequency and record.length > 2.2 * record.rate / record.frequency:
+        return round(record.rate / record.frequency)
+    return min(round(_SETTLED * record.rate), record.length // 4)
+
+
+@dataclass(frozen=True, eq=False)
+class Residual:
+    """The residual of a model on records as a function of some of its values.
+
+    A point holds log(value / first) of what is positive (or negative, for speeds back), value / size of what may be 0.
+    """
+
+    model: Model
+    observed: tuple[Observed, ...]
+    names: tuple[str, ...]
+
+    @property
+    def origin(self) -> Array:
+        """The point of the first model."""
+        return np.array([self._first[name] / _REACH[name] if name in _REACH else 0.0 for name in self.names])
+
+    @cached_property
+    def _first(self) -> dict[str, float]:
+        return self.model.values() | {name: self.model.extra.get(name, 0.0) for name in _REACH if name != "I0"}
+
+    def values(self, point: Array) -> dict[str, float]:
+        """The values at a point."""
+        return {
+            name: float(place * _REACH[name] if name in _REACH else self._first[name] * np.exp(np.clip(place, -5, 5)))
+            for name, place in zip(self.names, point, strict=True)
+        }
+
+    def unit(self, name: str, point: Array) -> float:
+        """What a step of 1 along an axis is worth at a point."""
+        return _REACH[name] if name in _REACH else abs(self.values(point)[name])
+
+    def at(self, point: Array) -> Model:
+        """The model at a point."""
+        return self.model.with_values(self.values(point))
+
+    def of_records(self, point: Array) -> list[Array]:
+        """The scaled residual of each record."""
+        model = self.at(point)
+        return each(lambda observed: observed.residual(model), self.observed)
+
+    def __call__(self, point: Array) -> Array:
+        """All of them in one vector."""
+        return np.concatenate(self.of_records(point))
+
+    def with_jacobian(self, point: Array) -> tuple[Array, Array]:
+        """The residual and its derivatives, (n,) and (n, p); what a record cannot see is not computed."""
+        here, models = self.at(point), []
+        for i in range(len(self.names)):
+            moved = point.copy()
+            moved[i] += _STEP
+            models.append(self.at(moved))
+        limits = [_seen_from(here.table, name) for name in self.names]
+
+        def one(observed: Observed) -> tuple[Array, Array]:
+            base = observed.residual(here)
+            columns = np.zeros((len(base), len(models)))
+            reach = observed.reach + abs(here.I0)
+            for i, (model, limit) in enumerate(zip(models, limits, strict=True)):
+                if reach > limit:
+                    columns[:, i] = (observed.residual(model) - base) / _STEP
+            return base, columns
+
+        found = each(one, self.observed)
+        return np.concatenate([base for base, _ in found]), np.concatenate([columns for _, columns in found])
+
+
+def _seen_from(table: SpeedTable, name: str) -> float:
+    """The current from which on a value acts: of a monotone table, two nodes before its own."""
+    if name not in table.names:
+        return 0.0
+    place = table.names.index(name) % len(table.fractions)
+    return float(table.nodes[max(0, place - 1)])
+
+
+def observe(
+    records: Sequence[Record], position: bool = True, pressure: bool = True, rate: float = 0.0
+) -> tuple[Observed, ...]:
+    """The records as they are compared."""
+    return tuple(Observed.of(record, position, pressure, rate) for record in records)
+
+
+def errors(model: Model, records: Sequence[Record]) -> Mapping[str, float]:
+    """RMS position error of each record over the deviation of its position, the mean of each part taken off."""
+    found = {}
+    for observed in observe(records, pressure=False):
+        size = np.concatenate([observed.record.position[a:b] for a, b in observed.parts]).std()
+        found[observed.record.id] = float(np.sqrt(np.mean(observed.residual(model) ** 2)) * observed.position_scale / size)
+    return found

@@ -1,0 +1,141 @@
+"""The time constant T from the frequency records (Kononykhin, section 5.2), by the paper's way and by a library's.
+
+The target is the sum over records of the RMS position error over the amplitude of the output, a mean and a slow drift
+of each record taken off, because the bench's own compensation of drift leaves a rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from ident.bench.least_squares import solve
+from ident.bench.model import Model
+from ident.bench.quantity import Found
+from ident.bench.records import Record
+from ident.bench.residual import Observed, Residual, observe
+
+Array = NDArray[np.float64]
+_LARGEST, _SMALLEST = 1.0, 1e-4  # s
+_STEPS = 25
+_TOLD = 3.0  # standard deviations from which on a delay is said to be there
+
+
+@dataclass(frozen=True)
+class Dynamics:
+    """T (s) by least squares and by gradient descent; the normalised error at each.
+
+    `delay` (s) is what the records ask for when a pure delay is admitted beside T and B, `with_delay` T and B then;
+    `correlation` that of the three: near ±1 the records cannot tell them apart. `doubt` says so in words, or is "".
+    """
+
+    T: Found
+    gradient_T: float
+    error: float
+    gradient_error: float
+    steps: int
+    delay: Found
+    with_delay: dict[str, float]
+    correlation: dict[str, dict[str, float]]
+    doubt: str
+
+
+class Target:
+    """Normalised position errors of frequency records as a function of T."""
+
+    def __init__(self, model: Model, records: Sequence[Record]) -> None:
+        self.model, self.observed = model, observe(records, pressure=False)
+        self._clean = [_without_line(observed) for observed in self.observed]
+        self._size = [float(np.sqrt(2) * np.std(clean)) for clean in self._clean]
+        self.evaluations = 0
+
+    def residuals(self, T: float) -> list[Array]:
+        """Position errors over amplitude, of each record."""
+        self.evaluations += 1
+        model, out = replace(self.model, T=T), []
+        for observed, clean, size in zip(self.observed, self._clean, self._size, strict=True):
+            record, (first, end) = observed.record, _span(observed)
+            answer = model.answer(record.current, record.rate, record.hold, observed.start, steps=1)
+            out.append((_straightened(answer.position[first:end]) - clean) / size)
+        return out
+
+    def error(self, T: float) -> float:
+        """The paper's target: normalised RMS deviations, summed over the records (here their mean)."""
+        return float(np.mean([np.sqrt(np.mean(r**2)) for r in self.residuals(T)]))
+
+
+def gradient_descent(target: Target, start: float) -> tuple[float, float, int]:
+    """T, the target there, and the number of steps: T is moved against the slope; a step that fails is halved."""
+    place, reach = np.log(start), 0.5
+    here = target.error(start)
+    for count in range(_STEPS):
+        slope = (target.error(float(np.exp(place + 1e-3))) - here) / 1e-3
+        trial = float(np.clip(place - reach * np.sign(slope), np.log(_SMALLEST), np.log(_LARGEST)))
+        there = target.error(float(np.exp(trial)))
+        if there < here:
+            place, here, reach = trial, there, reach * 1.2
+        else:
+            reach *= 0.35
+        if reach < 2e-4:
+            return float(np.exp(place)), here, count + 1
+    return float(np.exp(place)), here, _STEPS
+
+
+def by_library(target: Target, start: float) -> float:
+    """T by SciPy's least squares on the same residuals, each record with one weight whatever its length."""
+
+    def stacked(place: Array) -> Array:
+        T = float(np.exp(np.clip(place[0], np.log(_SMALLEST), np.log(_LARGEST))))
+        return np.concatenate([r / np.sqrt(len(r)) for r in target.residuals(T)])
+
+    found = least_squares(stacked, [np.log(start)], diff_step=1e-3, xtol=1e-5, ftol=1e-7, max_nfev=20)
+    return float(np.exp(np.clip(found.x[0], np.log(_SMALLEST), np.log(_LARGEST))))
+
+
+def dynamics(model: Model, records: Sequence[Record], descend: bool = True) -> Dynamics:
+    """T and how surely it is told from hysteresis and from a delay; the model's T is where the search begins."""
+    target = Target(model, records)
+    T = by_library(target, model.T)
+    gradient_T, gradient_error, steps = gradient_descent(target, model.T) if descend else (T, target.error(T), 0)
+    observed = observe(records, pressure=False)
+    free = replace(model, T=T)
+    alone = solve(Residual(free, observed, ("T", "I0")), steps=1)
+    both = solve(Residual(free, observed, ("T", "B", "I0", "delay")), steps=4)
+    kept = ("T", "B", "delay")
+    correlation = {a: {b: both.correlation[a][b] for b in kept} for a in kept}
+    delay = Found(both.values["delay"], both.deviations["delay"], "s")
+    with_delay = {"T": both.values["T"], "B": both.values["B"]}
+    return Dynamics(
+        Found(T, alone.deviations["T"], "s"), gradient_T, target.error(T), gradient_error, steps, delay, with_delay,
+        correlation, _doubt(T, delay, with_delay, correlation),
+    )  # fmt: skip
+
+
+def _doubt(T: float, delay: Found, other: dict[str, float], correlation: dict[str, dict[str, float]]) -> str:
+    if abs(delay.value) < max(_TOLD * delay.deviation, 0.02 * T):
+        return ""
+    return (
+        f"The records ask for a pure delay of {1e3 * delay.value:.2g} ms, which the four blocks lack: with it T would be "
+        f"{1e3 * other['T']:.3g} ms instead of {1e3 * T:.3g} ms and B {100 * other['B']:.3g} %; correlation of T and "
+        f"delay {correlation['T']['delay']:.2f}, of B and delay {correlation['B']['delay']:.2f}."
+    )
+
+
+def _span(observed: Observed) -> tuple[int, int]:
+    """The longest part of a record."""
+    return max(observed.parts, key=lambda part: part[1] - part[0])
+
+
+def _without_line(observed: Observed) -> Array:
+    first, end = _span(observed)
+    return _straightened(observed.record.position[first:end])
+
+
+def _straightened(x: Array) -> Array:
+    t = np.linspace(-1.0, 1.0, len(x))
+    centred = x - x.mean()
+    return np.asarray(centred - t * (t @ centred) / (t @ t))
