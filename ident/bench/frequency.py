@@ -13,6 +13,7 @@ from ident.bench.sine_fit import as_printed, fit_sine
 from ident.errors import Unusable
 
 Array = NDArray[np.float64]
+_PER_PERIOD = 200  # samples that are enough of a period
 
 
 @dataclass(frozen=True)
@@ -44,9 +45,10 @@ def frequency_response(records: Sequence[Record]) -> tuple[Response, ...]:
     return tuple(sorted(points, key=lambda p: (round(np.log(p.amplitude) * 20), p.frequency)))
 
 
-def point(record: Record) -> Response:
+def point(measured: Record) -> Response:
     """The sine of the position against that of the current. Raises Unusable where there is no whole period."""
-    frequency = record.frequency or dominant(record)
+    frequency = measured.frequency or dominant(measured)
+    record = measured.reduced(_PER_PERIOD * frequency)
     alpha = 2 * np.pi * frequency * record.time
     drive = fit_sine(alpha, record.current, drift=True)
     count = int(np.floor(alpha[-1] / (2 * np.pi) + 0.01))

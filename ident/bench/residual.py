@@ -8,7 +8,7 @@ of the record's own size, so that small signals are not drowned by the table's i
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -171,10 +171,12 @@ def observe(
     return tuple(Observed.of(record, position, pressure, rate) for record in records)
 
 
-def errors(model: Model, records: Sequence[Record]) -> Mapping[str, float]:
+def errors(model: Model, observed: Sequence[Observed]) -> dict[str, float]:
     """RMS position error of each record over the deviation of its position, the mean of each part taken off."""
     found = {}
-    for observed in observe(records, pressure=False):
-        size = np.concatenate([observed.record.position[a:b] for a, b in observed.parts]).std()
-        found[observed.record.id] = float(np.sqrt(np.mean(observed.residual(model) ** 2)) * observed.position_scale / size)
+    for one in observed:
+        count = sum(end - first for first, end in one.parts)
+        measured = np.concatenate([one.record.position[first:end] for first, end in one.parts])
+        difference = one.residual(model)[:count] * one.position_scale
+        found[one.record.id] = float(np.sqrt(np.mean(difference**2)) / np.std(measured))
     return found

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-_STEPS = 200
+_STEPS = 100
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ def as_printed(alpha: Array, x: Array) -> Sine:
         J = 2.0 * r[:, None] * slopes
         step = 2.0 / 3.0 * np.linalg.lstsq(J, r**2, rcond=None)[0]
         a = _turned(a - step)
-        if np.sqrt(np.mean(step**2)) <= 1e-12 * max(a[1], 1e-300):
+        if np.sqrt(np.mean(step**2)) <= 1e-9 * max(a[1], 1e-300):
             break
     return _sine(alpha, x, a)
 

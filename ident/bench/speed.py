@@ -25,7 +25,8 @@ from ident.errors import Unusable
 Array = NDArray[np.float64]
 _EVEN = 2e-3  # of rated current: within it a level is one
 _SHORTEST = 0.1  # s of a level, after it has settled
-_FLOOR = 0.2  # of the speed: where friction takes more, the factor is too uncertain to divide by
+_SURE = 0.7  # of the speed of a level: where friction takes more, the level is no point of the characteristic
+_FLOOR = 0.2  # of the speed on a curve: where friction takes more, the factor is too uncertain to divide by
 
 
 @dataclass(frozen=True)
@@ -74,8 +75,7 @@ def speed(model: Model, records: Sequence[Record], observed: Sequence[Observed],
     solution = fit_table(replace(model, table=through(points - [model.I0, 0.0], model.table)), observed)
     table = solution.model.table
     heights, ends = bezier(points[:, 0], points[:, 1], min(degree, max(1, len(points) - 1)), model.I0)
-    grid = np.concatenate([-table.nodes[:0:-1], table.nodes[1:]])
-    fine = np.linspace(-1, 1, 201) * grid[-1]
+    fine = np.linspace(-1, 1, 201) * table.nodes[-1]
     return Speed(
         table, solution.deviations, straightness(fine, table.speed(fine)), tuple(found), tuple(map(float, heights)), ends
     )
@@ -100,7 +100,7 @@ def levels(model: Model, records: Sequence[Record]) -> list[Level]:
                     continue
                 measured = float(np.polyfit(record.time[low:high], record.position[low:high], 1)[0])
                 share = float(np.mean(factor(model, after[low:high])))
-                if share > _FLOOR:
+                if share > _SURE:
                     out.append(Level(record.id, float(after[low:high].mean()), measured, measured / share))
     return sorted(out, key=lambda level: level.current)
 

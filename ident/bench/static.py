@@ -19,7 +19,7 @@ from ident.bench.model import Model
 from ident.bench.motion import groups, onsets
 from ident.bench.quantity import Found
 from ident.bench.records import Record
-from ident.bench.residual import Residual, observe
+from ident.bench.residual import Observed, Residual, observe
 from ident.bench.speed_table import SpeedTable
 from ident.errors import Unusable
 
@@ -43,18 +43,20 @@ class Static:
     model: Model
 
 
-def static(records: Sequence[Record], start: Model, position: bool = False) -> Static:
-    """The quantities from these records together; `start` gives T and, where `position` is compared, the speeds."""
-    solution = solve(Residual(start, observe(records, position=position), NAMES))
-    return _result(records, solution)
+def static(records: Sequence[Record], start: Model, observed: Sequence[Observed]) -> Static:
+    """The quantities from these records together; `start` gives T and the speeds, with which positions tell too."""
+    return _result(records, solve(Residual(start, tuple(observed), NAMES), steps=4))
 
 
-def ranges(records: Sequence[Record], start: Model, position: bool = False) -> tuple[Static, ...]:
-    """The same for each range of positions."""
-    by_range: dict[tuple[float, float] | str, list[Record]] = {}
-    for record in records:
-        by_range.setdefault(record.position_range or record.id, []).append(record)
-    return tuple(static(tuple(part), start, position) for part in by_range.values()) if len(by_range) > 1 else ()
+def ranges(records: Sequence[Record], start: Model, observed: Sequence[Observed]) -> tuple[Static, ...]:
+    """The same for each range of positions, where there are several."""
+    by_range: dict[tuple[float, float] | str, list[int]] = {}
+    for number, record in enumerate(records):
+        by_range.setdefault(record.position_range or record.id, []).append(number)
+    if len(by_range) < 2:
+        return ()
+    parts = [([records[i] for i in part], [observed[i] for i in part]) for part in by_range.values()]
+    return tuple(static(some, start, their) for some, their in parts)
 
 
 def _result(records: Sequence[Record], solution: Solution) -> Static:

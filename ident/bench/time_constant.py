@@ -16,8 +16,7 @@ from scipy.optimize import least_squares
 from ident.bench.least_squares import solve
 from ident.bench.model import Model
 from ident.bench.quantity import Found
-from ident.bench.records import Record
-from ident.bench.residual import Observed, Residual, observe
+from ident.bench.residual import Observed, Residual
 
 Array = NDArray[np.float64]
 _LARGEST, _SMALLEST = 1.0, 1e-4  # s
@@ -47,8 +46,8 @@ class Dynamics:
 class Target:
     """Normalised position errors of frequency records as a function of T."""
 
-    def __init__(self, model: Model, records: Sequence[Record]) -> None:
-        self.model, self.observed = model, observe(records, pressure=False)
+    def __init__(self, model: Model, observed: Sequence[Observed]) -> None:
+        self.model, self.observed = model, observed
         self._clean = [_without_line(observed) for observed in self.observed]
         self._size = [float(np.sqrt(2) * np.std(clean)) for clean in self._clean]
         self.evaluations = 0
@@ -96,12 +95,12 @@ def by_library(target: Target, start: float) -> float:
     return float(np.exp(np.clip(found.x[0], np.log(_SMALLEST), np.log(_LARGEST))))
 
 
-def dynamics(model: Model, records: Sequence[Record], descend: bool = True) -> Dynamics:
+def dynamics(model: Model, observed: Sequence[Observed]) -> Dynamics:
     """T and how surely it is told from hysteresis and from a delay; the model's T is where the search begins."""
-    target = Target(model, records)
+    observed = tuple(observed)
+    target = Target(model, observed)
     T = by_library(target, model.T)
-    gradient_T, gradient_error, steps = gradient_descent(target, model.T) if descend else (T, target.error(T), 0)
-    observed = observe(records, pressure=False)
+    gradient_T, gradient_error, steps = gradient_descent(target, model.T)
     free = replace(model, T=T)
     alone = solve(Residual(free, observed, ("T", "I0")), steps=1)
     both = solve(Residual(free, observed, ("T", "B", "I0", "delay")), steps=4)

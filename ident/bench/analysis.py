@@ -1,0 +1,145 @@
+"""The whole of a bench's analysis in the order of the paper: static, frequency, speed, and the model put together.
+
+Each procedure needs something of the next: the loop of the static test is widened by the lag T, T is found with the
+speed characteristic, and that with friction and hysteresis known. So static values come first without T, then speeds,
+then T, then static values and speeds again; at last every value is moved at once on all records.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from ident.bench.frequency import Response, frequency_response
+from ident.bench.least_squares import Solution, solve
+from ident.bench.model import CONSTANTS, Model
+from ident.bench.records import BenchSet, Record
+from ident.bench.residual import Observed, Residual, errors, observe
+from ident.bench.speed import Speed, speed
+from ident.bench.static import Static, first_values, ranges, static
+from ident.bench.time_constant import Dynamics, dynamics
+from ident.errors import Unusable
+
+FIRST_T = 0.02  # s, where the search for T begins
+SPEED = ("speed-levels", "speed-continuous")
+
+
+@dataclass(frozen=True)
+class Missing:
+    """A quantity that cannot be found, and the kind of record that would tell it."""
+
+    quantity: str
+    kind: str
+
+    @property
+    def text(self) -> str:
+        """In words."""
+        return f"{self.quantity} cannot be found without a record of kind {self.kind}"
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """What the records say. `steps` is the model put together step by step, `model` the one moved on all records.
+
+    A procedure whose records are missing is None, and so are the models then; `missing` says why.
+    """
+
+    static: Static | None
+    by_range: tuple[Static, ...]
+    frequency: tuple[Response, ...]
+    dynamics: Dynamics | None
+    speed: Speed | None
+    steps: Model | None
+    whole: Solution | None
+    errors: dict[str, float]
+    step_errors: dict[str, float]
+    missing: tuple[Missing, ...]
+    notes: tuple[str, ...]
+    seconds: float
+
+    @property
+    def model(self) -> Model | None:
+        """The model of the whole fit."""
+        return None if self.whole is None else self.whole.model
+
+    def complete(self) -> Analysis:
+        """Itself; raises Unusable where a quantity cannot be found, with the record that would tell it."""
+        if self.missing:
+            what = "; ".join(missing.text for missing in self.missing)
+            kinds = ", ".join(dict.fromkeys(missing.kind for missing in self.missing))
+            raise Unusable("missing-record", what, "runs", f"add a run with kind: {kinds}")
+        return self
+
+
+def analyse(bench: BenchSet) -> Analysis:
+    """Every procedure for which there are records. Raises Unusable where a record is not usable for its procedure."""
+    began = time.monotonic()
+    still, sines, moving = bench.of_kind("static"), bench.of_kind("frequency"), bench.of_kind(*SPEED)
+    responses = frequency_response(sines)
+    if not still:
+        return _ended(bench, began, frequency=responses)
+    model = first_values(still, FIRST_T, bench.supply_pressure)
+    if not moving:
+        found = static(still, model, observe(still, position=False))
+        return _ended(bench, began, frequency=responses, static=found)
+    seen = {record.id: observed for record, observed in zip(bench.records, observe(bench.records), strict=True)}
+    first = speed(model, moving, _of(seen, moving))
+    model = replace(model, table=first.table)
+    if not sines:
+        found = static(still, model, _of(seen, still))
+        return _ended(bench, began, static=found, speed=first)
+    return _whole(bench, began, model, seen, responses)
+
+
+def _whole(
+    bench: BenchSet, began: float, model: Model, seen: dict[str, Observed], responses: tuple[Response, ...]
+) -> Analysis:
+    still, sines, moving = bench.of_kind("static"), bench.of_kind("frequency"), bench.of_kind(*SPEED)
+    lag = dynamics(model, _of(seen, sines))
+    model = replace(model, T=lag.T.value)
+    at_rest = static(still, model, _of(seen, still))
+    by_range = ranges(still, at_rest.model, _of(seen, still))
+    characteristic = speed(at_rest.model, moving, _of(seen, moving))
+    steps = replace(at_rest.model, table=characteristic.table)
+    solution = fit_whole(steps, list(seen.values()))
+    every = list(seen.values())
+    return _ended(
+        bench, began, static=at_rest, by_range=by_range, frequency=responses, dynamics=lag, speed=characteristic,
+        steps=steps, whole=solution, errors=errors(solution.model, every), step_errors=errors(steps, every),
+    )  # fmt: skip
+
+
+def fit_whole(start: Model, observed: Sequence[Observed], steps: int = 3) -> Solution:
+    """Every value of the model at once on all records."""
+    return solve(Residual(start, tuple(observed), (*CONSTANTS, *start.table.names)), steps=steps)
+
+
+def _of(seen: dict[str, Observed], records: Sequence[Record]) -> tuple[Observed, ...]:
+    return tuple(seen[record.id] for record in records)
+
+
+def _ended(
+    bench: BenchSet, began: float, static: Static | None = None, by_range: tuple[Static, ...] = (),
+    frequency: tuple[Response, ...] = (), dynamics: Dynamics | None = None, speed: Speed | None = None,
+    steps: Model | None = None, whole: Solution | None = None, errors: dict[str, float] | None = None,
+    step_errors: dict[str, float] | None = None,
+) -> Analysis:  # fmt: skip
+    notes = (*bench.notes, *([dynamics.doubt] if dynamics is not None and dynamics.doubt else []))
+    return Analysis(
+        static, by_range, frequency, dynamics, speed, steps, whole, errors or {}, step_errors or {},
+        tuple(_missing(bench)), notes, time.monotonic() - began,
+    )  # fmt: skip
+
+
+def _missing(bench: BenchSet) -> list[Missing]:
+    out = []
+    if not bench.of_kind("static"):
+        out.append(Missing("zero shift, dead space, kp, friction and hysteresis", "static"))
+    if not bench.of_kind("frequency"):
+        out.append(Missing("the time constant T", "frequency"))
+    if not bench.of_kind(*SPEED):
+        out.append(Missing("the speed characteristic", "speed-levels"))
+    return out
+
+
