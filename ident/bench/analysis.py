@@ -96,7 +96,7 @@ def _whole(
     bench: BenchSet, began: float, model: Model, seen: dict[str, Observed], responses: tuple[Response, ...]
 ) -> Analysis:
     still, sines, moving = bench.of_kind("static"), bench.of_kind("frequency"), bench.of_kind(*SPEED)
-    lag = dynamics(model, _of(seen, sines))
+    lag = dynamics(model, sines)
     model = replace(model, T=lag.T.value)
     at_rest = static(still, model, _of(seen, still))
     by_range = ranges(still, at_rest.model, _of(seen, still))

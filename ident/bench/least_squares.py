@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.bench.model import Model
-from ident.bench.residual import Residual
+from ident.bench.residual import Normal, Residual
 
 Array = NDArray[np.float64]
 _CONVERGED = 1e-5  # relative decrease of the sum of squares that a further step promises
@@ -49,40 +49,27 @@ class Solution:
 def solve(problem: Residual, steps: int = _STEPS, start: Array | None = None) -> Solution:
     """The least sum of squares near `start`, by steps (JᵀJ + λ diag) δ = −Jᵀr."""
     point = problem.origin if start is None else start.copy()
-    r, J = problem.with_jacobian(point)
-    damping, evaluations = 1e-4, 1
+    here, damping, evaluations = problem.normal(point), 1e-4, 1
     for _ in range(steps):
-        gradient, H = J.T @ r, J.T @ J
-        scale = np.sqrt(np.maximum(np.diag(H), 1e-12 * max(float(np.diag(H).max()), 1e-300)))
-        system = H / scale[:, None] / scale + damping * np.eye(len(H))
-        step = -np.linalg.solve(system, gradient / scale) / scale
-        promised = -(2 * gradient @ step + step @ H @ step)
-        if not promised > _CONVERGED * float(r @ r):
+        step = _step(here, damping)
+        promised = -(2 * here.gradient @ step + step @ here.curvature @ step)
+        if not promised > _CONVERGED * here.cost:
             break
-        there = problem(point + np.clip(step, -0.7, 0.7))
+        trial = point + np.clip(step, -0.7, 0.7)
         evaluations += 1
-        if there @ there < r @ r:
-            point, damping = point + np.clip(step, -0.7, 0.7), max(damping / 10, 1e-9)
-            r, J = problem.with_jacobian(point)
+        if problem.cost(trial) < here.cost:
+            point, here, damping = trial, problem.normal(trial), max(damping / 10, 1e-9)
         elif damping > 1e4:
             break
         else:
             damping *= 10
-    return _solution(problem, point, r, J, evaluations)
-
-
-def _solution(problem: Residual, point: Array, r: Array, J: Array, evaluations: int) -> Solution:
     unit = np.array([problem.unit(name, point) for name in problem.names])
-    covariance = _covariance(r, J) * unit[:, None] * unit
-    cost = float(r @ r) / max(len(r), 1)
-    return Solution(problem.at(point), problem.values(point), covariance, point, evaluations, cost)
+    covariance = here.covariance * unit[:, None] * unit
+    return Solution(problem.at(point), problem.values(point), covariance, point, evaluations, here.cost / here.count)
 
 
-def _covariance(r: Array, J: Array, blocks: int = 64) -> Array:
-    """H⁻¹ (Σ scores of blocks) H⁻¹: residuals of neighbouring samples are alike, so their number is no measure."""
-    H = J.T @ J
-    scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
-    inverse = np.linalg.pinv(H / scale[:, None] / scale, rcond=1e-12) / scale[:, None] / scale
-    edges = np.linspace(0, len(r), min(blocks, len(r)) + 1).astype(int)
-    scores = np.array([J[a:b].T @ r[a:b] for a, b in zip(edges[:-1], edges[1:], strict=True)])
-    return np.asarray(inverse @ (scores.T @ scores) @ inverse)
+def _step(here: Normal, damping: float) -> Array:
+    H = here.curvature
+    scale = np.sqrt(np.maximum(np.diag(H), 1e-12 * max(float(np.diag(H).max()), 1e-300)))
+    system = H / scale[:, None] / scale + damping * np.eye(len(H))
+    return np.asarray(-np.linalg.solve(system, here.gradient / scale) / scale)

@@ -24,13 +24,14 @@ Array = NDArray[np.float64]
 IMPERFECT = 2e-3  # of a record's standard deviation
 _SETTLED = 0.25  # s at the start of a record that its unknown past may have shaped
 _STEP = 1e-4  # relative, of a difference
+_BLOCKS = 8  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
 _REACH = {"I0": 1e-2, "delay": 1e-2, "second_lag": 1e-2, "stiction": 1e5, "load": 1e7}
 """The natural size of what may be zero or negative; everything else is positive and moved by a share of itself."""
 
 
 def rate_wanted(record: Record) -> float:
     """Hz at which a record still holds what the model can show: the lag is exact at any rate."""
-    return max(200.0, 100.0 * (record.frequency or 0.0))
+    return 250.0 if record.kind == "static" else max(125.0, 80.0 * (record.frequency or 0.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,10 +42,16 @@ class Observed:
     parts: tuple[tuple[int, int], ...]
     position_scale: float
     pressure_scale: float | None
+    drifting: bool = False
 
     @classmethod
-    def of(cls, record: Record, position: bool = True, pressure: bool = True, rate: float = 0.0) -> Observed:
-        """The record with position, pressure or both, at `rate` (Hz) or what it needs."""
+    def of(
+        cls, record: Record, position: bool = True, pressure: bool = True, rate: float = 0.0, drifting: bool = False
+    ) -> Observed:
+        """The record with position, pressure or both, at `rate` (Hz) or what it needs.
+
+        `drifting`: a straight line of each part is taken off the positions, not their mean only.
+        """
         small = record.reduced(rate or rate_wanted(record))
         skip = _unsettled(small)
         parts = tuple((max(a, skip), b) for a, b in small.parts if b - max(a, skip) >= 8)
@@ -53,7 +60,7 @@ class Observed:
         noise = None
         if pressure and small.pressure is not None and small.kind == "static":
             noise = float(np.std(np.diff(small.pressure)) / np.sqrt(2.0)) + 1.0
-        return cls(small, parts, scale if position else np.inf, noise)
+        return cls(small, parts, scale if position else np.inf, noise, drifting)
 
     @property
     def start(self) -> float:
@@ -67,7 +74,8 @@ class Observed:
         if np.isfinite(self.position_scale):
             for first, end in self.parts:
                 difference = answer.position[first:end] - self.record.position[first:end]
-                pieces.append((difference - difference.mean()) / self.position_scale)
+                rest = straightened(difference) if self.drifting else difference - difference.mean()
+                pieces.append(rest / self.position_scale)
         if self.pressure_scale is not None and self.record.pressure is not None:
             for first, end in self.parts:
                 difference = answer.pressure[first:end] - self.record.pressure[first:end]
@@ -75,9 +83,22 @@ class Observed:
         return np.concatenate(pieces)
 
     @cached_property
+    def size(self) -> float:
+        """Amplitude of the position, m: √2 times the deviation of what is compared."""
+        rests = [self.record.position[first:end] for first, end in self.parts]
+        rests = [straightened(x) if self.drifting else x - x.mean() for x in rests]
+        return float(np.sqrt(2.0) * np.std(np.concatenate(rests)))
+
+    @cached_property
     def reach(self) -> float:
         """The largest current, which says what of the table is seen."""
         return float(np.max(np.abs(self.record.current)))
+
+
+def straightened(x: Array) -> Array:
+    """x less the straight line through it."""
+    t = np.arange(len(x)) - 0.5 * (len(x) - 1)
+    return np.asarray(x - x.mean() - t * ((t @ x) / (t @ t)))
 
 
 def _unsettled(record: Record) -> int:
@@ -134,8 +155,13 @@ class Residual:
         """All of them in one vector."""
         return np.concatenate(self.of_records(point))
 
-    def with_jacobian(self, point: Array) -> tuple[Array, Array]:
-        """The residual and its derivatives, (n,) and (n, p); what a record cannot see is not computed."""
+    def cost(self, point: Array) -> float:
+        """The sum of squares."""
+        model = self.at(point)
+        return sum(each(lambda observed: float(np.sum(observed.residual(model) ** 2)), self.observed))
+
+    def normal(self, point: Array) -> Normal:
+        """The sum of squares with its derivatives; what a record cannot see is not computed."""
         here, models = self.at(point), []
         for i in range(len(self.names)):
             moved = point.copy()
@@ -143,17 +169,55 @@ class Residual:
             models.append(self.at(moved))
         limits = [_seen_from(here.table, name) for name in self.names]
 
-        def one(observed: Observed) -> tuple[Array, Array]:
+        def one(observed: Observed) -> tuple[int, Array]:
             base = observed.residual(here)
-            columns = np.zeros((len(base), len(models)))
+            columns = np.zeros((len(base), len(models) + 1))
+            columns[:, -1] = base
             reach = observed.reach + abs(here.I0)
             for i, (model, limit) in enumerate(zip(models, limits, strict=True)):
                 if reach > limit:
                     columns[:, i] = (observed.residual(model) - base) / _STEP
-            return base, columns
+            edges = np.linspace(0, len(base), _BLOCKS + 1).astype(int)
+            products = [columns[a:b].T @ columns[a:b] for a, b in zip(edges[:-1], edges[1:], strict=True)]
+            return len(base), np.array(products)
 
         found = each(one, self.observed)
-        return np.concatenate([base for base, _ in found]), np.concatenate([columns for _, columns in found])
+        return Normal(np.concatenate([products for _, products in found]), sum(count for count, _ in found))
+
+
+@dataclass(frozen=True, eq=False)
+class Normal:
+    """Products of [J, r] of blocks of neighbouring samples, (blocks, p + 1, p + 1), of `count` samples in all."""
+
+    products: Array
+    count: int
+
+    @cached_property
+    def _sum(self) -> Array:
+        return np.asarray(self.products.sum(axis=0))
+
+    @property
+    def cost(self) -> float:
+        """Σ r²."""
+        return float(self._sum[-1, -1])
+
+    @property
+    def gradient(self) -> Array:
+        """Jᵀ r."""
+        return self._sum[:-1, -1]
+
+    @property
+    def curvature(self) -> Array:
+        """Jᵀ J."""
+        return self._sum[:-1, :-1]
+
+    @property
+    def covariance(self) -> Array:
+        """H⁻¹ (Σ scores of blocks) H⁻¹: residuals of neighbouring samples are alike, so their number is no measure."""
+        H, scores = self.curvature, self.products[:, :-1, -1]
+        scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
+        inverse = np.linalg.pinv(H / scale[:, None] / scale, rcond=1e-12) / scale[:, None] / scale
+        return np.asarray(inverse @ (scores.T @ scores) @ inverse)
 
 
 def _seen_from(table: SpeedTable, name: str) -> float:
@@ -165,10 +229,10 @@ def _seen_from(table: SpeedTable, name: str) -> float:
 
 
 def observe(
-    records: Sequence[Record], position: bool = True, pressure: bool = True, rate: float = 0.0
+    records: Sequence[Record], position: bool = True, pressure: bool = True, rate: float = 0.0, drifting: bool = False
 ) -> tuple[Observed, ...]:
     """The records as they are compared."""
-    return tuple(Observed.of(record, position, pressure, rate) for record in records)
+    return tuple(Observed.of(record, position, pressure, rate, drifting) for record in records)
 
 
 def errors(model: Model, observed: Sequence[Observed]) -> dict[str, float]:

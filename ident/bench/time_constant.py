@@ -16,7 +16,8 @@ from scipy.optimize import least_squares
 from ident.bench.least_squares import solve
 from ident.bench.model import Model
 from ident.bench.quantity import Found
-from ident.bench.residual import Observed, Residual
+from ident.bench.records import Record
+from ident.bench.residual import Observed, Residual, observe
 
 Array = NDArray[np.float64]
 _LARGEST, _SMALLEST = 1.0, 1e-4  # s
@@ -43,24 +44,17 @@ class Dynamics:
     doubt: str
 
 
+@dataclass(frozen=True)
 class Target:
     """Normalised position errors of frequency records as a function of T."""
 
-    def __init__(self, model: Model, observed: Sequence[Observed]) -> None:
-        self.model, self.observed = model, observed
-        self._clean = [_without_line(observed) for observed in self.observed]
-        self._size = [float(np.sqrt(2) * np.std(clean)) for clean in self._clean]
-        self.evaluations = 0
+    model: Model
+    observed: tuple[Observed, ...]
 
     def residuals(self, T: float) -> list[Array]:
-        """Position errors over amplitude, of each record."""
-        self.evaluations += 1
-        model, out = replace(self.model, T=T), []
-        for observed, clean, size in zip(self.observed, self._clean, self._size, strict=True):
-            record, (first, end) = observed.record, _span(observed)
-            answer = model.answer(record.current, record.rate, record.hold, observed.start, steps=1)
-            out.append((_straightened(answer.position[first:end]) - clean) / size)
-        return out
+        """Position errors over the amplitude of the output, of each record."""
+        model = replace(self.model, T=T)
+        return [one.residual(model) * (one.position_scale / one.size) for one in self.observed]
 
     def error(self, T: float) -> float:
         """The paper's target: normalised RMS deviations, summed over the records (here their mean)."""
@@ -69,7 +63,7 @@ class Target:
 
 def gradient_descent(target: Target, start: float) -> tuple[float, float, int]:
     """T, the target there, and the number of steps: T is moved against the slope; a step that fails is halved."""
-    place, reach = np.log(start), 0.5
+    place, reach = np.log(start), 0.3
     here = target.error(start)
     for count in range(_STEPS):
         slope = (target.error(float(np.exp(place + 1e-3))) - here) / 1e-3
@@ -79,7 +73,7 @@ def gradient_descent(target: Target, start: float) -> tuple[float, float, int]:
             place, here, reach = trial, there, reach * 1.2
         else:
             reach *= 0.35
-        if reach < 2e-4:
+        if reach < 1e-3:
             return float(np.exp(place)), here, count + 1
     return float(np.exp(place)), here, _STEPS
 
@@ -91,19 +85,18 @@ def by_library(target: Target, start: float) -> float:
         T = float(np.exp(np.clip(place[0], np.log(_SMALLEST), np.log(_LARGEST))))
         return np.concatenate([r / np.sqrt(len(r)) for r in target.residuals(T)])
 
-    found = least_squares(stacked, [np.log(start)], diff_step=1e-3, xtol=1e-5, ftol=1e-7, max_nfev=20)
+    found = least_squares(stacked, [np.log(start)], method="lm", diff_step=1e-3, xtol=1e-4, ftol=1e-6, max_nfev=30)
     return float(np.exp(np.clip(found.x[0], np.log(_SMALLEST), np.log(_LARGEST))))
 
 
-def dynamics(model: Model, observed: Sequence[Observed]) -> Dynamics:
+def dynamics(model: Model, records: Sequence[Record]) -> Dynamics:
     """T and how surely it is told from hysteresis and from a delay; the model's T is where the search begins."""
-    observed = tuple(observed)
+    observed = observe(records, pressure=False, drifting=True)
     target = Target(model, observed)
     T = by_library(target, model.T)
     gradient_T, gradient_error, steps = gradient_descent(target, model.T)
-    free = replace(model, T=T)
-    alone = solve(Residual(free, observed, ("T", "I0")), steps=1)
-    both = solve(Residual(free, observed, ("T", "B", "I0", "delay")), steps=4)
+    alone = solve(Residual(replace(model, T=T), observed, ("T",)), steps=2)
+    both = solve(Residual(alone.model, observed, ("T", "B", "delay")), steps=5)
     kept = ("T", "B", "delay")
     correlation = {a: {b: both.correlation[a][b] for b in kept} for a in kept}
     delay = Found(both.values["delay"], both.deviations["delay"], "s")
@@ -122,19 +115,3 @@ def _doubt(T: float, delay: Found, other: dict[str, float], correlation: dict[st
         f"{1e3 * other['T']:.3g} ms instead of {1e3 * T:.3g} ms and B {100 * other['B']:.3g} %; correlation of T and "
         f"delay {correlation['T']['delay']:.2f}, of B and delay {correlation['B']['delay']:.2f}."
     )
-
-
-def _span(observed: Observed) -> tuple[int, int]:
-    """The longest part of a record."""
-    return max(observed.parts, key=lambda part: part[1] - part[0])
-
-
-def _without_line(observed: Observed) -> Array:
-    first, end = _span(observed)
-    return _straightened(observed.record.position[first:end])
-
-
-def _straightened(x: Array) -> Array:
-    t = np.linspace(-1.0, 1.0, len(x))
-    centred = x - x.mean()
-    return np.asarray(centred - t * (t @ centred) / (t @ t))
