@@ -18,7 +18,7 @@ from ident.bench.records import BenchSet, Record
 from ident.bench.residual import Observed, Residual, errors, observe
 from ident.bench.speed import Speed, speed
 from ident.bench.static import Static, first_values, ranges, static
-from ident.bench.time_constant import Dynamics, dynamics
+from ident.bench.time_constant import DelayCheck, Dynamics, delay_check, dynamics
 from ident.errors import Unusable
 
 FIRST_T = 0.02  # s, where the search for T begins
@@ -49,6 +49,7 @@ class Analysis:
     by_range: tuple[Static, ...]
     frequency: tuple[Response, ...]
     dynamics: Dynamics | None
+    delay: DelayCheck | None
     speed: Speed | None
     steps: Model | None
     whole: Solution | None
@@ -96,7 +97,8 @@ def _whole(
     bench: BenchSet, began: float, model: Model, seen: dict[str, Observed], responses: tuple[Response, ...]
 ) -> Analysis:
     still, sines, moving = bench.of_kind("static"), bench.of_kind("frequency"), bench.of_kind(*SPEED)
-    lag = dynamics(model, sines)
+    drifting = observe(sines, pressure=False, drifting=True)
+    lag = dynamics(model, drifting)
     model = replace(model, T=lag.T.value)
     at_rest = static(still, model, _of(seen, still))
     by_range = ranges(still, at_rest.model, _of(seen, still))
@@ -106,7 +108,7 @@ def _whole(
     every = list(seen.values())
     return _ended(
         bench, began, static=at_rest, by_range=by_range, frequency=responses, dynamics=lag, speed=characteristic,
-        steps=steps, whole=solution, errors=errors(solution.model, every), step_errors=errors(steps, every),
+        delay=delay_check(solution.model, drifting), steps=steps, whole=solution, errors=errors(solution.model, every), step_errors=errors(steps, every),
     )  # fmt: skip
 
 
@@ -122,12 +124,12 @@ def _of(seen: dict[str, Observed], records: Sequence[Record]) -> tuple[Observed,
 def _ended(
     bench: BenchSet, began: float, static: Static | None = None, by_range: tuple[Static, ...] = (),
     frequency: tuple[Response, ...] = (), dynamics: Dynamics | None = None, speed: Speed | None = None,
-    steps: Model | None = None, whole: Solution | None = None, errors: dict[str, float] | None = None,
+    delay: DelayCheck | None = None, steps: Model | None = None, whole: Solution | None = None, errors: dict[str, float] | None = None,
     step_errors: dict[str, float] | None = None,
 ) -> Analysis:  # fmt: skip
-    notes = (*bench.notes, *([dynamics.doubt] if dynamics is not None and dynamics.doubt else []))
+    notes = (*bench.notes, *([delay.doubt] if delay is not None and delay.doubt else []))
     return Analysis(
-        static, by_range, frequency, dynamics, speed, steps, whole, errors or {}, step_errors or {},
+        static, by_range, frequency, dynamics, delay, speed, steps, whole, errors or {}, step_errors or {},
         tuple(_missing(bench)), notes, time.monotonic() - began,
     )  # fmt: skip
 

@@ -69,8 +69,11 @@ class Record:
         def means(samples: Array) -> Array:
             return samples[:cut].reshape(-1, m).mean(axis=1)
 
+        current = self.current
+        if self.hold == "zoh":  # at a sample the held current jumps: straight lines see the middle of the jump
+            current = np.concatenate([current[:1], 0.5 * (current[:-1] + current[1:])])
         made = Record(
-            self.id, self.kind, self.rate / m, "linear", means(self.current), means(self.position),
+            self.id, self.kind, self.rate / m, "linear", means(current), means(self.position),
             None if self.pressure is None else means(self.pressure), self.resolution, self.frequency,
             self.position_range, self.use,
         )  # fmt: skip

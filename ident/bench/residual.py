@@ -23,6 +23,7 @@ from ident.parallel import each
 Array = NDArray[np.float64]
 IMPERFECT = 2e-3  # of a record's standard deviation
 _SETTLED = 0.25  # s at the start of a record that its unknown past may have shaped
+_MOVED = 3.0  # steps of the converter that are no accident
 _STEP = 1e-4  # relative, of a difference
 _BLOCKS = 8  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
 _REACH = {"I0": 1e-2, "delay": 1e-2, "second_lag": 1e-2, "stiction": 1e5, "load": 1e7}
@@ -104,11 +105,13 @@ def straightened(x: Array) -> Array:
 def _unsettled(record: Record) -> int:
     """Samples at the start that the unknown past of lag and play may have shaped.
 
-    A sine is compared from its second period on, others after a quarter of a second.
+    A sine is compared from its second period on. Else the play is known once the link has moved: it pushes then.
     """
     if record.kind == "frequency" and record.frequency and record.length > 2.2 * record.rate / record.frequency:
         return round(record.rate / record.frequency)
-    return min(round(_SETTLED * record.rate), record.length // 4)
+    away = np.abs(record.position - record.position[0]) > max(_MOVED * record.resolution, 1e-4 * np.ptp(record.position))
+    moved = int(np.argmax(away)) if away.any() else 0
+    return min(max(moved, round(_SETTLED * record.rate)), record.length // 3)
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,30 +16,37 @@ from scipy.optimize import least_squares
 from ident.bench.least_squares import solve
 from ident.bench.model import Model
 from ident.bench.quantity import Found
-from ident.bench.records import Record
-from ident.bench.residual import Observed, Residual, observe
+from ident.bench.residual import Observed, Residual
 
 Array = NDArray[np.float64]
 _LARGEST, _SMALLEST = 1.0, 1e-4  # s
 _STEPS = 25
-_TOLD = 3.0  # standard deviations from which on a delay is said to be there
+_TOGETHER = ("T", "B", "delay")
+_TOLD, _SEEN = 4.0, 0.02  # standard deviations, share of T, from which on a delay is said to be there
 
 
 @dataclass(frozen=True)
 class Dynamics:
-    """T (s) by least squares and by gradient descent; the normalised error at each.
-
-    `delay` (s) is what the records ask for when a pure delay is admitted beside T and B, `with_delay` T and B then;
-    `correlation` that of the three: near ±1 the records cannot tell them apart. `doubt` says so in words, or is "".
-    """
+    """T (s) by least squares and by gradient descent; the normalised error at each, and the descent's steps."""
 
     T: Found
     gradient_T: float
     error: float
     gradient_error: float
     steps: int
+
+
+@dataclass(frozen=True)
+class DelayCheck:
+    """What the records ask for when a pure delay is admitted beside T and B, which the four blocks do not have.
+
+    `T` (s) and `B` as they are then; `correlation` of the three: near ±1 the records cannot tell them apart. `doubt`
+    says in words that a delay is there, or is "".
+    """
+
     delay: Found
-    with_delay: dict[str, float]
+    T: float
+    B: float
     correlation: dict[str, dict[str, float]]
     doubt: str
 
@@ -89,29 +96,26 @@ def by_library(target: Target, start: float) -> float:
     return float(np.exp(np.clip(found.x[0], np.log(_SMALLEST), np.log(_LARGEST))))
 
 
-def dynamics(model: Model, records: Sequence[Record]) -> Dynamics:
-    """T and how surely it is told from hysteresis and from a delay; the model's T is where the search begins."""
-    observed = observe(records, pressure=False, drifting=True)
-    target = Target(model, observed)
+def dynamics(model: Model, observed: Sequence[Observed]) -> Dynamics:
+    """T from drifting frequency records, as they are compared; the model's T is where the search begins."""
+    target = Target(model, tuple(observed))
     T = by_library(target, model.T)
     gradient_T, gradient_error, steps = gradient_descent(target, model.T)
-    alone = solve(Residual(replace(model, T=T), observed, ("T",)), steps=2)
-    both = solve(Residual(alone.model, observed, ("T", "B", "delay")), steps=5)
-    kept = ("T", "B", "delay")
-    correlation = {a: {b: both.correlation[a][b] for b in kept} for a in kept}
+    alone = solve(Residual(replace(model, T=T), tuple(observed), ("T",)), steps=0)
+    return Dynamics(Found(T, alone.deviations["T"], "s"), gradient_T, target.error(T), gradient_error, steps)
+
+
+def delay_check(model: Model, observed: Sequence[Observed]) -> DelayCheck:
+    """T, B and a delay refitted together from a model that has T and B alone."""
+    both = solve(Residual(model, tuple(observed), _TOGETHER), steps=5)
     delay = Found(both.values["delay"], both.deviations["delay"], "s")
-    with_delay = {"T": both.values["T"], "B": both.values["B"]}
-    return Dynamics(
-        Found(T, alone.deviations["T"], "s"), gradient_T, target.error(T), gradient_error, steps, delay, with_delay,
-        correlation, _doubt(T, delay, with_delay, correlation),
-    )  # fmt: skip
-
-
-def _doubt(T: float, delay: Found, other: dict[str, float], correlation: dict[str, dict[str, float]]) -> str:
-    if abs(delay.value) < max(_TOLD * delay.deviation, 0.02 * T):
-        return ""
-    return (
-        f"The records ask for a pure delay of {1e3 * delay.value:.2g} ms, which the four blocks lack: with it T would be "
-        f"{1e3 * other['T']:.3g} ms instead of {1e3 * T:.3g} ms and B {100 * other['B']:.3g} %; correlation of T and "
-        f"delay {correlation['T']['delay']:.2f}, of B and delay {correlation['B']['delay']:.2f}."
-    )
+    T, B, correlation = both.values["T"], both.values["B"], both.correlation
+    doubt = ""
+    if abs(delay.value) > max(_TOLD * delay.deviation, _SEEN * model.T):
+        doubt = (
+            f"The records ask for a pure delay of {1e3 * delay.value:.2g} ms, which the four blocks lack: with it T would "
+            f"be {1e3 * T:.3g} ms instead of {1e3 * model.T:.3g} ms and B {100 * B:.3g} % instead of "
+            f"{100 * model.B:.3g} %; correlation of T and delay {correlation['T']['delay']:.2f}, of B and delay "
+            f"{correlation['B']['delay']:.2f}."
+        )
+    return DelayCheck(delay, T, B, correlation, doubt)
