@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from ident.errors import Unusable
+from ident.interpolation import interpolated
 
 FUNCTIONS: Mapping[str, Callable[..., Any]] = {
     "abs": np.abs,
@@ -40,15 +41,22 @@ FUNCTIONS: Mapping[str, Callable[..., Any]] = {
     "lag2": lambda x, _a1, _a2: x,
     "delay": lambda x, _T: x,
     "dry": lambda limit, _speed, _acceleration, _mass: 0.0 * limit,
+    "lines": lambda x, *table: interpolated("lines", x, *table),
+    "monotone": lambda x, *table: interpolated("monotone", x, *table),
 }
 """Functions an equation may call, with their numpy meaning for signals that stand still.
 
 Those that remember are exact for a strength of zero: `lag` is x/(T s + 1), `lag2` x/(a2 s² + a1 s + 1), `delay`
 x(t − T), and `dry` the friction force that takes at most `limit`, and at most what stops `mass` within the step.
+`lines(x, x1, y1, x2, y2, …)` and `monotone(…)` are tables over rising nodes: straight lines, or cubics without
+overshoot (PCHIP), and straight beyond the ends.
 """
 
 DYNAMIC = ("lag", "lag2", "delay", "dry")
 """The functions that remember."""
+
+TABLES = ("lines", "monotone")
+"""The functions that are given by a table: x, then two nodes or more."""
 
 _ARGUMENTS = {"clip": 3, "max": 2, "min": 2, "where": 3, "lag": 2, "lag2": 3, "delay": 2, "dry": 4}
 _OPERATORS = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.USub, ast.UAdd, ast.Lt, ast.LtE, ast.Gt, ast.GtE)
@@ -155,6 +163,9 @@ def _fault(node: ast.AST) -> str | None:
     if isinstance(node, ast.Call):
         if not isinstance(node.func, ast.Name) or node.func.id not in FUNCTIONS or node.keywords:
             return f"unknown function; known are {', '.join(FUNCTIONS)}"
+        if node.func.id in TABLES:
+            whole = len(node.args) >= 5 and len(node.args) % 2 == 1
+            return None if whole else f"{node.func.id} takes x and the pairs x1, y1, x2, y2 of its table"
         wanted = _ARGUMENTS.get(node.func.id, 1)
         return None if len(node.args) == wanted else f"{node.func.id} takes {wanted} argument(s)"
     if isinstance(node, ast.Compare):

@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 
 from ident.errors import Unusable
 from ident.interpolation import piece_coefficients
+from ident.stages.bench import FRACTIONS, node_names
 
 Array = NDArray[np.float64]
-FRACTIONS = (0.05, 0.15, 0.3, 0.5, 0.75, 1.0)
-"""Where the table has its nodes, in rated currents from the zero shift; denser where small signals work."""
 KINDS = ("monotone", "lines")
 
 
@@ -56,7 +55,7 @@ class SpeedTable:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the speeds: V_p5 at +5 % of rated current, V_m5 at −5 %."""
-        return tuple(f"V_{sign}{100 * fraction:.4g}".replace(".", "_") for sign in "pm" for fraction in self.fractions)
+        return node_names(self.fractions)
 
     def values(self) -> dict[str, float]:
         """The speeds by name."""

@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ident.chain import FORCE, INPUT, INPUT_RATE, STEP, Chain
-from ident.expression import DYNAMIC, FUNCTIONS
+from ident.expression import DYNAMIC, FUNCTIONS, TABLES
+from ident.interpolation import coefficient
 
 
 @dataclass
@@ -108,6 +109,8 @@ class Source:
         return f"{self._lower(node, stage)} != 0.0"
 
     def _call(self, name: str, arguments: Sequence[ast.expr], stage: str) -> str:
+        if name in TABLES:
+            return self._table(name, arguments, stage)
         if name == "where":
             a, b = (self._temporary(self._lower(argument, stage)) for argument in arguments[1:])
             return f"({a} if {self._condition(arguments[0], stage)} else {b})"
@@ -127,6 +130,33 @@ class Source:
                 return self._exponential(x)
             case _:
                 return f"{name}({x})"
+
+    def _table(self, kind: str, arguments: Sequence[ast.expr], stage: str) -> str:
+        """A table as the sum over its pieces of their cubics in clip(x, xi, xi+1) − xi: no branch, no search."""
+        x, table = self._temporary(self._lower(arguments[0], stage)), list(arguments[1:])
+        if not all(isinstance(node, ast.Constant) or self._is_constant(node) for node in table):
+            raise TypeError("the nodes of a table are numbers or parameters")
+        count, nodes = len(table) // 2, [self._known(node) for node in table[::2]]
+
+        def known(piece: int, power: int) -> str:
+            return self._constant(ast.Call(named("coefficient"), [*map(ast.Constant, (kind, piece, power)), *table], []))
+
+        low, high = nodes[0], nodes[-1]
+        terms = [known(0, 0)]
+        terms.append(f"{known(0, 1)} * ({x} - {low} if {x} < {low} else 0.0)")
+        terms.append(f"{known(count - 2, -1)} * ({x} - {high} if {x} > {high} else 0.0)")
+        for i in range(count - 1):
+            a, b = nodes[i], nodes[i + 1]
+            t = self._temporary(f"({b} if {x} > {b} else ({a} if {x} < {a} else {x})) - {a}")
+            if kind == "lines":
+                terms.append(f"{t} * {known(i, 1)}")
+            else:
+                terms.append(f"{t} * ({known(i, 1)} + {t} * ({known(i, 2)} + {t} * {known(i, 3)}))")
+        return f"({' + '.join(terms)})"
+
+    def _known(self, node: ast.expr) -> str:
+        """A number or an expression of symbols, as it stands in the loop."""
+        return repr(float(node.value)) if isinstance(node, ast.Constant) else self._constant(node)  # type: ignore[arg-type]
 
     def _exponential(self, x: str) -> str:
         """exp(x) as the 32nd power of a polynomial in x/32, |x| ≤ 60: relative error 3e-6 at |x| = 3, 4e-8 at 1.
@@ -169,7 +199,7 @@ def _folded(node: ast.expr, plain: Mapping[str, float]) -> ast.expr:
 def constant(node: ast.expr, values: Mapping[str, Any]) -> Any:
     """The value of an expression of symbols for all lanes."""
     return eval(compile(ast.Expression(ast.fix_missing_locations(node)), "<constant>", "eval"),
-                {"__builtins__": {}, **FUNCTIONS}, dict(values))  # fmt: skip
+                {"__builtins__": {}, **FUNCTIONS, "coefficient": coefficient}, dict(values))  # fmt: skip
 
 
 def named(name: str) -> ast.Name:
