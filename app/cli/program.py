@@ -8,6 +8,7 @@ from typing import NoReturn
 import typer
 
 from app.cli.approve import approve
+from app.cli.bench import bench
 from app.cli.check import check
 from app.cli.compare import compare
 from app.cli.demo import demo
@@ -23,7 +24,7 @@ from app.cli.token import token
 from app.cli.upload import upload
 from app.cli.worker import worker
 
-LOCAL = (simulate, check, fit, compare)
+LOCAL = (simulate, check, fit, compare, bench)
 SERVICE = (serve, worker, demo, token, migrate, regress)
 CLIENT = (upload, approve, query, revise)
 

@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.errors import Unusable
-from ident.matrix import Matrix, Run
+from ident.matrix import BENCH, Matrix, Run
 
 Array = NDArray[np.float64]
-KINDS = ("static", "frequency", "speed-levels", "speed-continuous")
 _END = 0.02  # s at the same extreme reading: the actuator or its transducer is at its end
 _FAR = 0.02  # of rated current: so far from the middle an actuator that is free moves
 
@@ -114,7 +113,7 @@ class BenchSet:
 
 def bench_set(matrix: Matrix, use: str | None = None) -> BenchSet:
     """The bench records of a matrix, all or of one use. Raises Unusable where there is none, or one lacks a channel."""
-    runs = [run for run in matrix.runs if run.kind in KINDS and use in (None, run.use)]
+    runs = [run for run in matrix.runs if run.kind in BENCH and use in (None, run.use)]
     if not runs:
         raise Unusable("missing-record", "no bench record: none of static, frequency, speed-levels, speed-continuous",
                        "runs", "state kind: of each run")  # fmt: skip

@@ -51,7 +51,8 @@ def respond(
     """Fill `out` (3, n) with position (m), pressure difference (Pa) and the current after the play.
 
     `constants` holds T, B, I0, kp, ΔPfr, Ps and what the four blocks lack: second lag (s), stiction (Pa above ΔPfr),
-    load (Pa/m). `start` holds position and currents after the lags and the play; `steps` divides a sample.
+    load (Pa/m). `start` holds position and currents after the lags and the play, and is left as they are at the
+    end; `steps` divides a sample.
     """
     T, B, I0, kp, friction, supply, T2, sticking, load = constants
     phi, g0, g1 = filter_gains(T, step / steps)
@@ -88,3 +89,4 @@ def respond(
         out[0, k] = x
         out[1, k] = sign * (needed if moving else available)
         out[2, k] = w
+    start[0], start[1], start[2], start[3] = x, q, q2, w
