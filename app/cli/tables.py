@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from app.cli.numbers import percent
-from ident.bench.acceptance import Line
 from ident.fit.result import Estimate, FitResult
+
+if TYPE_CHECKING:
+    from ident.bench.acceptance import Line
 
 
 def output() -> Console:
@@ -62,7 +65,7 @@ def error_rows(result: FitResult) -> Iterator[tuple[str, ...]]:
     yield "offset", *(percent(result.offset.get(use)) for use in uses)
 
 
-READABLE = {("1", "zero_shift"): (100.0, "%"), ("Pa", "kp"): (1e-8, "MPa/%"), ("Pa", "friction"): (1e-6, "MPa")}
+READABLE = {("Pa", "kp"): (1e-8, "MPa/%")}
 """Factor and unit in which a bench's quantity is printed, where it is not that of its kind."""
 
 

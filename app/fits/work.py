@@ -13,8 +13,8 @@ from app.fits import repository
 from app.matrices.service import load_row
 from app.storage import Storage
 from app.tables import now
-from ident.errors import Cancelled, Unusable
 from ident.bench.identification import BenchIdentification
+from ident.errors import Cancelled, Unusable
 from ident.fit.identification import Identification, identification
 from ident.fit.settings import Settings
 from ident.progress import Progress

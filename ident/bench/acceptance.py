@@ -81,7 +81,13 @@ def _of_whole(analysis: Analysis) -> dict[str, Found]:
     assert analysis.whole is not None
     v, solution = analysis.whole.values, analysis.whole
     dead = {"B": 1.0, "dPfr": 1.0 / v["kp"], "kp": -v["dPfr"] / v["kp"] ** 2}
-    named = (("zero_shift", "I0", "1"), ("hysteresis", "B", "1"), ("kp", "kp", "Pa"), ("friction", "dPfr", "Pa"), ("T", "T", "s"))
+    named = (
+        ("zero_shift", "I0", "1"),
+        ("hysteresis", "B", "1"),
+        ("kp", "kp", "Pa"),
+        ("friction", "dPfr", "Pa"),
+        ("T", "T", "s"),
+    )
     out = {name: Found(v[own], solution.deviations[own], unit) for name, own, unit in named}
     return out | {"dead_space": Found(solution.model.dead_space, solution.deviation(dead), "1")}
 
@@ -109,7 +115,9 @@ def read_limits(text: str, where: str) -> dict[str, tuple[float | None, float | 
     if data is None:
         return {}
     if not isinstance(data, Mapping):
-        raise Unusable("not-a-mapping", "the limits are no list of quantity: {min, max}", where, "write T: {max: 30 ms}")
+        raise Unusable(
+            "not-a-mapping", "the limits are no list of quantity: {min, max}", where, "write T: {max: 30 ms}"
+        )
     return dict(_limits(data, where))
 
 

@@ -8,8 +8,8 @@ then T, then static values and speeds again; at last every value is moved at onc
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 from ident.bench.frequency import Response, frequency_response
 from ident.bench.least_squares import Solution, solve
@@ -45,19 +45,19 @@ class Analysis:
     A procedure whose records are missing is None, and so are the models then; `missing` says why.
     """
 
-    static: Static | None
-    by_range: tuple[Static, ...]
-    frequency: tuple[Response, ...]
-    dynamics: Dynamics | None
-    delay: DelayCheck | None
-    speed: Speed | None
-    steps: Model | None
-    whole: Solution | None
-    errors: dict[str, float]
-    step_errors: dict[str, float]
-    missing: tuple[Missing, ...]
-    notes: tuple[str, ...]
-    seconds: float
+    static: Static | None = None
+    by_range: tuple[Static, ...] = ()
+    frequency: tuple[Response, ...] = ()
+    dynamics: Dynamics | None = None
+    delay: DelayCheck | None = None
+    speed: Speed | None = None
+    steps: Model | None = None
+    whole: Solution | None = None
+    errors: Mapping[str, float] = field(default_factory=dict)
+    step_errors: Mapping[str, float] = field(default_factory=dict)
+    missing: tuple[Missing, ...] = ()
+    notes: tuple[str, ...] = ()
+    seconds: float = 0.0
 
     @property
     def model(self) -> Model | None:
@@ -76,39 +76,42 @@ class Analysis:
 def analyse(bench: BenchSet) -> Analysis:
     """Every procedure for which there are records. Raises Unusable where a record is not usable for its procedure."""
     began = time.monotonic()
+    found = _found(bench)
+    doubts = (found.delay.doubt,) if found.delay is not None and found.delay.doubt else ()
+    return replace(
+        found, missing=tuple(_missing(bench)), notes=(*bench.notes, *doubts), seconds=time.monotonic() - began
+    )
+
+
+def _found(bench: BenchSet) -> Analysis:
     still, sines, moving = bench.of_kind("static"), bench.of_kind("frequency"), bench.of_kind(*SPEED)
-    responses = frequency_response(sines)
+    found = Analysis(frequency=frequency_response(sines))
     if not still:
-        return _ended(bench, began, frequency=responses)
+        return found
     model = first_values(still, FIRST_T, bench.supply_pressure)
     if not moving:
-        found = static(still, model, observe(still, position=False))
-        return _ended(bench, began, frequency=responses, static=found)
+        return replace(found, static=static(still, model, observe(still, position=False)))
     seen = {record.id: observed for record, observed in zip(bench.records, observe(bench.records), strict=True)}
     first = speed(model, moving, _of(seen, moving))
     model = replace(model, table=first.table)
     if not sines:
-        found = static(still, model, _of(seen, still))
-        return _ended(bench, began, static=found, speed=first)
-    return _whole(bench, began, model, seen, responses)
+        return replace(found, static=static(still, model, _of(seen, still)), speed=first)
+    return _whole(bench, model, seen, found)
 
 
-def _whole(
-    bench: BenchSet, began: float, model: Model, seen: dict[str, Observed], responses: tuple[Response, ...]
-) -> Analysis:
+def _whole(bench: BenchSet, model: Model, seen: dict[str, Observed], found: Analysis) -> Analysis:
+    """T, then static values and speeds with it, then everything at once."""
     still, sines, moving = bench.of_kind("static"), bench.of_kind("frequency"), bench.of_kind(*SPEED)
     drifting = observe(sines, pressure=False, drifting=True)
     lag = dynamics(model, drifting)
-    model = replace(model, T=lag.T.value)
-    at_rest = static(still, model, _of(seen, still))
-    by_range = ranges(still, at_rest.model, _of(seen, still))
+    at_rest = static(still, replace(model, T=lag.T.value), _of(seen, still))
     characteristic = speed(at_rest.model, moving, _of(seen, moving))
-    steps = replace(at_rest.model, table=characteristic.table)
-    solution = fit_whole(steps, list(seen.values()))
-    every = list(seen.values())
-    return _ended(
-        bench, began, static=at_rest, by_range=by_range, frequency=responses, dynamics=lag, speed=characteristic,
-        delay=delay_check(solution.model, drifting), steps=steps, whole=solution, errors=errors(solution.model, every), step_errors=errors(steps, every),
+    steps, every = replace(at_rest.model, table=characteristic.table), list(seen.values())
+    whole = fit_whole(steps, every)
+    return replace(
+        found, static=at_rest, by_range=ranges(still, at_rest.model, _of(seen, still)), dynamics=lag,
+        speed=characteristic, delay=delay_check(whole.model, drifting), steps=steps, whole=whole,
+        errors=errors(whole.model, every), step_errors=errors(steps, every),
     )  # fmt: skip
 
 
@@ -121,19 +124,6 @@ def _of(seen: dict[str, Observed], records: Sequence[Record]) -> tuple[Observed,
     return tuple(seen[record.id] for record in records)
 
 
-def _ended(
-    bench: BenchSet, began: float, static: Static | None = None, by_range: tuple[Static, ...] = (),
-    frequency: tuple[Response, ...] = (), dynamics: Dynamics | None = None, speed: Speed | None = None,
-    delay: DelayCheck | None = None, steps: Model | None = None, whole: Solution | None = None, errors: dict[str, float] | None = None,
-    step_errors: dict[str, float] | None = None,
-) -> Analysis:  # fmt: skip
-    notes = (*bench.notes, *([delay.doubt] if delay is not None and delay.doubt else []))
-    return Analysis(
-        static, by_range, frequency, dynamics, delay, speed, steps, whole, errors or {}, step_errors or {},
-        tuple(_missing(bench)), notes, time.monotonic() - began,
-    )  # fmt: skip
-
-
 def _missing(bench: BenchSet) -> list[Missing]:
     out = []
     if not bench.of_kind("static"):
@@ -143,5 +133,3 @@ def _missing(bench: BenchSet) -> list[Missing]:
     if not bench.of_kind(*SPEED):
         out.append(Missing("the speed characteristic", "speed-levels"))
     return out
-
-

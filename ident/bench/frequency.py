@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,7 +58,7 @@ def point(measured: Record) -> Response:
                        "record at least two periods, or correct frequency")  # fmt: skip
     first = 1 if count > 1 else 0  # the first period holds the start
     edges = [round(i * record.rate / frequency) for i in range(first, count + 1)]
-    fits = [fit_sine(alpha[a:b], record.position[a:b], drift=True) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    fits = [fit_sine(alpha[a:b], record.position[a:b], drift=True) for a, b in pairwise(edges)]
     amplitude = np.array([fit.a2 for fit in fits])
     lag = np.unwrap([drive.a3 - fit.a3 for fit in fits]) % (2 * np.pi)
     last = slice(edges[-2], edges[-1])

@@ -6,7 +6,6 @@ It has the steps of every fit (start, advance, finish), so that jobs, progress a
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
 from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
@@ -142,13 +141,17 @@ class BenchIdentification:
 
     def _by_steps(self) -> Solution:
         steps = self.analysis.steps
-        assert steps is not None and self.analysis.dynamics is not None  # complete() has seen to it
-        own = replace(steps, T=self.analysis.dynamics.gradient_T).with_values(self.space.fixed)
+        lag = self.analysis.dynamics
+        if steps is None or lag is None:
+            raise AssertionError("complete() has seen to it")
+        own = replace(steps, T=lag.gradient_T).with_values(self.space.fixed)
         return solve(Residual(own, self._fine, self.space.names), steps=0)
 
     def _polished(self, state: State) -> Solution:
         points = [np.array(state["best"]), *map(np.array, state["population"])] if state["best"] else []
-        starts = [self.space.values(point[None]) for point in _distinct(points)] or [self.space.values(np.empty((1, 0)))]
+        starts = [self.space.values(point[None]) for point in _distinct(points)] or [
+            self.space.values(np.empty((1, 0)))
+        ]
         found = []
         for values in starts:
             model = model_of({name: float(value[0]) for name, value in values.items()}, self.bench.supply_pressure)

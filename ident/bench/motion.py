@@ -36,7 +36,7 @@ def groups(record: Record) -> Groups:
     return np.sign(np.cumsum(edges))[:-1].astype(np.int8)
 
 
-@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, nogil=True)
 def without_flicker(position: Array, width: float, out: Array) -> None:
     """Fill `out` with the position behind a play of half-width `width`."""
     held = position[0]

@@ -66,7 +66,7 @@ class Record:
         cut = self.length // m * m
 
         def means(samples: Array) -> Array:
-            return samples[:cut].reshape(-1, m).mean(axis=1)
+            return np.asarray(samples[:cut].reshape(-1, m).mean(axis=1))
 
         current = self.current
         if self.hold == "zoh":  # at a sample the held current jumps: straight lines see the middle of the jump
@@ -101,14 +101,6 @@ class BenchSet:
     def of_kind(self, *kinds: str) -> tuple[Record, ...]:
         """The records of these kinds."""
         return tuple(record for record in self.records if record.kind in kinds)
-
-    def need(self, quantity: str, *kinds: str) -> tuple[Record, ...]:
-        """The records of these kinds; raises Unusable that says what cannot be found without one."""
-        found = self.of_kind(*kinds)
-        if not found:
-            raise Unusable("missing-record", f"{quantity} cannot be found without a record of kind {' or '.join(kinds)}",
-                           "runs", f"add a run with kind: {kinds[0]}")  # fmt: skip
-        return found
 
 
 def bench_set(matrix: Matrix, use: str | None = None) -> BenchSet:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -109,7 +110,9 @@ def _unsettled(record: Record) -> int:
     """
     if record.kind == "frequency" and record.frequency and record.length > 2.2 * record.rate / record.frequency:
         return round(record.rate / record.frequency)
-    away = np.abs(record.position - record.position[0]) > max(_MOVED * record.resolution, 1e-4 * np.ptp(record.position))
+    away = np.abs(record.position - record.position[0]) > max(
+        _MOVED * record.resolution, 1e-4 * np.ptp(record.position)
+    )
     moved = int(np.argmax(away)) if away.any() else 0
     return min(max(moved, round(_SETTLED * record.rate)), record.length // 3)
 
@@ -181,7 +184,7 @@ class Residual:
                 if reach > limit:
                     columns[:, i] = (observed.residual(model) - base) / _STEP
             edges = np.linspace(0, len(base), _BLOCKS + 1).astype(int)
-            products = [columns[a:b].T @ columns[a:b] for a, b in zip(edges[:-1], edges[1:], strict=True)]
+            products = [columns[a:b].T @ columns[a:b] for a, b in pairwise(edges)]
             return len(base), np.array(products)
 
         found = each(one, self.observed)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(cache=True, nogil=True, error_model="numpy")
 def characteristic(u: float, nodes: Array, pieces: Array) -> float:
     """f(u): odd and even sides have tables of their own; beyond the last node the end slope goes on."""
     side = 0 if u >= 0.0 else 1
@@ -33,17 +33,17 @@ def characteristic(u: float, nodes: Array, pieces: Array) -> float:
     return float(c0 + t * (c1 + t * (c2 + t * c3)))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(cache=True, nogil=True, error_model="numpy")
 def filter_gains(T: float, step: float) -> tuple[float, float, float]:
     """(φ, γ0, γ1) of T y' + y = u over a step, exact for an input that is a straight line."""
-    if T < 1e-3 * step:
+    if 1e-3 * step > T:
         return 0.0, 0.0, 1.0
     phi = exp(-step / T)
     g1 = 1.0 - (1.0 - phi) * T / step
     return phi, (1.0 - phi) - g1, g1
 
 
-@njit(cache=True, nogil=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(cache=True, nogil=True, error_model="numpy")
 def respond(
     current: Array, step: float, steps: int, held: bool, constants: Array, nodes: Array, pieces: Array, start: Array,
     out: Array,

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,7 +78,12 @@ def speed(model: Model, records: Sequence[Record], observed: Sequence[Observed],
     heights, ends = bezier(points[:, 0], points[:, 1], min(degree, max(1, len(points) - 1)), model.I0)
     fine = np.linspace(-1, 1, 201) * table.nodes[-1]
     return Speed(
-        table, solution.deviations, straightness(fine, table.speed(fine)), tuple(found), tuple(map(float, heights)), ends
+        table,
+        solution.deviations,
+        straightness(fine, table.speed(fine)),
+        tuple(found),
+        tuple(map(float, heights)),
+        ends,
     )
 
 
@@ -171,5 +177,5 @@ def _constant(record: Record) -> list[tuple[int, int]]:
     change = np.abs(np.diff(record.current)) > _EVEN
     edges = np.concatenate([[0], np.flatnonzero(change) + 1, [record.length]])
     least = _SHORTEST * record.rate
-    long = [(int(a), int(b)) for a, b in zip(edges[:-1], edges[1:], strict=True) if b - a >= least]
+    long = [(int(a), int(b)) for a, b in pairwise(edges) if b - a >= least]
     return [(a, b) for a, b in long if np.ptp(record.current[a:b]) <= 2 * _EVEN]

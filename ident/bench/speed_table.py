@@ -32,8 +32,9 @@ class SpeedTable:
     def __post_init__(self) -> None:
         rising = np.all(np.diff((0.0, *self.fractions)) > 0)
         if self.kind not in KINDS or not rising or not len(self.forward) == len(self.back) == len(self.fractions):
-            raise Unusable("bad-table", f"{len(self.forward)} and {len(self.back)} speeds at {self.fractions}",
-                           "speed characteristic", "give a speed of each direction at rising currents above 0")  # fmt: skip
+            what = f"{len(self.forward)} and {len(self.back)} speeds at {self.fractions}"
+            remedy = "give a speed of each direction at rising currents above 0"
+            raise Unusable("bad-table", what, "speed characteristic", remedy)
 
     @classmethod
     def straight(cls, gain: float, fractions: tuple[float, ...] = FRACTIONS, kind: str = "monotone") -> SpeedTable:

@@ -61,7 +61,7 @@ def plans(gain: float) -> Iterator[Plan]:
     """A full set for an actuator of a gain (m/s at rated current)."""
     for low, high in RANGES:
         middle = 0.5 * (low + high)
-        labels = {"position_range": [f"{1e3 * low:g} mm", f"{1e3 * high:g} mm"]}
+        labels: dict[str, Any] = {"position_range": [f"{1e3 * low:g} mm", f"{1e3 * high:g} mm"]}
         # 1 % of current a mm, 0.25 mm/s, ±1.5 mm: the current crosses the dead space at 0.25 %/s
         yield Plan(f"static-{1e3 * middle:.0f}", "static", STATIC, (0.0, 10.0, 2.5e-4, 1.5e-3), 48.0, middle, labels)
     for amplitude in AMPLITUDES:
@@ -92,14 +92,14 @@ def record(plan: Plan, model: Model) -> tuple[Array, Array, Array]:
 
 
 def prepared(plan: Plan, model: Model) -> Plan:
-    """A sine as the bench records it: the drift compensated by periods before the record, the swing about the middle."""
+    """A sine as a bench records it: drift compensated by periods before the record, the swing about the middle."""
     if plan.law != FREQUENCY:
         return plan
     current, position, _ = record(plan, model)
     period = round(RATE / plan.settings[2])
     middle = 0.5 * (position[-period:].max() + position[-period:].min())
     settings = (float(current[-period:].mean()), *plan.settings[1:])
-    return replace(plan, settings=settings, start=plan.start + 0.5 * STROKE - float(middle - position[-period] + plan.start))
+    return replace(plan, settings=settings, start=0.5 * STROKE - float(middle - position[-period]))
 
 
 def write_bench(out: Path, seed: int, noise: float, report: Report = silent, serial: str = "SIM-BENCH-0001") -> None:

@@ -113,8 +113,8 @@ def delay_check(model: Model, observed: Sequence[Observed]) -> DelayCheck:
     doubt = ""
     if abs(delay.value) > max(_TOLD * delay.deviation, _SEEN * model.T):
         doubt = (
-            f"The records ask for a pure delay of {1e3 * delay.value:.2g} ms, which the four blocks lack: with it T would "
-            f"be {1e3 * T:.3g} ms instead of {1e3 * model.T:.3g} ms and B {100 * B:.3g} % instead of "
+            f"The records ask for a pure delay of {1e3 * delay.value:.2g} ms, which the four blocks lack: with it T "
+            f"would be {1e3 * T:.3g} ms instead of {1e3 * model.T:.3g} ms and B {100 * B:.3g} % instead of "
             f"{100 * model.B:.3g} %; correlation of T and delay {correlation['T']['delay']:.2f}, of B and delay "
             f"{correlation['B']['delay']:.2f}."
         )

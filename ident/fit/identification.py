@@ -272,9 +272,7 @@ def _refuse(matrix: Matrix) -> None:
             raise Unusable("missing-channel", "no command channel", f"run {run.id}", "name the column of the command")
 
 
-def identification(
-    matrix: Matrix, settings: Settings, report: Report = silent
-) -> Identification | BenchIdentification:
+def identification(matrix: Matrix, settings: Settings, report: Report = silent) -> Identification | BenchIdentification:
     """The fit that a model asks for: of test runs, or of the records of a bench."""
     check_settings(settings)
     if settings.model == "kononykhin":

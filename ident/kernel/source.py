@@ -139,7 +139,9 @@ class Source:
         count, nodes = len(table) // 2, [self._known(node) for node in table[::2]]
 
         def known(piece: int, power: int) -> str:
-            return self._constant(ast.Call(named("coefficient"), [*map(ast.Constant, (kind, piece, power)), *table], []))
+            return self._constant(
+                ast.Call(named("coefficient"), [*(ast.Constant(value) for value in (kind, piece, power)), *table], [])
+            )
 
         low, high = nodes[0], nodes[-1]
         terms = [known(0, 0)]

@@ -30,11 +30,11 @@ def _speeds() -> tuple[Parameter, ...]:
     out = []
     for name, fraction in zip(node_names(), (*FRACTIONS, *(-f for f in FRACTIONS)), strict=True):
         value = middle_speed(fraction)
-        bounds = sorted((0.2 * value, 5.0 * value))
+        lower, upper = sorted((0.2 * value, 5.0 * value))
         sign = "+" if fraction > 0 else "−"
         printed = f"V({sign}{100 * abs(fraction):g} %)"
         what = f"speed without load and friction at {100 * fraction:+g} % of rated current from the zero shift"
-        out.append(Parameter(name, printed, "m/s", *bounds, value, what, SOURCE))
+        out.append(Parameter(name, printed, "m/s", lower, upper, value, what, SOURCE))
     return tuple(out)
 
 

@@ -120,7 +120,7 @@ def _bench(law, settings, samples, dt, lsb, start, T, B, I0, kp, fr, Ps, G, asym
     old = settings[0]
     compensation, mean_before, total, count = 0.0, start, 0.0, 0
     direction, stroke_start = 1.0, start
-    late = int(round(delay / dt))
+    late = round(delay / dt)
     for k in range(samples):
         seen = np.round(state[2] / lsb) * lsb
         t = k * dt
@@ -133,7 +133,7 @@ def _bench(law, settings, samples, dt, lsb, start, T, B, I0, kp, fr, Ps, G, asym
         elif law == 1:  # sine; the mean of each period is compared with that of the one before
             centre, size, frequency, gain = settings[0], settings[1], settings[2], settings[3]
             total, count = total + seen, count + 1
-            if count == int(round(1.0 / frequency / dt)):
+            if count == round(1.0 / frequency / dt):
                 if t > 1.5 / frequency:
                     compensation += gain * (mean_before - total / count)
                 mean_before, total, count = total / count, 0.0, 0
