@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.bench.records import Record
-from ident.bench.sine_fit import as_printed, fit_sine
+from ident.bench.sine_fit import as_printed, dominant, fit_sine
 from ident.errors import Unusable
 
 Array = NDArray[np.float64]
@@ -48,7 +48,7 @@ def frequency_response(records: Sequence[Record]) -> tuple[Response, ...]:
 
 def point(measured: Record) -> Response:
     """The sine of the position against that of the current. Raises Unusable where there is no whole period."""
-    frequency = measured.frequency or dominant(measured)
+    frequency = measured.frequency or dominant(measured.current, measured.rate)
     record = measured.reduced(_PER_PERIOD * frequency)
     alpha = 2 * np.pi * frequency * record.time
     drive = fit_sine(alpha, record.current, drift=True)
@@ -71,17 +71,3 @@ def point(measured: Record) -> Response:
         float(amplitude.std() / drive.a2 / many), float(np.std(lag) / many), len(fits),
         printed.a2 / plain.a2 - 1.0,
     )  # fmt: skip
-
-
-def dominant(record: Record) -> float:
-    """The frequency of the current, Hz, where it is not stated: of its highest line, refined by least squares."""
-    drive = record.current - record.current.mean()
-    lines = np.abs(np.fft.rfft(drive * np.hanning(record.length)))
-    at = max(int(np.argmax(lines)), 1) * record.rate / record.length
-    width = record.rate / record.length
-    for _ in range(3):
-        tried = np.linspace(at - width, at + width, 21)
-        tried = tried[tried > 0]
-        at = float(tried[np.argmin([fit_sine(2 * np.pi * f * record.time, drive).rms for f in tried])])
-        width /= 10
-    return at

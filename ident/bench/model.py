@@ -57,7 +57,7 @@ class Model:
     @cached_property
     def constants(self) -> Array:
         """As the compiled simulation takes them."""
-        lacking = [self.extra.get(name, 0.0) for name in MISSING[:3]]
+        lacking = [self.extra.get(name, 0.0) for name in MISSING]
         return np.array([self.T, self.B, self.I0, self.kp, self.dPfr, self.Ps, *lacking])
 
     def with_values(self, values: Mapping[str, float]) -> Model:
@@ -80,7 +80,7 @@ class Model:
         """
         longest = min(2.5e-3, max(0.1 * self.T, 5e-4))
         divided = max(1, int(np.ceil(1.0 / (rate * longest) - 1e-9))) if steps is None else steps
-        driven = delayed(current, self.extra.get("delay", 0.0) * rate)
+        driven = np.ascontiguousarray(current, dtype=float)
         play = float(np.clip(self.I0, driven[0] - self.B, driven[0] + self.B))
         out = np.empty((3, len(driven)))
         respond(
@@ -88,11 +88,3 @@ class Model:
             np.array([start, driven[0], driven[0], play]), out,
         )  # fmt: skip
         return Answer(*out)
-
-
-def delayed(current: Array, samples: float) -> Array:
-    """The record `samples` later, straight lines between its samples."""
-    if samples == 0.0:
-        return np.ascontiguousarray(current, dtype=float)
-    index = np.arange(len(current), dtype=float)
-    return np.interp(index - samples, index, current)

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.sine_fit import dominant
 from ident.errors import Unusable
 from ident.matrix import BENCH, Matrix, Run
 
@@ -147,10 +148,12 @@ def _record(run: Run, rated: float) -> Record:
         pressure = run.channels["pressure_a"] - run.channels["pressure_b"]
     elif "load_pressure" in run.channels:
         pressure = run.channels["load_pressure"]
-    position = run.channels["displacement"]
+    position, frequency = run.channels["displacement"], run.frequency
+    if run.kind == "frequency" and frequency is None:
+        frequency = dominant(_current(run), run.sample_rate)
     return Record(
         run.id, run.kind, run.sample_rate, run.hold, _current(run) / rated, position, pressure, resolution(position),
-        run.frequency, run.position_range, run.use,
+        frequency, run.position_range, run.use,
     )  # fmt: skip
 
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from ident.bench.model import Model
 from ident.bench.records import Record
+from ident.bench.response import residuals
 from ident.bench.speed_table import SpeedTable
 from ident.parallel import each
 
@@ -26,6 +27,7 @@ IMPERFECT = 2e-3  # of a record's standard deviation
 _SETTLED = 0.25  # s at the start of a record that its unknown past may have shaped
 _MOVED = 3.0  # steps of the converter that are no accident
 _STEP = 1e-4  # relative, of a difference
+_NOTHING = np.empty(0)
 _BLOCKS = 8  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
 _REACH = {"I0": 1e-2, "delay": 1e-2, "second_lag": 1e-2, "stiction": 1e5, "load": 1e7}
 """The natural size of what may be zero or negative; everything else is positive and moved by a share of itself."""
@@ -71,18 +73,24 @@ class Observed:
 
     def residual(self, model: Model) -> Array:
         """Everything compared, scaled: position part by part, then pressure."""
-        answer = model.answer(self.record.current, self.record.rate, self.record.hold, self.start, steps=1)
-        pieces = []
-        if np.isfinite(self.position_scale):
-            for first, end in self.parts:
-                difference = answer.position[first:end] - self.record.position[first:end]
-                rest = straightened(difference) if self.drifting else difference - difference.mean()
-                pieces.append(rest / self.position_scale)
-        if self.pressure_scale is not None and self.record.pressure is not None:
-            for first, end in self.parts:
-                difference = answer.pressure[first:end] - self.record.pressure[first:end]
-                pieces.append((difference - difference.mean()) / self.pressure_scale)
-        return np.concatenate(pieces)
+        return np.asarray(self.residuals(model.constants[None], model.table.nodes, model.table.pieces[None])[0])
+
+    def residuals(
+        self, constants: Array, nodes: Array, pieces: Array, active: NDArray[np.bool_] | None = None
+    ) -> Array:
+        """The residuals of several models, (models, samples compared); one that is not active is as the first."""
+        record = self.record
+        used = np.ones(len(constants), dtype=np.bool_) if active is None else active
+        positions, pressures = bool(np.isfinite(self.position_scale)), self.pressure_scale is not None
+        count = sum(end - first for first, end in self.parts) * (positions + pressures)
+        out = np.empty((len(constants), count))
+        scales = np.array([self.position_scale if positions else 0.0, self.pressure_scale or 0.0])
+        residuals(
+            record.current, 1.0 / record.rate, record.hold == "zoh", constants, nodes, pieces, used, record.position,
+            record.pressure if record.pressure is not None else _NOTHING,
+            np.array(self.parts, dtype=np.int64).reshape(-1, 2), scales, self.drifting, out,
+        )  # fmt: skip
+        return out
 
     @cached_property
     def size(self) -> float:
@@ -173,19 +181,19 @@ class Residual:
             moved = point.copy()
             moved[i] += _STEP
             models.append(self.at(moved))
-        limits = [_seen_from(here.table, name) for name in self.names]
+        limits = np.array([0.0, *(_seen_from(here.table, name) for name in self.names)])
+        every = [here, *models]
+        constants = np.array([model.constants for model in every])
+        pieces = np.array([model.table.pieces for model in every])
 
         def one(observed: Observed) -> tuple[int, Array]:
-            base = observed.residual(here)
-            columns = np.zeros((len(base), len(models) + 1))
-            columns[:, -1] = base
-            reach = observed.reach + abs(here.I0)
-            for i, (model, limit) in enumerate(zip(models, limits, strict=True)):
-                if reach > limit:
-                    columns[:, i] = (observed.residual(model) - base) / _STEP
+            active = observed.reach + abs(here.I0) > limits
+            rows = observed.residuals(constants, here.table.nodes, pieces, active)
+            base = rows[0].copy()
+            rows[:-1] = (rows[1:] - base) / _STEP
+            rows[-1] = base
             edges = np.linspace(0, len(base), _BLOCKS + 1).astype(int)
-            products = [columns[a:b].T @ columns[a:b] for a, b in pairwise(edges)]
-            return len(base), np.array(products)
+            return len(base), np.array([rows[:, a:b] @ rows[:, a:b].T for a, b in pairwise(edges)])
 
         found = each(one, self.observed)
         return Normal(np.concatenate([products for _, products in found]), sum(count for count, _ in found))

@@ -44,6 +44,18 @@ def filter_gains(T: float, step: float) -> tuple[float, float, float]:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def earlier(samples: Array, place: float) -> float:
+    """The record between its samples; before its first and behind its last one these go on."""
+    last = len(samples) - 1
+    if place <= 0.0:
+        return float(samples[0])
+    if place >= last:
+        return float(samples[last])
+    k = int(place)
+    return float(samples[k] + (place - k) * (samples[k + 1] - samples[k]))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def respond(
     current: Array, step: float, steps: int, held: bool, constants: Array, nodes: Array, pieces: Array, start: Array,
     out: Array,
@@ -51,10 +63,11 @@ def respond(
     """Fill `out` (3, n) with position (m), pressure difference (Pa) and the current after the play.
 
     `constants` holds T, B, I0, kp, ΔPfr, Ps and what the four blocks lack: second lag (s), stiction (Pa above ΔPfr),
-    load (Pa/m). `start` holds position and currents after the lags and the play, and is left as they are at the
+    load (Pa/m), delay (s). `start` holds position and currents after the lags and the play, and is left as they are at the
     end; `steps` divides a sample.
     """
-    T, B, I0, kp, friction, supply, T2, sticking, load = constants
+    T, B, I0, kp, friction, supply, T2, sticking, load, delay = constants
+    late = delay / step
     phi, g0, g1 = filter_gains(T, step / steps)
     phi2, h0, h1 = filter_gains(T2, step / steps)
     x, q, q2, w = start
@@ -62,8 +75,8 @@ def respond(
     half = 0.5 * step / steps
     for k in range(length):
         for part in range(steps if k else 1):
-            before = current[k - 1] if k else current[0]
-            rise = 0.0 if held else (current[k] - before) / steps
+            before = earlier(current, k - 1.0 - late)
+            rise = 0.0 if held else (earlier(current, k - late) - before) / steps
             first = before + part * rise
             following = first + rise
             if k:
@@ -90,3 +103,50 @@ def respond(
         out[1, k] = sign * (needed if moving else available)
         out[2, k] = w
     start[0], start[1], start[2], start[3] = x, q, q2, w
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def rest(answer: Array, measured: Array, first: int, end: int, scale: float, drifting: bool, out: Array) -> None:
+    """Fill `out` with answer − measured of a part, less its mean or, where `drifting`, its straight line; scaled."""
+    count = end - first
+    mean, tilt, spread, middle = 0.0, 0.0, 0.0, 0.5 * (count - 1)
+    for k in range(count):
+        difference = answer[first + k] - measured[first + k]
+        mean += difference
+        tilt += (k - middle) * difference
+        spread += (k - middle) ** 2
+    mean /= count
+    slope = tilt / spread if drifting else 0.0
+    for k in range(count):
+        out[k] = (answer[first + k] - measured[first + k] - mean - slope * (k - middle)) / scale
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def residuals(
+    current: Array, step: float, held: bool, constants: Array, nodes: Array, pieces: Array, active: Array,
+    position: Array, pressure: Array, parts: Array, scales: Array, drifting: bool, out: Array,
+) -> None:  # fmt: skip
+    """Fill `out` (models, samples compared) with the scaled residuals of several models on one record.
+
+    `scales` are those of position and pressure, 0 where it is not compared; `pressure` is empty then. A model that is
+    not `active` answers as the first one does.
+    """
+    answer, start = np.empty((3, len(current))), np.empty(4)
+    for j in range(len(constants)):
+        if not active[j]:
+            out[j] = out[0]
+            continue
+        B, I0 = constants[j, 1], constants[j, 2]
+        start[0], start[1], start[2] = position[0], current[0], current[0]
+        start[3] = min(max(I0, current[0] - B), current[0] + B)
+        respond(current, step, 1, held, constants[j], nodes, pieces[j], start, answer)
+        at = 0
+        for i in range(2):
+            measured = position if i == 0 else pressure
+            if scales[i] == 0.0:
+                continue
+            for p in range(len(parts)):
+                first, end = parts[p, 0], parts[p, 1]
+                line = drifting and i == 0
+                rest(answer[i], measured, first, end, scales[i], line, out[j, at : at + end - first])
+                at += end - first

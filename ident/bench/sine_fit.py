@@ -91,3 +91,16 @@ def _turned(a: Array) -> Array:
 
 def _sine(alpha: Array, x: Array, a: Array) -> Sine:
     return Sine(float(a[0]), float(a[1]), float(a[2]), float(np.sqrt(np.mean(_residual(alpha, x, a)[0] ** 2))))
+
+
+def dominant(signal: Array, rate: float) -> float:
+    """The frequency of a sine, Hz: of its highest line, refined by least squares."""
+    drive, width = signal - signal.mean(), rate / len(signal)
+    lines = np.abs(np.fft.rfft(drive * np.hanning(len(drive))))
+    at, time = max(int(np.argmax(lines)), 1) * width, np.arange(len(drive)) / rate
+    for _ in range(3):
+        tried = np.linspace(at - width, at + width, 21)
+        tried = tried[tried > 0]
+        at = float(tried[np.argmin([fit_sine(2 * np.pi * f * time, drive).rms for f in tried])])
+        width /= 10
+    return at
