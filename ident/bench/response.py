@@ -63,8 +63,8 @@ def respond(
     """Fill `out` (3, n) with position (m), pressure difference (Pa) and the current after the play.
 
     `constants` holds T, B, I0, kp, ΔPfr, Ps and what the four blocks lack: second lag (s), stiction (Pa above ΔPfr),
-    load (Pa/m), delay (s). `start` holds position and currents after the lags and the play, and is left as they are at the
-    end; `steps` divides a sample.
+    load (Pa/m), delay (s). `start` holds position and currents after the lags and the play, and is left as they are
+    at the end; `steps` divides a sample.
     """
     T, B, I0, kp, friction, supply, T2, sticking, load, delay = constants
     late = delay / step
@@ -123,8 +123,9 @@ def rest(answer: Array, measured: Array, first: int, end: int, scale: float, dri
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def residuals(
-    current: Array, step: float, held: bool, constants: Array, nodes: Array, pieces: Array, active: Array,
-    position: Array, pressure: Array, parts: Array, scales: Array, drifting: bool, out: Array,
+    current: Array, step: float, held: bool, constants: Array, nodes: Array, pieces: Array,
+    active: NDArray[np.bool_], position: Array, pressure: Array, parts: NDArray[np.int64], scales: Array,
+    drifting: bool, out: Array,
 ) -> None:  # fmt: skip
     """Fill `out` (models, samples compared) with the scaled residuals of several models on one record.
 
