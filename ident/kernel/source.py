@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ident.chain import FORCE, INPUT, INPUT_RATE, STEP, Chain
+from ident.errors import Unusable
 from ident.expression import DYNAMIC, FUNCTIONS, TABLES
 from ident.interpolation import coefficient
 
@@ -134,8 +135,9 @@ class Source:
     def _table(self, kind: str, arguments: Sequence[ast.expr], stage: str) -> str:
         """A table as the sum over its pieces of their cubics in clip(x, xi, xi+1) − xi: no branch, no search."""
         x, table = self._temporary(self._lower(arguments[0], stage)), list(arguments[1:])
-        if not all(isinstance(node, ast.Constant) or self._is_constant(node) for node in table):
-            raise TypeError("the nodes of a table are numbers or parameters")
+        if not all(self._stays(node) for node in table):
+            text = f"equation {ast.unparse(ast.Call(named(kind), list(arguments), []))[:80]!r}"
+            raise Unusable("bad-equation", "a node of the table changes with time", text, "use numbers and parameters")
         count, nodes = len(table) // 2, [self._known(node) for node in table[::2]]
 
         def known(piece: int, power: int) -> str:
@@ -155,6 +157,10 @@ class Source:
             else:
                 terms.append(f"{t} * ({known(i, 1)} + {t} * ({known(i, 2)} + {t} * {known(i, 3)}))")
         return f"({' + '.join(terms)})"
+
+    def _stays(self, node: ast.expr) -> bool:
+        """Whether an expression is one of numbers and symbols only."""
+        return self._is_constant(node) or not any(isinstance(n, ast.Name) for n in ast.walk(node))
 
     def _known(self, node: ast.expr) -> str:
         """A number or an expression of symbols, as it stands in the loop."""
