@@ -71,11 +71,11 @@ def show(rows: list[tuple[str, str, float, float]], error: Any) -> None:
 
 def draw(matrix: Matrix, fit: FitResult, out: Path) -> None:
     """Write every figure in every format to the folder `out`."""
-    from ident.figures import FIGURES, figure, render
+    from ident.figures import figure, figures_of, render
 
     out.mkdir(parents=True, exist_ok=True)
-    for name in FIGURES:
+    for name in figures_of(fit):
         chart = figure(name, matrix, fit)
         for format_ in FORMATS:
             write_bytes(render(chart, format_), out / f"{name}.{format_}")
-    print(f"wrote {', '.join(FIGURES)} to {out}")
+    print(f"wrote {', '.join(figures_of(fit))} to {out}")
