@@ -10,13 +10,18 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
+
+import numpy as np
 
 from ident.bench.frequency import Response, frequency_response
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import CONSTANTS, Model
+from ident.bench.motion import groups
 from ident.bench.records import BenchSet, Record
 from ident.bench.residual import Observed, Residual, errors, observe
 from ident.bench.speed import Speed, speed
+from ident.bench.speed_table import SpeedTable
 from ident.bench.static import Static, first_values, ranges, static
 from ident.bench.time_constant import DelayCheck, Dynamics, delay_check, dynamics
 from ident.errors import Unusable
@@ -74,7 +79,11 @@ class Analysis:
 
 
 def analyse(bench: BenchSet) -> Analysis:
-    """Every procedure for which there are records. Raises Unusable where a record is not usable for its procedure."""
+    """Every procedure for which there are records. Raises Unusable where a record is not usable for its procedure.
+
+    `seconds` are those of the work; loading compiled code, once in a process, is not counted.
+    """
+    load_compiled()
     began = time.monotonic()
     found = _found(bench)
     doubts = (found.delay.doubt,) if found.delay is not None and found.delay.doubt else ()
@@ -122,6 +131,17 @@ def fit_whole(start: Model, observed: Sequence[Observed], steps: int = 3) -> Sol
 
 def _of(seen: dict[str, Observed], records: Sequence[Record]) -> tuple[Observed, ...]:
     return tuple(seen[record.id] for record in records)
+
+
+@lru_cache
+def load_compiled() -> None:
+    """Have the compiled functions at hand: their first call loads them from the disk, or compiles them."""
+    ramp = np.linspace(0.0, 0.1, 16)
+    record = Record("ramp", "static", 100.0, "linear", ramp, ramp, ramp, 1e-3)
+    groups(record)
+    model = Model(FIRST_T, 1e-3, 0.0, 1e8, 1e5, SpeedTable.straight(0.1))
+    model.answer(ramp, 100.0)
+    Residual(model, (Observed.of(record),), ("T",)).normal(np.zeros(1))
 
 
 def _missing(bench: BenchSet) -> list[Missing]:

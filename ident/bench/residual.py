@@ -11,16 +11,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.bench.model import Model
 from ident.bench.records import Record
-from ident.bench.response import residuals
+from ident.bench.response import products, residuals
 from ident.bench.speed_table import SpeedTable
-from ident.parallel import each
+from ident.parallel import cores, each
 
 Array = NDArray[np.float64]
 IMPERFECT = 2e-3  # of a record's standard deviation
@@ -136,6 +135,12 @@ class Residual:
     observed: tuple[Observed, ...]
     names: tuple[str, ...]
 
+    @cached_property
+    def _shares(self) -> list[list[int]]:
+        """Numbers of the records for each core, the longest dealt out first: handing over one by one costs more."""
+        order = sorted(range(len(self.observed)), key=lambda i: -self.observed[i].record.length)
+        return [share for core in range(cores()) if (share := order[core :: cores()])]
+
     @property
     def origin(self) -> Array:
         """The point of the first model."""
@@ -163,7 +168,7 @@ class Residual:
     def of_records(self, point: Array) -> list[Array]:
         """The scaled residual of each record."""
         model = self.at(point)
-        return each(lambda observed: observed.residual(model), self.observed)
+        return [observed.residual(model) for observed in self.observed]
 
     def __call__(self, point: Array) -> Array:
         """All of them in one vector."""
@@ -172,7 +177,7 @@ class Residual:
     def cost(self, point: Array) -> float:
         """The sum of squares."""
         model = self.at(point)
-        return sum(each(lambda observed: float(np.sum(observed.residual(model) ** 2)), self.observed))
+        return sum(float(np.sum(observed.residual(model) ** 2)) for observed in self.observed)
 
     def normal(self, point: Array) -> Normal:
         """The sum of squares with its derivatives; what a record cannot see is not computed."""
@@ -192,10 +197,12 @@ class Residual:
             base = rows[0].copy()
             rows[:-1] = (rows[1:] - base) / _STEP
             rows[-1] = base
-            edges = np.linspace(0, len(base), _BLOCKS + 1).astype(int)
-            return len(base), np.array([rows[:, a:b] @ rows[:, a:b].T for a, b in pairwise(edges)])
+            out = np.empty((_BLOCKS, len(rows), len(rows)))
+            products(rows, _BLOCKS, out)
+            return len(base), out
 
-        found = each(one, self.observed)
+        shares = each(lambda share: [(i, one(self.observed[i])) for i in share], self._shares)
+        found = [part for _, part in sorted((pair for share in shares for pair in share), key=lambda pair: pair[0])]
         return Normal(np.concatenate([products for _, products in found]), sum(count for count, _ in found))
 
 

@@ -151,3 +151,17 @@ def residuals(
                 line = drifting and i == 0
                 rest(answer[i], measured, first, end, scales[i], line, out[j, at : at + end - first])
                 at += end - first
+
+
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+def products(rows: Array, blocks: int, out: Array) -> None:
+    """Fill `out` (blocks, m, m) with sums of products of the rows (m, n), block by block of neighbouring samples."""
+    m, n = rows.shape
+    for block in range(blocks):
+        first, end = block * n // blocks, (block + 1) * n // blocks
+        for i in range(m):
+            for j in range(i + 1):
+                total = 0.0
+                for k in range(first, end):
+                    total += rows[i, k] * rows[j, k]
+                out[block, i, j] = out[block, j, i] = total
