@@ -6,48 +6,16 @@ Seeds are the numbers of the actuators, from 0.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import pytest
 
-from ident.bench.acceptance import found_quantities
-from ident.bench.analysis import Analysis, analyse
-from ident.bench.model import Model
-from tests.bench.sets import as_set, true_model
+from tests.bench.recovery import Found, recover
 from tests.reference import kononykhin_reference as reference
-
-
-@dataclass(frozen=True)
-class Found:
-    """One actuator: what was found, and the truth."""
-
-    truth: Model
-    analysis: Analysis
-    records: list[reference.Record]
-
-    def relative(self, name: str) -> float:
-        """|found − true| / true of a quantity of the sheet."""
-        true = {"hysteresis": self.truth.B, "dead_space": self.truth.dead_space, "kp": self.truth.kp,
-                "friction": self.truth.dPfr, "T": self.truth.T}[name]  # fmt: skip
-        return abs(found_quantities(self.analysis)[name].value / true - 1)
-
-    def position_error(self, amplitude: float, frequency: float) -> float:
-        """RMS / deviation of the assembled model's position against the position before the converter."""
-        (record,) = (r for r in self.records if r.amplitude == amplitude and r.frequency == frequency)
-        true = 1e-3 * record.true_position
-        found = self.analysis.model.answer(record.current / 100, reference.RATE, start=true[0]).position
-        return float(np.std(found - true) / np.std(true))
 
 
 @pytest.fixture(scope="module")
 def found(full) -> list[Found]:
-    out = []
-    for seed in range(50 if full else 6):
-        truth = reference.scattered(seed)
-        records = reference.full_set(truth, seed)
-        out.append(Found(true_model(truth), analyse(as_set(truth, records)), records))
-    return out
+    return [recover(seed) for seed in range(50 if full else 6)]
 
 
 def test_hysteresis_is_within_2_per_cent_in_the_median_and_5_at_worst(found):
@@ -67,8 +35,7 @@ def test_zero_shift_and_dead_space_are_within_5_per_cent(found):
     """The zero shift may instead be within 0.02 % of the rated current: it may be 0."""
     for actuator in found:
         assert actuator.relative("dead_space") <= 0.05
-        error = abs(found_quantities(actuator.analysis)["zero_shift"].value - actuator.truth.I0)
-        assert error <= max(0.05 * abs(actuator.truth.I0), 2e-4)
+        assert actuator.zero_shift <= max(0.05 * abs(actuator.truth.I0), 2e-4)
 
 
 @pytest.mark.parametrize("name", ["kp", "friction", "T"])
