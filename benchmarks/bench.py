@@ -34,8 +34,8 @@ def measure() -> Table:
     return Table(
         "Bench",
         f"{len(sets[0].records)} records of an actuator, {samples:,} samples at 1 kHz: static in three ranges, five "
-        f"frequencies at three amplitudes, seven levels, a stroke; {len(SEEDS)} actuators, each {REPEATS} times. Where other "
-        "work shares the machine the clock also counts that.",
+        f"frequencies at three amplitudes, seven levels, a stroke; {len(SEEDS)} actuators, each {REPEATS} times. Where "
+        "other work shares the machine the clock also counts that.",
         ("time", "what", "median", "best"),
         [("analysis", what, median, best) for median, best, what in rows],
         f"{GOAL} s by the clock (best)",

@@ -15,6 +15,7 @@ from ident.matrix import BENCH, Matrix, Run
 
 Array = NDArray[np.float64]
 _END = 0.02  # s at the same extreme reading: the actuator or its transducer is at its end
+_BRIEF, _ROUGH = 4e-3, 5e-5  # s, rated currents: beyond it means over so short a time hide what the play sees
 _FAR = 0.02  # of rated current: so far from the middle an actuator that is free moves
 
 
@@ -46,6 +47,13 @@ class Record:
     def time(self) -> Array:
         """s from the first sample."""
         return np.arange(self.length) / self.rate
+
+    @cached_property
+    def jumps(self) -> bool:
+        """Whether the current jumps about within a few ms, as a sharp regulator on a position in steps makes it."""
+        m = max(1, int(_BRIEF * self.rate))
+        blocks = self.current[: self.length // m * m].reshape(-1, m)
+        return bool(np.sqrt(np.mean(np.var(blocks, axis=1))) > _ROUGH)
 
     @cached_property
     def parts(self) -> tuple[tuple[int, int], ...]:

@@ -34,7 +34,9 @@ _REACH = {"I0": 1e-2, "delay": 1e-2, "second_lag": 1e-2, "stiction": 1e5, "load"
 
 def rate_wanted(record: Record) -> float:
     """Hz at which a record still holds what the model can show: the lag is exact at any rate."""
-    return 250.0 if record.kind == "static" else max(125.0, 80.0 * (record.frequency or 0.0))
+    if record.kind == "static":
+        return 1000.0 if record.jumps else 250.0
+    return max(125.0, 80.0 * (record.frequency or 0.0))
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,6 +26,8 @@ from ident.errors import Unusable
 Array = NDArray[np.float64]
 NAMES = ("B", "I0", "kp", "dPfr")
 _SEARCHED = 50.0  # Hz, for the choice among starts
+_SEARCHED_ROUGH = 250.0  # Hz, where the current jumps about
+_NARROWER = (1.0, 0.5, 0.25)  # times the width at which movements began: a current that jumps goes far beyond it
 _SHARES = (0.3, 0.6, 0.85)  # of the dead space that hysteresis may be
 
 
@@ -82,12 +84,15 @@ def first_values(records: Sequence[Record], T: float, supply: float) -> Model:
     Raises Unusable where the cavities were not measured, or the link did not move both ways.
     """
     zero, width, friction = by_groups(records)
-    slow = observe([record.reduced(_SEARCHED) for record in records], position=False, rate=_SEARCHED)
+    rough = any(record.jumps for record in records)
+    slow = observe(records, position=False, rate=_SEARCHED_ROUGH if rough else _SEARCHED)
     tried = []
-    for share in _SHARES:
-        kp = friction / ((1.0 - share) * width)
-        model = Model(T, share * width, zero, kp, friction, SpeedTable.straight(1.0), supply)
-        tried.append(solve(Residual(model, slow, NAMES), steps=4))
+    for narrower in _NARROWER if rough else (1.0,):
+        for share in _SHARES:
+            dead_space = narrower * width
+            kp = friction / ((1.0 - share) * dead_space)
+            model = Model(T, share * dead_space, zero, kp, friction, SpeedTable.straight(1.0), supply)
+            tried.append(solve(Residual(model, slow, NAMES), steps=4))
     return min(tried, key=lambda solution: solution.cost).model
 
 
