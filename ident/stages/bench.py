@@ -3,7 +3,7 @@
 from ident.stages.stage import Quantity, stage
 from ident.stages.valve import FIRST_ORDER_VALVE
 
-FRACTIONS = (0.05, 0.15, 0.3, 0.5, 0.75, 1.0)
+FRACTIONS = (0.05, 0.1, 0.25, 0.5, 0.75, 1.0)
 """Where the speed characteristic has its nodes, in rated currents from the zero shift; denser for small signals."""
 
 
