@@ -13,6 +13,7 @@ from ident.bench.residual import Normal, Residual
 
 Array = NDArray[np.float64]
 _CONVERGED = 1e-5  # relative decrease of the sum of squares that a further step promises
+_KINKS = 1e-4  # the same for a step that failed: where the play turns, the sum is not smooth below it
 _STEPS = 12
 
 
@@ -59,7 +60,7 @@ def solve(problem: Residual, steps: int = _STEPS, start: Array | None = None) ->
         evaluations += 1
         if problem.cost(trial) < here.cost:
             point, here, damping = trial, problem.normal(trial), max(damping / 10, 1e-9)
-        elif damping > 1e4:
+        elif damping > 1e4 or promised < _KINKS * here.cost:
             break
         else:
             damping *= 10

@@ -89,7 +89,7 @@ def speed(model: Model, records: Sequence[Record], observed: Sequence[Observed],
 
 def fit_table(model: Model, observed: Sequence[Observed]) -> Solution:
     """The speeds at the table's nodes that give the measured positions."""
-    return solve(Residual(model, tuple(observed), model.table.names), steps=4)
+    return solve(Residual(model, tuple(observed), model.table.names), steps=3)
 
 
 def levels(model: Model, records: Sequence[Record]) -> list[Level]:

@@ -12,10 +12,12 @@ from ident.bench.analysis import analyse
 from ident.bench.frequency import frequency_response
 from ident.bench.missing import rank
 from ident.bench.motion import groups
+from ident.bench.residual import observe
 from ident.bench.sine_fit import as_printed, dominant, fit_sine, gauss_newton
 from ident.bench.smoothing import METHODS, bezier, on_bezier
 from ident.bench.speed import curve
 from ident.bench.straightness import straightness
+from ident.bench.time_constant import dynamics
 from ident.errors import Unusable
 from tests.bench.sets import as_set, true_model
 from tests.reference import kononykhin_reference as reference
@@ -174,6 +176,21 @@ def test_nonlinearity_and_asymmetry_of_known_lines():
     assert (even.nonlinearity, even.asymmetry) == pytest.approx((0, 0), abs=1e-12)
     bent = straightness(current, np.where(current > 0, 2.2, 1.8) * current)
     assert bent.asymmetry == pytest.approx(0.2)
+
+
+def test_a_current_that_is_held_between_samples_is_taken_so():
+    """Described as held it gives T within 0.5 %; taken as straight lines, T is half a sample, 0.5 ms, too long."""
+    truth = reference.scattered(7)
+    bench, model = as_set(truth, reference.full_set(truth, 7)), true_model(truth)
+    found = {}
+    for hold in ("zoh", "linear"):
+        sines = [
+            replace(r, hold=hold, position=model.answer(r.current, r.rate, "zoh", 0.05).position)
+            for r in bench.of_kind("frequency")
+        ]
+        found[hold] = dynamics(model, observe(sines, pressure=False, drifting=True)).T.value
+    assert found["zoh"] == pytest.approx(truth.T, rel=0.005)
+    assert found["linear"] - found["zoh"] == pytest.approx(5e-4, rel=0.2)
 
 
 # Missing and wrong records ---------------------------------------------------------------------------------------
