@@ -8,10 +8,11 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from benchmarks import fitness, identification, kernel, memory, scaling, simulation, start
+from benchmarks import bench, fitness, identification, kernel, memory, scaling, simulation, start
 from benchmarks.table import Table
 
 ALL: dict[str, Callable[[], Table]] = {
+    "bench": bench.measure,
     "fitness": fitness.measure,
     "identification": identification.measure,
     "memory": memory.measure,

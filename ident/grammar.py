@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from ident.errors import Unusable
+from ident.interpolation import interpolated
 
 FUNCTIONS: Mapping[str, Callable[..., Any]] = {
     "abs": np.abs,
@@ -37,15 +38,22 @@ FUNCTIONS: Mapping[str, Callable[..., Any]] = {
     "lag2": lambda x, _a1, _a2: x,
     "delay": lambda x, _T: x,
     "dry": lambda limit, _speed, _acceleration, _mass: 0.0 * limit,
+    "lines": lambda x, *table: interpolated("lines", x, *table),
+    "monotone": lambda x, *table: interpolated("monotone", x, *table),
 }
 """Functions an equation may call, with their numpy meaning for signals that stand still.
 
 Those that remember are exact for a strength of zero: `lag` is x/(T s + 1), `lag2` x/(a2 s² + a1 s + 1), `delay`
 x(t − T), and `dry` the friction force that takes at most `limit`, and at most what stops `mass` within the step.
+`lines(x, x1, y1, x2, y2, …)` and `monotone(…)` are tables over rising nodes: straight lines, or cubics without
+overshoot (PCHIP), and straight beyond the ends.
 """
 
 DYNAMIC = ("lag", "lag2", "delay", "dry")
 """The functions that remember."""
+
+TABLES = ("lines", "monotone")
+"""The functions that are given by a table: x, then two nodes or more."""
 
 ALIASES = {"sign": "sgn"}
 CONSTANTS = {"pi": math.pi}
@@ -171,6 +179,9 @@ def _call_fault(node: ast.Call) -> tuple[str, ...] | None:
     if name not in FUNCTIONS or node.keywords:
         return "unknown function", f"known are {', '.join((*FUNCTIONS, *ALIASES))}"
     wanted, given = _ARGUMENTS.get(name, 1), len(node.args)
+    if name in TABLES:
+        whole = given >= 5 and given % 2 == 1
+        return None if whole else (f"{name} takes x and the pairs x1, y1, x2, y2 of its table", "give them")
     sound = given >= wanted if name in ("max", "min") else given == wanted
     return None if sound else (f"{name} takes {wanted} argument(s), not {given}", "give as many")
 

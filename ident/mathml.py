@@ -73,6 +73,13 @@ def _call(name: str, arguments: Sequence[ast.expr]) -> str:
             return _filtered(x, f"<mn>1</mn><mo>+</mo>{first}<mo>+</mo>{second}")
         case "delay", [x, T]:
             return f"{_inside(x, 9)}<mo>⁡</mo><mrow><mo>(</mo><mi>t</mi><mo>−</mo>{_inside(T, 2)}<mo>)</mo></mrow>"
+        case "lines" | "monotone", [x, *table]:
+            pairs = zip(table[::2], table[1::2], strict=True)
+            rows = "".join(f"<mtr><mtd>{_render(a)}</mtd><mtd>{_render(b)}</mtd></mtr>" for a, b in pairs)
+            return (
+                f"<mi>{name}</mi><mo>⁡</mo><mrow><mo>(</mo>{_render(x)}<mo>;</mo>"
+                f"<mtable>{rows}</mtable><mo>)</mo></mrow>"
+            )
         case _:
             listed = "<mo>,</mo>".join(map(_render, arguments))
             return f"<mi>{name}</mi><mo>⁡</mo><mrow><mo>(</mo>{listed}<mo>)</mo></mrow>"

@@ -14,6 +14,8 @@ Samples = NDArray[np.float64]
 KINDS = (
     "blwn", "sweep", "sine", "multisine", "static", "frequency", "speed-levels", "speed-continuous", "other",
 )  # fmt: skip
+BENCH = ("static", "frequency", "speed-levels", "speed-continuous")
+"""Kinds of records of a bench, whose input is a current."""
 HOLDS = ("linear", "zoh")
 USES = ("fit", "verify")
 CHANNELS = (
@@ -146,6 +148,7 @@ class Matrix:
     data_hash: str = ""
     controller: Controller | None = None
     limits: str | None = None
+    limits_text: str = ""  # what the file `limits` holds
     notices: tuple[str, ...] = ()  # what reading changed or assumed, in words
 
     def of_use(self, use: str) -> tuple[Run, ...]:

@@ -1,4 +1,4 @@
-"""A simulated test matrix on disk: the paper's, for demonstrations, planning and checks of a whole installation.
+"""A simulated test matrix on disk: a paper's, for demonstrations, planning and checks of a whole installation.
 
 What it writes says that it is simulated. It is no judge of the program itself: data for that come from elsewhere.
 """
@@ -13,6 +13,7 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
+from ident.bench.synthesis import write_bench
 from ident.chain import linear_model
 from ident.compare import modelled
 from ident.errors import Unusable
@@ -39,6 +40,8 @@ SPECIMENS = tuple(
 )  # fmt: skip  Table 3
 AMPLITUDES = (0.02, 0.05, 0.1)  # in, RMS
 FIT_GAINS, VERIFY_GAIN = (5.0, 7.0, 10.0), 6.0
+BENCH = "kononykhin"
+"""The model whose set is records of a bench, of the lengths that its procedures want."""
 _INCH = 0.0254
 
 
@@ -83,14 +86,20 @@ def simulate_matrix(
     Raises Unusable where the folder is in use, the model cannot follow a test matrix, or a number makes no sense.
     """
     model = preset_called(preset, tuple(name.partition(".")[0] for name in effects or {}))
-    if model.bounds_hold_for is None:
-        raise Unusable("cannot-simulate", f"model {preset} has no test matrix of its own", "simulate", "use qian2014")
+    if model.bounds_hold_for is None and preset != BENCH:
+        remedy = f"use qian2014 or {BENCH}"
+        raise Unusable("cannot-simulate", f"model {preset} has no test matrix of its own", "simulate", remedy)
     if not (1 / 16 <= seconds <= 600 and 0 <= noise < 1):
         raise Unusable("bad-value", f"{seconds:g} s with noise {noise:g}", "simulate",
                        "give 0.0625 to 600 seconds and noise from 0 to below 1")  # fmt: skip
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise Unusable("folder-in-use", "the folder is not empty", str(out), "name a new one")
+    if preset == BENCH and effects:
+        raise Unusable("effect-does-not-fit", f"the model {BENCH} takes no effect", "simulate", "leave --effect out")
     (out / "runs").mkdir(parents=True, exist_ok=True)
+    if preset == BENCH:
+        write_bench(out, seed, noise, report)
+        return
     values = {parameter.name: parameter.value for parameter in model.parameters}
     values |= {model.parameter(name).name: value for name, value in (effects or {}).items()}
     actuator, entries = Actuator(serial, piston_area=AREA), []

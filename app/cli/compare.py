@@ -80,12 +80,12 @@ def show(rows: list[tuple[str, str, float, float]], error: Any) -> None:
 
 def draw(matrix: Matrix, fit: FitResult, out: Path, candidate: FitResult | None = None) -> None:
     """Write every figure in every format to the folder `out`; curves also as `candidate` predicts them."""
-    from ident.figures import FIGURES, figure, render
+    from ident.figures import figure, figures_of, render
 
     out.mkdir(parents=True, exist_ok=True)
-    for name in FIGURES:
+    for name in figures_of(fit):
         options: dict[str, Any] = {"candidate": candidate} if name == "residual-curve" and candidate is not None else {}
         chart = figure(name, matrix, fit, **options)
         for format_ in FORMATS:
             write_bytes(render(chart, format_), out / f"{name}.{format_}")
-    print(f"wrote {', '.join(FIGURES)} to {out}")
+    print(f"wrote {', '.join(figures_of(fit))} to {out}")

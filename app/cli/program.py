@@ -8,6 +8,7 @@ from typing import NoReturn
 import typer
 
 from app.cli.approve import approve
+from app.cli.bench import bench
 from app.cli.check import check
 from app.cli.compare import compare
 from app.cli.demo import demo
@@ -25,7 +26,7 @@ from app.cli.token import token
 from app.cli.upload import upload
 from app.cli.worker import worker
 
-LOCAL = (simulate, check, fit, compare, next_, write_report)
+LOCAL = (simulate, check, fit, compare, next_, bench, write_report)
 SERVICE = (serve, worker, demo, token, migrate, regress)
 CLIENT = (upload, approve, query, revise)
 

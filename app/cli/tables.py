@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.markup import escape
@@ -11,6 +12,9 @@ from rich.table import Table
 
 from app.cli.numbers import percent
 from ident.fit.result import Estimate, FitResult
+
+if TYPE_CHECKING:
+    from ident.bench.acceptance import Line
 
 
 def output() -> Console:
@@ -59,3 +63,23 @@ def error_rows(result: FitResult) -> Iterator[tuple[str, ...]]:
     yield "model", *(percent(result.error.get(use)) for use in uses)
     yield "noise floor", *(percent(result.noise_floor.get(use)) for use in uses)
     yield "offset", *(percent(result.offset.get(use)) for use in uses)
+
+
+READABLE = {("Pa", "kp"): (1e-8, "MPa/%")}
+"""Factor and unit in which a bench's quantity is printed, where it is not that of its kind."""
+
+
+def sheet_rows(lines: Iterable[Line]) -> Iterator[tuple[str, ...]]:
+    """One row a quantity of an acceptance sheet."""
+    for line in lines:
+        factor, unit = readable(line)
+        numbers = [line.value, line.deviation or None, line.lower, line.upper]
+        value, deviation, lower, upper = ("–" if n is None else f"{factor * n:.4g}" for n in numbers)
+        verdict = {None: "", True: "pass", False: "FAIL"}[line.passed]
+        yield line.quantity, value, deviation, unit, lower, upper, verdict
+
+
+def readable(line: Line) -> tuple[float, str]:
+    """Factor and unit for a reader: per cent of rated current, ms, MPa, mm/s."""
+    by_unit = {"1": (100.0, "%"), "s": (1e3, "ms"), "Pa": (1e-6, "MPa"), "m/s": (1e3, "mm/s")}
+    return READABLE.get((line.unit, line.quantity), by_unit[line.unit])

@@ -13,12 +13,14 @@ from app.fits import repository
 from app.matrices.service import load_row
 from app.storage import Storage
 from app.tables import now
+from ident.bench.identification import BenchIdentification
 from ident.errors import Cancelled, Unusable
-from ident.fit.identification import Identification
+from ident.fit.identification import Identification, identification
 from ident.fit.settings import Settings
 from ident.progress import Progress
 
 State = dict[str, Any]
+Work = Identification | BenchIdentification
 GENERATIONS = 5  # in a step: what at most is done again after a kill
 _EVERY = 0.2  # s between two reports to the database
 _log = logging.getLogger("servoident")
@@ -29,7 +31,7 @@ class FitWork:
 
     def __init__(self, sessions: sessionmaker[Session], storage: Storage) -> None:
         self.sessions, self.storage = sessions, storage
-        self._prepared: tuple[str, Identification] | None = None
+        self._prepared: tuple[str, Work] | None = None
 
     def begin(self, job: str) -> State:
         """Load the matrix, prepare the runs, draw the first population."""
@@ -71,7 +73,7 @@ class FitWork:
             _log.exception("fit %s failed", job)
             return _failed("defect", "the fit failed by a defect of the program", "fit", "see the service's log")
 
-    def _identification(self, job: str) -> Identification:
+    def _identification(self, job: str) -> Work:
         if self._prepared is None or self._prepared[0] != job:
             with self.sessions() as session:
                 row, matrix = repository.job(session, job), repository.matrix_of(session, job)
@@ -79,7 +81,7 @@ class FitWork:
                 raise Unusable("no-such-job", "the job is not recorded", job, "start it again")
             settings = Settings.from_json(row.settings)
             samples = load_row(self.storage, matrix)
-            self._prepared = (job, Identification(samples, settings, self._reporter(job)))
+            self._prepared = (job, identification(samples, settings, self._reporter(job)))
         return self._prepared[1]
 
     def _reporter(self, job: str) -> Any:

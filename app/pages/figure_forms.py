@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from app.pages.run_view import specimen_of
-from ident.figures import words
+from ident.bench.smoothing import METHODS as SMOOTHINGS
+from ident.figures import figures_of, words
 from ident.fit.result import FitResult
 from ident.presets import preset
 from ident.residuals.views import views
@@ -22,6 +23,17 @@ class Field:
     name: str
     label: str
     choices: Choices = ()
+
+
+_OF_BENCH = (
+    ("pressure-loop", "Pressure loop", ()),
+    ("frequency-characteristics", "Frequency", ()),
+    (
+        "speed-characteristic",
+        "Speed",
+        (Field("smoothing", "Smoothing", (("", SMOOTHINGS[0]), *((m, m) for m in SMOOTHINGS[1:]))),),
+    ),
+)
 
 
 @dataclass(frozen=True)
@@ -45,7 +57,9 @@ def forms(runs: Sequence[RunView], fit: FitResult) -> tuple[FigureForm, ...]:
     ]
     if fit.evolution:
         pictures.insert(2, FigureForm("evolution", "Evolution", _evolution(fit)))
-    return tuple(pictures)
+    pictures += [FigureForm(name, title, fields) for name, title, fields in _OF_BENCH]
+    shown = figures_of(fit)
+    return tuple(picture for picture in pictures if picture.name in shown)
 
 
 def _bode(runs: Sequence[RunView]) -> tuple[Field, ...]:

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ident.checks.finding import Finding
-from ident.matrix import Matrix, Run
+from ident.matrix import BENCH, Matrix, Run
 
 
 def statements(matrix: Matrix) -> Iterator[Finding]:
     """Uses, and everything optional that a fit of the hydraulic chain would want."""
     yield from uses(matrix)
-    runs = [run for run in matrix.runs if run.units.get("command") != "1"]  # there no physical unit is to be had
+    known = [run for run in matrix.runs if run.kind not in BENCH]  # a bench has neither gain nor specimen
+    runs = [run for run in known if run.units.get("command") != "1"]  # there no physical unit is to be had
     hydraulic = [run for run in runs if "drive_force" not in run.channels]
     if hydraulic and matrix.actuator.piston_area is None:
         yield note(

@@ -8,6 +8,7 @@ from typing import Any
 
 from ident.compare import Comparison, compare
 from ident.errors import Unusable
+from ident.figures.bench import BENCH_FIGURES
 from ident.figures.bode import bode, readable
 from ident.figures.choose import chosen, wish
 from ident.figures.evolution import evolution
@@ -22,7 +23,7 @@ from ident.fit.result import FitResult
 from ident.matrix import Matrix, Run
 from ident.residuals.curves import curves
 
-__all__ = ["FIGURES", "MEDIA", "Chart", "figure", "ladder", "look", "render"]
+__all__ = ["BENCH_FIGURES", "FIGURES", "MEDIA", "Chart", "figure", "figures_of", "ladder", "look", "render"]
 
 
 def figure(name: str, matrix: Matrix, fit: FitResult, theme: str = "light", **options: Any) -> Chart:
@@ -30,13 +31,14 @@ def figure(name: str, matrix: Matrix, fit: FitResult, theme: str = "light", **op
 
     Options, all optional: bode takes run, kp, amplitude, specimen, use, axis; time takes run, start, seconds;
     evolution takes x, y, generations; sensitivity takes run; residual-map takes kp, amplitude, specimen, use;
-    residual-curve takes these, view, and candidate, the fit of another model.
+    residual-curve takes these, view, and candidate, the fit of another model; speed-characteristic, of a bench, takes
+    smoothing.
 
     Raises Unusable for an unknown name, theme or option.
     """
-    if name not in FIGURES:
-        raise Unusable("unknown-figure", f"no figure {name!r}", "figure", f"use one of {', '.join(FIGURES)}")
-    draw, known = FIGURES[name]
+    if name not in figures_of(fit):
+        raise Unusable("unknown-figure", f"no figure {name!r}", "figure", f"use one of {', '.join(figures_of(fit))}")
+    draw, known = FIGURES[name] if name in FIGURES else BENCH_FIGURES[name]
     for option in options:
         if option not in known:
             raise Unusable("unknown-option", f"no option {option!r}", f"figure {name}", f"use {', '.join(known)}")
@@ -94,6 +96,13 @@ FIGURES: Mapping[str, tuple[Callable[[Matrix, FitResult, Look, Mapping[str, Any]
     "residual-curve": (_residual_curve, (*_CONDITIONS, "view", "candidate")),
 }
 """Figures by name, each with the options that it takes."""
+
+
+def figures_of(fit: FitResult) -> tuple[str, ...]:
+    """Names of the figures that a fit has: a bench's model has no linear core, and figures of its own."""
+    if fit.model != "kononykhin":
+        return tuple(FIGURES)
+    return ("time", *(("evolution",) if fit.evolution else ()), *BENCH_FIGURES)
 
 
 def _compared(matrix: Matrix, fit: FitResult, runs: tuple[Run, ...]) -> Comparison:

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.identification import OPTIONS as BENCH_OPTIONS
+from ident.bench.identification import BenchIdentification
 from ident.custom import preset_with
 from ident.errors import Unusable
 from ident.fit import genetic
@@ -233,6 +235,9 @@ def check_settings(settings: Settings) -> None:
     if settings.method not in METHODS:
         remedy = f"choose from {', '.join(METHODS)}"
         raise Unusable("unknown-method", f"no method {settings.method!r}", "method", remedy)
+    if settings.method == "gradient" and settings.model != "kononykhin":
+        remedy = "use ga, or the model kononykhin"
+        raise Unusable("unknown-method", "gradient is the way of the bench's procedures", "method", remedy)
     if settings.load not in ("none", "force"):
         raise Unusable("unknown-load", f"load {settings.load!r} is not known", "load", "use force or none")
     for name in (*settings.bounds, *settings.fixed):
@@ -244,6 +249,8 @@ def _options(settings: Settings) -> dict[str, float]:
     """The method's options, those of the user over the defaults."""
     simulated = settings.effects or settings.load == "force"
     default = genetic.WITH_EFFECTS if simulated else genetic.DEFAULT
+    if settings.model == "kononykhin":
+        default = BENCH_OPTIONS
     known = {"ga": default, "paper-ga": genetic.PAPER}.get(settings.method, {})
     for name, value in settings.options.items():
         if name not in known:
@@ -265,9 +272,17 @@ def _refuse(matrix: Matrix) -> None:
             raise Unusable("missing-channel", "no command channel", f"run {run.id}", "name the column of the command")
 
 
+def identification(matrix: Matrix, settings: Settings, report: Report = silent) -> Identification | BenchIdentification:
+    """The fit that a model asks for: of test runs, or of the records of a bench."""
+    check_settings(settings)
+    if settings.model == "kononykhin":
+        return BenchIdentification(matrix, settings, report)
+    return Identification(matrix, settings, report)
+
+
 def identify(matrix: Matrix, settings: Settings, report: Report = silent) -> FitResult:
     """The whole fit in one call."""
-    work = Identification(matrix, settings, report)
+    work = identification(matrix, settings, report)
     state = work.start()
     while not work.finished(state):
         state = work.advance(state, work.generations)

@@ -14,7 +14,9 @@ from types import CodeType
 from typing import Any
 
 from ident.chain import FORCE, INPUT, INPUT_RATE, STEP, Chain
-from ident.grammar import DYNAMIC, FUNCTIONS, TIME
+from ident.errors import Unusable
+from ident.grammar import DYNAMIC, FUNCTIONS, TABLES, TIME
+from ident.interpolation import coefficient
 
 
 @dataclass
@@ -110,6 +112,8 @@ class Source:
         return f"{self._lower(node, stage)} != 0.0"
 
     def _call(self, name: str, arguments: Sequence[ast.expr], stage: str) -> str:
+        if name in TABLES:
+            return self._table(name, arguments, stage)
         if name == "where":
             a, b = (self._temporary(self._lower(argument, stage)) for argument in arguments[1:])
             return f"({a} if {self._condition(arguments[0], stage)} else {b})"
@@ -129,6 +133,40 @@ class Source:
                 return self._exponential(x)
             case _:
                 return f"{name}({x})"
+
+    def _table(self, kind: str, arguments: Sequence[ast.expr], stage: str) -> str:
+        """A table as the sum over its pieces of their cubics in clip(x, xi, xi+1) − xi: no branch, no search."""
+        x, table = self._temporary(self._lower(arguments[0], stage)), list(arguments[1:])
+        if not all(self._stays(node) for node in table):
+            text = f"equation {ast.unparse(ast.Call(named(kind), list(arguments), []))[:80]!r}"
+            raise Unusable("bad-equation", "a node of the table changes with time", text, "use numbers and parameters")
+        count, nodes = len(table) // 2, [self._known(node) for node in table[::2]]
+
+        def known(piece: int, power: int) -> str:
+            return self._constant(
+                ast.Call(named("coefficient"), [*(ast.Constant(value) for value in (kind, piece, power)), *table], [])
+            )
+
+        low, high = nodes[0], nodes[-1]
+        terms = [known(0, 0)]
+        terms.append(f"{known(0, 1)} * ({x} - {low} if {x} < {low} else 0.0)")
+        terms.append(f"{known(count - 2, -1)} * ({x} - {high} if {x} > {high} else 0.0)")
+        for i in range(count - 1):
+            a, b = nodes[i], nodes[i + 1]
+            t = self._temporary(f"({b} if {x} > {b} else ({a} if {x} < {a} else {x})) - {a}")
+            if kind == "lines":
+                terms.append(f"{t} * {known(i, 1)}")
+            else:
+                terms.append(f"{t} * ({known(i, 1)} + {t} * ({known(i, 2)} + {t} * {known(i, 3)}))")
+        return f"({' + '.join(terms)})"
+
+    def _stays(self, node: ast.expr) -> bool:
+        """Whether an expression is one of numbers and symbols only."""
+        return self._is_constant(node) or not any(isinstance(n, ast.Name) for n in ast.walk(node))
+
+    def _known(self, node: ast.expr) -> str:
+        """A number or an expression of symbols, as it stands in the loop."""
+        return repr(float(node.value)) if isinstance(node, ast.Constant) else self._constant(node)  # type: ignore[arg-type]
 
     def _exponential(self, x: str) -> str:
         """exp(x) as the 32nd power of a polynomial in x/32, |x| ≤ 60: relative error 3e-6 at |x| = 3, 4e-8 at 1.
@@ -170,7 +208,7 @@ def _folded(node: ast.expr, plain: Mapping[str, float]) -> ast.expr:
 
 def constant(node: ast.expr, values: Mapping[str, Any]) -> Any:
     """The value of an expression of symbols for all lanes."""
-    return eval(_code(node), {"__builtins__": {}, **FUNCTIONS}, dict(values))
+    return eval(_code(node), {"__builtins__": {}, **FUNCTIONS, "coefficient": coefficient}, dict(values))
 
 
 @lru_cache(maxsize=8192)

@@ -133,8 +133,8 @@ class Preset:
 
     @property
     def is_linear(self) -> bool:
-        """Whether the command alone drives a chain without effects: then a run is reduced once to its spectra."""
-        return not self.effects and MEASURED_LOAD not in self.chain.stages
+        """Whether the command alone drives a linear chain without effects: a run is reduced once to its spectra."""
+        return not self.effects and MEASURED_LOAD not in self.chain.stages and not self.chain.memories
 
     @property
     def core(self) -> Chain:

@@ -57,9 +57,16 @@ def read_source(source: Source, limits: Limits = LIMITS) -> Matrix:
     text = source.read(DESCRIPTION, limits.description)
     described = describe(text, limits)
     runs, notices, digest = read_runs(source, described, text, limits)
-    if described.limits is not None:
-        source.read(described.limits, limits.description)  # a limits file that is named must be there
-    return Matrix(described.actuator, runs, digest, described.controller, described.limits, notices)
+    stated = "" if described.limits is None else limits_text(source, described.limits, limits)
+    return Matrix(described.actuator, runs, digest, described.controller, described.limits, stated, notices)
+
+
+def limits_text(source: Source, name: str, limits: Limits) -> str:
+    """The limits file that is named, which must be there. Raises Unusable."""
+    try:
+        return source.read(name, limits.description).decode("utf-8")
+    except UnicodeDecodeError:
+        raise Unusable("not-text", "the limits file is no text in UTF-8", name, "write it as YAML") from None
 
 
 def read_runs(

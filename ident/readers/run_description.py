@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ident.errors import Unusable
-from ident.matrix import HOLDS, KINDS, USES, Run, Specimen
+from ident.matrix import BENCH, HOLDS, KINDS, USES, Run, Specimen
 from ident.quantity import quantity, shown, split, unit_scale
 from ident.readers.channel_description import ChannelDescription, describe_channels
 from ident.readers.fields import Fields
@@ -16,8 +16,6 @@ RUN = (
     "id", "file", "sample_rate", "time", "specimen", "gain", "amplitude", "kind", "hold", "output", "use", "skip_rows",
     "rows", "channels", "position_range", "frequency", "rated_current",
 )  # fmt: skip
-WITHOUT_COMMAND = ("static", "frequency", "speed-levels", "speed-continuous")
-"""Kinds of bench records, whose input may be a current instead of a command."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +57,7 @@ def describe_run(data: Any, where: str) -> RunDescription:
         time_unit=time_unit,
         specimen=describe_specimen(fields),
         gain=describe_gain(fields),
-        amplitude=fields.positive("amplitude", units.get("command", "m")),  # RMS of the command, in its kind of unit
+        amplitude=fields.positive("amplitude", _driven_unit(units)),  # RMS of the command, in its kind of unit
         kind=kind,
         hold=fields.choice("hold", HOLDS, "linear"),
         output=output,
@@ -69,6 +67,11 @@ def describe_run(data: Any, where: str) -> RunDescription:
         rated_current=fields.positive("rated_current", units.get("current", "A")),
     )
     return RunDescription(labels, channels, time, fields.whole("skip_rows"), describe_rows(fields))
+
+
+def _driven_unit(units: dict[str, str]) -> str:
+    """The unit of what drives the actuator: a command, or at a bench the current."""
+    return units.get("command", units.get("current", "m"))
 
 
 def describe_id(fields: Fields) -> str:
@@ -90,7 +93,7 @@ def describe_output(fields: Fields, kind: str, channels: dict[str, ChannelDescri
         raise Unusable(
             "unknown-output", f"{shown(output)!r} is not a channel of this run", fields.place("output"), remedy
         )
-    if "command" not in channels and not (kind in WITHOUT_COMMAND and "current" in channels):
+    if "command" not in channels and not (kind in BENCH and "current" in channels):
         raise Unusable("missing-command", "there is no command", fields.place("channels"), "describe the command")
     if output == "command":
         raise Unusable("unknown-output", "the command cannot be the output", fields.place("output"), "name a response")

@@ -1,0 +1,67 @@
+"""`servoident bench`: Kononykhin's procedures on bench records, and the acceptance sheet."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
+
+if TYPE_CHECKING:
+    from ident.bench.acceptance import Line
+    from ident.bench.analysis import Analysis
+
+
+def bench(
+    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")],
+    json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write all results as JSON; - is stdout.")] = None,
+    out: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the acceptance sheet as PDF.")] = None,
+) -> None:
+    """Analyse bench records: static, frequency and speed. Exit status 1 where a limit of the matrix is broken."""
+    from ident.bench.acceptance import passed, read_limits, sheet
+    from ident.bench.analysis import analyse
+    from ident.bench.records import bench_set
+    from ident.bench.report import to_json
+    from ident.readers import read_matrix
+
+    check_target(json)
+    check_target(out)
+    read = read_matrix(matrix)
+    limits = read_limits(read.limits_text, read.limits or "limits")
+    records = bench_set(read)
+    analysis = analyse(records)
+    lines = sheet(analysis, limits)
+    if json is not None:
+        write_json(to_json(read, records, analysis, lines), json)
+    if out is not None:
+        from ident.figures import render
+        from ident.figures.acceptance_sheet import acceptance_sheet
+
+        write_bytes(render(acceptance_sheet(read, records, analysis, lines), "pdf"), out)
+    if json != STANDARD_OUTPUT:
+        show(analysis, lines)
+    analysis.complete()
+    if not passed(lines):
+        raise typer.Exit(1)
+
+
+def show(analysis: Analysis, lines: tuple[Line, ...]) -> None:
+    """Print the sheet, the delay's correlations, and what is to be known."""
+    from app.cli.tables import output, sheet_rows, table
+
+    console = output()
+    header = ("quantity", "value", "std error", "unit", "min", "max", "")
+    console.print(table(header, sheet_rows(lines), numbers=("value", "std error", "min", "max")))
+    if analysis.delay is not None:
+        related = analysis.delay.correlation
+        console.print(
+            f"correlation: T and delay {related['T']['delay']:.2f}, B and delay {related['B']['delay']:.2f}, "
+            f"T and B {related['T']['B']:.2f}"
+        )
+    for missing in analysis.missing:
+        console.print(f"not found: {missing.text}", markup=False)
+    for note in analysis.notes:
+        console.print(f"note: {note}", markup=False)
+    console.print(f"{len(analysis.errors)} records analysed in {analysis.seconds:.2f} s")

@@ -1,0 +1,1 @@
+"""Kononykhin's bench: procedures and fitters from the records of an acceptance test to a model of an actuator."""

@@ -1,0 +1,136 @@
+"""The acceptance test: limits of quantities from a small file, and which the actuator keeps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ident.bench.analysis import Analysis
+from ident.bench.quantity import Found
+from ident.errors import Unusable
+from ident.quantity import quantity
+from ident.readers.strict_yaml import read_yaml
+
+QUANTITIES = {
+    "zero_shift": ("1", "zero shift I0, in rated currents"),
+    "dead_space": ("1", "dead space, half-width, in rated currents"),
+    "hysteresis": ("1", "hysteresis B, half-width of the play, in rated currents"),
+    "kp": ("Pa", "slope of the pressure difference, a rated current"),
+    "friction": ("Pa", "pressure difference that overcomes friction"),
+    "T": ("s", "time constant"),
+    "delay": ("s", "pure delay that the records ask for beside T"),
+    "gain": ("m/s", "speed at rated current, of one straight line"),
+    "gain_forward": ("m/s", "speed at rated current forward"),
+    "gain_back": ("m/s", "speed at rated current back"),
+    "nonlinearity": ("1", "largest distance of the speed from one straight line over full speed"),
+    "asymmetry": ("1", "difference of the gains forward and back over their mean"),
+    "position_error": ("1", "position error of the model, RMS over deviation, mean over the frequency records"),
+}
+"""What a limit may be set for: unit and meaning."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of the sheet; `passed` is None where no limit is set. A quantity that was not found fails its limit."""
+
+    quantity: str
+    meaning: str
+    value: float | None
+    deviation: float | None
+    unit: str
+    lower: float | None
+    upper: float | None
+
+    @property
+    def passed(self) -> bool | None:
+        """Within its limits; None where none is set."""
+        if self.lower is None and self.upper is None:
+            return None
+        if self.value is None:
+            return False
+        above = self.lower is None or self.value >= self.lower
+        return above and (self.upper is None or self.value <= self.upper)
+
+
+def found_quantities(analysis: Analysis) -> dict[str, Found]:
+    """The quantities of the sheet by name: of the procedures, T, I0 and B of the model on all records where it is."""
+    out: dict[str, Found] = {}
+    if analysis.static is not None:
+        s = analysis.static
+        out |= {"zero_shift": s.zero_shift, "dead_space": s.dead_space, "hysteresis": s.hysteresis, "kp": s.slope,
+                "friction": s.friction}  # fmt: skip
+    if analysis.whole is not None:
+        out |= _of_whole(analysis)
+    if analysis.delay is not None:
+        out["delay"] = analysis.delay.delay
+    if analysis.speed is not None:
+        s_ = analysis.speed.straightness
+        pairs = {"gain": (s_.gain, "m/s"), "gain_forward": (s_.forward, "m/s"), "gain_back": (s_.back, "m/s"),
+                 "nonlinearity": (s_.nonlinearity, "1"), "asymmetry": (s_.asymmetry, "1")}  # fmt: skip
+        out |= {name: Found(value, 0.0, unit) for name, (value, unit) in pairs.items()}
+    sines = [analysis.errors[response.id] for response in analysis.frequency if response.id in analysis.errors]
+    if sines:
+        out["position_error"] = Found(float(np.mean(sines)), 0.0, "1")
+    return out
+
+
+def _of_whole(analysis: Analysis) -> dict[str, Found]:
+    assert analysis.whole is not None
+    v, solution = analysis.whole.values, analysis.whole
+    dead = {"B": 1.0, "dPfr": 1.0 / v["kp"], "kp": -v["dPfr"] / v["kp"] ** 2}
+    named = (
+        ("zero_shift", "I0", "1"),
+        ("hysteresis", "B", "1"),
+        ("kp", "kp", "Pa"),
+        ("friction", "dPfr", "Pa"),
+        ("T", "T", "s"),
+    )
+    out = {name: Found(v[own], solution.deviations[own], unit) for name, own, unit in named}
+    return out | {"dead_space": Found(solution.model.dead_space, solution.deviation(dead), "1")}
+
+
+def sheet(analysis: Analysis, limits: Mapping[str, tuple[float | None, float | None]]) -> tuple[Line, ...]:
+    """A line for each quantity found or limited."""
+    found, out = found_quantities(analysis), []
+    for name, (unit, meaning) in QUANTITIES.items():
+        lower, upper = limits.get(name, (None, None))
+        if name in found:
+            out.append(Line(name, meaning, found[name].value, found[name].deviation, unit, lower, upper))
+        elif name in limits:
+            out.append(Line(name, meaning, None, None, unit, lower, upper))
+    return tuple(out)
+
+
+def passed(lines: tuple[Line, ...]) -> bool:
+    """True where no limit is broken."""
+    return all(line.passed is not False for line in lines)
+
+
+def read_limits(text: str, where: str) -> dict[str, tuple[float | None, float | None]]:
+    """Limits by quantity, SI, from YAML: ``dead_space: {max: 0.6 %}``. Raises Unusable with the quantity at fault."""
+    data = read_yaml(text.encode(), where) if text.strip() else None
+    if data is None:
+        return {}
+    if not isinstance(data, Mapping):
+        raise Unusable(
+            "not-a-mapping", "the limits are no list of quantity: {min, max}", where, "write T: {max: 30 ms}"
+        )
+    return dict(_limits(data, where))
+
+
+def _limits(data: Mapping[str, Any], where: str) -> Iterator[tuple[str, tuple[float | None, float | None]]]:
+    for name, entry in data.items():
+        if name not in QUANTITIES:
+            raise Unusable("unknown-quantity", f"no quantity {name!r}", where, f"use one of {', '.join(QUANTITIES)}")
+        if not isinstance(entry, Mapping) or not entry or set(entry) - {"min", "max"}:
+            raise Unusable("bad-limit", f"{name} has no min or max", where, f"write {name}: {{min: …, max: …}}")
+        unit = QUANTITIES[name][0]
+        lower, upper = (
+            quantity(entry[key], unit, f"{where} {name}.{key}") if key in entry else None for key in ("min", "max")
+        )
+        if lower is not None and upper is not None and not lower <= upper:
+            raise Unusable("bad-limit", f"min of {name} is above its max", where, "exchange them")
+        yield name, (lower, upper)

@@ -1,0 +1,234 @@
+"""The whole model at once on all records: genetic search, then least squares; or the paper's procedures in order.
+
+It has the steps of every fit (start, advance, finish), so that jobs, progress and cancelling work as for any model.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.bench.analysis import Analysis, analyse
+from ident.bench.least_squares import Solution, solve
+from ident.bench.model import CONSTANTS
+from ident.bench.outputs import model_of, noise_floor, run_errors
+from ident.bench.records import bench_set
+from ident.bench.residual import Residual, observe
+from ident.errors import Unusable
+from ident.fit import genetic
+from ident.fit.library_search import GENERATIONS, cma_es, differential_evolution
+from ident.fit.result import Estimate, FitResult, Generation, RunError, Undetermined
+from ident.fit.settings import Settings
+from ident.fit.space import Axis, Space
+from ident.matrix import Matrix
+from ident.parallel import each
+from ident.presets import preset as preset_called
+from ident.progress import Progress, Report, silent
+
+Array = NDArray[np.float64]
+State = dict[str, Any]
+OPTIONS = {**genetic.DEFAULT, "population": 80.0, "generations": 40.0, "elite": 8.0}
+_SEARCHED = 60.0  # Hz of the records during the search; the polish takes what each record needs
+_STARTS = 3  # vectors of the last generation from which the polish starts
+_POLISHED = 30  # steps at most
+_WEAK = 0.5  # relative standard error above which a value is not determined
+
+
+class BenchIdentification:
+    """One fit of Kononykhin's model. Raises Unusable where records or settings do not allow it."""
+
+    def __init__(self, matrix: Matrix, settings: Settings, report: Report = silent) -> None:
+        self.matrix, self.settings, self.report = matrix, settings, report
+        self.preset = preset_called("kononykhin")
+        if settings.effects or settings.load != "none":
+            raise Unusable("effect-does-not-fit", "the model kononykhin takes no effect and no measured load", "fit",
+                           "leave --effect and --load out")  # fmt: skip
+        self.bench = bench_set(matrix, "fit")
+        self.options = {**self._defaults(), **settings.options}
+        self.space = self._space()
+        self._started = time.monotonic()
+        report(Progress("prepare", 0, 1))
+        self.analysis = analyse(self.bench).complete()
+        self._fine = observe(self.bench.records)
+        coarse = [record.reduced(max(_SEARCHED, 40.0 * (record.frequency or 0.0))) for record in self.bench.records]
+        self._coarse = observe(coarse, rate=1e9)
+        report(Progress("prepare", 1, 1))
+
+    def _defaults(self) -> dict[str, float]:
+        return dict({"ga": OPTIONS, "paper-ga": genetic.PAPER}.get(self.settings.method, {}))
+
+    def _space(self) -> Space:
+        """The parameters' bounds, or the user's; every quantity in SI."""
+        given = {self.preset.parameter(name).name: bounds for name, bounds in self.settings.bounds.items()}
+        fixed = {self.preset.parameter(name).name: value for name, value in self.settings.fixed.items()}
+        axes = []
+        for parameter in self.preset.parameters:
+            lower, upper = given.get(parameter.name, (parameter.lower, parameter.upper))
+            bounded = parameter.within(lower, upper)
+            if parameter.name not in fixed:
+                axes.append(Axis(parameter.name, lower, upper, bounded.logarithmic))
+        return Space(tuple(axes), tuple(p.name for p in self.preset.parameters), fixed, {})
+
+    @property
+    def generations(self) -> int:
+        """Upper bound of the search's generations."""
+        if not self.space.axes or self.settings.method == "gradient":
+            return 0
+        if self.settings.method == "paper-ga":
+            shrink = self.options["survivors"] / self.options["population"]
+            return int(np.ceil(np.log(shrink) / np.log(self.options["keep"]))) + 2
+        return int(self.options.get("generations", GENERATIONS.get(self.settings.method, 0)))
+
+    def start(self) -> State:
+        """The state before the first generation."""
+        options = self.options if "population" in self.options else {"population": 1.0}
+        state = genetic.begin(len(self.space.axes), self.settings.seed, options)
+        return state | {"done": self.generations == 0}
+
+    def finished(self, state: State) -> bool:
+        """True when the search is over and only :meth:`finish` remains."""
+        return bool(state["done"])
+
+    def advance(self, state: State, generations: int) -> State:
+        """The state after at most `generations` more; the library searches run to their end at once."""
+        if self.settings.method in GENERATIONS and not state["done"]:
+            return self._library_search(state)
+        step = genetic.paper_step if self.settings.method == "paper-ga" else genetic.default_step
+        for _ in range(generations):
+            if state["done"]:
+                break
+            state = step(state, self.errors, self.options)
+            done, best = len(state["history"]), min(state["history"][-1]["errors"])
+            self.report(Progress("search", done, self.generations, best))
+        return state
+
+    def _library_search(self, state: State) -> State:
+        search = differential_evolution if self.settings.method == "differential-evolution" else cma_es
+        history = search(len(self.space.axes), self.settings.seed, self.errors)
+        entries = [{"population": points.tolist(), "errors": cost.tolist()} for points, cost in history]
+        population, cost = min(history, key=lambda entry: float(entry[1].min()))
+        order = np.argsort(cost, kind="stable")
+        evaluated = sum(len(points) for points, _ in history)
+        return state | {"population": population[order].tolist(), "best": population[order[0]].tolist(),
+                        "history": entries, "evaluations": evaluated, "done": True}  # fmt: skip
+
+    def errors(self, points: Array) -> Array:
+        """The search's target at points of the unit cube: the mean over records of the scaled residual's RMS.
+
+        Square roots of square roots: far from the optimum one bad record must not hide what the others say.
+        """
+
+        def one(point: Array) -> float:
+            values = {name: float(found[0]) for name, found in self.space.values(point[None]).items()}
+            model = model_of(values, self.bench.supply_pressure)
+            means = [float(np.sqrt(np.mean(observed.residual(model) ** 2))) for observed in self._coarse]
+            return float(np.mean(np.sqrt(means)))
+
+        found = np.array(each(one, list(points)))
+        return np.where(np.isfinite(found), found, 1e9)
+
+    def finish(self, state: State) -> FitResult:
+        """Least squares from the best of the search, or for "gradient" the procedures' own model; what it says."""
+        self.report(Progress("polish", 0, 1))
+        solution = self._by_steps() if self.settings.method == "gradient" else self._polished(state)
+        self.report(Progress("polish", 1, 1))
+        return self._result(solution, state)
+
+    def _by_steps(self) -> Solution:
+        steps = self.analysis.steps
+        lag = self.analysis.dynamics
+        if steps is None or lag is None:
+            raise AssertionError("complete() has seen to it")
+        own = replace(steps, T=lag.gradient_T).with_values(self.space.fixed)
+        return solve(Residual(own, self._fine, self.space.names), steps=0)
+
+    def _polished(self, state: State) -> Solution:
+        points = [np.array(state["best"]), *map(np.array, state["population"])] if state["best"] else []
+        starts = [self.space.values(point[None]) for point in _distinct(points)] or [
+            self.space.values(np.empty((1, 0)))
+        ]
+        found = []
+        for values in starts:
+            model = model_of({name: float(value[0]) for name, value in values.items()}, self.bench.supply_pressure)
+            found.append(solve(Residual(model, self._fine, self.space.names), steps=_POLISHED))
+        return min(found, key=lambda solution: solution.cost)
+
+    def _result(self, solution: Solution, state: State) -> FitResult:
+        values = {**self.space.fixed, **solution.values}
+        runs = run_errors(self.matrix, values)
+        weak = [name for name, value in solution.values.items() if self._is_weak(name, value, solution)]
+        seen, bounds = solution.deviations, self.space.bounds(values)
+        parameters = {
+            p.name: self._estimate(p.name, values[p.name], seen.get(p.name), bounds.get(p.name), p.name in weak)
+            for p in self.preset.parameters
+        }
+        return FitResult(
+            model="kononykhin", effects=(), parameters=parameters, correlation=solution.correlation, determined=(),
+            undetermined=tuple(Undetermined(name, "these records hardly depend on it") for name in weak),
+            error={"fit": _mean(runs, "fit", "error"), "held_out": None, "verify": _mean(runs, "verify", "error")},
+            offset={"fit": _mean(runs, "fit", "offset"), "verify": _mean(runs, "verify", "offset")},
+            noise_floor={use: noise_floor(self.matrix, use) for use in ("fit", "verify")}, runs=runs,
+            method=self.settings.method, seed=self.settings.seed,
+            evaluations=int(state["evaluations"]) + solution.evaluations, seconds=time.monotonic() - self._started,
+            version=version("servoident"), data_hash=self.matrix.data_hash,
+            notes=(*self.matrix.notices, *self.analysis.notes, *_compared(self.analysis, solution)),
+            settings=self.settings.to_json(), searched=self.space.names, evolution=self._evolution(state),
+        )  # fmt: skip
+
+    def _is_weak(self, name: str, value: float, solution: Solution) -> bool:
+        size = abs(value) if name != "I0" else 1e-2
+        deviation = solution.deviations[name]
+        return not 0 < deviation < _WEAK * size
+
+    def _estimate(
+        self, name: str, value: float, deviation: float | None, bounds: tuple[float, float] | None, weak: bool
+    ) -> Estimate:
+        parameter = self.preset.parameter(name)
+        lower, upper = bounds or (value, value)
+        at_bound = bounds is not None and not lower < value < upper
+        return Estimate(value, parameter.unit, None if weak else deviation, lower, upper, at_bound, parameter.symbol,
+                        parameter.meaning, fixed=bounds is None)  # fmt: skip
+
+    def _evolution(self, state: State) -> tuple[Generation, ...]:
+        out = []
+        for index, entry in enumerate(state["history"]):
+            values = self.space.values(np.array(entry["population"]))
+            columns = [[float(f"{v:.5g}") for v in values[name]] for name in self.space.names]
+            errors = tuple(float(f"{e:.6g}") for e in entry["errors"])
+            rows = tuple(zip(*columns, strict=True))
+            out.append(Generation(index + 1, min(errors), float(np.mean(errors)), rows, errors))
+        return tuple(out)
+
+
+def _distinct(points: list[Array]) -> list[Array]:
+    """The first points that are at least a tenth of an axis apart."""
+    chosen: list[Array] = []
+    for point in points:
+        if all(np.abs(point - other).max() > 0.1 for other in chosen):
+            chosen.append(point)
+        if len(chosen) == _STARTS:
+            break
+    return chosen
+
+
+def _mean(runs: tuple[RunError, ...], use: str, what: str) -> float | None:
+    found = [float(getattr(run, what)) for run in runs if run.use == use]
+    return float(np.mean(found)) if found else None
+
+
+def _compared(analysis: Analysis, solution: Solution) -> list[str]:
+    """The whole fit beside the step-by-step procedure, in words."""
+    if analysis.steps is None:
+        return []
+    by_steps, whole = analysis.steps.values(), solution.model.values()
+    shown = [("T", 1e3, "ms"), ("B", 1e2, "%"), ("I0", 1e2, "%"), ("kp", 1e-8, "MPa/%"), ("dPfr", 1e-6, "MPa")]
+    assert all(name in CONSTANTS for name, _, _ in shown)
+    pairs = ", ".join(
+        f"{name} {factor * by_steps[name]:.4g} and {factor * whole[name]:.4g} {unit}" for name, factor, unit in shown
+    )
+    return [f"Step by step (static, frequency, speed) and in this fit: {pairs}."]

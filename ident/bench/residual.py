@@ -1,0 +1,272 @@
+"""The model against the bench's records: one residual vector, for every fitter, for uncertainty and for diagnosis.
+
+Each record yields position residuals and, where its cavities were measured at a static test, pressure residuals. What
+a record does not tell is taken off: the mean of each part (where the actuator stood, the offset of a pressure gauge).
+Each residual is divided by what it cannot be below: the step of the converter or the noise of the gauge, and a share
+of the record's own size, so that small signals are not drowned by the table's imperfections at large ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.bench.model import Model
+from ident.bench.records import Record
+from ident.bench.response import products, residuals
+from ident.bench.speed_table import SpeedTable
+from ident.parallel import cores, each
+
+Array = NDArray[np.float64]
+IMPERFECT = 2e-3  # of a record's standard deviation
+_SETTLED = 0.25  # s at the start of a record that its unknown past may have shaped
+_MOVED = 3.0  # steps of the converter that are no accident
+_STEP = 1e-4  # relative, of a difference
+_NOTHING = np.empty(0)
+_BLOCKS = 8  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
+_REACH = {"I0": 1e-2, "delay": 1e-2, "second_lag": 1e-2, "stiction": 1e5, "load": 1e7}
+"""The natural size of what may be zero or negative; everything else is positive and moved by a share of itself."""
+
+
+def rate_wanted(record: Record) -> float:
+    """Hz at which a record still holds what the model can show: the lag is exact at any rate."""
+    if record.kind == "static":
+        return 1000.0 if record.jumps else 250.0
+    return max(125.0, 80.0 * (record.frequency or 0.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Observed:
+    """One record as it is compared: reduced, with the samples used and their scales."""
+
+    record: Record
+    parts: tuple[tuple[int, int], ...]
+    position_scale: float
+    pressure_scale: float | None
+    drifting: bool = False
+
+    @classmethod
+    def of(
+        cls, record: Record, position: bool = True, pressure: bool = True, rate: float = 0.0, drifting: bool = False
+    ) -> Observed:
+        """The record with position, pressure or both, at `rate` (Hz) or what it needs.
+
+        `drifting`: a straight line of each part is taken off the positions, not their mean only.
+        """
+        small = record.reduced(rate or rate_wanted(record))
+        skip = _unsettled(small)
+        parts = tuple((max(a, skip), b) for a, b in small.parts if b - max(a, skip) >= 8)
+        used = np.concatenate([small.position[a:b] for a, b in parts]) if parts else small.position
+        scale = float(np.hypot(max(record.resolution / np.sqrt(12.0), 1e-7), IMPERFECT * np.std(used)))
+        noise = None
+        if pressure and small.pressure is not None and small.kind == "static":
+            noise = float(np.std(np.diff(small.pressure)) / np.sqrt(2.0)) + 1.0
+        # A link under a sharp regulator makes thousands of small moves; their sum has as many near-optima.
+        told = position and not (noise is not None and record.jumps)
+        return cls(small, parts, scale if told else np.inf, noise, drifting)
+
+    @property
+    def start(self) -> float:
+        """Where the actuator stands first, m."""
+        return float(self.record.position[0])
+
+    def residual(self, model: Model) -> Array:
+        """Everything compared, scaled: position part by part, then pressure."""
+        return np.asarray(self.residuals(model.constants[None], model.table.nodes, model.table.pieces[None])[0])
+
+    def residuals(
+        self, constants: Array, nodes: Array, pieces: Array, active: NDArray[np.bool_] | None = None
+    ) -> Array:
+        """The residuals of several models, (models, samples compared); one that is not active is as the first."""
+        record = self.record
+        used = np.ones(len(constants), dtype=np.bool_) if active is None else active
+        positions, pressures = bool(np.isfinite(self.position_scale)), self.pressure_scale is not None
+        count = sum(end - first for first, end in self.parts) * (positions + pressures)
+        out = np.empty((len(constants), count))
+        scales = np.array([self.position_scale if positions else 0.0, self.pressure_scale or 0.0])
+        residuals(
+            record.current, 1.0 / record.rate, record.hold == "zoh", constants, nodes, pieces, used, record.position,
+            record.pressure if record.pressure is not None else _NOTHING,
+            np.array(self.parts, dtype=np.int64).reshape(-1, 2), scales, self.drifting, out,
+        )  # fmt: skip
+        return out
+
+    @cached_property
+    def size(self) -> float:
+        """Amplitude of the position, m: √2 times the deviation of what is compared."""
+        rests = [self.record.position[first:end] for first, end in self.parts]
+        rests = [straightened(x) if self.drifting else x - x.mean() for x in rests]
+        return float(np.sqrt(2.0) * np.std(np.concatenate(rests)))
+
+    @cached_property
+    def reach(self) -> float:
+        """The largest current, which says what of the table is seen."""
+        return float(np.max(np.abs(self.record.current)))
+
+
+def straightened(x: Array) -> Array:
+    """x less the straight line through it."""
+    t = np.arange(len(x)) - 0.5 * (len(x) - 1)
+    return np.asarray(x - x.mean() - t * ((t @ x) / (t @ t)))
+
+
+def _unsettled(record: Record) -> int:
+    """Samples at the start that the unknown past of lag and play may have shaped.
+
+    A sine is compared from its second period on. Else the play is known once the link has moved: it pushes then.
+    """
+    if record.kind == "frequency" and record.frequency and record.length > 2.2 * record.rate / record.frequency:
+        return round(record.rate / record.frequency)
+    away = np.abs(record.position - record.position[0]) > max(
+        _MOVED * record.resolution, 1e-4 * np.ptp(record.position)
+    )
+    moved = int(np.argmax(away)) if away.any() else 0
+    return min(max(moved, round(_SETTLED * record.rate)), record.length // 3)
+
+
+@dataclass(frozen=True, eq=False)
+class Residual:
+    """The residual of a model on records as a function of some of its values.
+
+    A point holds log(value / first) of what is positive (or negative, for speeds back), value / size of what may be 0.
+    """
+
+    model: Model
+    observed: tuple[Observed, ...]
+    names: tuple[str, ...]
+
+    @cached_property
+    def _shares(self) -> list[list[int]]:
+        """Numbers of the records for each core, the longest dealt out first: handing over one by one costs more."""
+        order = sorted(range(len(self.observed)), key=lambda i: -self.observed[i].record.length)
+        return [share for core in range(cores()) if (share := order[core :: cores()])]
+
+    @property
+    def origin(self) -> Array:
+        """The point of the first model."""
+        return np.array([self._first[name] / _REACH[name] if name in _REACH else 0.0 for name in self.names])
+
+    @cached_property
+    def _first(self) -> dict[str, float]:
+        return self.model.values() | {name: self.model.extra.get(name, 0.0) for name in _REACH if name != "I0"}
+
+    def values(self, point: Array) -> dict[str, float]:
+        """The values at a point."""
+        return {
+            name: float(place * _REACH[name] if name in _REACH else self._first[name] * np.exp(np.clip(place, -5, 5)))
+            for name, place in zip(self.names, point, strict=True)
+        }
+
+    def unit(self, name: str, point: Array) -> float:
+        """What a step of 1 along an axis is worth at a point."""
+        return _REACH[name] if name in _REACH else abs(self.values(point)[name])
+
+    def at(self, point: Array) -> Model:
+        """The model at a point."""
+        return self.model.with_values(self.values(point))
+
+    def of_records(self, point: Array) -> list[Array]:
+        """The scaled residual of each record."""
+        model = self.at(point)
+        return [observed.residual(model) for observed in self.observed]
+
+    def __call__(self, point: Array) -> Array:
+        """All of them in one vector."""
+        return np.concatenate(self.of_records(point))
+
+    def cost(self, point: Array) -> float:
+        """The sum of squares."""
+        model = self.at(point)
+        return sum(float(np.sum(observed.residual(model) ** 2)) for observed in self.observed)
+
+    def normal(self, point: Array) -> Normal:
+        """The sum of squares with its derivatives; what a record cannot see is not computed."""
+        here, models = self.at(point), []
+        for i in range(len(self.names)):
+            moved = point.copy()
+            moved[i] += _STEP
+            models.append(self.at(moved))
+        limits = np.array([0.0, *(_seen_from(here.table, name) for name in self.names)])
+        every = [here, *models]
+        constants = np.array([model.constants for model in every])
+        pieces = np.array([model.table.pieces for model in every])
+
+        def one(observed: Observed) -> tuple[int, Array]:
+            active = observed.reach + abs(here.I0) > limits
+            rows = observed.residuals(constants, here.table.nodes, pieces, active)
+            base = rows[0].copy()
+            rows[:-1] = (rows[1:] - base) / _STEP
+            rows[-1] = base
+            out = np.empty((_BLOCKS, len(rows), len(rows)))
+            products(rows, _BLOCKS, out)
+            return len(base), out
+
+        shares = each(lambda share: [(i, one(self.observed[i])) for i in share], self._shares)
+        found = [part for _, part in sorted((pair for share in shares for pair in share), key=lambda pair: pair[0])]
+        return Normal(np.concatenate([products for _, products in found]), sum(count for count, _ in found))
+
+
+@dataclass(frozen=True, eq=False)
+class Normal:
+    """Products of [J, r] of blocks of neighbouring samples, (blocks, p + 1, p + 1), of `count` samples in all."""
+
+    products: Array
+    count: int
+
+    @cached_property
+    def _sum(self) -> Array:
+        return np.asarray(self.products.sum(axis=0))
+
+    @property
+    def cost(self) -> float:
+        """Σ r²."""
+        return float(self._sum[-1, -1])
+
+    @property
+    def gradient(self) -> Array:
+        """Jᵀ r."""
+        return self._sum[:-1, -1]
+
+    @property
+    def curvature(self) -> Array:
+        """Jᵀ J."""
+        return self._sum[:-1, :-1]
+
+    @property
+    def covariance(self) -> Array:
+        """H⁻¹ (Σ scores of blocks) H⁻¹: residuals of neighbouring samples are alike, so their number is no measure."""
+        H, scores = self.curvature, self.products[:, :-1, -1]
+        scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
+        inverse = np.linalg.pinv(H / scale[:, None] / scale, rcond=1e-12) / scale[:, None] / scale
+        return np.asarray(inverse @ (scores.T @ scores) @ inverse)
+
+
+def _seen_from(table: SpeedTable, name: str) -> float:
+    """The current from which on a value acts: of a monotone table, two nodes before its own."""
+    if name not in table.names:
+        return 0.0
+    place = table.names.index(name) % len(table.fractions)
+    return float(table.nodes[max(0, place - 1)])
+
+
+def observe(
+    records: Sequence[Record], position: bool = True, pressure: bool = True, rate: float = 0.0, drifting: bool = False
+) -> tuple[Observed, ...]:
+    """The records as they are compared."""
+    return tuple(Observed.of(record, position, pressure, rate, drifting) for record in records)
+
+
+def errors(model: Model, observed: Sequence[Observed]) -> dict[str, float]:
+    """RMS position error of each record over the deviation of its position, the mean of each part taken off."""
+    found = {}
+    for given in observed:
+        one = given if np.isfinite(given.position_scale) else replace(given, position_scale=1e-6)
+        count = sum(end - first for first, end in one.parts)
+        measured = np.concatenate([one.record.position[first:end] for first, end in one.parts])
+        difference = one.residual(model)[:count] * one.position_scale
+        found[one.record.id] = float(np.sqrt(np.mean(difference**2)) / np.std(measured))
+    return found

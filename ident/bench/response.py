@@ -1,0 +1,167 @@
+"""The compiled simulation of Kononykhin's four blocks, one record at a time.
+
+The same equations stand as text in ``ident/presets/kononykhin.py``; a test holds the two together. Records of a bench
+all differ in length, so that the kernel's sixteen lanes would run nearly empty: here a record costs 20 ns a sample.
+"""
+
+from __future__ import annotations
+
+from math import exp, sqrt
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def characteristic(u: float, nodes: Array, pieces: Array) -> float:
+    """f(u): odd and even sides have tables of their own; beyond the last node the end slope goes on."""
+    side = 0 if u >= 0.0 else 1
+    a = u if u >= 0.0 else -u
+    last = len(nodes) - 2
+    i = last
+    while i > 0 and a < nodes[i]:
+        i -= 1
+    width = nodes[i + 1] - nodes[i]
+    t = a - nodes[i]
+    c0, c1, c2, c3 = pieces[side, i]
+    if t > width:
+        end = c0 + width * (c1 + width * (c2 + width * c3))
+        return float(end + (t - width) * (c1 + width * (2.0 * c2 + 3.0 * width * c3)))
+    return float(c0 + t * (c1 + t * (c2 + t * c3)))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def filter_gains(T: float, step: float) -> tuple[float, float, float]:
+    """(φ, γ0, γ1) of T y' + y = u over a step, exact for an input that is a straight line."""
+    if 1e-3 * step > T:
+        return 0.0, 0.0, 1.0
+    phi = exp(-step / T)
+    g1 = 1.0 - (1.0 - phi) * T / step
+    return phi, (1.0 - phi) - g1, g1
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def earlier(samples: Array, place: float) -> float:
+    """The record between its samples; before its first and behind its last one these go on."""
+    last = len(samples) - 1
+    if place <= 0.0:
+        return float(samples[0])
+    if place >= last:
+        return float(samples[last])
+    k = int(place)
+    return float(samples[k] + (place - k) * (samples[k + 1] - samples[k]))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def respond(
+    current: Array, step: float, steps: int, held: bool, constants: Array, nodes: Array, pieces: Array, start: Array,
+    out: Array,
+) -> None:  # fmt: skip
+    """Fill `out` (3, n) with position (m), pressure difference (Pa) and the current after the play.
+
+    `constants` holds T, B, I0, kp, ΔPfr, Ps and what the four blocks lack: second lag (s), stiction (Pa above ΔPfr),
+    load (Pa/m), delay (s). `start` holds position and currents after the lags and the play, and is left as they are
+    at the end; `steps` divides a sample.
+    """
+    T, B, I0, kp, friction, supply, T2, sticking, load, delay = constants
+    late = delay / step
+    phi, g0, g1 = filter_gains(T, step / steps)
+    phi2, h0, h1 = filter_gains(T2, step / steps)
+    x, q, q2, w = start
+    centre, speed, moving, length = x, 0.0, False, len(current)
+    half = 0.5 * step / steps
+    for k in range(length):
+        for part in range(steps if k else 1):
+            before = earlier(current, k - 1.0 - late)
+            rise = 0.0 if held else (earlier(current, k - late) - before) / steps
+            first = before + part * rise
+            following = first + rise
+            if k:
+                old = q
+                q = phi * q + g0 * first + g1 * following
+                q2 = phi2 * q2 + h0 * old + h1 * q
+            if q2 - B > w:
+                w = q2 - B
+            elif q2 + B < w:
+                w = q2 + B
+            u = w - I0
+            a = u if u >= 0.0 else -u
+            available = kp * a if kp * a < supply else supply
+            sign = 1.0 if u > 0.0 else -1.0
+            needed = friction + sign * load * (x - centre)
+            moving = available > (needed if moving else needed + sticking) and a > 0.0
+            now = 0.0
+            if moving:
+                now = sign * characteristic(u, nodes, pieces) * sqrt(1.0 - needed / available)
+            if k:
+                x += half * (speed + now)
+            speed = now
+        out[0, k] = x
+        out[1, k] = sign * (needed if moving else available)
+        out[2, k] = w
+    start[0], start[1], start[2], start[3] = x, q, q2, w
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def rest(answer: Array, measured: Array, first: int, end: int, scale: float, drifting: bool, out: Array) -> None:
+    """Fill `out` with answer − measured of a part, less its mean or, where `drifting`, its straight line; scaled."""
+    count = end - first
+    mean, tilt, spread, middle = 0.0, 0.0, 0.0, 0.5 * (count - 1)
+    for k in range(count):
+        difference = answer[first + k] - measured[first + k]
+        mean += difference
+        tilt += (k - middle) * difference
+        spread += (k - middle) ** 2
+    mean /= count
+    slope = tilt / spread if drifting else 0.0
+    for k in range(count):
+        out[k] = (answer[first + k] - measured[first + k] - mean - slope * (k - middle)) / scale
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def residuals(
+    current: Array, step: float, held: bool, constants: Array, nodes: Array, pieces: Array,
+    active: NDArray[np.bool_], position: Array, pressure: Array, parts: NDArray[np.int64], scales: Array,
+    drifting: bool, out: Array,
+) -> None:  # fmt: skip
+    """Fill `out` (models, samples compared) with the scaled residuals of several models on one record.
+
+    `scales` are those of position and pressure, 0 where it is not compared; `pressure` is empty then. A model that is
+    not `active` answers as the first one does.
+    """
+    answer, start = np.empty((3, len(current))), np.empty(4)
+    for j in range(len(constants)):
+        if not active[j]:
+            out[j] = out[0]
+            continue
+        B, I0 = constants[j, 1], constants[j, 2]
+        start[0], start[1], start[2] = position[0], current[0], current[0]
+        start[3] = min(max(I0, current[0] - B), current[0] + B)
+        respond(current, step, 1, held, constants[j], nodes, pieces[j], start, answer)
+        at = 0
+        for i in range(2):
+            measured = position if i == 0 else pressure
+            if scales[i] == 0.0:
+                continue
+            for p in range(len(parts)):
+                first, end = parts[p, 0], parts[p, 1]
+                line = drifting and i == 0
+                rest(answer[i], measured, first, end, scales[i], line, out[j, at : at + end - first])
+                at += end - first
+
+
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+def products(rows: Array, blocks: int, out: Array) -> None:
+    """Fill `out` (blocks, m, m) with sums of products of the rows (m, n), block by block of neighbouring samples."""
+    m, n = rows.shape
+    for block in range(blocks):
+        first, end = block * n // blocks, (block + 1) * n // blocks
+        for i in range(m):
+            for j in range(i + 1):
+                total = 0.0
+                for k in range(first, end):
+                    total += rows[i, k] * rows[j, k]
+                out[block, i, j] = out[block, j, i] = total

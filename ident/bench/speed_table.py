@@ -1,0 +1,86 @@
+"""The speed characteristic as a table (Kononykhin, block c): straight lines or monotone cubics between its nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.errors import Unusable
+from ident.interpolation import piece_coefficients
+from ident.stages.bench import FRACTIONS, node_names
+
+Array = NDArray[np.float64]
+KINDS = ("monotone", "lines")
+
+
+@dataclass(frozen=True)
+class SpeedTable:
+    """V0 = f(I − I0), without load and friction: speeds (m/s) at ±`fractions` of the rated current, 0 at 0.
+
+    The two directions have tables of their own, because their gains differ (asymmetry) and meet in a corner.
+    """
+
+    forward: tuple[float, ...]
+    back: tuple[float, ...]
+    fractions: tuple[float, ...] = FRACTIONS
+    kind: str = "monotone"
+
+    def __post_init__(self) -> None:
+        rising = np.all(np.diff((0.0, *self.fractions)) > 0)
+        if self.kind not in KINDS or not rising or not len(self.forward) == len(self.back) == len(self.fractions):
+            what = f"{len(self.forward)} and {len(self.back)} speeds at {self.fractions}"
+            remedy = "give a speed of each direction at rising currents above 0"
+            raise Unusable("bad-table", what, "speed characteristic", remedy)
+
+    @classmethod
+    def straight(cls, gain: float, fractions: tuple[float, ...] = FRACTIONS, kind: str = "monotone") -> SpeedTable:
+        """V0 = gain (I − I0), gain in m/s at rated current."""
+        speeds = tuple(gain * fraction for fraction in fractions)
+        return cls(speeds, tuple(-speed for speed in speeds), fractions, kind)
+
+    @cached_property
+    def nodes(self) -> Array:
+        """0 and the fractions."""
+        return np.array([0.0, *self.fractions])
+
+    @cached_property
+    def pieces(self) -> Array:
+        """c0 … c3 of each piece of each side in |I − I0|; speeds of the second side counted positive: (2, n, 4)."""
+        sides = [np.array([0.0, *self.forward]), -np.array([0.0, *self.back])]
+        return np.array([piece_coefficients(self.nodes, side, self.kind) for side in sides])
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the speeds: V_p5 at +5 % of rated current, V_m5 at −5 %."""
+        return node_names(self.fractions)
+
+    def values(self) -> dict[str, float]:
+        """The speeds by name."""
+        return dict(zip(self.names, (*self.forward, *self.back), strict=True))
+
+    def with_values(self, values: Mapping[str, float]) -> SpeedTable:
+        """The table with other speeds, by name."""
+        mine = self.values()
+        changed = mine | {name: value for name, value in values.items() if name in mine}
+        if changed == mine:
+            return self
+        speeds, half = tuple(changed[name] for name in self.names), len(self.fractions)
+        return replace(self, forward=speeds[:half], back=speeds[half:])
+
+    def speed(self, current: Array) -> Array:
+        """f at currents relative to the zero shift, (n,)."""
+        out = np.zeros_like(current)
+        for side, pieces in zip((1.0, -1.0), self.pieces, strict=True):
+            a = np.maximum(side * current, 0.0)
+            place = np.clip(np.searchsorted(self.nodes, a, side="right") - 1, 0, len(self.fractions) - 1)
+            width = np.diff(self.nodes)[place]
+            inside = np.minimum(a - self.nodes[place], width)
+            c0, c1, c2, c3 = pieces[place].T
+            slope = c1 + inside * (2 * c2 + 3 * inside * c3)
+            value = c0 + inside * (c1 + inside * (c2 + inside * c3)) + (a - self.nodes[place] - inside) * slope
+            out += side * np.where(a > 0, value, 0.0)
+        return out

@@ -1,0 +1,121 @@
+"""The static procedure (Kononykhin, section 5.1): zero shift, dead space, slope of the pressure, friction, hysteresis.
+
+Under a saw-tooth of the set position the link rests, moves, rests and moves back. At rest the pressure difference
+follows the current behind the play, kp (I_BL − I0); in motion it is ±ΔPfr. So ΔP against the current is a loop whose
+width at zero is twice the hysteresis B, whose corners are the dead space, B + ΔPfr/kp. Medians over the three groups
+of samples give first values; the loop itself is then fitted to every sample.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.bench.least_squares import Solution, solve
+from ident.bench.model import Model
+from ident.bench.motion import groups, onsets
+from ident.bench.quantity import Found
+from ident.bench.records import Record
+from ident.bench.residual import Observed, Residual, observe
+from ident.bench.speed_table import SpeedTable
+from ident.errors import Unusable
+
+Array = NDArray[np.float64]
+NAMES = ("B", "I0", "kp", "dPfr")
+_SEARCHED = 50.0  # Hz, for the choice among starts
+_SEARCHED_ROUGH = 250.0  # Hz, where the current jumps about
+_NARROWER = (1.0, 0.5, 0.25)  # times the width at which movements began: a current that jumps goes far beyond it
+_SHARES = (0.3, 0.6, 0.85)  # of the dead space that hysteresis may be
+
+
+@dataclass(frozen=True)
+class Static:
+    """What a static record, or several, say. Currents in rated currents, pressures in Pa; half-widths."""
+
+    zero_shift: Found
+    dead_space: Found
+    slope: Found
+    friction: Found
+    hysteresis: Found
+    position_range: tuple[float, float] | None
+    records: tuple[str, ...]
+    model: Model
+
+
+def static(records: Sequence[Record], start: Model, observed: Sequence[Observed]) -> Static:
+    """The quantities from these records together; `start` gives T and the speeds, with which positions tell too."""
+    return _result(records, solve(Residual(start, tuple(observed), NAMES), steps=4))
+
+
+def ranges(records: Sequence[Record], start: Model, observed: Sequence[Observed]) -> tuple[Static, ...]:
+    """The same for each range of positions, where there are several."""
+    by_range: dict[tuple[float, float] | str, list[int]] = {}
+    for number, record in enumerate(records):
+        by_range.setdefault(record.position_range or record.id, []).append(number)
+    if len(by_range) < 2:
+        return ()
+    parts = [([records[i] for i in part], [observed[i] for i in part]) for part in by_range.values()]
+    return tuple(static(some, start, their) for some, their in parts)
+
+
+def _result(records: Sequence[Record], solution: Solution) -> Static:
+    model, v = solution.model, solution.values
+    by_dead_space = {"B": 1.0, "dPfr": 1.0 / v["kp"], "kp": -v["dPfr"] / v["kp"] ** 2}
+    deviations = solution.deviations
+    bounds = {record.position_range for record in records}
+    return Static(
+        Found(v["I0"], deviations["I0"], "1"),
+        Found(model.dead_space, solution.deviation(by_dead_space), "1"),
+        Found(v["kp"], deviations["kp"], "Pa"),
+        Found(v["dPfr"], deviations["dPfr"], "Pa"),
+        Found(v["B"], deviations["B"], "1"),
+        bounds.pop() if len(bounds) == 1 else None,
+        tuple(record.id for record in records),
+        model,
+    )
+
+
+def first_values(records: Sequence[Record], T: float, supply: float) -> Model:
+    """A model with static values from the three groups of samples; of several starts the one that fits best.
+
+    Raises Unusable where the cavities were not measured, or the link did not move both ways.
+    """
+    zero, width, friction = by_groups(records)
+    rough = any(record.jumps for record in records)
+    slow = observe(records, position=False, rate=_SEARCHED_ROUGH if rough else _SEARCHED)
+    tried = []
+    for narrower in _NARROWER if rough else (1.0,):
+        for share in _SHARES:
+            dead_space = narrower * width
+            kp = friction / ((1.0 - share) * dead_space)
+            model = Model(T, share * dead_space, zero, kp, friction, SpeedTable.straight(1.0), supply)
+            tried.append(solve(Residual(model, slow, NAMES), steps=4))
+    return min(tried, key=lambda solution: solution.cost).model
+
+
+def by_groups(records: Sequence[Record]) -> tuple[float, float, float]:
+    """Zero shift and dead space from the currents at which movements began, ΔPfr from the pressures in motion."""
+    starts: dict[int, list[Array]] = {1: [], -1: []}
+    moving: dict[int, list[Array]] = {1: [], -1: []}
+    for record in records:
+        state = groups(record)
+        for sign in (1, -1):
+            starts[sign].append(onsets(state, record.current, sign))
+            moving[sign].append(_pressure(record)[state == sign])
+    up, down = (np.concatenate(starts[sign]) for sign in (1, -1))
+    if not len(up) or not len(down):
+        raise Unusable("no-movement", "dead space and zero shift cannot be found: the link did not start both ways",
+                       f"run {records[0].id}", "let the set position go further than the dead space")  # fmt: skip
+    high, low = (float(np.median(np.concatenate(moving[sign]))) for sign in (1, -1))
+    zero, width = 0.5 * float(np.median(up) + np.median(down)), 0.5 * float(np.median(up) - np.median(down))
+    return zero, max(width, 1e-5), max(0.5 * (high - low), 1.0)
+
+
+def _pressure(record: Record) -> Array:
+    if record.pressure is None:
+        raise Unusable("missing-channel", "kp, friction and hysteresis cannot be found without pressure_a, pressure_b",
+                       f"run {record.id}", "record both cavity pressures at the static test")  # fmt: skip
+    return record.pressure

@@ -1,0 +1,121 @@
+"""The time constant T from the frequency records (Kononykhin, section 5.2), by the paper's way and by a library's.
+
+The target is the sum over records of the RMS position error over the amplitude of the output, a mean and a slow drift
+of each record taken off, because the bench's own compensation of drift leaves a rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from ident.bench.least_squares import solve
+from ident.bench.model import Model
+from ident.bench.quantity import Found
+from ident.bench.residual import Observed, Residual
+
+Array = NDArray[np.float64]
+_LARGEST, _SMALLEST = 1.0, 1e-4  # s
+_STEPS = 25
+_TOGETHER = ("T", "B", "delay")
+_TOLD, _SEEN = 4.0, 0.02  # standard deviations, share of T, from which on a delay is said to be there
+
+
+@dataclass(frozen=True)
+class Dynamics:
+    """T (s) by least squares and by gradient descent; the normalised error at each, and the descent's steps."""
+
+    T: Found
+    gradient_T: float
+    error: float
+    gradient_error: float
+    steps: int
+
+
+@dataclass(frozen=True)
+class DelayCheck:
+    """What the records ask for when a pure delay is admitted beside T and B, which the four blocks do not have.
+
+    `T` (s) and `B` as they are then; `correlation` of the three: near ±1 the records cannot tell them apart. `doubt`
+    says in words that a delay is there, or is "".
+    """
+
+    delay: Found
+    T: float
+    B: float
+    correlation: dict[str, dict[str, float]]
+    doubt: str
+
+
+@dataclass(frozen=True)
+class Target:
+    """Normalised position errors of frequency records as a function of T."""
+
+    model: Model
+    observed: tuple[Observed, ...]
+
+    def residuals(self, T: float) -> list[Array]:
+        """Position errors over the amplitude of the output, of each record."""
+        model = replace(self.model, T=T)
+        return [one.residual(model) * (one.position_scale / one.size) for one in self.observed]
+
+    def error(self, T: float) -> float:
+        """The paper's target: normalised RMS deviations, summed over the records (here their mean)."""
+        return float(np.mean([np.sqrt(np.mean(r**2)) for r in self.residuals(T)]))
+
+
+def gradient_descent(target: Target, start: float) -> tuple[float, float, int]:
+    """T, the target there, and the number of steps: T is moved against the slope; a step that fails is halved."""
+    place, reach = np.log(start), 0.3
+    here = target.error(start)
+    for count in range(_STEPS):
+        slope = (target.error(float(np.exp(place + 1e-3))) - here) / 1e-3
+        trial = float(np.clip(place - reach * np.sign(slope), np.log(_SMALLEST), np.log(_LARGEST)))
+        there = target.error(float(np.exp(trial)))
+        if there < here:
+            place, here, reach = trial, there, reach * 1.2
+        else:
+            reach *= 0.35
+        if reach < 1e-3:
+            return float(np.exp(place)), here, count + 1
+    return float(np.exp(place)), here, _STEPS
+
+
+def by_library(target: Target, start: float) -> float:
+    """T by SciPy's least squares on the same residuals, each record with one weight whatever its length."""
+
+    def stacked(place: Array) -> Array:
+        T = float(np.exp(np.clip(place[0], np.log(_SMALLEST), np.log(_LARGEST))))
+        return np.concatenate([r / np.sqrt(len(r)) for r in target.residuals(T)])
+
+    found = least_squares(stacked, [np.log(start)], method="lm", diff_step=1e-3, xtol=1e-4, ftol=1e-6, max_nfev=30)
+    return float(np.exp(np.clip(found.x[0], np.log(_SMALLEST), np.log(_LARGEST))))
+
+
+def dynamics(model: Model, observed: Sequence[Observed]) -> Dynamics:
+    """T from drifting frequency records, as they are compared; the model's T is where the search begins."""
+    target = Target(model, tuple(observed))
+    T = by_library(target, model.T)
+    gradient_T, gradient_error, steps = gradient_descent(target, model.T)
+    alone = solve(Residual(replace(model, T=T), tuple(observed), ("T",)), steps=0)
+    return Dynamics(Found(T, alone.deviations["T"], "s"), gradient_T, target.error(T), gradient_error, steps)
+
+
+def delay_check(model: Model, observed: Sequence[Observed]) -> DelayCheck:
+    """T, B and a delay refitted together from a model that has T and B alone."""
+    both = solve(Residual(model, tuple(observed), _TOGETHER), steps=5)
+    delay = Found(both.values["delay"], both.deviations["delay"], "s")
+    T, B, correlation = both.values["T"], both.values["B"], both.correlation
+    doubt = ""
+    if abs(delay.value) > max(_TOLD * delay.deviation, _SEEN * model.T):
+        doubt = (
+            f"The records ask for a pure delay of {1e3 * delay.value:.2g} ms, which the four blocks lack: with it T "
+            f"would be {1e3 * T:.3g} ms instead of {1e3 * model.T:.3g} ms and B {100 * B:.3g} % instead of "
+            f"{100 * model.B:.3g} %; correlation of T and delay {correlation['T']['delay']:.2f}, of B and delay "
+            f"{correlation['B']['delay']:.2f}."
+        )
+    return DelayCheck(delay, T, B, correlation, doubt)

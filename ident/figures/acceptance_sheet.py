@@ -1,0 +1,96 @@
+"""The acceptance sheet of an actuator: its quantities against their limits, and the bench's figures, on one page."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import altair as alt
+
+from ident.bench.acceptance import Line, passed
+from ident.bench.analysis import Analysis
+from ident.bench.records import BenchSet
+from ident.figures.frequency_characteristics import frequency_panels
+from ident.figures.look import Look, look
+from ident.figures.pressure_loop import pressure_panel
+from ident.figures.render import Chart, Panel
+from ident.figures.speed_characteristic import speed_panel
+from ident.matrix import Matrix
+
+_COLUMNS = {"quantity": 0, "value": 230, "std error": 330, "unit": 390, "min": 480, "max": 560, "": 620}
+_ROW = 18
+_UNITS = {"1": (100.0, "%"), "s": (1e3, "ms"), "Pa": (1e-6, "MPa"), "m/s": (1e3, "mm/s")}
+_SLOPE = (1e-8, "MPa/%")
+
+
+def acceptance_sheet(
+    matrix: Matrix, bench: BenchSet, analysis: Analysis, lines: Sequence[Line], theme: str = "light"
+) -> Chart:
+    """Table of the quantities with pass or fail, then pressure loop, speed and frequency characteristics."""
+    of = look(theme)
+    panels: list[Any] = [_table(lines, of)]
+    model = analysis.model or analysis.steps or (analysis.static.model if analysis.static else None)
+    pictures: list[Any] = []
+    if analysis.static is not None and model is not None:
+        pictures.append(pressure_panel(bench.of_kind("static"), model, of, 400, 250))
+    if analysis.speed is not None and model is not None:
+        moving = bench.of_kind("speed-levels", "speed-continuous")
+        pictures.append(speed_panel(moving, analysis.speed.levels, model, of, width=400, height=250))
+    if pictures:
+        panels.append(alt.hconcat(*pictures, spacing=30).resolve_scale(color="independent"))
+    if analysis.frequency:
+        sines = bench.of_kind("frequency")
+        panels.append(
+            alt.hconcat(
+                *frequency_panels(analysis.frequency, sines, analysis.model, of, 400, 170), spacing=30
+            ).resolve_scale(color="independent")
+        )
+    verdict = "passed" if passed(tuple(lines)) and not analysis.missing else "NOT passed"
+    notes = [_short(text) for text in (*(m.text for m in analysis.missing), *analysis.notes)]
+    title = alt.TitleParams(
+        f"{matrix.actuator.serial} · acceptance test {verdict}",
+        subtitle=[f"{len(bench.records)} records · data {matrix.data_hash[:12]}", *notes],
+    )
+    chart: Chart = (
+        alt.vconcat(*panels, title=title, spacing=24).resolve_scale(color="independent").configure(**of.config())
+    )
+    return chart
+
+
+def _table(lines: Sequence[Line], of: Look) -> Panel:
+    cells = [_cell(name, x, 0, "head") for name, x in _COLUMNS.items()]
+    for row, line in enumerate(lines, 1):
+        for (_, x), text in zip(_COLUMNS.items(), _texts(line), strict=True):
+            kind = "bad" if text == "FAIL" else "cell"
+            cells.append(_cell(text, x, row, kind))
+    colour = alt.Color("k:N", legend=None, scale=alt.Scale(domain=["head", "cell", "bad"],
+                                                           range=[of.faint, of.ink, of.series[1]]))  # fmt: skip
+    height = _ROW * (len(lines) + 1)
+    scale = alt.Scale(domain=[-0.5, len(lines) + 0.5], reverse=True, nice=False)
+    panel: Panel = (
+        alt.Chart(alt.InlineData(values=cells), width=660, height=height)
+        .mark_text(align="left", fontSize=11)
+        .encode(
+            x=alt.X("x:Q", axis=None, scale=alt.Scale(domain=[0, 660], nice=False)),
+            y=alt.Y("y:Q", axis=None, scale=scale), text="t:N", color=colour,
+        )
+    )  # fmt: skip
+    return panel
+
+
+def _texts(line: Line) -> tuple[str, ...]:
+    factor, unit = _SLOPE if line.quantity == "kp" else _UNITS[line.unit]
+    numbers = (
+        "" if n is None else f"{factor * n:.4g}" for n in (line.value, line.deviation or None, line.lower, line.upper)
+    )
+    value, deviation, lower, upper = numbers
+    verdict = {None: "", True: "pass", False: "FAIL"}[line.passed]
+    return line.quantity.replace("_", " "), value or "not found", deviation, unit, lower, upper, verdict
+
+
+def _cell(text: str, x: int, row: int, kind: str) -> dict[str, Any]:
+    return {"t": text, "x": x, "y": row, "k": kind}
+
+
+def _short(text: str, most: int = 150) -> str:
+    return text if len(text) <= most else text[: most - 1] + "…"

@@ -1,0 +1,83 @@
+"""Kononykhin's blocks: open loop, play, speed characteristic, and a load that takes its share of the speed."""
+
+from ident.stages.stage import Quantity, stage
+from ident.stages.valve import FIRST_ORDER_VALVE
+
+FRACTIONS = (0.05, 0.1, 0.25, 0.5, 0.75, 1.0)
+"""Where the speed characteristic has its nodes, in rated currents from the zero shift; denser for small signals."""
+
+
+def node_names(fractions: tuple[float, ...] = FRACTIONS) -> tuple[str, ...]:
+    """Names of the speeds of the table: V_p5 at +5 % of rated current … , V_m5 at −5 % … ."""
+    return tuple(f"V_{sign}{100 * fraction:.4g}".replace(".", "_") for sign in "pm" for fraction in fractions)
+
+
+OPEN_LOOP = stage(
+    "controller",
+    (Quantity("e", "1", "control signal, in rated currents"),),
+    ("e = u / Ir", "the current acts at once; it is counted in rated currents"),
+)
+
+LAG = FIRST_ORDER_VALVE.with_equations(("dq = (e - q1) / T", "block a: T I' + I = Iin (Kononykhin, section 4)"))
+
+PLAY = stage(
+    "spool",
+    (
+        Quantity("wb", "1", "current behind the play, in rated currents"),
+        Quantity("w", "1", "current behind hysteresis, from the zero shift"),
+    ),
+    ("wb := clip(wb__old, q - B, q + B)", "block b: play of half-width B (Kononykhin, section 4)"),
+    ("w = wb - I0", "counted from the zero shift"),
+)
+
+
+def _side(sign: str, names: tuple[str, ...]) -> str:
+    nodes = ", ".join(f"{fraction:g}, {sign}{name}" for fraction, name in zip(FRACTIONS, names, strict=True))
+    return f"monotone(max({sign}w, 0), 0, 0, {nodes})"
+
+
+_NAMES = node_names()
+_HALF = len(FRACTIONS)
+
+SPEED_CHARACTERISTIC = stage(
+    "flow",
+    (
+        Quantity("Vf", "m/s", "speed forward without load and friction"),
+        Quantity("Vb", "m/s", "speed back without load and friction, counted positive"),
+        Quantity("V0", "m/s", "speed without load and friction"),
+    ),
+    (f"Vf = {_side('', _NAMES[:_HALF])}", "block c: table of the speed characteristic, forward"),
+    (f"Vb = {_side('-', _NAMES[_HALF:])}", "block c: table of the speed characteristic, back"),
+    ("V0 = Vf - Vb", "block c: V0 = f(I), zero at the zero shift"),
+)
+
+UNLOADED_SPEED = stage(
+    "load",
+    (
+        Quantity("s", "1", "direction that the current asks for"),
+        Quantity("Pa", "Pa", "pressure difference available at the current"),
+        Quantity("F", "N", "force of the specimen's spring"),
+        Quantity("Pn", "Pa", "pressure difference needed against load and friction"),
+        Quantity("P", "Pa", "pressure difference of the cavities"),
+        Quantity("v", "m/s", "speed"),
+        Quantity("x", "m", "position"),
+        Quantity("X", "m", "position of what the transducer is fixed to"),
+    ),
+    ("s = sgn(w)", "the direction of the current from the zero shift"),
+    ("Pa = min(kp * abs(w), Ps)", "block d: the available pressure rises with kp up to the supply's"),
+    ("F = k * x", "the load; its mass and damping take no part"),
+    ("Pn = s * F / A + dPfr", "block d: load and friction need their pressure"),
+    ("P = s * where(Pa > Pn, Pn, Pa)", "at rest what is available, in motion what is needed"),
+    (
+        "v = V0 * where(Pa > Pn, sqrt(max(0, 1 - Pn / max(Pa, 1))), 0)",
+        "block d: the share of the speed that load and friction leave",
+    ),
+    ("x' = v", "position is the integral of speed"),
+    ("X = x", "the transducer's frame is rigid"),
+)
+
+RIGID_TRANSDUCER = stage(
+    "sensor",
+    (Quantity("y", "m", "position that is recorded"),),
+    ("y = X", "ideal transducer; 12 bits in simulated records only"),
+)

@@ -1,0 +1,77 @@
+"""The bench's figures: what they show, in every format and theme."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from ident.bench.acceptance import sheet
+from ident.bench.analysis import analyse
+from ident.bench.records import bench_set
+from ident.errors import Unusable
+from ident.figures import BENCH_FIGURES, figure, figures_of, render
+from ident.figures.acceptance_sheet import acceptance_sheet
+from ident.fit.identification import identify
+from ident.fit.settings import Settings
+from tests.bench.sets import as_matrix
+from tests.reference import kononykhin_reference as reference
+
+
+@pytest.fixture(scope="module")
+def fitted():
+    """A matrix of the reference and a fit of it with a few generations."""
+    truth = reference.scattered(4)
+    matrix = as_matrix(truth, reference.full_set(truth, 4))
+    options = {"population": 20.0, "generations": 3.0, "elite": 3.0}
+    return matrix, identify(matrix, Settings(model="kononykhin", options=options))
+
+
+def texts(chart) -> str:
+    return render(chart, "json").decode()
+
+
+def test_a_fit_of_the_bench_has_its_own_figures(fitted):
+    _, fit = fitted
+    assert figures_of(fit) == ("time", "evolution", *BENCH_FIGURES)
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("name", ["time", "evolution", *BENCH_FIGURES])
+def test_every_figure_is_drawn(fitted, name, theme):
+    """As SVG, with the actuator's serial in its title."""
+    chart = figure(name, *fitted, theme)
+    assert render(chart, "svg").startswith(b"<svg")
+    assert "REFERENCE" in texts(chart)
+
+
+def test_the_pressure_loop_has_three_colours(fitted):
+    """Rest, movement forward, movement back, each with points of its own."""
+    found = texts(figure("pressure-loop", *fitted))
+    for group in ("static", "moving +", "moving −"):
+        assert found.count(json.dumps(group, ensure_ascii=False)) > 20
+
+
+@pytest.mark.parametrize("smoothing", ["iir", "fir", "bezier"])
+def test_the_speed_is_smoothed_as_asked(fitted, smoothing):
+    assert "fixed levels" in texts(figure("speed-characteristic", *fitted, smoothing=smoothing))
+
+
+def test_an_unknown_smoothing_and_a_figure_of_another_model_are_refused(fitted):
+    with pytest.raises(Unusable, match="iir, fir, bezier"):
+        figure("speed-characteristic", *fitted, smoothing="none")
+    with pytest.raises(Unusable, match="pressure-loop"):
+        figure("bode", *fitted)
+
+
+def test_the_sheet_names_every_quantity_and_the_verdict(fitted):
+    """A broken limit is seen on the page."""
+    matrix, _ = fitted
+    bench = bench_set(matrix)
+    analysis = analyse(bench)
+    lines = sheet(analysis, {"hysteresis": (None, 1e-6), "T": (None, 1.0)})
+    page = texts(acceptance_sheet(matrix, bench, analysis, lines))
+    assert "NOT passed" in page
+    assert "FAIL" in page
+    assert "dead space" in page
+    assert render(acceptance_sheet(matrix, bench, analysis, lines), "pdf").startswith(b"%PDF")
