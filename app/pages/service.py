@@ -50,9 +50,9 @@ def actuator(context: Context, serial: str, cursor: str | None) -> Shown:
     }
 
 
-def _fits(context: Context, cursor: str | None, **of: str) -> Shown:
+def _fits(context: Context, cursor: str | None, serial: str | None = None, matrix: str | None = None) -> Shown:
     """Fits and the jobs that are to make them, newest first, with the number of the next page."""
-    jobs = fits.jobs(context, cursor, _ROWS, **of)
+    jobs = fits.jobs(context, cursor, _ROWS, serial=serial, matrix=matrix, of_fits=True)
     made = parameters.page(context, Wanted(ids=[job.id for job in jobs.items]), None, _ROWS).items
     return {"fits": fit_rows(jobs.items, made), "more": jobs.next}
 
