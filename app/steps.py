@@ -50,6 +50,14 @@ class Steps:
 
     def store(self, job: str, last: State, keep: Keep) -> None:
         """Record the result by `keep`, or how the job ended; in one transaction, once."""
+        try:
+            self._store(job, last, keep)
+        except Exception:
+            _log.exception("the result of %s %s cannot be stored", self.kind, job)
+            what = f"the result of the {self.kind} cannot be stored"
+            self._store(job, _failed("not-stored", what, self.kind, "see the service's log"), keep)
+
+    def _store(self, job: str, last: State, keep: Keep) -> None:
         with self.sessions.begin() as session:
             row = repository.job(session, job)
             if row is None or row.state in repository.ENDED:
