@@ -36,7 +36,10 @@ class Member:
 
 @dataclass(frozen=True)
 class Card:
-    """An effect that the model lacks, or a group that the data cannot tell apart, the best first."""
+    """An effect that the model lacks, or a group that the data cannot tell apart, the best first.
+
+    `confirmed`: a refit helped beyond chance; `chosen`: the diagnosis would add it; `gauge`: see the page.
+    """
 
     rank: int
     title: str
@@ -46,6 +49,7 @@ class Card:
     words: str
     looks: str
     confirmed: bool
+    chosen: bool
     gauge: tuple[float, float, float]
 
     @property
@@ -145,6 +149,7 @@ def _card(rank: int, together: list[CandidateView], found: DiagnosisView) -> Car
         words=best.why,
         looks="" if looks in best.why else looks,
         confirmed=bool(best.evidence.get("beyond_chance")),
+        chosen=any(candidate.effect in found.verdict.effects for candidate in together),
         gauge=_gauge(best, found),
     )
 
