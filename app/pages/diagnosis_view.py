@@ -215,7 +215,8 @@ def _ladder(found: DiagnosisView) -> Iterator[Rung]:
     for rung in found.ladder:
         deviations = (rung.model_extra or {}).get("deviations")
         said = "–" if deviations is None else f"{deviations:.1f}"
-        yield Rung(title(rung.added) if rung.added else "the fit as it is", rung.error, said)
+        errors = {use: rung.error.get(use) for use in _USES}
+        yield Rung(title(rung.added) if rung.added else "the fit as it is", errors, said)
 
 
 def _left(found: DiagnosisView) -> str:

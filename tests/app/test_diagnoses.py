@@ -7,6 +7,8 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
+from app.diagnoses.work import DiagnosisWork
+from app.fits import repository
 from tests.hidden_dead_zone import HALF_WIDTH, zipped
 
 API = "/api/v1"
@@ -138,6 +140,24 @@ def test_a_running_diagnosis_is_cancelled_and_leaves_nothing(service, linear):
     service.delete(f"{API}/jobs/{job}")
     assert '"state":"cancelled"' in service.get(f"{API}/jobs/{job}/events").text
     assert service.get(f"{API}/diagnoses/{job}").status_code == 404
+
+
+def test_a_result_is_stored_once_and_one_that_cannot_be_ends_its_job(service, diagnosis, linear, matrix):
+    """As after a kill between the last step and its record; nothing is left half written."""
+    context = service.app.state.context
+    work = DiagnosisWork(context.sessions, context.storage)
+    made = {"outcome": None, "state": {"diagnosis": {**diagnosis, "seconds": 1.0}, "fit": None}}
+    work.store(diagnosis["id"], made)
+    assert service.get(f"{API}/diagnoses/{diagnosis['id']}").json() == diagnosis
+    with context.sessions.begin() as session:
+        repository.add_job(session, "twice", matrix, {}, linear, "diagnosis")
+        repository.add_job(session, "broken", matrix, {}, linear, "diagnosis")
+    for _ in range(2):
+        work.store("twice", made)
+    work.store("broken", {"outcome": None, "state": {"diagnosis": {"x": object()}, "fit": None}})
+    listed = service.get(f"{API}/diagnoses", params={"fit": linear}).json()["items"]
+    assert sorted(one["id"] for one in listed) == sorted(["twice", diagnosis["id"]])
+    assert service.get(f"{API}/jobs/broken").json()["problem"]["code"] == "not-stored"
 
 
 def test_a_diagnosis_is_no_fit_of_the_actuators_page(service, diagnosis, linear):

@@ -34,7 +34,6 @@ def test_from_upload_to_a_mended_model_in_force(page, site, tmp_path, screenshot
     find = page.get_by_role("button", name="Find what is missing")
     expect(find).to_be_visible(timeout=LONG)
     before = page.url
-    pictures(page, screenshots, "before")
     find.focus()
     page.keyboard.press("Enter")
     expect(page.get_by_role("progressbar", name="Progress of the diagnosis")).to_be_visible(timeout=LONG)

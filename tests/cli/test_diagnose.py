@@ -49,12 +49,11 @@ def test_the_tables_say_it_with_units(told):
 
 
 def test_a_fit_from_a_file_is_diagnosed_as_it_is(servoident, matrix, tmp_path):
-    """With the effect in it nothing is missing, and only JSON goes to standard output."""
-    fit = tmp_path / "fit.json"
-    assert servoident("fit", matrix, "--effect", "dead_zone", "--json", fit).returncode == 0
-    done = servoident("diagnose", matrix, "--fit", fit, "--json", "-")
+    """Its errors are the baseline, --max-effects is obeyed, and only JSON goes to standard output."""
+    file = tmp_path / "fit.json"
+    assert servoident("fit", matrix, "--seed", 4, "--json", file).returncode == 0
+    done = servoident("diagnose", matrix, "--fit", file, "--max-effects", 0, "--json", "-")
     assert done.returncode == 0, done.stderr
-    found = json.loads(done.stdout)
-    assert found["effects"] == ["dead_zone"]
-    assert found["verdict"]["effects"] == []
-    assert not found["verdict"]["unexplained"]
+    found, fit = json.loads(done.stdout), json.loads(file.read_text())
+    assert found["baseline"]["error"]["verify"] == pytest.approx(fit["error"]["verify"], rel=1e-3)
+    assert (found["seed"], len(found["ladder"])) == (4, 1)
