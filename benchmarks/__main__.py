@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from benchmarks import fitness, identification, kernel, memory, simulation
+from benchmarks import fitness, identification, kernel, memory, scaling, simulation, start
 from benchmarks.table import Table
 
 ALL: dict[str, Callable[[], Table]] = {
@@ -17,6 +17,8 @@ ALL: dict[str, Callable[[], Table]] = {
     "memory": memory.measure,
     "simulation": simulation.measure,
     "kernel": kernel.measure,
+    "start": start.measure,
+    "scaling": scaling.measure,
 }
 PAGE = Path(__file__).parents[1] / "docs" / "benchmarks.md"
 HEAD = """# Benchmarks

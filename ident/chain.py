@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 
 from ident.effect import Effect
 from ident.errors import Unusable
-from ident.expression import FUNCTIONS, Equation
+from ident.expression import Equation
+from ident.grammar import FUNCTIONS, TIME
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Run, Specimen
 from ident.stages import Quantity, Stage
@@ -125,7 +126,7 @@ class Chain:
         """What the equations read but do not define: parameters and conditions."""
         defined = {equation.target for equation in self.equations} | {f"{name}__old" for name in self.memories}
         read = frozenset().union(*(equation.names for equation in self.equations))
-        return tuple(sorted(read - defined - {INPUT, INPUT_RATE, FORCE, STEP}))
+        return tuple(sorted(read - defined - {INPUT, INPUT_RATE, FORCE, STEP, TIME}))
 
     @cached_property
     def signals(self) -> tuple[Equation, ...]:
@@ -189,7 +190,10 @@ class Chain:
             needed = self.needed(output)
             read = frozenset().union(*(e.names for e in (*needed, *(e for e in self.equations if e.is_rate))))
             lines = [f"    {name} = values[{name!r}]" for name in self.symbols if name in read]
-            lines += [f"    ({', '.join(self.states)},) = states", f"    {INPUT_RATE} = {FORCE} = {STEP} = 0.0"]
+            lines += [
+                f"    ({', '.join(self.states)},) = states",
+                f"    {INPUT_RATE} = {FORCE} = {STEP} = {TIME} = 0.0",
+            ]
             lines += [f"    {name}__old = 0.0" for name in self.memories]
             lines += [f"    {equation.target} = {_still(equation)}" for equation in needed]
             rates = ", ".join(equation.python for equation in self.equations if equation.is_rate)

@@ -11,6 +11,7 @@ import scipy.signal
 from numpy.typing import NDArray
 
 from ident.chain import linear_model
+from ident.custom import preset_with
 from ident.effect import parameter_name
 from ident.errors import Unusable
 from ident.fit.output_error import OutputError
@@ -21,7 +22,6 @@ from ident.linear import LinearModel
 from ident.matrix import Actuator, Matrix, Run
 from ident.parallel import each
 from ident.presets import Preset
-from ident.presets import preset as preset_called
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -137,7 +137,7 @@ def fitted(fit: FitResult, matrix: Matrix) -> tuple[Preset, Matrix, dict[str, fl
 
     Raises Unusable where a value is missing.
     """
-    named = preset_called(fit.model, fit.effects)
+    named = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
     preset, driven = named.for_matrix(matrix, str(fit.settings.get("load", "none")))
     values = {preset.parameter(name).name: value for name, value in fit.values.items()}
     missing = [parameter_name(p.name) for p in preset.parameters if p.name not in values]

@@ -11,10 +11,23 @@ import importlib.util
 import os
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
+
+_watchers: list[Callable[[], None]] = []
+
+
+@contextmanager
+def watching(tell: Callable[[], None]) -> Iterator[None]:
+    """Until the block ends, `tell` is called before each compilation: it takes seconds, once on a machine."""
+    _watchers.append(tell)
+    try:
+        yield
+    finally:
+        _watchers.remove(tell)
 
 
 @lru_cache
@@ -49,4 +62,13 @@ def function(name: str, source: str) -> Callable[..., Any]:
     sys.modules[module_name] = module
     spec.loader.exec_module(module)
     compiled: Callable[..., Any] = getattr(module, name)
+    if not is_compiled(compiled):
+        for tell in tuple(_watchers):
+            tell()
     return compiled
+
+
+def is_compiled(function: Any) -> bool:
+    """Whether machine code of one of numba's functions is on disk; numba writes it on the first call."""
+    place = function.stats.cache_path
+    return place is not None and any(Path(place).glob(f"{function.__module__}.{function.__name__}-*.nbi"))

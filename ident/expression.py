@@ -1,4 +1,4 @@
-"""The grammar in which every equation of the program is written, and what can be read off an equation.
+"""An equation of the program, and what can be read off it.
 
 An equation is one line of text:
 
@@ -6,54 +6,20 @@ An equation is one line of text:
     w = q                             a signal
     p := clip(p, q - b, q + b)        a memory: on the right, p is its value at the start of the step
 
-Its right-hand side is arithmetic, comparison and a fixed list of functions on named quantities, nothing else: it is
-parsed, checked node by node, and never handed to the interpreter as it came. Simulation, frequency response,
-documentation and the page's mathematics all come from this one text.
+Its right-hand side is an expression of :mod:`ident.grammar`: parsed, checked node by node, and never handed to the
+interpreter as it came. Simulation, frequency response, documentation and the page's mathematics all come from this
+one text.
 """
 
 from __future__ import annotations
 
 import ast
-import keyword
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-
-from ident.errors import Unusable
-
-FUNCTIONS: Mapping[str, Callable[..., Any]] = {
-    "abs": np.abs,
-    "clip": np.clip,
-    "cos": np.cos,
-    "exp": np.exp,
-    "max": np.maximum,
-    "min": np.minimum,
-    "sgn": np.sign,
-    "sin": np.sin,
-    "sqrt": np.sqrt,
-    "tanh": np.tanh,
-    "where": np.where,
-    "lag": lambda x, _T: x,
-    "lag2": lambda x, _a1, _a2: x,
-    "delay": lambda x, _T: x,
-    "dry": lambda limit, _speed, _acceleration, _mass: 0.0 * limit,
-}
-"""Functions an equation may call, with their numpy meaning for signals that stand still.
-
-Those that remember are exact for a strength of zero: `lag` is x/(T s + 1), `lag2` x/(a2 s² + a1 s + 1), `delay`
-x(t − T), and `dry` the friction force that takes at most `limit`, and at most what stops `mass` within the step.
-"""
-
-DYNAMIC = ("lag", "lag2", "delay", "dry")
-"""The functions that remember."""
-
-_ARGUMENTS = {"clip": 3, "max": 2, "min": 2, "where": 3, "lag": 2, "lag2": 3, "delay": 2, "dry": 4}
-_OPERATORS = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.USub, ast.UAdd, ast.Lt, ast.LtE, ast.Gt, ast.GtE)
-_NODES = (ast.Expression, ast.BinOp, ast.UnaryOp, ast.Compare, ast.Call, ast.Name, ast.Load, ast.Constant, *_OPERATORS)
-_LONGEST = 1000  # characters; a longer text is no equation
+from ident.grammar import FUNCTIONS, parsed, refused
 
 
 @dataclass(frozen=True)
@@ -92,10 +58,10 @@ class Equation:
     @cached_property
     def tree(self) -> ast.expr:
         """The right-hand side as a checked syntax tree."""
-        left, equals, right = self.text.partition("=")
-        if not equals or not self.target.isidentifier() or len(self.text) > _LONGEST:
-            raise _refused(self.text, 0, "an equation reads NAME = , NAME' = or NAME := EXPRESSION")
-        return _parse(right, self.text, len(left) + 1)
+        left, equals, _ = self.text.partition("=")
+        if not equals or not self.target.isidentifier():
+            raise refused(0, "an equation reads NAME = , NAME' = or NAME := EXPRESSION", "begin it so")
+        return parsed(self.text, len(left) + 1)
 
     @cached_property
     def names(self) -> frozenset[str]:
@@ -105,6 +71,8 @@ class Equation:
 
     def renamed(self, names: Mapping[str, str], target: str) -> Equation:
         """The same equation with other names for what it reads, and another target."""
+        if target == self.target and not self.names & names.keys():
+            return self
         values = {name: ast.Name(other, ast.Load()) for name, other in names.items()}
         sign = "' = " if self.is_rate else " := " if self.is_memory else " = "
         return Equation(f"{target}{sign}{_replaced(self.python, values)}", self.place, self.meaning)
@@ -134,37 +102,3 @@ def _replaced(text: str, values: Mapping[str, ast.expr]) -> str:
             return values.get(node.id, node)
 
     return ast.unparse(Replace().visit(ast.parse(text, mode="eval")))
-
-
-def _parse(right: str, text: str, offset: int) -> ast.expr:
-    padding = len(right) - len(right.lstrip())
-    try:
-        tree = ast.parse(right.strip(), mode="eval")
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        column = getattr(error, "offset", None) or 1
-        raise _refused(text, offset + padding + column - 1, "not an expression") from None
-    for node in ast.walk(tree):
-        fault = _fault(node)
-        if fault:
-            raise _refused(text, offset + padding + getattr(node, "col_offset", 0), fault)
-    return tree.body
-
-
-def _fault(node: ast.AST) -> str | None:
-    """Why a node is outside the grammar, or None."""
-    if isinstance(node, ast.Call):
-        if not isinstance(node.func, ast.Name) or node.func.id not in FUNCTIONS or node.keywords:
-            return f"unknown function; known are {', '.join(FUNCTIONS)}"
-        wanted = _ARGUMENTS.get(node.func.id, 1)
-        return None if len(node.args) == wanted else f"{node.func.id} takes {wanted} argument(s)"
-    if isinstance(node, ast.Compare):
-        return None if len(node.ops) == 1 else "one comparison at a time"
-    if isinstance(node, ast.Constant):
-        return None if type(node.value) in (int, float) else "only numbers"
-    if isinstance(node, ast.Name):
-        return "a reserved word" if keyword.iskeyword(node.id) or node.id.startswith("_") else None
-    return None if isinstance(node, _NODES) else "only numbers, names, + - * / **, comparisons and functions"
-
-
-def _refused(text: str, column: int, reason: str) -> Unusable:
-    return Unusable("bad-equation", reason, f"equation {text[:80]!r}, character {column + 1}", "mend it there")

@@ -120,6 +120,27 @@ def unit_scale(unit: str, dimension: str, where: str) -> Scale:
     return Scale(*factor_and_offset(powers, where), target)
 
 
+SI_UNITS = (
+    *DIMENSIONS.values(), "m^4/s", "m^3/(s*Pa)", "m^3/Pa", "1/m", "1/m^2", "s/m", "s^2/m^2", "N/m^3", "N*s^2/m^2",
+    "m/Pa", "1/Pa", "s/m^3", "m/N", "1/N", "m/(N*s)", "1/s^2", "kg/s^2",
+)  # fmt: skip
+"""SI units as the program writes them."""
+
+
+def si_scale(unit: str, where: str) -> Scale:
+    """How to bring differences in `unit` to SI, with the SI unit's usual name. Raises Unusable: ``unknown-unit``."""
+    powers = known_powers(unit, where)
+    wanted = shape(powers, where)
+    same = (name for name in SI_UNITS if shape(known_powers(name, where), where) == wanted)
+    found = next(same, "*".join(f"{_BASE_UNITS.get(base, base)}^{power:g}" for base, power in wanted))
+    if found == "1/s" and ANGLES & set(powers):
+        found = "rad/s"
+    return Scale(factor_and_offset(powers, where)[0], 0.0, found)
+
+
+_BASE_UNITS = {"[length]": "m", "[mass]": "kg", "[time]": "s", "[current]": "A", "[temperature]": "K"}
+
+
 def is_printed(unit: str) -> bool:
     """True for the printed unit of Z0, however it is spaced."""
     return unit.replace(" ", "") == PRINTED_Z0.replace(" ", "")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from ident.chain import FORCE, INPUT, INPUT_RATE, STEP, Chain, friction
 from ident.effect import Effect
+from ident.grammar import TIME
 from ident.kernel import HELD, LANES, SHARE, Filter, Kernel, constant, kernel
 from ident.matrix import Run
 
@@ -35,7 +37,7 @@ class Simulation:
     steps: int = 1
     start: Array | None = None
 
-    @property
+    @cached_property
     def shape(self) -> tuple[int, int]:
         """(runs, vectors)."""
         wide = np.broadcast_shapes((len(self.runs), 1), *(np.shape(value) for value in self.values.values()))
@@ -73,10 +75,14 @@ class Simulation:
 
     def _lanes(self, lanes: int) -> dict[str, Array]:
         """Every symbol lane by lane, the spare lanes repeating the last."""
-        shape = self.shape
-        values = {name: np.broadcast_to(self.values[name], shape).ravel() for name in self.chain.symbols}
-        values[STEP] = np.full(shape[0] * shape[1], 1.0 / (self.runs[0].sample_rate * self.steps))
-        return {name: _filled(value, lanes) for name, value in values.items()}
+        known = {name: self.values[name] for name in self.chain.symbols}
+        known[STEP] = np.array(1.0 / (self.runs[0].sample_rate * self.steps))
+        wide = np.empty((len(known), *self.shape))
+        for row, value in zip(wide, known.values(), strict=True):
+            row[...] = value
+        flat = wide.reshape(len(known), -1)
+        spare = np.repeat(flat[:, -1:], lanes - flat.shape[1], axis=1)
+        return dict(zip(known, np.concatenate([flat, spare], axis=1), strict=True))
 
     def _held(self, lanes: int) -> Array:
         held = np.array([[float(run.hold == "zoh")] for run in self.runs])
@@ -123,7 +129,7 @@ class Simulation:
     def _settle(self, rows: Array, built: Kernel, values: Mapping[str, Array], command: Array) -> None:
         """What remembers, as if the machine had stood where it starts."""
         known = dict(values) | {name: rows[row] for name, row in built.states.items()}
-        known |= {INPUT: command, "du": np.zeros_like(command), FORCE: np.zeros_like(command)}
+        known |= {INPUT: command, "du": np.zeros_like(command), FORCE: np.zeros_like(command), TIME: 0.0}
         found = _at_rest(self.chain, known)
         for name, row in built.memories.items():
             rows[row] = found[name]
@@ -181,12 +187,14 @@ def _pack_filter(rows: Array, known: Filter, values: Mapping[str, Array]) -> Non
     last where the block ends. A filter without any time constant passes its input on.
     """
     order, lanes = known.order, rows.shape[1]
-    coefficients = np.array([np.broadcast_to(constant(node, values), (lanes,)) for node in known.coefficients])
-    steps = values[STEP]
-    cases, case = np.unique(np.vstack([coefficients, steps]), axis=1, return_inverse=True)
-    case = np.ravel(case)
+    entries = np.empty((lanes, order + 1))
+    for i, node in enumerate(known.coefficients):
+        entries[:, i] = constant(node, values)
+    entries[:, order] = values[STEP]
+    numbers: dict[tuple[float, ...], int] = {}  # of the lanes' different cases
+    case = [numbers.setdefault(entry, len(numbers)) for entry in map(tuple, entries.tolist())]
     block = order * (order + 3)
-    gains = np.array([_gains(entry[:-1], float(entry[-1])) for entry in cases.T])  # (cases, 3 blocks)
+    gains = np.array([_gains(np.array(entry[:-1]), entry[-1]) for entry in numbers])  # (cases, 3 blocks)
     first = known.first + order + 1
     rows[first : first + 3 * block] = gains[case].T
 

@@ -8,11 +8,15 @@ Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 
 
 class Chosen(BaseModel):
-    """What may be chosen about a fit; `bounds` and `set` may carry units ("1 ms"), plain numbers are SI."""
+    """What may be chosen about a fit; `bounds` and `set` may carry units ("1 ms"), plain numbers are SI.
+
+    `custom` adds effects of one's own: definitions as `POST /custom-effects` takes them.
+    """
 
     model_config = ConfigDict(extra="forbid")
     model: str = "qian2014"
     effects: list[str] = Field(default_factory=list, max_length=50)
+    custom: list[dict[str, Any] | str] = Field(default_factory=list, max_length=10)
     method: str = "ga"
     seed: int = Field(default=0, ge=0, lt=2**31)
     bounds: dict[str, tuple[Finite | str, Finite | str]] = Field(default_factory=dict)

@@ -65,7 +65,8 @@ def test_the_basic_words_know_nothing_above_them():
         "progress": {"ident.errors"},
         "parameter": {"ident.errors"},
         "matrix": {"ident.errors"},
-        "expression": {"ident.errors"},
+        "grammar": {"ident.errors"},
+        "expression": {"ident.errors", "ident.grammar"},
         "effect": {"ident.errors", "ident.expression", "ident.parameter", "ident.stages"},
     }
     for name, allowed in below.items():

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
+from typing import Any
+
+from fastapi import APIRouter, Response
 
 from app.catalogue import service
+from app.context import Here
 from app.errors import COMMON
+from app.idempotency import Key, fingerprint, once
 from schemas.catalogue import EffectView, ModelView
 
 router = APIRouter(tags=["catalogue"], responses=COMMON)
@@ -21,3 +25,10 @@ def models() -> list[ModelView]:
 def effects() -> list[EffectView]:
     """The catalogue of effects."""
     return service.effects()
+
+
+@router.post("/custom-effects", response_model=EffectView)
+def custom_effect(here: Here, definition: dict[str, Any] | str, key: Key = None) -> Response:
+    """Check an effect of one's own, as JSON or as the text of its file; nothing is stored."""
+    return once(here.sessions, key, fingerprint("custom-effect", definition),
+                lambda: (200, service.custom_effect(definition).model_dump(), ""))  # fmt: skip

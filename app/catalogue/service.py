@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
+from typing import Any
 
+from ident.custom import read_effect
+from ident.effect import Effect
 from ident.effects import EFFECTS
 from ident.expression import Equation
 from ident.mathml import mathml
@@ -26,13 +29,19 @@ def models() -> list[ModelView]:
 
 def effects() -> list[EffectView]:
     """Every effect of the catalogue."""
-    return [
-        EffectView(
-            name=effect.name, place=effect.place, meaning=effect.meaning, looks=effect.looks, source=effect.source,
-            parameters=_parameters(effect.parameters), equations=_equations(effect.equations),
-        )
-        for effect in EFFECTS
-    ]  # fmt: skip
+    return [_effect(effect) for effect in EFFECTS]
+
+
+def custom_effect(definition: Mapping[str, Any] | str) -> EffectView:
+    """A user's effect as it is understood. Raises Unusable with the character at fault."""
+    return _effect(read_effect(definition))
+
+
+def _effect(effect: Effect) -> EffectView:
+    return EffectView(
+        name=effect.name, place=effect.place, meaning=effect.meaning, looks=effect.looks, source=effect.source,
+        parameters=_parameters(effect.parameters), equations=_equations(effect.equations),
+    )  # fmt: skip
 
 
 def _parameters(parameters: Iterable[Parameter]) -> list[ParameterView]:

@@ -5,8 +5,13 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from ident.errors import Unusable
+
+if TYPE_CHECKING:
+    from ident.presets import Preset
 
 
 def split(text: str, option: str, form: str) -> tuple[str, str]:
@@ -28,7 +33,7 @@ def number(text: str, option: str, form: str) -> float:
     return value
 
 
-def bounds(texts: Sequence[str], model: str, effects: Sequence[str] = ()) -> dict[str, tuple[float, float]]:
+def bounds(texts: Sequence[str], model: Preset) -> dict[str, tuple[float, float]]:
     """`NAME=LO:HI` as SI bounds; both sides may carry a unit, else they are SI."""
     found = {}
     for text in texts:
@@ -37,24 +42,36 @@ def bounds(texts: Sequence[str], model: str, effects: Sequence[str] = ()) -> dic
         if not separator:
             raise Unusable("bad-option", f"cannot read {text!r}", "--bounds", "write --bounds NAME=LO:HI")
         where = f"--bounds {name}"
-        found[name] = (in_si(lower, name, model, where, effects), in_si(upper, name, model, where, effects))
+        found[name] = (in_si(lower, name, model, where), in_si(upper, name, model, where))
     return found
 
 
-def values(texts: Sequence[str], model: str, effects: Sequence[str] = ()) -> dict[str, float]:
+def values(texts: Sequence[str], model: Preset) -> dict[str, float]:
     """`NAME=VALUE` as SI values; a value may carry a unit, else it is SI."""
     pairs = [split(text, "--set", "NAME=VALUE") for text in texts]
-    return {name: in_si(value, name, model, f"--set {name}", effects) for name, value in pairs}
+    return {name: in_si(value, name, model, f"--set {name}") for name, value in pairs}
 
 
-def in_si(text: str, name: str, model: str, where: str, effects: Sequence[str] = ()) -> float:
+def in_si(text: str, name: str, model: Preset, where: str) -> float:
     """A value of the model's parameter `name` in SI; the printed unit of Z0 is converted with a notice."""
-    from ident.presets import preset
     from ident.quantity import parameter_value, printed_notice
 
     if notice := printed_notice(text):
         print(f"notice: {notice}", file=sys.stderr)
-    return parameter_value(text, preset(model, effects).parameter(name).unit, where)
+    return parameter_value(text, model.parameter(name).unit, where)
+
+
+def definitions(files: Sequence[Path]) -> tuple[dict[str, Any], ...]:
+    """The definitions of own effects in these files, each called like its file where it gives no name."""
+    from ident.custom import definition_of, read_effect
+
+    found = tuple(definition_of(file.read_bytes(), file.stem) for file in files)
+    for file, definition in zip(files, found, strict=True):
+        try:
+            read_effect(definition)
+        except Unusable as error:
+            raise Unusable(error.code, error.what, f"{file} {error.where}", error.remedy) from None
+    return found
 
 
 def method_options(texts: Sequence[str]) -> dict[str, float]:
@@ -74,6 +91,7 @@ def effect_values(texts: Sequence[str], model: str) -> dict[str, float]:
     for text in texts:
         name, equals, value = text.partition("=")
         effect = name.partition(".")[0]
-        parameter = preset(model, (effect,)).parameter(name)
-        found[name] = in_si(value, name, model, f"--effect {name}", (effect,)) if equals else parameter.upper / 5
+        with_effect = preset(model, (effect,))
+        upper = with_effect.parameter(name).upper
+        found[name] = in_si(value, name, with_effect, f"--effect {name}") if equals else upper / 5
     return found

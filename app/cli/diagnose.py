@@ -37,6 +37,7 @@ def diagnose(
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the diagnosis as JSON; - is stdout.")] = None,
 ) -> None:
     """Find what a model lacks. Effects are ranked by their error on held-out data, and added while they help."""
+    from ident.custom import read_effect
     from ident.diagnose import diagnose as diagnosed
     from ident.diagnosis.addition import MOST
     from ident.readers import read_matrix
@@ -45,8 +46,9 @@ def diagnose(
     chosen = settings(model, effect, method, bounds, set_, load, seed, option)
     given = None if fit is None else given_fit(fit, chosen)
     most = MOST if max_effects is None else max_effects
+    own = tuple(read_effect(one, model=given.model) for one in given.settings.get("custom", ())) if given else ()
     with shown() as report:
-        found = diagnosed(read_matrix(matrix), given, chosen, most, report=report)
+        found = diagnosed(read_matrix(matrix), given, chosen, most, own, report)
     if json is not None:
         write_json(found.to_json(), json)
     if json != STANDARD_OUTPUT:

@@ -7,7 +7,19 @@ from typing import Annotated
 
 import typer
 
-from app.cli.fit_options import Bounds, Effects, Load, MatrixPath, Method, Model, Options, Seed, Values, settings
+from app.cli.fit_options import (
+    Bounds,
+    Custom,
+    Effects,
+    Load,
+    MatrixPath,
+    Method,
+    Model,
+    Options,
+    Seed,
+    Values,
+    settings,
+)
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
 
@@ -16,6 +28,7 @@ def fit(
     matrix: MatrixPath,
     model: Model = "qian2014",
     effect: Effects = None,
+    custom: Custom = None,
     method: Method = "ga",
     bounds: Bounds = None,
     set_: Values = None,
@@ -29,7 +42,7 @@ def fit(
     from ident.readers import read_matrix
 
     check_target(json)
-    chosen = settings(model, effect, method, bounds, set_, load, seed, option)
+    chosen = settings(model, effect, method, bounds, set_, load, seed, option, custom)
     with shown() as report:
         result = identify(read_matrix(matrix), chosen, report)
     if json is not None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli.arguments import bounds as read_bounds
-from app.cli.arguments import method_options
+from app.cli.arguments import definitions, method_options
 from app.cli.arguments import values as read_values
 from ident.fit.settings import METHODS
 
@@ -19,6 +19,10 @@ MatrixPath = Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its 
 Model = Annotated[str, typer.Option(help="Model to identify.")]
 Effects = Annotated[
     list[str] | None, typer.Option("--effect", metavar="NAME", help="Effect to add to the model; may be repeated.")
+]
+Custom = Annotated[
+    list[Path] | None,
+    typer.Option("--custom", metavar="EFFECT.yaml", help="Own effect to add, defined in a file; may be repeated."),
 ]
 Method = Annotated[str, typer.Option(help=f"One of {', '.join(METHODS)}.")]
 Bounds = Annotated[
@@ -41,19 +45,23 @@ Options = Annotated[
 
 def settings(
     model: str, effect: list[str] | None, method: str, bounds: list[str] | None, set_: list[str] | None, load: str,
-    seed: int, option: list[str] | None,
+    seed: int, option: list[str] | None, custom: list[Path] | None = None,
 ) -> Settings:  # fmt: skip
     """The library's settings from what the command line gives. Raises Unusable."""
+    from ident.custom import preset_with
     from ident.fit.settings import Settings
 
-    effects = tuple(effect or [])
+    own = definitions(custom or [])
+    effects = (*(effect or []), *(definition["name"] for definition in own))
+    preset = preset_with(model, effects, own)
     return Settings(
         model=model,
         effects=effects,
         method=method,
-        bounds=read_bounds(bounds or [], model, effects),
-        fixed=read_values(set_ or [], model, effects),
+        bounds=read_bounds(bounds or [], preset),
+        fixed=read_values(set_ or [], preset),
         load=load,
         seed=seed,
         options=method_options(option or []),
+        custom=own,
     )

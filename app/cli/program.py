@@ -15,6 +15,7 @@ from app.cli.diagnose import diagnose
 from app.cli.failures import INTERRUPTED, UNREAD, report
 from app.cli.fit import fit
 from app.cli.migrate import migrate
+from app.cli.next import next_
 from app.cli.query import query
 from app.cli.regress import regress
 from app.cli.revise import revise
@@ -24,7 +25,7 @@ from app.cli.token import token
 from app.cli.upload import upload
 from app.cli.worker import worker
 
-LOCAL = (simulate, check, fit, compare, diagnose)
+LOCAL = (simulate, check, fit, compare, diagnose, next_)
 SERVICE = (serve, worker, demo, token, migrate, regress)
 CLIENT = (upload, approve, query, revise)
 
@@ -36,7 +37,7 @@ program = typer.Typer(
     rich_markup_mode=None,  # plain help: rich's takes half a second to import
 )
 for command in (*LOCAL, *SERVICE, *CLIENT):
-    program.command()(command)
+    program.command(command.__name__.rstrip("_"))(command)
 
 
 def main(arguments: list[str] | None = None) -> NoReturn:

@@ -5,22 +5,22 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 
 from app.cli.numbers import percent
 from ident.progress import Progress, Report
 
 SILENCE = 5.0  # s between two plain lines of one stage
+COMPILING = Progress("compiling the simulation (once)", 0, 1)
 
 
 @contextmanager
 def shown() -> Iterator[Report]:
-    """A report to hand to long work, shown until the block ends."""
-    if sys.stderr.isatty():
-        with bar() as report:
-            yield report
-    else:
-        yield Lines()
+    """A report to hand to long work, shown until the block ends; what is compiled meanwhile is reported too."""
+    from ident.compiled import watching
+
+    with bar() if sys.stderr.isatty() else nullcontext(Lines()) as report, watching(lambda: report(COMPILING)):
+        yield report
 
 
 @contextmanager

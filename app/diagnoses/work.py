@@ -11,6 +11,7 @@ from app.fits import repository as fits
 from app.steps import State, Steps
 from app.storage import Storage
 from app.tables import JobRow
+from ident.custom import read_effect
 from ident.diagnose import diagnose
 from ident.errors import Unusable
 from ident.fit.identification import identify
@@ -52,7 +53,8 @@ class DiagnosisWork:
             fit = identify(matrix, settings, report)
         else:
             fit = given if chosen["reseed"] is None else _reseeded(given, chosen["reseed"])
-        found = diagnose(matrix, fit, most=chosen["max_effects"], report=report)
+        own = tuple(read_effect(definition, model=fit.model) for definition in fit.settings.get("custom", ()))
+        found = diagnose(matrix, fit, most=chosen["max_effects"], custom=own, report=report)
         return {"diagnosis": found.to_json(), "fit": None if given else fit.to_json()}
 
     def _given(self, row: JobRow) -> FitResult | None:

@@ -19,16 +19,21 @@ def add(context: Context, fit_id: str, request: EffectsRequest) -> JobView:
     wanted = dict.fromkeys([*([request.effect] if request.effect is not None else []), *request.effects])
     if not wanted:
         raise Failure(422, "bad-request", "no effect is given", "effect", "name one of those at /api/v1/effects")
-    for name in wanted:
+    settings = _settings(parent)
+    own = {definition["name"] for definition in settings.custom}
+    for name in wanted.keys() - own:
         effect(name)
     there = [name for name in wanted if name in parent.result["effects"]]
     if there:
         raise Failure(409, "effect-there", f"the fit has {', '.join(there)} already", "effect",
                       "add another one, or start from the fit before it")  # fmt: skip
-    given = parent.result["settings"]
-    settings = Settings.from_json(given) if given else Settings(model=parent.model, seed=parent.result["seed"])
     settings = replace(settings, effects=(*parent.result["effects"], *wanted))
     return service.queue(context, parent.matrix, parent.serial, settings, parent.id)
+
+
+def _settings(row: FitRow) -> Settings:
+    given = row.result["settings"]
+    return Settings.from_json(given) if given else Settings(model=row.model, seed=row.result["seed"])
 
 
 def ladder(context: Context, fit_id: str) -> LadderView:

@@ -13,11 +13,11 @@ from app.matrices import service as matrices
 from app.paging import cursor, keys_of
 from app.tables import FitRow, JobRow, now
 from ident.compare import compare
+from ident.custom import definition_of, preset_with
 from ident.figures import MEDIA, figure, render
 from ident.fit.identification import check_settings
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
-from ident.presets import preset
 from ident.quantity import parameter_value
 from schemas.fit import Chosen, ComparedRun, ComparisonView, FitRequest, FitView, JobPage, JobView, ProgressView
 
@@ -43,7 +43,9 @@ def queue(context: Context, matrix: str, serial: str, settings: Settings, parent
 
 def settings_of(request: Chosen) -> Settings:
     """The library's settings: numbers are SI, text may carry a unit. Raises Unusable."""
-    model = preset(request.model, request.effects)
+    own = tuple(definition_of(definition) for definition in request.custom)
+    effects = tuple(dict.fromkeys((*request.effects, *(str(definition["name"]) for definition in own))))
+    model = preset_with(request.model, effects, own)
 
     def si(name: str, value: float | str) -> float:
         return parameter_value(value, model.parameter(name).unit, name)
@@ -52,7 +54,7 @@ def settings_of(request: Chosen) -> Settings:
     for name, (lower, upper) in bounds.items():
         model.parameter(name).within(lower, upper)
     return Settings(
-        model=request.model, effects=tuple(request.effects), method=request.method, seed=request.seed, bounds=bounds,
+        model=request.model, effects=effects, custom=own, method=request.method, seed=request.seed, bounds=bounds,
         fixed={name: si(name, value) for name, value in request.set.items()}, load=request.load,
         options=request.options,
     )  # fmt: skip

@@ -14,10 +14,11 @@ from app.pages.fit_view import Determined, ErrorRow, ParameterRow, combination_r
 from app.pages.job_view import settings_facts
 from app.pages.ladder_view import Step, steps
 from app.pages.run_view import Conditions, conditions
+from ident.custom import preset_with
 from ident.expression import Equation
 from ident.fit.result import FitResult, Undetermined
 from ident.mathml import mathml
-from ident.presets import Preset, preset
+from ident.presets import Preset
 from schemas.fit import FitView, LadderView
 from schemas.matrix import MatrixView
 
@@ -62,7 +63,7 @@ class FitPageView:
 def fit_page(stored: FitView, matrix: MatrixView, lacks: MissingView, ladder: LadderView) -> FitPageView:
     """The page of a fit of this matrix."""
     fit = FitResult.from_json(stored.result)
-    model = preset(fit.model, fit.effects)
+    model = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
     known = {run.id: run for run in matrix.runs}
     return FitPageView(
         id=stored.id,

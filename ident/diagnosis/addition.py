@@ -86,8 +86,8 @@ class Addition:
             ranking = self._rank(self.found, thorough=first)
             if first:
                 self.ranking = ranking
-            best = ranking[0]
-            if best.refit is None or not best.helps:
+            best = next((candidate for candidate in ranking if candidate.helps), None)
+            if best is None or best.refit is None:
                 break
             self.steps.append(best.refit)
             if self._backward(best.effect):

@@ -1,35 +1,43 @@
 """The error of a refit on blocks of the records that it was not fitted to.
 
 Each record is cut into chunks that take turns: the parameters are fitted again without the chunks of one fold, and
-judged on these. At the optimum of all data one Gauss-Newton step leads to the optimum without a fold, exactly for a
+judged on these. From the optimum of all data one Gauss-Newton step leads to the optimum without a fold, exactly for a
 linear least-squares problem, so that sums of products of each block are all that is needed:
 
     δ = −H⁻¹ g  from the other folds,   Σ (r − J δ − N ν)²  over the fold
 
-with J the sensitivities to the parameters, N to what is free in each record (its mean, its first state).
+with J the sensitivities to the parameters, N to what is free in each record (its mean, its first state). Where the
+step is too long for one linearisation the other folds are fitted in full.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.fit.objective import Local, weight_of
+from ident.fit.objective import Local, local, weight_of
+from ident.fit.polish import polish
 from ident.fit.products import project
 from ident.fit.record import Moments
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
+Mask = NDArray[np.bool_]
 CHUNKS, FOLDS = 8, 4
+_FINER = 32  # chunks of a record where there are fewer records than CHUNKS
+_FAR = 0.01  # of an axis: a longer step is beyond what one linearisation tells
+_STEPS = 5  # of a fit without a fold: it starts close by
+_ENOUGH = 1e-5  # relative promise of a further step below which the fit without a fold stops
 _LOST = 1e-7  # relative to the largest eigenvalue of the scaled H: a direction that a fold does not see stays
 
 
 @dataclass(frozen=True)
 class HeldOut:
-    """Σ of squared residuals of each run and chunk, (runs, CHUNKS), and the power of each record, (runs,).
+    """Σ of squared residuals of each run and chunk, (runs, chunks), and the power of each record, (runs,).
 
     `means` (runs,) are the runs' offsets over their standard deviations, less what they have in common: the zero of
     the transducer.
@@ -62,47 +70,78 @@ class HeldOut:
         return self.error * (1.0 + share * float(np.log(max(self.offset, 1e-9))))
 
 
-def held_out(point: Array, here: Local) -> HeldOut:
-    """The held-out errors at the optimum `point` of the unit cube."""
-    folds = [_fold_of(run) for run in here.runs]
-    squares = np.array([_by_chunk(run, np.zeros(len(point)), None) for run in here.runs])
+def held_out(point: Array, here: Local, evaluate: Callable[[Array], Local]) -> HeldOut:
+    """The held-out errors at the optimum `point` of the unit cube; `evaluate` is the objective."""
+    few = len(here.runs) < CHUNKS
+    count = min(_FINER, *(len(run.blocks) for run in here.runs), _FINER) if few else CHUNKS
+    chunks = [_chunk_of(run, count) for run in here.runs]
+    squares = np.zeros((len(here.runs), count))
     for fold in range(FOLDS):
-        parts = [_projected(run, of != fold) for run, of in zip(here.runs, folds, strict=True)]
-        step = _step(point, here, parts)
-        for i, (run, (_, nuisances)) in enumerate(zip(here.runs, parts, strict=True)):
-            inside = np.arange(CHUNKS) % FOLDS == fold
-            squares[i, inside] = _by_chunk(run, step, nuisances)[inside]
+        used = [of % FOLDS != fold for of in chunks]
+        there, step, parts = _without(point, here, used, evaluate)
+        inside = np.arange(count) % FOLDS == fold
+        for i, (run, of, (_, remove)) in enumerate(zip(there.runs, chunks, parts, strict=True)):
+            squares[i, inside] = _by_chunk(run, of, count, step, remove)[inside]
     means = np.array([run.offset for run in here.runs])
     totals = np.array([run.total for run in here.runs])
     return HeldOut(squares, totals, means - means.mean(), sum(run.length for run in here.runs))
 
 
-def _chunk_of(run: Moments) -> Indices:
+Parts = list[tuple[Array, Array]]
+"""Of each run, the products of the used blocks and what takes off its nuisances."""
+
+
+def _without(
+    point: Array, here: Local, used: list[Mask], evaluate: Callable[[Array], Local]
+) -> tuple[Local, Array, Parts]:  # fmt: skip
+    """Where the fit of the used blocks ends: a linearisation, the step from there, and the runs' parts."""
+    parts = [_projected(run, of) for run, of in zip(here.runs, used, strict=True)]
+    step = _step(point, here, parts)
+    if not len(step) or np.abs(step).max() <= _FAR:
+        return here, step, parts
+
+    def of_used(trial: Array) -> Local:
+        return _partly(evaluate(trial), used)
+
+    end, _ = polish(of_used, point, lambda _count, _error: None, lambda _local: None, _ENOUGH, _STEPS)
+    there = evaluate(end)
+    return there, np.zeros(len(point)), [_projected(run, of) for run, of in zip(there.runs, used, strict=True)]
+
+
+def _partly(here: Local, used: list[Mask]) -> Local:
+    """The objective on the used blocks alone."""
+    if not np.isfinite(here.error):
+        return here
+    return local([
+        Moments(_projected(run, of)[0], run.scores[:0], run.total, run.offset, run.release, run.means, run.length)
+        for run, of in zip(here.runs, used, strict=True)
+    ])  # fmt: skip
+
+
+def _chunk_of(run: Moments, count: int) -> Indices:
     """For each block of a run the chunk that it is in."""
-    return np.asarray(np.arange(len(run.blocks)) * CHUNKS // len(run.blocks), dtype=np.intp)
+    return np.asarray(np.arange(len(run.blocks)) * count // len(run.blocks), dtype=np.intp)
 
 
-def _fold_of(run: Moments) -> Indices:
-    return _chunk_of(run) % FOLDS
+def _projected(run: Moments, used: Mask) -> tuple[Array, Array]:
+    """[J, r] products of the used blocks less what is free in a record, (p+1, p+1), and what takes that off, (q, p+1).
+
+    The record's mean and first state are taken from all of it: a first state shows in its first block alone.
+    """
+    p = len(run.gram) - 1
+    _, shares = project(run.blocks.sum(axis=0)[None], p)
+    remove = np.concatenate([np.eye(p + 1)[:p], -shares[0], np.eye(p + 1)[p:]])
+    return remove.T @ run.blocks[used].sum(axis=0) @ remove, remove
 
 
-def _projected(run: Moments, used: NDArray[np.bool_]) -> tuple[Array, Array]:
-    """[J, r] products of the used blocks with the nuisances projected out, (p+1, p+1), and what removes these."""
-    gram, shares = project(run.blocks[used].sum(axis=0)[None], len(run.gram) - 1)
-    return gram[0], shares[0]
+def _by_chunk(run: Moments, chunks: Indices, count: int, step: Array, remove: Array) -> Array:
+    """Σ of squares of r − Jδ − Nν over each chunk, (count,)."""
+    direction = remove @ np.append(-step, 1.0)
+    by_block = np.einsum("i,bij,j->b", direction, run.blocks, direction)
+    return np.asarray(np.bincount(chunks, np.maximum(by_block, 0.0), count), dtype=np.float64)
 
 
-def _by_chunk(run: Moments, step: Array, nuisances: Array | None) -> Array:
-    """Σ of squares of r − Jδ − Nν over each chunk, (CHUNKS,)."""
-    if nuisances is None:
-        _, nuisances = _projected(run, np.full(len(run.blocks), True))
-    direction = np.append(-step, 1.0)
-    full = np.concatenate([direction[:-1], -nuisances @ direction, direction[-1:]])
-    by_block = np.einsum("i,bij,j->b", full, run.blocks, full)
-    return np.asarray(np.bincount(_chunk_of(run), np.maximum(by_block, 0.0), CHUNKS), dtype=np.float64)
-
-
-def _step(point: Array, here: Local, parts: list[tuple[Array, Array]]) -> Array:
+def _step(point: Array, here: Local, parts: Parts) -> Array:
     """The Gauss-Newton step of the parts of all runs that stays in the unit cube."""
     p = len(point)
     H, g = np.zeros((p, p)), np.zeros(p)

@@ -23,8 +23,9 @@ from ident.presets import PRESETS, Preset
 
 Array = NDArray[np.float64]
 _TRIAL = 131_072  # samples of a first refit; the finalists take every sample
-_FINE = 1e-7  # relative promise of a further step below which a refit stops
-_COARSE = 1e-5
+_FITTING = 1e-7, 20  # relative promise of a further step below which a refit stops, and its most steps
+_TRYING = 1e-5, 10
+_SHARES = (1.0, 0.5, 0.2)  # of the way to a predicted start
 
 
 @dataclass(frozen=True)
@@ -36,11 +37,12 @@ class Refit:
     space: Space
     point: Array
     here: Local
+    fitness: OutputError = field(repr=False)
 
     @cached_property
     def held_out(self) -> HeldOut:
         """Its errors on blocks that were left out in turn."""
-        return held_out(self.point, self.here)
+        return held_out(self.point, self.here, self.fitness.exact)
 
     @property
     def finite(self) -> bool:
@@ -129,14 +131,21 @@ class Models:
         fitness = self.fitness(effects, samples)
         known = {p.name: p.value for p in fitness.preset.parameters} | dict(start)
         point = fitness.space.point({**known, **fitness.space.fixed})
-        point, here = polish(fitness.exact, point, _silent, fitness.accept, _COARSE if samples else _FINE)
+        point, here = polish(fitness.exact, point, _silent, fitness.accept, *(_TRYING if samples else _FITTING))
         off = {symbol for name, e in self.effects.items() if name not in effects for symbol in map(e.symbol, _names(e))}
         values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}
-        return Refit(effects, values, fitness.space, point, here)
+        return Refit(effects, values, fitness.space, point, here, fitness)
 
-    def trial(self, effects: tuple[str, ...], start: Mapping[str, float]) -> Refit:
-        """A first refit on the beginnings of the records."""
-        return self.refit(effects, start, _TRIAL)
+    def trial(self, effects: tuple[str, ...], start: Mapping[str, float], base: Mapping[str, float]) -> Refit:
+        """A first refit on the beginnings of the records, from between `base` and `start`, wherever the error is least.
+
+        The start is a prediction: where it was too bold a part of the way to it is better.
+        """
+        fitness, known = self.fitness(effects, _TRIAL), {**self.off, **base}
+        ways = [{name: known[name] + share * (start[name] - known[name]) for name in start} for share in _SHARES]
+        points = [fitness.space.point({**way, **fitness.space.fixed}) for way in ways]
+        errors = [fitness.exact(point, sensitivities=False).error for point in points]
+        return self.refit(effects, ways[int(np.argmin(errors))], _TRIAL)
 
 
 def _fits(preset: Preset, effect: Effect) -> bool:

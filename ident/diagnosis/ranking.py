@@ -10,7 +10,8 @@ from ident.diagnosis.instant import Prediction, predict
 from ident.diagnosis.models import Models, Refit
 from ident.parallel import each
 
-_CONTENDERS, _FEW = 12, 6
+_CONTENDERS, _FEW = 12, 10
+_QUICK = 200_000  # samples of a matrix so small that every promise can be tried
 _NEAR = 1.3  # times the best predicted error: the contenders for a further effect
 _FINALISTS = 5
 _CLOSE = 1.05  # times the best trial's error: also a finalist
@@ -53,12 +54,13 @@ def rank(models: Models, base: Refit, names: Iterable[str], report: Report, thor
     contenders = predictions[:_CONTENDERS]
     if not thorough:
         near = _NEAR * predictions[0].after.error
-        contenders = [p for p in predictions[:_FEW] if _promises(p) and p.after.error < near]
+        quick = sum(run.length for run in models.runs) < _QUICK
+        contenders = [p for p in predictions if _promises(p) and p.after.error < near][: None if quick else _FEW]
     done = 0
 
     def trial(prediction: Prediction) -> Candidate:
         nonlocal done
-        refit = models.trial((*base.effects, prediction.effect), prediction.start)
+        refit = models.trial((*base.effects, prediction.effect), prediction.start, base.values)
         done += 1
         report("trying", done, len(contenders) + _FINALISTS)
         return Candidate(prediction, refit if refit.finite else None)

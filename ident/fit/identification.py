@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.custom import preset_with
 from ident.errors import Unusable
 from ident.fit import genetic
 from ident.fit.library_search import GENERATIONS, cma_es, differential_evolution
@@ -22,7 +23,6 @@ from ident.fit.space import search_space
 from ident.fit.summary import summarise
 from ident.matrix import Matrix, Run
 from ident.noise import noise_floors
-from ident.presets import preset as preset_called
 from ident.progress import Progress, Report, silent
 from ident.spectra import Basis, excited_band
 
@@ -44,7 +44,7 @@ class Identification:
         self.settings, self.report = settings, report
         check_settings(settings)
         _refuse(matrix)
-        named = preset_called(settings.model, settings.effects)
+        named = preset_with(settings.model, settings.effects, settings.custom)
         self.preset, self.matrix = named.for_matrix(matrix, settings.load)
         matrix = self.matrix
         self._runs = matrix.of_use("fit")
@@ -107,7 +107,7 @@ class Identification:
             return {name: given[name] for name in given if names[name] in self._linear}
 
         settings = replace(
-            self.settings, effects=(), method="ga", load="none", options={},
+            self.settings, effects=(), custom=(), method="ga", load="none", options={},
             bounds=own(self.settings.bounds), fixed=own(self.settings.fixed),
         )  # fmt: skip
         found = identify(self.matrix, settings, self.report)
@@ -229,7 +229,7 @@ def _distinct(points: Array) -> list[Array]:
 
 def check_settings(settings: Settings) -> None:
     """Raise Unusable for settings that no matrix could be fitted with."""
-    preset = preset_called(settings.model, settings.effects)
+    preset = preset_with(settings.model, settings.effects, settings.custom)
     if settings.method not in METHODS:
         remedy = f"choose from {', '.join(METHODS)}"
         raise Unusable("unknown-method", f"no method {settings.method!r}", "method", remedy)

@@ -16,17 +16,18 @@ _CONVERGED = 1e-10  # relative decrease of the error that a further step promise
 
 def polish(
     evaluate: Callable[[Array], Local], start: Array, report: Callable[[int, float], None],
-    accept: Callable[[Local], None], converged: float = _CONVERGED,
+    accept: Callable[[Local], None], converged: float = _CONVERGED, most: int = _STEPS,
 ) -> tuple[Array, Local]:  # fmt: skip
     """The point of the unit cube with the least error near `start`, and the objective there.
 
     A step solves (H + λ diag H) δ = −g on the axes that are free: those at a bound with a gradient that points
     outwards stay. λ falls tenfold after a step that helped and rises tenfold after one that did not. `accept` is told
-    of each point that is gone on from; `converged` is the relative decrease below which no further step is worth it.
+    of each point that is gone on from; `converged` is the relative decrease below which no further step is worth it,
+    `most` the number of steps.
     """
     point, here, damping = start.copy(), evaluate(start), 1e-4
     accept(here)
-    for count in range(_STEPS):
+    for count in range(most):
         report(count, here.error)
         free_step = _step(point, here, damping)
         trial = np.clip(point + free_step, 0.0, 1.0)

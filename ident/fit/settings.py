@@ -13,8 +13,9 @@ METHODS = ("ga", "paper-ga", "differential-evolution", "cma-es")
 class Settings:
     """A fit, but for its data. Two fits with equal settings and data give the same result, bit for bit.
 
-    `bounds` maps a parameter's name to (lower, upper), `fixed` to the value it is held at, all SI. With every
-    parameter fixed nothing is searched and the result is the error of that model.
+    `custom` holds the definitions of effects of the user, as plain JSON data: those that `effects` names are in the
+    model, like those of the catalogue. `bounds` maps a parameter's name to (lower, upper), `fixed` to the value it is
+    held at, all SI. With every parameter fixed nothing is searched and the result is the error of that model.
     """
 
     model: str = "qian2014"
@@ -25,13 +26,16 @@ class Settings:
     load: str = "none"
     seed: int = 0
     options: Mapping[str, float] = field(default_factory=dict)  # of the method: population, keep, mutation, ...
+    custom: tuple[Mapping[str, Any], ...] = ()
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data."""
-        return asdict(self) | {"effects": list(self.effects), "bounds": {k: list(v) for k, v in self.bounds.items()}}
+        lists = {"effects": list(self.effects), "custom": [dict(definition) for definition in self.custom]}
+        return asdict(self) | lists | {"bounds": {k: list(v) for k, v in self.bounds.items()}}
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Settings:
         """The inverse of :meth:`to_json`."""
         bounds = {name: (float(lo), float(hi)) for name, (lo, hi) in data.get("bounds", {}).items()}
-        return cls(**{**data, "effects": tuple(data.get("effects", ())), "bounds": bounds})
+        lists = {name: tuple(data.get(name, ())) for name in ("effects", "custom")}
+        return cls(**{**data, **lists, "bounds": bounds})

@@ -14,7 +14,7 @@ from types import CodeType
 from typing import Any
 
 from ident.chain import FORCE, INPUT, INPUT_RATE, STEP, Chain
-from ident.expression import DYNAMIC, FUNCTIONS
+from ident.grammar import DYNAMIC, FUNCTIONS, TIME
 
 
 @dataclass
@@ -62,7 +62,7 @@ class Source:
             return repr(float(self.plain[name])) if name in self.plain else self._constant(named(name))
         if name.endswith("__old"):
             return name
-        if stage == "f" and (name in self.chain.states or name in (INPUT, INPUT_RATE, FORCE)):
+        if stage == "f" and (name in self.chain.states or name in (INPUT, INPUT_RATE, FORCE, TIME)):
             return f"{name}_1"
         if stage == "m" and f"{name}_m" not in self.written:
             return f"{name}_1"
@@ -175,6 +175,7 @@ def constant(node: ast.expr, values: Mapping[str, Any]) -> Any:
 
 @lru_cache(maxsize=8192)
 def _code(node: ast.expr) -> CodeType:
+    """An expression that passed the grammar, compiled for Python: the same ones are asked for in every simulation."""
     return compile(ast.Expression(ast.fix_missing_locations(node)), "<constant>", "eval")
 
 

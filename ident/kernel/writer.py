@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from ident.chain import FORCE, INPUT, INPUT_RATE, STEP, friction
 from ident.expression import Equation
+from ident.grammar import TIME
 from ident.kernel.layout import HELD, LANES, SHARE, Filter, Kernel, filter_rows
 from ident.kernel.source import Source, named
 
@@ -78,6 +79,8 @@ class Writer(Source):
         step = self._constant(named(STEP))
         half, sixth = self._text(f"0.5 * {STEP}"), self._text(f"{STEP} / 6.0")
         self._inputs(inputs)
+        if TIME in frozenset().union(*(e.names for e in (*needed, *rates))):
+            self._time(step)
         for stage in STAGES:
             if stage > 1:
                 for name in states:
@@ -132,6 +135,11 @@ class Writer(Source):
                 self._write(f"{name}_2", f"0.5 * ({name}_now + {name}_then)")
                 self._write(f"{name}_3", f"{name}_2")
                 self._write(f"{name}_4", f"{name}_then")
+
+    def _time(self, step: str) -> None:
+        """The time since the record's start at each stage."""
+        for stage, of_step in zip(STAGES, ("k", "(k + 0.5)", "(k + 0.5)", "(k + 1)"), strict=True):
+            self._write(f"{TIME}_{stage}", f"{of_step} * {step}")
 
     # Stages ----------------------------------------------------------------------------------------------------
 

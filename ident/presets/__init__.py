@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from functools import lru_cache
 
+from ident.effect import Effect
 from ident.effects import EFFECTS, effect
 from ident.errors import Unusable
 from ident.presets.drive import DRIVE
@@ -13,18 +14,24 @@ from ident.presets.qian2014 import QIAN2014
 PRESETS: dict[str, Preset] = {preset.name: preset for preset in (QIAN2014, FIRST_ORDER, DRIVE)}
 
 
-def preset(name: str, effects: Sequence[str] = ()) -> Preset:
-    """The preset called `name` with these effects of the catalogue; raises Unusable with the names there are."""
+def preset(name: str, effects: Sequence[str] = (), custom: Sequence[Effect] = ()) -> Preset:
+    """The preset called `name` with these effects, of the catalogue or among `custom`; those come last.
+
+    Raises Unusable with the names there are.
+    """
     if name not in PRESETS:
         raise Unusable("unknown-model", f"no model {name!r}", "model", f"choose from {', '.join(PRESETS)}")
-    return _with_effects(name, frozenset(effects))
+    return _with_effects(name, frozenset(effects), tuple(custom))
 
 
 @lru_cache(maxsize=256)
-def _with_effects(name: str, effects: frozenset[str]) -> Preset:
-    for wanted in effects:
+def _with_effects(name: str, effects: frozenset[str], custom: tuple[Effect, ...]) -> Preset:
+    own = {known.name for known in custom}
+    if len(own) < len(custom):
+        raise Unusable("name-taken", "two effects have the same name", "custom effects", "rename one of them")
+    for wanted in effects - own:
         effect(wanted)
-    return PRESETS[name].with_effects(tuple(known for known in EFFECTS if known.name in effects))
+    return PRESETS[name].with_effects(tuple(known for known in (*EFFECTS, *custom) if known.name in effects))
 
 
 __all__ = ["PRESETS", "Preset", "Scale", "preset"]

@@ -96,3 +96,25 @@ def test_compare_finds_the_errors_of_the_fit_again(servoident, matrix, fit_file)
     fit = json.loads(fit_file.read_text())
     for use in ("fit", "verify"):
         assert compared["error"][use] == pytest.approx(fit["error"][use], rel=1e-9)
+
+
+def test_an_own_effect_is_fitted_from_its_file(servoident, matrix, tmp_path):
+    """The file's name is the effect's; the fit carries the definition, and compares without the file."""
+    own, out = tmp_path / "overlap.yaml", tmp_path / "fit.json"
+    own.write_text("place: spool\nequation: w - clip(w, -h, h)\nstrength: {symbol: h, unit: mm, lower: 0, upper: 1}\n")
+    held = ("--set", "m0=4.25", "--set", "overlap.h=0.1 mm", "--option", "generations=1")
+    done = servoident("fit", matrix, "--custom", own, *held, "--json", out)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(out.read_text())
+    assert found["parameters"]["overlap.h"]["value"] == 1e-4
+    own.unlink()
+    assert servoident("compare", matrix, "--fit", out, "--json", "-").returncode == 0
+
+
+def test_an_own_effect_with_a_mistake_is_refused_with_file_and_character(servoident, matrix, tmp_path):
+    """One line that names the place of the mistake."""
+    own = tmp_path / "overlap.yaml"
+    own.write_text("place: spool\nequation: w - clip(w, -h\nstrength: {symbol: h, unit: mm, lower: 0, upper: 1}\n")
+    done = servoident("fit", matrix, "--custom", own)
+    assert done.returncode == 2
+    assert f"{own} equation, character 9: the bracket that opens here is never closed" in done.stderr

@@ -113,15 +113,19 @@ def force_on_specimen(f, s):
 
 
 @njit(cache=True)
-def massless_position(f, cell, s):
-    """Where a specimen without mass is: the joint's force is its reaction, solved by Newton's method."""
-    x2 = s[X]
-    for _ in range(8):
+def follow(f, cell, s):
+    """Motion of a specimen without mass: of its damper, or at the position where the joint's force is its reaction."""
+    if cell.damping > 0:
+        s[V2] = (force_on_specimen(f, s) - specimen_reaction(f, cell, s[X2], 0.0, s[ZH])) / cell.damping
+        return
+    s[V2] = s[V]
+    for _ in range(8):  # Newton's method
         step = 1e-9
-        miss = specimen_reaction(f, cell, x2, s[V], s[ZH]) - (s[X] - x2) / f.specimen_joint_s
-        next_ = specimen_reaction(f, cell, x2 + step, s[V], s[ZH]) - (s[X] - x2 - step) / f.specimen_joint_s
-        x2 -= miss * step / (next_ - miss)
-    return x2
+        miss = specimen_reaction(f, cell, s[X2], 0.0, s[ZH]) - force_on_specimen(f, s)
+        moved = (
+            specimen_reaction(f, cell, s[X2] + step, 0.0, s[ZH]) - force_on_specimen(f, s) + step / f.specimen_joint_s
+        )
+        s[X2] -= miss * step / (moved - miss)
 
 
 @njit(cache=True)
@@ -165,7 +169,7 @@ def opening(f, q, play):
 def derivative(plant, f, cell, u, du, y_late, v_late, mode, play, s, out):
     """Rates of all states; `mode` is the sign of the sliding speed, 0 while the rod sticks. Returns the reading."""
     if f.specimen_joint_s > 0 and cell.mass == 0:
-        s[X2], s[V2] = massless_position(f, cell, s), s[V]
+        follow(f, cell, s)
     force, mass = rod_force(plant, f, cell, s)
     acceleration = 0.0 if mode == 0 else (force - mode * friction_limit(f, s[V])) / mass
     if mode == 2:  # no dry friction at all
@@ -208,8 +212,9 @@ def derivative(plant, f, cell, u, du, y_late, v_late, mode, play, s, out):
     out[Y] = (position - s[Y]) / f.sensor_lag_T if f.sensor_lag_T > 0 else 0.0
     seen = s[Y] if f.sensor_lag_T > 0 else position
     out[YR] = (seen - s[YR]) / f.acquisition_lag_T if f.acquisition_lag_T > 0 else 0.0
-    if f.specimen_joint_s > 0 and cell.mass > 0:
+    if f.specimen_joint_s > 0 and cell.mass + cell.damping > 0:
         out[X2] = s[V2]
+    if f.specimen_joint_s > 0 and cell.mass > 0:
         reaction = specimen_reaction(f, cell, s[X2], s[V2], s[ZH])
         out[V2] = (force_on_specimen(f, s) - reaction) / cell.mass
     return seen
@@ -284,7 +289,7 @@ def mode_of(plant, f, cell, s):
 
 
 @njit(nogil=True, cache=True)
-def integrate(  # noqa: PLR0915  the whole story of a step in one place
+def integrate(  # noqa: PLR0912, PLR0915  the whole story of a step in one place
     plant, f, cell, command, rate, substeps, linear_hold, outputs
 ):
     """Displacement as recorded (m), force on the specimen (N) and load pressure (Pa) at the samples, into outputs."""
@@ -305,7 +310,10 @@ def integrate(  # noqa: PLR0915  the whole story of a step in one place
             u0 = command_at(command, start, rate, True) if linear_hold else held_mean(command, start, h, rate)
             slope = 0.0
             if linear_hold:
-                slope = (command_at(command, start + h, rate, True) - u0) / h
+                end = command_at(command, start + h, rate, True)
+                slope = (end - u0) / h
+                if start < 0 <= start + h:  # a delayed record begins, with a jump, inside the sub-step: its mean
+                    u0, slope = 0.5 * (command[0] + end) * (start + h) / h, 0.0
             mode = mode_of(plant, f, cell, s)
             y, v = late(history, t - f.loop_delay_T) if f.loop_delay_T > 0 else (0.0, 0.0)
             seen = derivative(plant, f, cell, u0, slope, y, v, mode, play, s, k[0])

@@ -1,0 +1,69 @@
+"""The models that a diagnosis leaves in question, read from its JSON."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ident.custom import preset_with
+from ident.effects import EFFECTS
+from ident.errors import Unusable
+from ident.presets import Preset
+
+Model = tuple[Preset, dict[str, float]]
+MOST = 3
+NOISE = 0.005
+"""The relative noise floor that stands where a diagnosis could not tell it."""
+
+
+def in_question(diagnosis: Mapping[str, Any]) -> list[Model]:
+    """Presets and their values by the equations' names: what the verdict cannot tell apart, else the best candidates.
+
+    Where no candidate was refitted it is the last rung of the ladder alone. Raises Unusable for JSON of another form.
+    """
+    try:
+        found = _chosen(diagnosis)
+        return [_model(diagnosis, parameters) for parameters in found]
+    except (AttributeError, KeyError, TypeError, IndexError) as error:
+        raise _bad(f"its {error} cannot be read") from None
+
+
+def floor_of(diagnosis: Mapping[str, Any]) -> float:
+    """The relative noise floor of the fit runs."""
+    floor = diagnosis.get("noise_floor")
+    found = floor.get("fit") if isinstance(floor, Mapping) else floor
+    return float(found) if isinstance(found, int | float) and 0 < found < math.inf else NOISE
+
+
+def _chosen(diagnosis: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    refitted = {entry["effect"]: entry["parameters"] for entry in diagnosis["candidates"] if entry["parameters"]}
+    groups: Sequence[Sequence[str]] = diagnosis["verdict"].get("indistinguishable", ())
+    for group in groups:
+        known = [refitted[name] for name in group if name in refitted]
+        if len(known) > 1:
+            return known[:MOST]
+    ladder = [rung["parameters"] for rung in diagnosis.get("ladder", ()) if rung["parameters"]]
+    added = diagnosis["verdict"].get("effects", ())
+    if len(added) > 1 and ladder:  # the verdict goes beyond single candidates
+        return ladder[-1:]
+    return list(refitted.values())[:MOST] or ladder[-1:]
+
+
+def _model(diagnosis: Mapping[str, Any], parameters: Mapping[str, Any]) -> Model:
+    settings = diagnosis.get("settings") or {}
+    name = str(diagnosis.get("model") or settings.get("model") or "qian2014")
+    custom = [*(settings.get("custom") or ()), *(diagnosis.get("custom") or ())]
+    known = [*(effect.name for effect in EFFECTS), *(str(definition.get("name")) for definition in custom)]
+    effects = tuple(e for e in known if any(parameter.startswith(f"{e}.") for parameter in parameters))
+    preset = preset_with(name, effects, custom)
+    values = {preset.parameter(key).name: float(entry["value"]) for key, entry in parameters.items()}
+    missing = [parameter.name for parameter in preset.parameters if parameter.name not in values]
+    if missing or not all(map(math.isfinite, values.values())):
+        raise _bad(f"no value of {missing[0]}" if missing else "a value is not finite")
+    return preset, values
+
+
+def _bad(what: str) -> Unusable:
+    return Unusable("bad-diagnosis", f"not the JSON of a diagnosis: {what}", "diagnosis",
+                    "give the file that `servoident diagnose --json FILE` wrote")  # fmt: skip

@@ -1,0 +1,59 @@
+"""What long work shows on standard error while it runs."""
+
+from __future__ import annotations
+
+import uuid
+
+import pytest
+
+from app.cli.progress import shown
+from ident import compiled
+from ident.progress import Progress
+
+SOURCE = """from numba import njit
+
+@njit(cache=True)
+def doubled(x):  # {mark}
+    return 2 * x
+"""
+
+
+@pytest.fixture
+def new_function(tmp_path, monkeypatch):
+    """Ask for a function that no earlier process has compiled, as a new process would."""
+    monkeypatch.setattr(compiled, "cache_folder", lambda: tmp_path)
+    source = SOURCE.format(mark=uuid.uuid4().hex)
+
+    def ask():
+        compiled.function.cache_clear()
+        return compiled.function("doubled", source)
+
+    yield ask
+    compiled.function.cache_clear()
+
+
+def test_the_first_compilation_is_announced_and_the_next_process_is_spared_it(new_function, capsys):
+    """The line stands before the seconds of waiting; where the machine code is on disk there is none."""
+    with shown() as report:
+        report(Progress("prepare", 0, 1))
+        function = new_function()
+        assert capsys.readouterr().err.splitlines() == ["prepare 0/1", "compiling the simulation (once) 0/1"]
+        assert function(2.0) == 4.0
+        assert new_function()(2.0) == 4.0
+    assert not capsys.readouterr().err
+
+
+def test_several_compilations_in_a_row_are_one_line(new_function, capsys):
+    """As at the first fit of all, with a recursion, a transfer function and a kernel."""
+    with shown():
+        new_function()
+        new_function()
+    assert capsys.readouterr().err.splitlines() == ["compiling the simulation (once) 0/1"]
+
+
+def test_nobody_is_told_after_the_work(new_function, capsys):
+    """The report of a finished command is not kept."""
+    with shown():
+        pass
+    new_function()
+    assert not capsys.readouterr().err

@@ -1,0 +1,124 @@
+"""A user's own effect, written as a small file, finds what the independent reference hides."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from ident.compare import compare
+from ident.custom import definition_of
+from ident.fit.identification import Identification, identify
+from ident.fit.result import FitResult
+from ident.fit.settings import Settings
+from ident.matrix import Actuator, Matrix, Run, Specimen
+from tests.fit.recovery import NOISE, matrix
+from tests.reference import drifting_reference, qian_reference
+
+SECONDS, EVERY = 0.5, 6
+OVERLAP = """
+name: overlap
+place: spool
+equation: w = sign(w) * max(abs(w) - h, 0)
+strength: {symbol: h, unit: mm, lower: 0, upper: 1}
+meaning: the lands overlap
+"""
+CHURNING = """
+name: churning
+place: load
+equation: R + c2 * v * abs(v)
+strength: {symbol: c2, unit: N*s^2/m^2, lower: 0, upper: 5e4}
+meaning: resistance with the square of the speed
+"""
+SAG = """
+name: sag
+place: flow
+equation: Q = Q * (1 - d * z)
+strength: {symbol: d, unit: s/m^3, lower: 0, upper: 1e4}
+shape: {T: 100 ms}
+state: {symbol: z, rate: (abs(Q * (1 - d * z)) - z) / T, initial: 0}
+meaning: the supply follows the flow with a lag
+"""
+RIPPLE = """
+name: ripple
+place: flow
+equation: Q = Q * (1 + rp * sin(2 * pi * fp * t))
+strength: {symbol: rp, unit: "%", lower: 0, upper: 50}
+shape: {fp: 37 Hz}
+meaning: the pump's pulses
+"""
+WARMING = """
+name: warming
+place: flow
+equation: Q = Q * (1 - d * t)
+strength: {symbol: d, unit: 1/min, lower: -60, upper: 60}
+meaning: the gain falls as the oil warms
+"""
+
+
+def drifting(gain, seed: int = 3) -> Matrix:
+    """Some runs of the paper's matrix with a gain that changes with time, 0.5 % noise."""
+    rng = np.random.default_rng(seed)
+    trials = qian_reference.trials()[::EVERY]
+    n = round(SECONDS * qian_reference.SAMPLE_RATE)
+    commands = np.array([qian_reference.band_limited_noise(n, trial.amplitude, rng) for trial in trials])
+    clean = drifting_reference.displacements(qian_reference.Plant(), [t.cell for t in trials], commands, gain)
+    noisy = clean + NOISE * clean.std(axis=1, keepdims=True) * rng.standard_normal(clean.shape)
+    runs = tuple(
+        Run(t.id, "", qian_reference.SAMPLE_RATE, {"command": u, "displacement": x},
+            specimen=Specimen(t.cell.mass, t.cell.stiffness, t.cell.damping), gain=t.cell.gain, kind="blwn", use=t.use)
+        for t, u, x in zip(trials, commands, noisy, strict=True)
+    )  # fmt: skip
+    return Matrix(Actuator("REFERENCE-1", piston_area=qian_reference.Plant().A), runs)
+
+
+def of_catalogue(name: str, strength: float) -> Matrix:
+    return matrix(name, strength, seed=5, seconds=SECONDS, every=EVERY)
+
+
+HIDDEN = {
+    "overlap": (OVERLAP, "h", 2e-4, lambda: of_catalogue("dead_zone", 2e-4)),
+    "churning": (CHURNING, "c2", 2e4, lambda: of_catalogue("quadratic_damping", 2e4)),
+    "sag": (SAG, "d", 3e3, lambda: of_catalogue("supply_droop", 3e3)),
+    "ripple": (RIPPLE, "rp", 0.1, lambda: drifting(lambda t: 1 + 0.1 * np.sin(2 * np.pi * 37 * t))),
+    "warming": (WARMING, "d", 0.4, lambda: drifting(lambda t: 1 - 0.4 * t)),
+}
+
+
+def settings(text: str) -> Settings:
+    own = definition_of(text)
+    return Settings(effects=(own["name"],), custom=(own,), seed=4)
+
+
+@pytest.fixture(scope="module")
+def overlap() -> tuple[Matrix, FitResult]:
+    """The dead zone's data and the fit of the user's overlap to it."""
+    data = HIDDEN["overlap"][3]()
+    return data, identify(data, settings(OVERLAP))
+
+
+@pytest.mark.parametrize("name", HIDDEN)
+def test_an_own_effect_finds_its_strength(name, overlap):
+    """Within 5 %, the error at the floor: a dead zone, quadratic damping, a supply with a state, ripple, drift."""
+    text, symbol, truth, data = HIDDEN[name]
+    found = overlap[1] if name == "overlap" else identify(data(), settings(text))
+    assert found.values[f"{name}.{symbol}"] == pytest.approx(truth, rel=0.05)
+    assert found.error["fit"] < 1.05 * NOISE
+
+
+def test_a_fit_with_an_own_effect_goes_on_after_a_restart(overlap):
+    """Settings and state through JSON, each generation in a new process: the same parameters, bit for bit."""
+    data, whole = overlap
+    kept = Settings.from_json(json.loads(json.dumps(settings(OVERLAP).to_json())))
+    state = Identification(data, kept).start()
+    while not Identification(data, kept).finished(state):
+        state = json.loads(json.dumps(Identification(data, kept).advance(state, 20)))
+    assert Identification(data, kept).finish(state).values == whole.values
+
+
+def test_a_stored_fit_knows_its_own_effect(overlap):
+    """The JSON of a fit alone is enough to compare it with the data."""
+    data, found = overlap
+    again = compare(data, FitResult.from_json(json.loads(json.dumps(found.to_json()))))
+    assert again.error["fit"] == pytest.approx(found.error["fit"], rel=1e-6)

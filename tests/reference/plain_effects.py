@@ -1,0 +1,221 @@
+"""The effects from controller to pressure as changes of the plain machine, written from the physics.
+
+The parameters have the letters of the catalogue, in `self.p`.
+"""
+
+# ruff: noqa: ARG002 - what one machine does not read of time and state, another one does
+
+from __future__ import annotations
+
+from math import copysign, sqrt
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tests.reference.plain_machine import Machine, Samples, State, Switch
+from tests.reference.qian_reference import Cell, Plant
+
+
+def sgn(value: float) -> float:
+    return float(value > 0) - float(value < 0)
+
+
+def clip(value: float, low: float, high: float) -> float:
+    return min(max(value, low), high)
+
+
+# Controller --------------------------------------------------------------------------------------------------------
+
+
+class CommandDelay(Machine):
+    def late(self) -> float:
+        return self.p.T
+
+    def breaks(self, samples: Samples) -> Samples:
+        return np.concatenate([samples, samples + self.p.T])
+
+
+class CommandLimit(Machine):
+    def drive(self, t: float, s: State) -> float:
+        return clip(super().drive(t, s), -1 / self.p.a, 1 / self.p.a)
+
+
+class IntegralAction(Machine):
+    own = (1e-5,)
+
+    def drive(self, t: float, s: State) -> float:
+        return super().drive(t, s) + self.cell.gain * self.p.Ki * s[4]
+
+    def own_rates(self, t: float, s: State) -> list[float]:
+        return [self.u(t) - s[3]]
+
+
+class Lead(Machine):
+    def drive(self, t: float, s: State) -> float:
+        return super().drive(t, s) + self.cell.gain * self.p.Td * (self.slope - s[2])
+
+    def jump(self, s: NDArray[np.float64], step: float) -> None:
+        s[0] += self.cell.gain * self.p.Td * step / self.plant.tau
+
+
+class PressureFeedback(Machine):
+    def drive(self, t: float, s: State) -> float:
+        return super().drive(t, s) - self.p.kd * s[1]
+
+
+class LoopDelay(Machine):
+    """Method of steps: no piece is longer than the delay, so that what it needs is already known."""
+
+    def __init__(self, plant: Plant, cell: Cell, values: dict[str, float]) -> None:
+        super().__init__(plant, cell, values)
+        self.past: list[Any] = []
+
+    def breaks(self, samples: Samples) -> Samples:
+        return np.concatenate([samples, samples + self.p.T])
+
+    def remember(self, found: Any) -> None:
+        self.past = [*self.past[-3:], found]
+
+    def drive(self, t: float, s: State) -> float:
+        then = t - self.p.T
+        known = next((past for past in reversed(self.past) if past.t_min <= then), None)
+        return self.cell.gain * (self.u(t) - (0.0 if known is None else float(known(then)[3])))
+
+
+# Valve -------------------------------------------------------------------------------------------------------------
+
+
+class ValveSecondOrder(Machine):
+    own = (1e-2, 10.0)
+
+    def opening(self, s: State) -> float:
+        return s[4]
+
+    def own_rates(self, t: float, s: State) -> list[float]:
+        return [s[5], (s[0] - s[4] - 2 * self.p.zeta * self.p.Tn * s[5]) / self.p.Tn**2]
+
+
+class ValveRateLimit(Machine):
+    def valve(self, t: float, s: State) -> float:
+        wanted = super().valve(t, s)
+        return wanted / sqrt(1 + (self.p.a * wanted) ** 2)
+
+
+class SpoolStiction(Machine):
+    """Modes: 0 stands, ±1 moves, ±2 is dragged along at the edge of the threshold where e moves slower than s/tau."""
+
+    longest = 1e-4
+
+    def gap(self, t: float, s: State) -> float:
+        return self.drive(t, s) - s[0]
+
+    def pull(self, s: State) -> float:
+        return self.cell.gain * (self.slope - s[2])  # e'
+
+    def valve(self, t: float, s: State) -> float:
+        if abs(self.mode) == 2:
+            return self.pull(s)
+        return self.gap(t, s) / self.plant.tau if self.mode else 0.0
+
+    def settle(self, t: float, s: NDArray[np.float64]) -> None:
+        gap = self.gap(t, s)
+        side, beyond = int(copysign(1, gap)), abs(gap) / self.p.s - 1
+        if abs(beyond) > 1e-7:
+            self.mode = side if beyond > 0 else 0
+        else:
+            speed = side * self.pull(s) * self.plant.tau / self.p.s
+            self.mode = side if speed > 1 - 1e-9 else (2 * side if speed > 1e-9 else 0)
+
+    def switches(self) -> list[Switch]:
+        side = copysign(1, self.mode)
+        if abs(self.mode) == 2:
+            return [(lambda _, s: side * self.pull(s), -1),
+                    (lambda _, s: side * self.pull(s) - self.p.s / self.plant.tau, 1)]  # fmt: skip
+        if self.mode:
+            return [(lambda t, s: side * self.gap(t, s) - self.p.s, -1)]
+        return [(lambda t, s: self.gap(t, s) - self.p.s, 1), (lambda t, s: self.gap(t, s) + self.p.s, -1)]
+
+
+# Spool -------------------------------------------------------------------------------------------------------------
+
+
+class Backlash(Machine):
+    """Modes: ±1 one side pushes, 0 inside the play; its own state is the part behind the play."""
+
+    own = (1e-2,)
+    longest = 1e-4
+
+    def opening(self, s: State) -> float:
+        return s[4]
+
+    def own_rates(self, t: float, s: State) -> list[float]:
+        return [self.valve(t, s) if self.mode else 0.0]
+
+    def settle(self, t: float, s: NDArray[np.float64]) -> None:
+        side = int(copysign(1, s[0] - s[4]))
+        touches = side * (s[0] - s[4]) > self.p.b * (1 - 1e-7)
+        self.mode = side if touches and side * self.valve(t, s) > 1e-9 else 0
+
+    def switches(self) -> list[Switch]:
+        if self.mode:
+            return [(self.valve, -self.mode)]
+        return [(lambda _, s: s[0] - s[4] - self.p.b, 1), (lambda _, s: s[0] - s[4] + self.p.b, -1)]
+
+
+class NullBias(Machine):
+    def opening(self, s: State) -> float:
+        return s[0] + self.p.b
+
+
+class DeadZone(Machine):
+    def opening(self, s: State) -> float:
+        return s[0] - clip(s[0], -self.p.h * (1 - self.p.a), self.p.h * (1 + self.p.a))
+
+
+class Underlap(Machine):
+    def opening(self, s: State) -> float:
+        return s[0] + clip(s[0], -self.p.h, self.p.h)
+
+
+class GainAsymmetry(Machine):
+    def opening(self, s: State) -> float:
+        return s[0] * (1 + self.p.a * sgn(s[0]))
+
+
+class FlowSaturation(Machine):
+    def opening(self, s: State) -> float:
+        return s[0] / sqrt(1 + (self.p.a * s[0]) ** 2)
+
+
+# Flow and pressure -------------------------------------------------------------------------------------------------
+
+
+class PressureFlow(Machine):
+    def flow(self, w: float, s: State) -> float:
+        return super().flow(w, s) * sqrt(max(0.0, 1 - sgn(w) * s[1] * self.p.r))
+
+
+class SupplyDroop(Machine):
+    own = (1e-5,)
+
+    def flow(self, w: float, s: State) -> float:
+        return super().flow(w, s) * (1 - self.p.d * s[4])
+
+    def own_rates(self, t: float, s: State) -> list[float]:
+        return [(abs(self.flow(self.opening(s), s)) - s[4]) / self.p.T]
+
+
+class OrificeLeakage(Machine):
+    def leak(self, P: float) -> float:
+        return super().leak(P) + self.p.C * P / sqrt(sqrt(P**2 + self.p.P0**2))
+
+
+class EntrainedAir(Machine):
+    def softness(self, s: State) -> float:
+        return self.plant.Ka * (1 + self.p.alpha / (1 + (s[1] / self.p.Pr) ** 2))
+
+
+class StrokeDependentVolume(Machine):
+    def softness(self, s: State) -> float:
+        return self.plant.Ka * (1 - self.p.kappa * s[3] ** 2)

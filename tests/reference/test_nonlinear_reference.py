@@ -1,0 +1,176 @@
+"""The reference with every effect is independent of the program, and exact enough to judge it."""
+
+from __future__ import annotations
+
+import ast
+import sys
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from ident.effects import EFFECTS
+from tests.reference import nonlinear_reference as reference
+from tests.reference import plain_effects, plain_loads, plain_machine
+from tests.reference import qian_reference as linear
+
+PLANT = linear.Plant()
+RATE = 512.0  # Hz: few kinks of the command, so that the adaptive integrator is quick; the reference's step is its own
+STEPS = round(reference.SUBSTEPS * linear.SAMPLE_RATE / RATE)  # sub-steps a sample: 1/65536 s, as everywhere
+SAMPLES, LONG = 60, 512
+RUNS = ((linear.Cell(0.98, 67.6e3, 150.0, 7.0), "linear"), (linear.Cell(0.0, 36.3e3, 300.0, 10.0), "zoh"))
+
+
+class Kind(NamedTuple):
+    """How exact the reference is, of each output's standard deviation, and by how much a step of a quarter is better.
+
+    Kutta's third order gives 64 where the equations are smooth; kinks cost an order, jumps of a rate two. Below a
+    hundredth of the error the place of a kink inside its step decides.
+    """
+
+    error: float
+    gain: float
+
+
+SMOOTH, KINKS, STICKS, CHATTERS = Kind(1e-7, 40), Kind(5e-6, 6), Kind(5e-5, 5), Kind(1e-3, 2)
+
+
+class Case(NamedTuple):
+    """Values of an effect's parameters in the two runs, what kind it is, and the RMS of the command (m)."""
+
+    values: dict[str, tuple[float, float]]
+    kind: Kind = SMOOTH
+    rms: float = 1.27e-3
+
+
+CASES = {
+    "command_delay": Case({"T": (1.7e-3, 3e-3)}, KINKS),
+    "command_limit": Case({"a": (150, 150)}, KINKS),
+    "integral_action": Case({"Ki": (30, 30)}),
+    "lead": Case({"Td": (2e-3, 2e-3)}),
+    "pressure_feedback": Case({"kd": (5e-10, 5e-10)}),
+    "loop_delay": Case({"T": (1.2e-3, 2.1e-3)}),
+    "valve_second_order": Case({"Tn": (1.5e-3, 1.5e-3), "zeta": (0.7, 0.4)}),
+    "valve_rate_limit": Case({"a": (0.5, 0.5)}),
+    "spool_stiction": Case({"s": (3e-4, 3e-4)}, CHATTERS, 1e-4),
+    "backlash": Case({"b": (5e-4, 5e-4)}, KINKS),
+    "null_bias": Case({"b": (1e-3, -1e-3)}),
+    "dead_zone": Case({"h": (5e-4, 5e-4), "a": (0.0, 0.4)}, KINKS),
+    "underlap": Case({"h": (5e-4, 5e-4)}, KINKS),
+    "gain_asymmetry": Case({"a": (0.2, -0.2)}, KINKS),
+    "flow_saturation": Case({"a": (150, 150)}),
+    "pressure_flow": Case({"r": (3e-7, 3e-7)}, KINKS),
+    "supply_droop": Case({"d": (5e3, 5e3), "T": (0.1, 0.02)}, KINKS),
+    "orifice_leakage": Case({"C": (5e-9, 5e-9), "P0": (5e4, 3e5)}),
+    "entrained_air": Case({"alpha": (2, 2), "Pr": (2e6, 5e5)}),
+    "stroke_dependent_volume": Case({"kappa": (2e4, 2e4)}),
+    "coulomb_friction": Case({"Fc": (80, 80)}, STICKS),
+    "stribeck_friction": Case({"dF": (80, 80), "vs": (5e-3, 2e-2)}, STICKS, 4e-4),
+    "presliding_friction": Case({"Fd": (100, 100), "xs": (1e-5, 1e-4)}, KINKS),
+    "quadratic_damping": Case({"c2": (1e4, 1e4)}, KINKS),
+    "cubic_stiffness": Case({"k3": (5e10, -2e10)}),
+    "specimen_hysteresis": Case({"fy": (200, 200), "xy": (5e-4, 2e-4), "n": (1, 2)}, KINKS),
+    "specimen_free_play": Case({"g": (5e-4, 5e-4)}, KINKS),
+    "specimen_joint": Case({"s": (1e-5, 5e-6)}),
+    "frame_compliance": Case({"s": (5e-7, 5e-7)}),
+    "static_load": Case({"F0": (200, -200)}),
+    "sensor_lag": Case({"T": (1.5e-3, 1.5e-3)}),
+    "acquisition_lag": Case({"T": (1.5e-3, 1.5e-3)}),
+    "sensor_gain": Case({"g": (0.05, -0.05)}),
+}
+
+
+@pytest.mark.parametrize(
+    "module", [reference, plain_machine, plain_effects, plain_loads], ids=lambda m: m.__name__.split(".")[-1]
+)
+def test_the_references_import_nothing_of_the_program(module):
+    """Neither the reference nor its judge; beside numpy, numba and scipy only each other and the linear reference."""
+    tree = ast.parse(Path(module.__file__).read_text(encoding="utf-8"))
+    imported = {alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
+    imported |= {node.module or "." for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+    known = {"numpy", "numba", "scipy", *sys.stdlib_module_names}
+    beside = {name for name in imported if name.split(".")[0] not in known}
+    own = {"tests.reference", "tests.reference.qian_reference"}
+    if module is not reference:
+        own |= {"tests.reference.plain_machine", "tests.reference.plain_effects"}
+    assert beside <= own
+    names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    assert not names & {"__import__", "exec", "eval", "importlib"}
+
+
+@pytest.mark.parametrize("hold", ["linear", "zoh"])
+@pytest.mark.parametrize("number", [0, 40, 83])
+def test_without_effects_it_is_the_linear_reference(number, hold):
+    """Two integrators of different order, 2e-8 of the displacement's standard deviation apart."""
+    trial = linear.trials(damping=100.0)[number]
+    command = linear.band_limited_noise(1024, trial.amplitude, np.random.default_rng(number))
+    wanted = linear.simulate(PLANT, trial.cell, command, hold)
+    got = reference.respond(PLANT, reference.effects(), trial.cell, command, hold).displacement
+    assert np.max(np.abs(got - wanted)) < 2e-8 * np.std(wanted)
+
+
+def test_every_effect_and_parameter_has_a_case():
+    """The catalogue's names and letters, each with values that are not its off value."""
+    assert {e.name: {p.symbol for p in e.parameters} for e in EFFECTS} == {
+        name: set(case.values) for name, case in CASES.items()
+    }
+    assert all(next(iter(case.values.values()))[run] != 0 for case in CASES.values() for run in (0, 1))
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_each_effect_agrees_with_an_adaptive_integrator(name, full):
+    """Displacement, force and pressure against SciPy's DOP853 and the equations written a second time.
+
+    With a quarter of the step the reference comes closer by what its order promises: both go to the same limit.
+    """
+    kind, samples = CASES[name].kind, LONG if full else SAMPLES
+    for run in (0, 1):
+        wanted = adaptive(name, run, samples)
+        usual, fine = (miss(fixed(name, run, samples, steps), wanted) for steps in (STEPS, 4 * STEPS))
+        assert usual < kind.error
+        assert fine < max(usual / kind.gain, kind.error / 100)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_agreement_is_not_blind(name):
+    """With the strength 2 % off, it is missed by more than the tolerance in at least one of the outputs."""
+    strength, case = next(iter(CASES[name].values)), CASES[name]
+    off = {letter: (1.02 if letter == strength else 1.0) for letter in case.values}
+    assert max(miss(fixed(name, run, SAMPLES, STEPS, off), adaptive(name, run, SAMPLES)) for run in (0, 1)) > (
+        2 * case.kind.error
+    )
+
+
+def miss(got: np.ndarray, wanted: np.ndarray) -> float:
+    """The largest of the three outputs' deviations, each over its own standard deviation."""
+    return float(np.max(np.std(got - wanted, axis=1) / np.std(wanted, axis=1)))
+
+
+def command(name: str, run: int, samples: int) -> np.ndarray:
+    """The paper's noise at every eighth sample."""
+    every = round(linear.SAMPLE_RATE / RATE)
+    noise = linear.band_limited_noise(every * samples, CASES[name].rms, np.random.default_rng([7, run]))
+    return noise[::every].copy()
+
+
+def fixed(name: str, run: int, samples: int, steps: int, factors: dict[str, float] | None = None) -> np.ndarray:
+    """The reference's outputs, (3, n)."""
+    cell, hold = RUNS[run]
+    values = {
+        f"{name}.{letter}": float(pair[run]) * (factors or {}).get(letter, 1.0)  # an integer would be compiled anew
+        for letter, pair in CASES[name].values.items()
+    }
+    hidden = reference.named(values)
+    return np.array(reference.respond(PLANT, hidden, cell, command(name, run, samples), hold, RATE, steps))
+
+
+@cache
+def adaptive(name: str, run: int, samples: int) -> np.ndarray:
+    """The plain machine's outputs, (3, n)."""
+    cell, hold = RUNS[run]
+    known = vars(plain_effects) | vars(plain_loads)
+    machine = known["".join(part.title() for part in name.split("_"))]
+    values = {letter: float(pair[run]) for letter, pair in CASES[name].values.items()}
+    return plain_machine.respond(machine(PLANT, cell, values), command(name, run, samples), RATE, hold)

@@ -1,0 +1,167 @@
+"""The proposed run tells models apart that the runs there are confuse; and it is one that a lab can make."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+import scipy.io
+
+from ident.contender import Contender
+from ident.experiment import Experiment
+from ident.fit.identification import identify
+from ident.fit.output_error import OutputError
+from ident.fit.polish import polish
+from ident.fit.settings import Settings
+from ident.fit.space import search_space
+from ident.in_question import floor_of, in_question
+from ident.matrix import Matrix, Run
+from ident.next_experiment import propose, ranked
+from ident.possible_runs import possible_runs
+from ident.presets import Preset, preset
+from ident.spectra import excited_band
+from tests.fit.recovery import NOISE, matrix
+from tests.reference import nonlinear_reference as reference
+from tests.reference import qian_reference as linear
+
+FRICTION = 1.5  # N, of which two runs at the largest amplitude show next to nothing
+
+
+@cache
+def confused() -> tuple[Matrix, list[tuple[Preset, dict[str, float]]]]:
+    """Two runs of a machine with dry friction, and the fits with friction and with a dead zone."""
+    whole = matrix("coulomb_friction", FRICTION, seed=5, seconds=0.5)
+    few = replace(whole, runs=(whole.runs[2], whole.runs[8]))
+    models = []
+    for name in ("coulomb_friction", "dead_zone"):
+        found, model = identify(few, Settings(effects=(name,), seed=1)), preset("qian2014", (name,))
+        assert found.error["fit"] < 1.05 * NOISE
+        models.append((model, {model.parameter(key).name: value for key, value in found.values.items()}))
+    return few, models
+
+
+def recorded(experiment: Experiment, seed: int) -> Run:
+    """What the machine with the friction does in a run, by the independent reference."""
+    s, u = experiment.specimen, experiment.command()
+    cell = linear.Cell(s.mass, s.stiffness, s.damping, experiment.gain)
+    x = reference.respond(linear.Plant(), reference.named({"coulomb_friction.Fc": FRICTION}), cell, u).displacement
+    x = x + NOISE * x.std() * np.random.default_rng(seed).standard_normal(len(x))
+    return Run(f"new-{seed}", "", experiment.sample_rate, {"command": u, "displacement": x}, specimen=s,
+               gain=experiment.gain, kind="other")  # fmt: skip
+
+
+@cache
+def apart(*added: Run) -> float:
+    """χ² by which the wrong model fits worse than the right one with these runs added, both refitted."""
+    few, models = confused()
+    more = replace(few, runs=(*few.runs, *added))
+    left = []
+    for model, values in models:
+        space = search_space(model, more, Settings(), excited_band(more.runs))
+        fitness = OutputError(model, more, more.runs, space, 500.0)
+        _, here = polish(fitness.exact, space.point(values), lambda _count, _error: None, fitness.accept, 1e-6)
+        left.append(
+            sum(m.gram[-1, -1] / (NOISE * r.measured.std()) ** 2 for m, r in zip(here.runs, more.runs, strict=True))
+        )
+    return left[1] - left[0]
+
+
+def separation(experiment: Experiment, seed: int) -> float:
+    """What a run of the reference adds to that, in standard deviations."""
+    return float(np.sqrt(max(apart(recorded(experiment, seed)) - apart(), 0.0)))
+
+
+def test_the_proposed_run_separates_confused_models():
+    """Friction and dead zone after two runs: the proposal tells them apart, three times better than the median run."""
+    few, models = confused()
+    proposal, everything = propose(models, few, NOISE), ranked(models, few, NOISE)
+    others = [worth.experiment for worth in everything[5 :: len(everything) // 5]]
+    typical = float(np.median([separation(other, 10 + i) for i, other in enumerate(others)]))
+    found = separation(proposal, 1)
+    assert proposal.so_far < 4 < proposal.separation
+    assert found > 3 * max(typical, 1.0)
+    assert found == pytest.approx(proposal.separation, rel=0.5)
+    assert "coulomb_friction and dead_zone" in proposal.text
+
+
+def test_the_proposal_is_the_same_again_and_fits_the_bench():
+    """Specimen and gain of the matrix, amplitude at most 1.5 times its largest, the command as promised."""
+    few, models = confused()
+    proposal = propose(models, few, NOISE, seed=7)
+    assert proposal == propose(models, few, NOISE, seed=7)
+    assert proposal.specimen in {run.specimen for run in few.runs}
+    assert 5 <= proposal.gain <= 10
+    largest = max(np.sqrt(np.mean(run.command**2)) for run in few.runs)
+    assert proposal.amplitude <= 1.51 * largest
+    command = proposal.command()
+    assert np.sqrt(np.mean(command**2)) == pytest.approx(proposal.amplitude)
+    assert command[0] == command[-1] == 0
+    assert np.array_equal(command, proposal.command())
+
+
+def test_no_command_leaves_the_stroke():
+    """A short stroke takes the large amplitudes away."""
+    few, _ = confused()
+    short = replace(few, actuator=replace(few.actuator, stroke=0.01))
+    peaks = [np.abs(e.command()).max() for e in possible_runs(short, 500.0)]
+    free = [np.abs(e.command()).max() for e in possible_runs(few, 500.0)]
+    assert peaks
+    assert max(peaks) <= 0.0045 < max(free)
+
+
+def test_with_one_model_the_run_teaches_the_parameters():
+    """Fisher information: the promised share of the standard errors is left when the run is added."""
+    few, models = confused()
+    (model, values), proposal = models[0], propose(models[:1], few, NOISE)
+    assert proposal.separation is None
+    assert proposal.information == pytest.approx(max(w.information for w in ranked(models[:1], few, NOISE)))
+    more = replace(few, runs=(*few.runs, recorded(proposal, 3)))
+    before, after = (
+        np.sqrt(np.diag(np.linalg.inv(Contender(model, values, data, 500.0, lambda size: NOISE * size).information)))
+        for data in (few, more)
+    )
+    promised = np.array(list(proposal.std_errors.values()))
+    assert after / before == pytest.approx(promised, abs=0.1)
+    assert promised.min() < 0.8
+
+
+@pytest.fixture(scope="module")
+def diagnosis() -> dict:
+    """The JSON of a diagnosis that cannot tell the two apart, as far as it is read."""
+    _, models = confused()
+    candidates_ = [
+        {"effect": model.effects[0].name,
+         "parameters": {name.replace("__", "."): {"value": value} for name, value in values.items()}}
+        for model, values in models
+    ]  # fmt: skip
+    group = [entry["effect"] for entry in candidates_]
+    return {"model": "qian2014", "noise_floor": {"fit": NOISE, "verify": None}, "candidates": candidates_,
+            "ladder": [], "verdict": {"effects": [], "indistinguishable": [group]}}  # fmt: skip
+
+
+def test_a_diagnosis_says_what_is_in_question(diagnosis):
+    """The group that it cannot tell apart, with its values; its noise floor."""
+    again = in_question(json.loads(json.dumps(diagnosis)))
+    _, models = confused()
+    assert [(m.effects, v) for m, v in again] == [(m.effects, v) for m, v in models]
+    assert floor_of(diagnosis) == NOISE
+
+
+def test_the_command_writes_the_signals(servoident, diagnosis, tmp_path):
+    """CSV and MAT hold the same command; a file that is no diagnosis is refused."""
+    (tmp_path / "d.json").write_text(json.dumps(diagnosis))
+    few = linear.write(tmp_path / "matrix", linear.measure_all(linear.Plant(), linear.trials()[2:9:6], seconds=0.5,
+                       noise=NOISE, seed=1), "linear", linear.Plant())  # fmt: skip
+    done = servoident("next", few, "--diagnosis", tmp_path / "d.json", "--out", tmp_path / "out", "--json", "-")
+    assert done.returncode == 0, done.stderr
+    told = json.loads(done.stdout)
+    rows = np.loadtxt(tmp_path / "out" / "command.csv", delimiter=",", skiprows=1)
+    mat = scipy.io.loadmat(tmp_path / "out" / "command.mat")
+    assert np.allclose(rows[:, 1], mat["command"][:, 0], atol=1e-9)
+    assert 1e-3 * np.sqrt(np.mean(rows[:, 1] ** 2)) == pytest.approx(told["amplitude"], rel=1e-6)
+    (tmp_path / "d.json").write_text('{"candidates": [1]}')
+    refused = servoident("next", few, "--diagnosis", tmp_path / "d.json", "--out", tmp_path / "out")
+    assert (refused.returncode, "not the JSON of a diagnosis" in refused.stderr) == (2, True)
