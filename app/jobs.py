@@ -1,4 +1,4 @@
-"""The job queue: fits as durable workflows that go on where they were when the process was killed.
+"""The job queue: durable workflows that go on where they were when the process was killed.
 
 The engine keeps the outcome of every step; after a restart finished steps are not run again. Its store holds JSON.
 """
@@ -22,18 +22,18 @@ State = dict[str, Any]
 
 
 class Work(Protocol):
-    """A fit cut into steps; each returns {"outcome": None or how it ended, "state": ...}."""
+    """A job cut into steps; each returns {"outcome": None or how it ended, "state": ...}."""
 
     def begin(self, job: str) -> State:
-        """Start the search."""
+        """Start; the state says whether it is `done` but for the finish."""
         ...
 
     def advance(self, job: str, state: State) -> State:
-        """A block of generations."""
+        """A block of the search."""
         ...
 
     def finish(self, job: str, state: State) -> State:
-        """Polish and uncertainty."""
+        """All that follows the search; the state is the result."""
         ...
 
     def store(self, job: str, last: State) -> None:

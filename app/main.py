@@ -15,11 +15,14 @@ from app.actuators.endpoints import router as actuators
 from app.catalogue.endpoints import router as catalogue
 from app.context import Context
 from app.database import connect, migrate, sessions
+from app.diagnoses.endpoints import router as diagnoses
+from app.diagnoses.work import DiagnosisWork
+from app.dispatch import FIT, Dispatch
 from app.fits.endpoints import router as fits
 from app.fits.job_endpoints import router as jobs
 from app.fits.service import resume
 from app.fits.work import FitWork
-from app.jobs import Jobs
+from app.jobs import Jobs, Work
 from app.matrices.endpoints import router as matrices
 from app.operation.endpoints import router as operation
 from app.pages import router as pages
@@ -49,7 +52,7 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.context = make_context(settings)
     errors.install(app)
     api = APIRouter(prefix=API)
-    for router in (matrices, actuators, fits, jobs, report, parameters, catalogue, operation):
+    for router in (matrices, actuators, fits, diagnoses, jobs, report, parameters, catalogue, operation):
         api.include_router(router)
     app.include_router(api)
     app.include_router(pages)
@@ -74,7 +77,8 @@ def make_context(settings: Settings) -> Context:
     migrate(settings.database)
     engine = connect(settings.database)
     makers, storage = sessions(engine), Storage(settings.data / "blobs")
-    return Context(settings, engine, makers, storage, Jobs(settings, FitWork(makers, storage)))
+    works: dict[str, Work] = {FIT: FitWork(makers, storage), "diagnosis": DiagnosisWork(makers, storage)}
+    return Context(settings, engine, makers, storage, Jobs(settings, Dispatch(makers, works)))
 
 
 def run(settings: Settings) -> None:

@@ -44,14 +44,17 @@ class MatrixRow(Base):
 
 
 class JobRow(Base):
-    """A job and where it is. `sequence` counts the changes of its state, for readers of its events."""
+    """A job and where it is. `parent` is the fit that it starts from, if any.
+
+    `sequence` counts the changes of its state, for readers of its events.
+    """
 
     __tablename__ = "jobs"
     id: Mapped[str] = mapped_column(String(64), primary_key=True)
     kind: Mapped[str] = mapped_column(String(20), default="fit")
     state: Mapped[str] = mapped_column(String(20), default="queued", index=True)
     matrix: Mapped[str] = mapped_column(ForeignKey("matrices.id"), index=True)
-    parent: Mapped[str | None] = mapped_column(String(64))
+    parent: Mapped[str | None] = mapped_column(String(64), index=True)
     settings: Mapped[dict[str, Any]]
     progress: Mapped[dict[str, Any]] = mapped_column(default=dict)
     sequence: Mapped[int] = mapped_column(Integer, default=0)
@@ -90,6 +93,18 @@ class ValueRow(Base):
     value: Mapped[float] = mapped_column(Float)
     unit: Mapped[str] = mapped_column(String(60))
     std_error: Mapped[float | None] = mapped_column(Float)
+
+
+class DiagnosisRow(Base):
+    """What is missing from a fit. Its id is that of the job that made it."""
+
+    __tablename__ = "diagnoses"
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    matrix: Mapped[str] = mapped_column(ForeignKey("matrices.id"))
+    serial: Mapped[str] = mapped_column(ForeignKey("actuators.serial"))
+    fit: Mapped[str] = mapped_column(ForeignKey("fits.id"), index=True)
+    created_at: Mapped[str] = mapped_column(String(40), default=now, index=True)
+    result: Mapped[dict[str, Any]]
 
 
 class AnswerRow(Base):

@@ -7,14 +7,13 @@ from pydantic import BaseModel, ConfigDict, Field
 Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 
 
-class FitRequest(BaseModel):
-    """A fit to be queued; `bounds` and `set` may carry units ("1 ms"), plain numbers are SI.
+class Chosen(BaseModel):
+    """What may be chosen about a fit; `bounds` and `set` may carry units ("1 ms"), plain numbers are SI.
 
     `custom` adds effects of one's own: definitions as `POST /custom-effects` takes them.
     """
 
     model_config = ConfigDict(extra="forbid")
-    matrix: str
     model: str = "qian2014"
     effects: list[str] = Field(default_factory=list, max_length=50)
     custom: list[dict[str, Any] | str] = Field(default_factory=list, max_length=10)
@@ -24,7 +23,21 @@ class FitRequest(BaseModel):
     set: dict[str, Finite | str] = Field(default_factory=dict)
     options: dict[str, Finite] = Field(default_factory=dict)
     load: str = "none"
+
+
+class FitRequest(Chosen):
+    """A fit to be queued."""
+
+    matrix: str
     parent: str | None = None
+
+
+class EffectsRequest(BaseModel):
+    """Effects to add to a fit: one by `effect`, or some by `effects`."""
+
+    model_config = ConfigDict(extra="forbid")
+    effect: str | None = None
+    effects: list[str] = Field(default_factory=list, max_length=50)
 
 
 class ProgressView(BaseModel):
@@ -37,7 +50,10 @@ class ProgressView(BaseModel):
 
 
 class JobView(BaseModel):
-    """A queued, running or ended job; `fit` is the result's id, `problem` says why it failed."""
+    """A queued, running or ended job; `parent` is the fit that it starts from, `problem` says why it failed.
+
+    `fit` and `diagnosis` are the ids of what it made.
+    """
 
     id: str
     kind: str
@@ -46,7 +62,9 @@ class JobView(BaseModel):
     serial: str
     settings: dict[str, Any]
     progress: ProgressView
+    parent: str | None
     fit: str | None
+    diagnosis: str | None
     problem: dict[str, Any] | None
     created_at: str
     ended_at: str | None
@@ -70,6 +88,30 @@ class FitView(BaseModel):
     approved_at: str | None
     current: bool
     result: dict[str, Any]
+
+
+class LadderRung(BaseModel):
+    """A fit on the way to another: the effects that it added to its parent, and what they made of the error."""
+
+    fit: str
+    parent: str | None
+    matrix: str
+    added: list[str]
+    error: dict[str, float | None]
+    parameters: dict[str, dict[str, Any]]
+    seed: int
+    version: str
+    data_hash: str
+    created_at: str
+    approved_at: str | None
+    current: bool
+
+
+class LadderView(BaseModel):
+    """The chain of parents of a fit, the first one first. Every fit on it is still there and can be approved."""
+
+    fit: str
+    rungs: list[LadderRung]
 
 
 class FitPage(BaseModel):

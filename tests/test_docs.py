@@ -32,8 +32,8 @@ def test_the_reference_pages_are_what_the_program_says(name):
 def test_every_command_of_the_contract_is_documented():
     """The names that scripts rely on are on the page of the command line."""
     promised = (
-        "simulate check fit compare next bench report serve worker demo token migrate regress upload approve query "
-        "revise"
+        "simulate check fit compare diagnose next bench report serve worker demo token migrate regress upload approve "
+        "query revise"
     )
     for command in promised.split():
         assert f"## servoident {command}" in PAGES["cli.md"], command

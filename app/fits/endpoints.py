@@ -6,9 +6,9 @@ from fastapi import APIRouter, Request, Response
 
 from app.context import Here
 from app.errors import COMMON
-from app.fits import service
+from app.fits import lineage, service
 from app.idempotency import Key, fingerprint, once
-from schemas.fit import ComparisonView, FitRequest, FitView, JobView
+from schemas.fit import ComparisonView, EffectsRequest, FitRequest, FitView, JobView, LadderView
 
 router = APIRouter(prefix="/fits", tags=["fits"], responses=COMMON)
 _MEDIA = ("application/json", "image/svg+xml", "image/png", "application/pdf")
@@ -44,6 +44,23 @@ def approve(here: Here, fit: str, key: Key = None) -> Response:
     return once(
         here.sessions, key, fingerprint("approve", fit), lambda: (200, service.approve(here, fit).model_dump(), "")
     )
+
+
+@router.post("/{fit}/effects", status_code=202, response_model=JobView)
+def add_effects(here: Here, fit: str, request: EffectsRequest, key: Key = None) -> Response:
+    """Add effects to a fit and fit again with the same settings: a new fit whose parent is this one."""
+
+    def act() -> tuple[int, dict[str, object], str]:
+        job = lineage.add(here, fit, request)
+        return 202, job.model_dump(), f"/api/v1/jobs/{job.id}"
+
+    return once(here.sessions, key, fingerprint("effects", fit, request.model_dump()), act)
+
+
+@router.get("/{fit}/ladder")
+def ladder(here: Here, fit: str) -> LadderView:
+    """The fits that this one comes from, the first one first; each can still be approved."""
+    return lineage.ladder(here, fit)
 
 
 @router.get("/{fit}/figures/{name}.{kind}", response_class=Response, responses={200: {"content": _IMAGES}})

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from sqlalchemy import Select, select, tuple_, update
+from sqlalchemy import ColumnElement, Select, or_, select, tuple_, update
 from sqlalchemy.orm import Session
 
 from app.tables import FitRow, JobRow, MatrixRow, ValueRow, now
@@ -16,9 +16,11 @@ JobOf = tuple[JobRow, str]
 """A job and the serial number of the actuator that it is about."""
 
 
-def add_job(session: Session, job: str, matrix: str, settings: dict[str, Any], parent: str | None) -> JobRow:
+def add_job(
+    session: Session, job: str, matrix: str, settings: dict[str, Any], parent: str | None, kind: str = "fit"
+) -> JobRow:
     """A queued job."""
-    row = JobRow(id=job, matrix=matrix, settings=settings, parent=parent, progress={})
+    row = JobRow(id=job, kind=kind, matrix=matrix, settings=settings, parent=parent, progress={})
     session.add(row)
     return row
 
@@ -41,26 +43,34 @@ def job_of(session: Session, job_id: str) -> JobOf | None:
 
 def jobs(
     session: Session, after: tuple[str, ...] | None, limit: int, *,
-    state: str | None = None, serial: str | None = None, matrix: str | None = None,
+    state: str | None = None, serial: str | None = None, matrix: str | None = None, of_fits: bool = False,
 ) -> Sequence[JobOf]:  # fmt: skip
-    """Jobs, newest first: all, or those in a state, of an actuator, of a matrix."""
+    """Jobs, newest first: all, or those in a state, of an actuator, of a matrix, and only those that make a fit."""
     query = _jobs().order_by(JobRow.created_at.desc(), JobRow.id.desc()).limit(limit)
     for column, wanted in ((JobRow.state, state), (MatrixRow.serial, serial), (JobRow.matrix, matrix)):
         if wanted is not None:
             query = query.where(column == wanted)
+    if of_fits:
+        query = query.where(_makes_fit())
     if after is not None:
         query = query.where(tuple_(JobRow.created_at, JobRow.id) < after)
     return [(job, of) for job, of in session.execute(query)]
 
 
 def open_jobs(session: Session, serials: Sequence[str]) -> Sequence[JobOf]:
-    """Jobs of these actuators that have not ended, oldest first."""
-    query = _jobs().where(JobRow.state.in_(OPEN), MatrixRow.serial.in_(serials)).order_by(JobRow.created_at)
+    """Jobs that are to make a fit of these actuators and have not ended, oldest first."""
+    query = _jobs().where(JobRow.state.in_(OPEN), MatrixRow.serial.in_(serials), _makes_fit())
+    query = query.order_by(JobRow.created_at)
     return [(job, of) for job, of in session.execute(query)]
 
 
 def _jobs() -> Select[JobRow, str]:
     return select(JobRow, MatrixRow.serial).join(MatrixRow, JobRow.matrix == MatrixRow.id)
+
+
+def _makes_fit() -> ColumnElement[bool]:
+    """A diagnosis makes one where it was given none."""
+    return or_(JobRow.kind == "fit", JobRow.parent.is_(None))
 
 
 def unfinished(session: Session) -> Sequence[str]:
@@ -78,6 +88,18 @@ def change_job(session: Session, job_id: str, **values: Any) -> bool:
 def fit(session: Session, fit_id: str) -> FitRow | None:
     """A fit by id."""
     return session.get(FitRow, fit_id)
+
+
+def lineage(session: Session, row: FitRow) -> Sequence[FitRow]:
+    """A fit and the fits that it comes from, the first one first."""
+    found, seen = [row], {row.id}
+    while (parent := found[0].parent) is not None and parent not in seen:
+        earlier = fit(session, parent)
+        if earlier is None:
+            break
+        found.insert(0, earlier)
+        seen.add(parent)
+    return found
 
 
 def add_fit(session: Session, job_row: JobRow, serial: str, result: dict[str, Any]) -> FitRow:

@@ -20,7 +20,7 @@ from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.quantity import parameter_value
 from ident.residuals.survey import survey
-from schemas.fit import ComparedRun, ComparisonView, FitRequest, FitView, JobPage, JobView, ProgressView
+from schemas.fit import Chosen, ComparedRun, ComparisonView, FitRequest, FitView, JobPage, JobView, ProgressView
 
 
 def submit(context: Context, request: FitRequest) -> JobView:
@@ -28,17 +28,21 @@ def submit(context: Context, request: FitRequest) -> JobView:
     matrix = matrices.find(context, request.matrix)
     if request.parent is not None:
         find(context, request.parent)
-    settings = settings_of(request)
+    return queue(context, matrix.id, matrix.serial, settings_of(request), request.parent)
+
+
+def queue(context: Context, matrix: str, serial: str, settings: Settings, parent: str | None) -> JobView:
+    """Record and queue the job of a fit. Raises Unusable where its settings cannot be."""
     check_settings(settings)
     with context.sessions.begin() as session:
-        row = repository.add_job(session, uuid.uuid4().hex, matrix.id, settings.to_json(), request.parent)
+        row = repository.add_job(session, uuid.uuid4().hex, matrix, settings.to_json(), parent)
         session.flush()
-        queued = job_view(row, matrix.serial)
+        queued = job_view(row, serial)
     context.jobs.submit(queued.id)
     return queued
 
 
-def settings_of(request: FitRequest) -> Settings:
+def settings_of(request: Chosen) -> Settings:
     """The library's settings: numbers are SI, text may carry a unit. Raises Unusable."""
     own = tuple(definition_of(definition) for definition in request.custom)
     effects = tuple(dict.fromkeys((*request.effects, *(str(definition["name"]) for definition in own))))
@@ -81,17 +85,18 @@ def job_and_sequence(context: Context, job_id: str) -> tuple[JobView, int]:
 
 def jobs(
     context: Context, after: str | None, limit: int, *,
-    state: str | None = None, serial: str | None = None, matrix: str | None = None,
+    state: str | None = None, serial: str | None = None, matrix: str | None = None, of_fits: bool = False,
 ) -> JobPage:  # fmt: skip
-    """A page of jobs: all, or those in a state, of an actuator, of a matrix."""
+    """A page of jobs: all, or those in a state, of an actuator, of a matrix, and only those that make a fit."""
+    wanted = {"state": state, "serial": serial, "matrix": matrix}
     with context.sessions() as session:
-        found = repository.jobs(session, keys_of(after, 2), limit, state=state, serial=serial, matrix=matrix)
+        found = repository.jobs(session, keys_of(after, 2), limit, **wanted, of_fits=of_fits)
     following = cursor(found[-1][0].created_at, found[-1][0].id) if len(found) == limit else None
     return JobPage(items=[job_view(*each) for each in found], next=following)
 
 
 def open_jobs(context: Context, serials: Sequence[str]) -> dict[str, JobView]:
-    """The latest job that has not ended of each of these actuators that has one."""
+    """The latest job of a fit that has not ended of each of these actuators that has one."""
     with context.sessions() as session:
         return {serial: job_view(row, serial) for row, serial in repository.open_jobs(session, serials)}
 
@@ -156,11 +161,13 @@ def drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str
 
 def job_view(row: JobRow, serial: str) -> JobView:
     """A job as it is sent."""
-    fit_id = row.id if row.state == "succeeded" else None
+    made, diagnosis = row.state == "succeeded", row.kind == "diagnosis"
     return JobView(
         id=row.id, kind=row.kind, state=row.state, matrix=row.matrix, serial=serial, settings=row.settings,
-        progress=ProgressView(**row.progress), fit=fit_id, problem=row.problem, created_at=row.created_at,
-        ended_at=row.ended_at,
+        progress=ProgressView(**row.progress), parent=row.parent,
+        fit=row.id if made and not (diagnosis and row.parent) else None,
+        diagnosis=row.id if made and diagnosis else None,
+        problem=row.problem, created_at=row.created_at, ended_at=row.ended_at,
     )  # fmt: skip
 
 

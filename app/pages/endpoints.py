@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fastapi import APIRouter, HTTPException, Request
-from fastapi.responses import HTMLResponse, RedirectResponse
+from fastapi.responses import HTMLResponse, RedirectResponse, Response
 
 from app.context import Here
 from app.pages import assets, service
@@ -46,14 +46,16 @@ def jobs(request: Request, here: Here, cursor: str | None = None) -> HTMLRespons
 
 @router.get("/jobs/{job}")
 def job(job: str) -> RedirectResponse:
-    """A job is the fit that it makes."""
+    """A job is shown by the fit that it makes or looks at."""
     return RedirectResponse(f"/fits/{job}", 303)
 
 
-@router.get("/fits/{fit}")
-def fit(request: Request, here: Here, fit: str) -> HTMLResponse:
+@router.get("/fits/{fit}", response_model=None)
+def fit(request: Request, here: Here, fit: str) -> Response:
     """A fit: live while it is made, and everything known about it afterwards."""
     shown = service.fit(here, fit)
+    if isinstance(shown, JobPageView) and not shown.at.endswith(shown.id):
+        return RedirectResponse(shown.at, 303)
     if isinstance(shown, JobPageView):
         return page(request, "job.html", job=shown)
     return page(request, "fit.html", fit=shown, vega=assets.VEGA)

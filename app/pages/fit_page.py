@@ -8,16 +8,18 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from app.pages import numbers
+from app.pages.diagnosis_view import MissingView
 from app.pages.figure_forms import FigureForm, forms
 from app.pages.fit_view import Determined, ErrorRow, ParameterRow, combination_rows, error_rows, parameter_rows
 from app.pages.job_view import settings_facts
+from app.pages.ladder_view import Step, steps
 from app.pages.run_view import Conditions, conditions
 from ident.custom import preset_with
 from ident.expression import Equation
 from ident.fit.result import FitResult, Undetermined
 from ident.mathml import mathml
 from ident.presets import Preset
-from schemas.fit import FitView
+from schemas.fit import FitView, LadderView
 from schemas.matrix import MatrixView
 
 
@@ -54,9 +56,11 @@ class FitPageView:
     figures: tuple[FigureForm, ...]
     equations: tuple[tuple[str, str, Markup], ...]
     facts: tuple[tuple[str, str], ...]
+    missing: MissingView
+    ladder: tuple[Step, ...]
 
 
-def fit_page(stored: FitView, matrix: MatrixView) -> FitPageView:
+def fit_page(stored: FitView, matrix: MatrixView, lacks: MissingView, ladder: LadderView) -> FitPageView:
     """The page of a fit of this matrix."""
     fit = FitResult.from_json(stored.result)
     model = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
@@ -82,6 +86,8 @@ def fit_page(stored: FitView, matrix: MatrixView) -> FitPageView:
         figures=forms(matrix.runs, fit),
         equations=tuple((line.place, line.meaning, Markup(mathml(line.text))) for line in _equations(model)),
         facts=_facts(fit),
+        missing=lacks,
+        ladder=steps(ladder),
     )
 
 

@@ -12,9 +12,12 @@ _OPEN = ("queued", "running")
 
 @dataclass(frozen=True)
 class JobPageView:
-    """A fit that waits, runs, or ended without a result."""
+    """A job that waits, runs, or ended without a result; `at` is the page that shows it."""
 
     id: str
+    kind: str
+    parent: str | None
+    at: str
     serial: str
     matrix: str
     state: str
@@ -32,6 +35,9 @@ def job_page(job: JobView) -> JobPageView:
     """The page of a job."""
     return JobPageView(
         id=job.id,
+        kind=job.kind,
+        parent=job.parent,
+        at=f"/fits/{job.parent}#missing" if job.kind == "diagnosis" and job.parent else f"/fits/{job.id}",
         serial=job.serial,
         matrix=job.matrix,
         state=job.state,
@@ -48,9 +54,13 @@ def job_page(job: JobView) -> JobPageView:
 
 def settings_facts(settings: dict[str, Any]) -> tuple[tuple[str, str], ...]:
     """What the user chose, as far as it is not empty."""
-    names = ("model", "effects", "method", "seed", "bounds", "fixed", "load", "options")
+    names = ("model", "effects", "method", "seed", "bounds", "fixed", "load", "options", "max_effects")
     chosen = ((name, settings.get(name)) for name in names)
-    return tuple((name.capitalize(), _words(value)) for name, value in chosen if value not in (None, [], {}, "none"))
+    return tuple(
+        (name.replace("_", " ").capitalize(), _words(value))
+        for name, value in chosen
+        if value not in (None, [], {}, "none")
+    )
 
 
 def _words(value: Any) -> str:

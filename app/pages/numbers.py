@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PREFIXED = {
@@ -32,9 +33,10 @@ def plain(value: float, digits: int = 4) -> str:
 
 
 def unit(text: str) -> str:
-    """``m^3/(s*Pa)`` → m³/(s·Pa); "–" for a dimensionless one."""
+    """``m^3/(s*Pa^0.5)`` → m³/(s·√Pa); "–" for a dimensionless one."""
     if text in ("", "1"):
         return "–"
+    text = re.sub(r"(\w+)\^0\.5", r"√\1", text)
     for digit in "23456":
         text = text.replace(f"^{digit}", digit.translate(_RAISED))
     return text.replace("*", "·")

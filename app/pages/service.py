@@ -6,10 +6,13 @@ from typing import Any
 
 from app.actuators import service as actuators
 from app.context import Context
+from app.diagnoses import service as diagnoses
 from app.errors import Failure
+from app.fits import lineage
 from app.fits import service as fits
 from app.matrices import service as matrices
 from app.pages.actuator_view import actuator_row, fit_rows
+from app.pages.diagnosis_view import missing
 from app.pages.fit_page import FitPageView, fit_page
 from app.pages.fit_view import parameter_rows
 from app.pages.job_view import JobPageView, job_page
@@ -50,9 +53,9 @@ def actuator(context: Context, serial: str, cursor: str | None) -> Shown:
     }
 
 
-def _fits(context: Context, cursor: str | None, **of: str) -> Shown:
+def _fits(context: Context, cursor: str | None, serial: str | None = None, matrix: str | None = None) -> Shown:
     """Fits and the jobs that are to make them, newest first, with the number of the next page."""
-    jobs = fits.jobs(context, cursor, _ROWS, **of)
+    jobs = fits.jobs(context, cursor, _ROWS, serial=serial, matrix=matrix, of_fits=True)
     made = parameters.page(context, Wanted(ids=[job.id for job in jobs.items]), None, _ROWS).items
     return {"fits": fit_rows(jobs.items, made), "more": jobs.next}
 
@@ -94,4 +97,5 @@ def fit(context: Context, fit_id: str) -> FitPageView | JobPageView:
         found = fits.get(context, fit_id)
     except Failure:
         return job_page(fits.job(context, fit_id))
-    return fit_page(found, matrices.get(context, found.matrix))
+    lacks = missing(*diagnoses.of_fit(context, fit_id))
+    return fit_page(found, matrices.get(context, found.matrix), lacks, lineage.ladder(context, fit_id))

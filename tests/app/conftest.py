@@ -38,6 +38,11 @@ def files(serial: str = "SW-1") -> dict[str, bytes]:
     """Nine runs of half a second: name → bytes."""
     chosen = reference.trials()[::9] + reference.trials()[-2:]
     records = reference.measure_all(reference.Plant(), chosen, seconds=0.5, noise=0.005, seed=3, hold="linear")
+    return packed(records, serial)
+
+
+def packed(records: list[reference.Record], serial: str) -> dict[str, bytes]:
+    """Records of the reference as the files of a matrix: name → bytes."""
     text, found = DESCRIPTION.replace("SW-1", serial), {}
     for record in records:
         cell = record.trial.cell

@@ -12,6 +12,7 @@ from sqlalchemy import event
 
 from app.context import Context
 from app.database import connect, migrate, sessions
+from app.diagnoses import service as diagnoses
 from app.fits import service as fits
 from app.pages import service as pages
 from app.settings import Settings
@@ -113,6 +114,15 @@ def test_the_jobs_of_an_actuator_or_matrix_are_found_by_index(context: Context, 
     with context.engine.connect() as connection:
         plan = [row[-1] for row in connection.exec_driver_sql(f"EXPLAIN QUERY PLAN {statement}", parameters)]
     assert any("ix_jobs_matrix" in step for step in plan), plan
+
+
+def test_the_diagnosis_of_a_fit_is_found_by_index(context: Context) -> None:
+    for (statement, parameters), index in zip(
+        sent(context, lambda: diagnoses.of_fit(context, "quiet")), ("ix_diagnoses_fit", "ix_jobs_parent"), strict=True
+    ):
+        with context.engine.connect() as connection:
+            plan = [row[-1] for row in connection.exec_driver_sql(f"EXPLAIN QUERY PLAN {statement}", parameters)]
+        assert any(index in step for step in plan), plan
 
 
 def test_the_migrations_make_the_tables_that_the_program_uses(context: Context) -> None:

@@ -2,63 +2,68 @@
 
 import { guarded, send } from "./api.js";
 
-const live = document.querySelector("#live");
-const bar = live.querySelector("progress");
-const state = document.querySelector(".head .state");
-const stage = live.querySelector("[data-stage]");
-const step = live.querySelector("[data-step]");
-const error = live.querySelector("[data-error]");
-const trace = live.querySelector(".trace polyline");
-const cancel = live.querySelector("button");
-const problem = live.querySelector("[role=alert]");
-const seen = [];
-
 const ENDED = ["succeeded", "failed", "cancelled"];
 
-function report(progress) {
-  if (progress.stage) stage.textContent = progress.stage;
-  if (progress.total) {
-    bar.max = progress.total;
-    bar.value = progress.done;
-    step.textContent = `${progress.done} of ${progress.total}`;
-    step.closest("span").hidden = progress.total < 2;
+function follow(live) {
+  const bar = live.querySelector("progress");
+  const state = document.querySelector("#job-state .state");
+  const stage = live.querySelector("[data-stage]");
+  const step = live.querySelector("[data-step]");
+  const error = live.querySelector("[data-error]");
+  const trace = live.querySelector(".trace polyline");
+  const cancel = live.querySelector("button");
+  const seen = [];
+
+  function report(progress) {
+    if (progress.stage) stage.textContent = progress.stage;
+    if (progress.total) {
+      bar.max = progress.total;
+      bar.value = progress.done;
+      step.textContent = `${progress.done} of ${progress.total}`;
+      step.closest("span").hidden = progress.total < 2;
+    }
+    if (typeof progress.error === "number" && progress.error > 0) {
+      error.textContent = `${(100 * progress.error).toPrecision(3)} %`;
+      error.closest("span").hidden = false;
+      seen.push(progress.error);
+      trace?.setAttribute("points", line(seen));
+    }
   }
-  if (typeof progress.error === "number" && progress.error > 0) {
-    error.textContent = `${(100 * progress.error).toPrecision(3)} %`;
-    seen.push(progress.error);
-    plot();
+
+  // Each event is the job as it is now.
+  const events = new EventSource(live.dataset.events);
+
+  function read(event) {
+    const job = JSON.parse(event.data);
+    if (state) {
+      state.textContent = job.state;
+      state.className = `state ${job.state}`;
+    }
+    report(job.progress);
+    if (!ENDED.includes(job.state)) return;
+    events.close();
+    location.reload();
   }
+
+  for (const name of ["message", "queued", "running", ...ENDED]) events.addEventListener(name, read);
+
+  cancel.addEventListener("click", () =>
+    guarded(cancel, live.querySelector("[role=alert]"), async () => {
+      await send("DELETE", live.dataset.job);
+      stage.textContent = "stopping at the next step";
+    }),
+  );
 }
 
-// Best error on a logarithmic scale over the reports so far.
-function plot() {
+// Best error on a logarithmic scale over the reports so far, as the points of a line.
+function line(seen) {
   const low = Math.log(Math.min(...seen)), high = Math.log(Math.max(...seen));
   const points = seen.map((value, place) => {
     const x = (600 * place) / Math.max(1, seen.length - 1);
     const y = high > low ? 96 - (88 * (Math.log(value) - low)) / (high - low) : 52;
     return `${x.toFixed(1)},${y.toFixed(1)}`;
   });
-  trace.setAttribute("points", points.join(" "));
+  return points.join(" ");
 }
 
-// Each event is the job as it is now.
-const events = new EventSource(live.dataset.events);
-
-function read(event) {
-  const job = JSON.parse(event.data);
-  state.textContent = job.state;
-  state.className = `state ${job.state}`;
-  report(job.progress);
-  if (!ENDED.includes(job.state)) return;
-  events.close();
-  location.reload();
-}
-
-for (const name of ["message", "queued", "running", ...ENDED]) events.addEventListener(name, read);
-
-cancel.addEventListener("click", () =>
-  guarded(cancel, problem, async () => {
-    await send("DELETE", live.dataset.job);
-    stage.textContent = "stopping at the next step";
-  }),
-);
+for (const live of document.querySelectorAll(".live[data-job]")) follow(live);

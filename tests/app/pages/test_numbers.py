@@ -40,3 +40,7 @@ def test_a_ratio_keeps_its_divisor_beside_the_symbol():
     assert numbers.symbol("Z0/A^2", "Z₀") == "Z₀/A²"
     assert numbers.symbol("tau", "τ") == "τ"
     assert numbers.symbol("x", "") == "x"
+
+
+def test_a_unit_with_a_root_is_written_with_its_sign():
+    assert numbers.unit("m^3/(s*Pa^0.5)") == "m³/(s·√Pa)"

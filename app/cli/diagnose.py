@@ -1,0 +1,68 @@
+"""`servoident diagnose`: what a fitted model lacks, which labels are doubted, and what is left."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from app.cli.fit_options import Bounds, Effects, Load, MatrixPath, Method, Model, Options, Seed, Values, settings
+from app.cli.output import STANDARD_OUTPUT, check_target, write_json
+from app.cli.progress import shown
+from ident.errors import Unusable
+
+if TYPE_CHECKING:
+    from ident.fit.result import FitResult
+    from ident.fit.settings import Settings
+
+
+def diagnose(
+    matrix: MatrixPath,
+    fit: Annotated[
+        Path | None, typer.Option(metavar="FIT.json", help="What `servoident fit --json` wrote; else one is made.")
+    ] = None,
+    model: Model = "qian2014",
+    effect: Effects = None,
+    method: Method = "ga",
+    bounds: Bounds = None,
+    set_: Values = None,
+    load: Load = "none",
+    option: Options = None,
+    max_effects: Annotated[
+        int | None, typer.Option(min=0, metavar="N", help="Largest number of effects that may be added.")
+    ] = None,
+    seed: Seed = 0,
+    json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the diagnosis as JSON; - is stdout.")] = None,
+) -> None:
+    """Find what a model lacks. Effects are ranked by their error on held-out data, and added while they help."""
+    from ident.custom import read_effect
+    from ident.diagnose import diagnose as diagnosed
+    from ident.diagnosis.addition import MOST
+    from ident.readers import read_matrix
+
+    check_target(json)
+    chosen = settings(model, effect, method, bounds, set_, load, seed, option)
+    given = None if fit is None else given_fit(fit, chosen)
+    most = MOST if max_effects is None else max_effects
+    own = tuple(read_effect(one, model=given.model) for one in given.settings.get("custom", ())) if given else ()
+    with shown() as report:
+        found = diagnosed(read_matrix(matrix), given, chosen, most, own, report)
+    if json is not None:
+        write_json(found.to_json(), json)
+    if json != STANDARD_OUTPUT:
+        from app.cli.diagnosis_tables import show_diagnosis
+
+        show_diagnosis(found)
+
+
+def given_fit(path: Path, chosen: Settings) -> FitResult:
+    """The fit of a file, which brings its own settings. Raises Unusable where others are given beside it."""
+    from app.cli.compare import read_fit
+    from ident.fit.settings import Settings
+
+    if replace(chosen, seed=0) != Settings():
+        what = "a fit is given, and options for another one beside it"
+        raise Unusable("bad-option", what, "--fit", "give --fit, or --model and what belongs to it, not both")
+    return read_fit(path)

@@ -1,0 +1,81 @@
+"""A diagnosis as tables for a reader."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from app.cli.numbers import percent
+from app.cli.tables import output, table
+
+if TYPE_CHECKING:
+    from ident.diagnosis.result import Diagnosis, Found, Ranked
+
+USES = {"fit": "fit", "held_out": "held out", "verify": "verify"}
+Row = tuple[str, ...]
+
+
+def show_diagnosis(found: Diagnosis) -> None:
+    """Print a diagnosis: errors, ranking, ladder, suspects, verdict."""
+    console = output()
+    uses = tuple(USES.values())
+    console.print(table(("error (eq. 17)", *uses), error_rows(found), numbers=uses))
+    header = ("effect", "predicted", "held out", "verify", "strength", "group")
+    console.print(table(header, ranking_rows(found), numbers=header[1:4]))
+    if rest := unconfirmed(found):
+        console.print(rest, markup=False)
+    steps = ("added", *uses, "floor")
+    console.print(table(steps, ladder_rows(found), numbers=steps[1:]))
+    if found.verdict.suspects:
+        rows = [(suspect.run, suspect.what, suspect.evidence) for suspect in found.verdict.suspects]
+        console.print(table(("suspect run", "label", "evidence"), rows, numbers=()))
+    for note in found.notes:
+        console.print(f"note: {note}", markup=False)
+    console.print(found.verdict.text, markup=False)
+    console.print(f"seed {found.seed}: {found.seconds:.2f} s")
+
+
+def error_rows(found: Diagnosis) -> Iterator[Row]:
+    """The model's error and the noise floor by use, in per cent."""
+    yield "model", *(percent(found.baseline["error"].get(use)) for use in USES)
+    yield "noise floor", *(percent(found.noise_floor.get(use)) for use in USES)
+
+
+def ranking_rows(found: Diagnosis) -> Iterator[Row]:
+    """One row an effect that was refitted, best first."""
+    for ranked in found.candidates:
+        if not ranked.parameters:
+            continue
+        errors = (ranked.predicted_error, ranked.error.get("held_out"), ranked.error.get("verify"))
+        others = ", ".join(name for name in ranked.group if name != ranked.effect)
+        yield ranked.effect, *map(percent, errors), strength(ranked), f"or {others}" if others else ""
+
+
+def unconfirmed(found: Diagnosis) -> str:
+    """The effects that promised too little to be refitted, in a line."""
+    rest = [ranked for ranked in found.candidates if not ranked.parameters]
+    if not rest:
+        return ""
+    best = min(ranked.predicted_error for ranked in rest)
+    return f"not refitted, predicted {percent(best)} at best: {', '.join(ranked.effect for ranked in rest)}"
+
+
+def strength(ranked: Ranked) -> str:
+    """The strength that the refit found with its standard error and unit; a dash where there was no refit."""
+    found = of_effect(ranked.parameters, ranked.effect)
+    if found is None:
+        return "–"
+    error = "" if found.std_error is None else f" ± {found.std_error:.2g}"
+    return f"{found.value:.4g}{error} {found.unit}"
+
+
+def of_effect(parameters: Mapping[str, Found], effect: str) -> Found | None:
+    """The first parameter of an effect, which is its strength."""
+    return next((entry for name, entry in parameters.items() if name.startswith(f"{effect}.")), None)
+
+
+def ladder_rows(found: Diagnosis) -> Iterator[Row]:
+    """One row a step: what was added, the errors after it, the floor below them."""
+    floor = percent(found.noise_floor.get("fit"))
+    for rung in found.ladder:
+        yield rung.added or "(the fitted model)", *(percent(rung.error.get(use)) for use in USES), floor

@@ -1,0 +1,67 @@
+"""The options that choose a fit, for every command that makes one, and the settings that they are."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from app.cli.arguments import bounds as read_bounds
+from app.cli.arguments import definitions, method_options
+from app.cli.arguments import values as read_values
+from ident.fit.settings import METHODS
+
+if TYPE_CHECKING:
+    from ident.fit.settings import Settings
+
+MatrixPath = Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")]
+Model = Annotated[str, typer.Option(help="Model to identify.")]
+Effects = Annotated[
+    list[str] | None, typer.Option("--effect", metavar="NAME", help="Effect to add to the model; may be repeated.")
+]
+Custom = Annotated[
+    list[Path] | None,
+    typer.Option("--custom", metavar="EFFECT.yaml", help="Own effect to add, defined in a file; may be repeated."),
+]
+Method = Annotated[str, typer.Option(help=f"One of {', '.join(METHODS)}.")]
+Bounds = Annotated[
+    list[str] | None,
+    typer.Option(metavar="NAME=LO:HI", help="Bounds of a parameter, SI or with units; may be repeated."),
+]
+Values = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="NAME=VALUE", help="Hold a parameter, SI or with unit; may be repeated."),
+]
+Load = Annotated[str, typer.Option(help="force: drive the load by the measured force; none: do not.")]
+Seed = Annotated[
+    int, typer.Option(min=0, max=2**31 - 1, help="Seed of the search: the same seed gives the same result.")
+]
+Options = Annotated[
+    list[str] | None,
+    typer.Option("--option", metavar="NAME=VALUE", help="Setting of the method, such as keep=0.5; may be repeated."),
+]
+
+
+def settings(
+    model: str, effect: list[str] | None, method: str, bounds: list[str] | None, set_: list[str] | None, load: str,
+    seed: int, option: list[str] | None, custom: list[Path] | None = None,
+) -> Settings:  # fmt: skip
+    """The library's settings from what the command line gives. Raises Unusable."""
+    from ident.custom import preset_with
+    from ident.fit.settings import Settings
+
+    own = definitions(custom or [])
+    effects = (*(effect or []), *(definition["name"] for definition in own))
+    preset = preset_with(model, effects, own)
+    return Settings(
+        model=model,
+        effects=effects,
+        method=method,
+        bounds=read_bounds(bounds or [], preset),
+        fixed=read_values(set_ or [], preset),
+        load=load,
+        seed=seed,
+        options=method_options(option or []),
+        custom=own,
+    )

@@ -1,0 +1,1 @@
+"""What is missing from fitted models: diagnoses as jobs, stored, looked at."""

@@ -1,0 +1,41 @@
+"""/diagnoses: queue one, look at it, list those of a fit."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Response
+
+from app.context import Here
+from app.diagnoses import service
+from app.errors import COMMON
+from app.idempotency import Key, fingerprint, once
+from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView
+from schemas.fit import JobView
+
+router = APIRouter(prefix="/diagnoses", tags=["diagnoses"], responses=COMMON)
+
+
+@router.post("", status_code=202, response_model=JobView)
+def submit(here: Here, request: DiagnosisRequest, key: Key = None) -> Response:
+    """Queue the diagnosis of a fit, or of a matrix whose fit is made first; Location is its job."""
+
+    def act() -> tuple[int, dict[str, object], str]:
+        job = service.submit(here, request)
+        return 202, job.model_dump(), f"/api/v1/jobs/{job.id}"
+
+    return once(here.sessions, key, fingerprint("diagnosis", request.model_dump(exclude_unset=True)), act)
+
+
+@router.get("")
+def listed(
+    here: Here, fit: str | None = None, cursor: str | None = None, limit: Annotated[int, Query(ge=1, le=200)] = 50
+) -> DiagnosisPage:
+    """Diagnoses, newest first: all, or those of a fit."""
+    return service.listed(here, fit, cursor, limit)
+
+
+@router.get("/{diagnosis}")
+def one(here: Here, diagnosis: str) -> DiagnosisView:
+    """A diagnosis: what the fit lacks, ranked, with the ladder and the verdict."""
+    return service.get(here, diagnosis)

@@ -1,0 +1,84 @@
+"""Diagnoses: queue, look, list."""
+
+from __future__ import annotations
+
+import uuid
+
+from app.context import Context
+from app.diagnoses import repository
+from app.errors import Failure, missing
+from app.fits import repository as jobs
+from app.fits import service as fits
+from app.matrices import service as matrices
+from app.paging import cursor, keys_of
+from app.tables import DiagnosisRow
+from ident.diagnosis.addition import MOST
+from ident.errors import Unusable
+from ident.fit.identification import check_settings
+from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView
+from schemas.fit import Chosen, JobView
+
+_BESIDE_A_FIT = {"fit", "seed", "max_effects"}
+
+
+def submit(context: Context, request: DiagnosisRequest) -> JobView:
+    """Queue a diagnosis. It is recorded before this returns, so that nothing can lose it."""
+    most = MOST if request.max_effects is None else request.max_effects
+    if most > MOST:
+        raise Unusable("bad-option", f"{most} effects", "max_effects", f"give 0 to {MOST}")
+    matrix_id, settings = _wanted(context, request)
+    matrix = matrices.find(context, matrix_id)
+    reseed = request.seed if request.fit is not None and "seed" in request.model_fields_set else None
+    settings |= {"max_effects": most, "reseed": reseed}
+    with context.sessions.begin() as session:
+        row = jobs.add_job(session, uuid.uuid4().hex, matrix.id, settings, request.fit, "diagnosis")
+        session.flush()
+        queued = fits.job_view(row, matrix.serial)
+    context.jobs.submit(queued.id)
+    return queued
+
+
+def _wanted(context: Context, request: DiagnosisRequest) -> tuple[str, dict[str, object]]:
+    """The matrix and the settings of the fit: of the one that is given, or of the one to be made."""
+    given = request.model_fields_set & set(Chosen.model_fields)
+    if request.fit is not None:
+        if request.matrix is not None or given - _BESIDE_A_FIT:
+            raise Failure(422, "bad-request", "a fit is given, and a matrix or settings beside it", "fit",
+                          "give a fit, or a matrix and settings")  # fmt: skip
+        row = fits.find(context, request.fit)
+        return row.matrix, dict(row.result["settings"])
+    if request.matrix is None:
+        raise Failure(422, "bad-request", "neither a fit nor a matrix is given", "fit", "give one of them")
+    settings = fits.settings_of(request)
+    check_settings(settings)
+    return request.matrix, settings.to_json()
+
+
+def get(context: Context, diagnosis_id: str) -> DiagnosisView:
+    """A diagnosis by id; raises Failure 404."""
+    with context.sessions() as session:
+        row = repository.diagnosis(session, diagnosis_id)
+    if row is None:
+        raise missing("diagnosis", diagnosis_id)
+    return view(row)
+
+
+def listed(context: Context, fit: str | None, after: str | None, limit: int) -> DiagnosisPage:
+    """A page of diagnoses."""
+    with context.sessions() as session:
+        rows = repository.page(session, fit, keys_of(after, 2), limit)
+    following = cursor(rows[-1].created_at, rows[-1].id) if len(rows) == limit else None
+    return DiagnosisPage(items=[view(row) for row in rows], next=following)
+
+
+def of_fit(context: Context, fit: str) -> tuple[DiagnosisView | None, JobView | None]:
+    """The newest diagnosis of a fit, and the newest job that was to make one."""
+    with context.sessions() as session:
+        rows, job = repository.page(session, fit, None, 1), repository.last_job(session, fit)
+    return (view(rows[0]) if rows else None), (fits.job_view(job, "") if job is not None else None)
+
+
+def view(row: DiagnosisRow) -> DiagnosisView:
+    """A diagnosis as it is sent."""
+    beside = {"id": row.id, "matrix": row.matrix, "serial": row.serial, "fit": row.fit, "created_at": row.created_at}
+    return DiagnosisView(**{**row.result, **beside})

@@ -1,0 +1,228 @@
+"""A diagnosis as the page of its fit shows it: the verdict, a card an effect or group, suspects, what is left."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from markupsafe import Markup
+
+from app.pages import numbers
+from app.pages.job_view import JobPageView, job_page
+from ident.effect import Effect
+from ident.effects import EFFECTS
+from ident.mathml import mathml
+from schemas.diagnosis import CandidateView, DiagnosisView
+from schemas.fit import JobView
+
+_KNOWN = {effect.name: effect for effect in EFFECTS}
+_USES = ("fit", "held_out", "verify")
+
+
+@dataclass(frozen=True)
+class Member:
+    """An effect on a card; `known` is False where this version's catalogue does not have it."""
+
+    name: str
+    title: str
+    known: bool
+    place: str
+    meaning: str
+    equations: tuple[Markup, ...]
+    strength: str
+    strength_is: str
+
+
+@dataclass(frozen=True)
+class Card:
+    """An effect that the model lacks, or a group that the data cannot tell apart, the best first.
+
+    `confirmed`: a refit helped beyond chance; `chosen`: the diagnosis would add it; `gauge`: see the page.
+    """
+
+    rank: int
+    title: str
+    members: tuple[Member, ...]
+    predicted: float
+    error: Mapping[str, float | None]
+    words: str
+    looks: str
+    confirmed: bool
+    chosen: bool
+    gauge: tuple[float, float, float]
+
+    @property
+    def group(self) -> bool:
+        """True where it is more than one effect."""
+        return len(self.members) > 1
+
+    @property
+    def addable(self) -> tuple[Member, ...]:
+        """The members that can be added."""
+        return tuple(member for member in self.members if member.known)
+
+
+@dataclass(frozen=True)
+class SuspectCard:
+    """A run whose label is doubted."""
+
+    run: str
+    what: str
+    stated: str
+    found: str
+    words: str
+
+
+@dataclass(frozen=True)
+class Rung:
+    """A step that the diagnosis would take."""
+
+    added: str
+    error: Mapping[str, float | None]
+    deviations: str
+
+
+@dataclass(frozen=True)
+class MissingView:
+    """The section *What is missing?* of a fit; without a diagnosis only the button, or the job that makes one."""
+
+    job: JobPageView | None
+    found: DiagnosisView | None
+    seconds: str = ""
+    would_add: tuple[str, ...] = ()
+    cards: tuple[Card, ...] = ()
+    chance: tuple[Card, ...] = ()
+    suspects: tuple[SuspectCard, ...] = ()
+    ladder: tuple[Rung, ...] = ()
+    left: str = ""
+
+
+def missing(found: DiagnosisView | None, job: JobView | None) -> MissingView:
+    """The section for the newest diagnosis of a fit and the newest job that was to make one."""
+    shown = job_page(job) if job is not None and job.state != "succeeded" else None
+    if found is None:
+        return MissingView(shown, None)
+    cards = tuple(_cards(found))
+    return MissingView(
+        job=shown,
+        found=found,
+        seconds=numbers.quantity(found.seconds, "s"),
+        would_add=tuple(name for name in found.verdict.effects if name in _KNOWN),
+        cards=tuple(card for card in cards if card.confirmed),
+        chance=tuple(card for card in cards if not card.confirmed),
+        suspects=tuple(map(_suspect, found.verdict.suspects)),
+        ladder=tuple(_ladder(found)),
+        left=_left(found) if found.verdict.unexplained else "",
+    )
+
+
+def title(name: str) -> str:
+    """The name of an effect in words."""
+    return name.replace("_", " ")
+
+
+def _cards(found: DiagnosisView) -> Iterator[Card]:
+    """A card for each candidate; those of a group share the card of the best."""
+    by_name = {candidate.effect: candidate for candidate in found.candidates}
+    shown: set[str] = set()
+    rank = 0
+    for candidate in found.candidates:
+        if candidate.effect in shown:
+            continue
+        others = [name for name in candidate.group if name != candidate.effect and name in by_name]
+        together = [candidate, *(by_name[name] for name in others)]
+        shown |= {member.effect for member in together}
+        rank += 1
+        yield _card(rank, together, found)
+
+
+def _card(rank: int, together: list[CandidateView], found: DiagnosisView) -> Card:
+    best = together[0]
+    looks = str(best.evidence.get("looks", ""))
+    return Card(
+        rank=rank,
+        title=" or ".join(title(candidate.effect) for candidate in together),
+        members=tuple(map(_member, together)),
+        predicted=best.predicted_error,
+        error={use: best.error.get(use) for use in _USES},
+        words=best.why,
+        looks="" if looks in best.why else looks,
+        confirmed=bool(best.evidence.get("beyond_chance")),
+        chosen=any(candidate.effect in found.verdict.effects for candidate in together),
+        gauge=_gauge(best, found),
+    )
+
+
+def _gauge(best: CandidateView, found: DiagnosisView) -> tuple[float, float, float]:
+    """Confirmed error, predicted error and noise floor in per cent of the error without the effect."""
+    before = found.baseline["error"]["held_out"] or 1.0
+    floor = found.noise_floor.get("fit")
+    parts = (best.error.get("held_out"), best.predicted_error, floor)
+    confirmed, predicted, lowest = (min(100.0, 100 * (part or 0.0) / before) for part in parts)
+    return round(confirmed, 1), round(predicted, 1), round(lowest, 1)
+
+
+def _member(candidate: CandidateView) -> Member:
+    effect: Effect | None = _KNOWN.get(candidate.effect)
+    return Member(
+        name=candidate.effect,
+        title=title(candidate.effect),
+        known=effect is not None,
+        place=effect.place if effect else "",
+        meaning=effect.meaning if effect else "",
+        equations=tuple(Markup(mathml(line.text)) for line in effect.equations) if effect else (),
+        strength=_strength(candidate),
+        strength_is=f"{effect.strength.symbol}, {effect.strength.meaning}" if effect else "strength",
+    )
+
+
+def _strength(candidate: CandidateView) -> str:
+    """The first parameter of the effect, with standard error and unit."""
+    own = (entry for name, entry in candidate.parameters.items() if name.startswith(f"{candidate.effect}."))
+    entry = next(own, None)
+    if entry is None:
+        return "–"
+    return with_error(entry["value"], entry["std_error"], entry["unit"])
+
+
+def with_error(value: float, std_error: float | None, unit: str) -> str:
+    """ "80.27 ± 0.18 µm": value and standard error in a readable multiple of the unit."""
+    if std_error is None:
+        return numbers.quantity(value, unit)
+    power = numbers.power_of(value)
+    scaled, error = value / 10.0**power, std_error / 10.0**power
+    places = numbers.decimals(scaled, error)
+    printed = numbers.scaled_unit(unit, power)
+    text = f"{numbers.fixed(scaled, places)} ± {numbers.fixed(error, places)}"
+    if printed == "–":
+        return text
+    return f"({text})·{printed}" if printed.startswith("10") else f"{text} {printed}"
+
+
+def _suspect(entry: Mapping[str, Any]) -> SuspectCard:
+    unit = str(entry.get("unit", "1"))
+    return SuspectCard(
+        run=str(entry["run"]),
+        what=str(entry["what"]),
+        stated=numbers.quantity(entry.get("stated"), unit),
+        found=numbers.quantity(entry.get("found"), unit),
+        words=str(entry["evidence"]),
+    )
+
+
+def _ladder(found: DiagnosisView) -> Iterator[Rung]:
+    for rung in found.ladder:
+        deviations = (rung.model_extra or {}).get("deviations")
+        said = "–" if deviations is None else f"{deviations:.1f}"
+        errors = {use: rung.error.get(use) for use in _USES}
+        yield Rung(title(rung.added) if rung.added else "the fit as it is", errors, said)
+
+
+def _left(found: DiagnosisView) -> str:
+    """What stays unexplained, in a sentence."""
+    error, floor = found.ladder[-1].error.get("fit"), found.noise_floor.get("fit")
+    after = " with all that helps" if found.verdict.effects else ""
+    if floor is None:
+        return f"The error is {numbers.percent(error)}{after}, and what is left has a memory that noise has not."
+    return f"The error is {numbers.percent(error)}{after}, above the noise floor of {numbers.percent(floor)}."

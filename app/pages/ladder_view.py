@@ -1,0 +1,60 @@
+"""The way that led to a fit, as the rows of a table."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.pages import numbers
+from app.pages.diagnosis_view import title, with_error
+from schemas.fit import LadderRung, LadderView
+
+
+@dataclass(frozen=True)
+class Step:
+    """A fit on the way: what it added, its strength, its errors, and by how much they fell."""
+
+    fit: str
+    here: bool
+    added: tuple[tuple[str, str], ...]
+    error_fit: float | None
+    error_verify: float | None
+    change: str
+    seed: int
+    version: str
+    data: str
+    made: str
+    state: str
+    state_text: str
+
+
+def steps(ladder: LadderView) -> tuple[Step, ...]:
+    """A row a fit, the first one first."""
+    before: list[LadderRung | None] = [None, *ladder.rungs[:-1]]
+    return tuple(_step(rung, earlier, ladder.fit) for rung, earlier in zip(ladder.rungs, before, strict=True))
+
+
+def _step(rung: LadderRung, before: LadderRung | None, here: str) -> Step:
+    state = ("approved", "current set") if rung.current else ("succeeded", "fitted")
+    if rung.approved_at and not rung.current:
+        state = ("succeeded", "approved earlier")
+    return Step(
+        fit=rung.fit, here=rung.fit == here, added=tuple((title(name), _strength(rung, name)) for name in rung.added),
+        error_fit=rung.error["fit"], error_verify=rung.error["verify"], change=_change(rung, before),
+        seed=rung.seed, version=rung.version, data=rung.data_hash[:12], made=rung.created_at,
+        state=state[0], state_text=state[1],
+    )  # fmt: skip
+
+
+def _strength(rung: LadderRung, effect: str) -> str:
+    own = (entry for name, entry in rung.parameters.items() if name.startswith(f"{effect}."))
+    entry = next(own, None)
+    return "" if entry is None else with_error(entry["value"], entry["std_error"], entry["unit"])
+
+
+def _change(rung: LadderRung, before: LadderRung | None) -> str:
+    """By how much the error fell on runs that no fit saw, else on those that were fitted."""
+    for use in ("verify", "fit"):
+        now, then = rung.error[use], before.error[use] if before else None
+        if now is not None and then:
+            return f"{numbers.fixed(100 * (now / then - 1), 1)} %"
+    return "–"

@@ -1,0 +1,29 @@
+// What is missing: start the search, add what it found.
+
+import { guarded, send } from "./api.js";
+import "./progress.js";
+
+for (const form of document.querySelectorAll("form[data-diagnose]")) {
+  onSubmit(form, async () => {
+    await send("POST", form.action, { fit: form.dataset.diagnose });
+    location.hash = "missing";
+    location.reload();
+  });
+}
+
+for (const form of document.querySelectorAll("form[data-add]")) {
+  onSubmit(form, async () => {
+    const { data } = await send("POST", form.dataset.add, { effects: new FormData(form).getAll("effects") });
+    location.assign(`/fits/${data.id}`);
+  });
+}
+
+function onSubmit(form, work) {
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    guarded(form.querySelector("button"), form.querySelector("[role=alert]"), work);
+  });
+}
+
+// After a search the reader goes on where the answer is.
+if (location.hash === "#missing") document.querySelector("#missing-title").focus();

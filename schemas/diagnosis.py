@@ -1,0 +1,74 @@
+"""Diagnoses: what is missing from a fitted model."""
+
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from schemas.fit import Chosen
+
+
+class DiagnosisRequest(Chosen):
+    """A diagnosis to be queued: of a stored `fit`, or of a `matrix`, whose fit with these settings is made first."""
+
+    fit: str | None = None
+    matrix: str | None = None
+    max_effects: int | None = Field(default=None, ge=0)
+
+
+class CandidateView(BaseModel):
+    """An effect that the model lacks, best first by held-out error; `group` are those it cannot be told from."""
+
+    model_config = ConfigDict(extra="allow")
+    effect: str
+    error: dict[str, float | None]
+    predicted_error: float
+    parameters: dict[str, dict[str, Any]]
+    group: list[str]
+    evidence: dict[str, Any]
+    why: str
+
+
+class RungView(BaseModel):
+    """A step of the ladder: what was added to the model before it, null for the fitted model itself."""
+
+    model_config = ConfigDict(extra="allow")
+    added: str | None
+    error: dict[str, float | None]
+    parameters: dict[str, dict[str, Any]]
+
+
+class VerdictView(BaseModel):
+    """What to add, what the data cannot tell apart, whose label is doubted, whether something is left."""
+
+    model_config = ConfigDict(extra="allow")
+    effects: list[str]
+    indistinguishable: list[list[str]]
+    suspects: list[dict[str, Any]]
+    unexplained: bool
+    text: str
+
+
+class DiagnosisView(BaseModel):
+    """A stored diagnosis, and the fit that it is about."""
+
+    model_config = ConfigDict(extra="allow")
+    id: str
+    matrix: str
+    serial: str
+    fit: str
+    created_at: str
+    baseline: dict[str, Any]
+    noise_floor: dict[str, float | None]
+    budget: dict[str, Any]
+    candidates: list[CandidateView]
+    ladder: list[RungView]
+    verdict: VerdictView
+    next_experiment: dict[str, Any]
+    seconds: float
+
+
+class DiagnosisPage(BaseModel):
+    """A page of diagnoses, newest first."""
+
+    items: list[DiagnosisView]
+    next: str | None = None

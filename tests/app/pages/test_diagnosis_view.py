@@ -1,0 +1,73 @@
+"""A diagnosis becomes cards: a group is one, a doubted label and what is left have their own."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from app.pages.diagnosis_view import missing, with_error
+from app.pages.rendering import _TEMPLATES
+from schemas.diagnosis import DiagnosisView
+
+
+def candidate(effect: str, error: float, group: tuple[str, ...] = (), beyond: bool = True) -> dict[str, Any]:
+    parameters = {f"{effect}.force": {"value": 8.51, "unit": "N", "std_error": 0.41, "symbol": "F"}}
+    return {
+        "effect": effect, "error": {"fit": error, "held_out": error, "verify": None}, "predicted_error": error,
+        "parameters": parameters, "group": list(group), "why": "Because.",
+        "evidence": {"beyond_chance": beyond, "looks": "flat tops"},
+    }  # fmt: skip
+
+
+def found() -> DiagnosisView:
+    group = ("coulomb_friction", "stribeck_friction")
+    suspect = {
+        "run": "r <1>",
+        "what": "mass",
+        "stated": 2.67,
+        "found": 0.9,
+        "unit": "kg",
+        "evidence": "the error is 9 %",
+    }
+    return DiagnosisView(
+        id="d", matrix="m", serial="S", fit="f", created_at="2026-11-21T08:00:00", budget={}, next_experiment={},
+        baseline={"error": {"fit": 0.02, "held_out": 0.02, "verify": None}, "offset": 0.0},
+        noise_floor={"fit": 0.005, "verify": None}, seconds=3.2,
+        candidates=[candidate("coulomb_friction", 0.01, group), candidate("stribeck_friction", 0.0101, group),
+                    candidate("own_effect", 0.012), candidate("lead", 0.0199, beyond=False)],
+        ladder=[{"added": None, "error": {"fit": 0.02}, "parameters": {}, "deviations": None},
+                {"added": "coulomb_friction", "error": {"fit": 0.01}, "parameters": {}, "deviations": 7.0}],
+        verdict={"effects": ["coulomb_friction"], "indistinguishable": [list(group)], "suspects": [suspect],
+                 "unexplained": True, "text": "The model lacks something."},
+    )  # fmt: skip
+
+
+def test_a_group_is_one_card_that_names_all_and_adds_one():
+    group, own = missing(found(), None).cards
+    assert group.title == "coulomb friction or stribeck friction"
+    assert [member.name for member in group.addable] == ["coulomb_friction", "stribeck_friction"]
+    assert (group.chosen, own.chosen) == (True, False)
+    assert group.gauge == (50.0, 50.0, 25.0)
+    assert group.members[0].strength == "8.51 ± 0.41 N"
+    assert own.addable == ()  # not of this catalogue
+
+
+def test_what_does_not_help_stands_apart_and_what_is_left_is_said():
+    lacks = missing(found(), None)
+    assert [card.title for card in lacks.chance] == ["lead"]
+    assert lacks.left == "The error is 1.00 % with all that helps, above the noise floor of 0.500 %."
+    assert (lacks.suspects[0].stated, lacks.suspects[0].found) == ("2.670 kg", "0.9000 kg")
+
+
+def test_the_section_is_markup_with_everything_escaped():
+    page = {"id": "f", "serial": "S", "matrix": "m", "missing": missing(found(), None)}
+    text = _TEMPLATES.get_template("missing.html").render(fit=page)
+    assert "r &lt;1&gt;" in text
+    assert "cannot tell these 2 apart" in text
+    assert text.count('data-add="/api/v1/fits/f/effects"') == 2  # the group and the one by chance
+    assert "In data: flat tops." in text
+
+
+def test_a_value_carries_its_standard_error_and_one_unit():
+    assert with_error(8.027e-5, 1.8e-7, "m") == "80.27 ± 0.18 µm"
+    assert with_error(2.777e-9, 8.8e-11, "m^3/Pa") == "(2.777 ± 0.088)·10⁻⁹ m³/Pa"
+    assert with_error(0.25, None, "1") == "0.2500"

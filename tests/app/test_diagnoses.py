@@ -1,0 +1,166 @@
+"""What is missing, over HTTP: diagnose a fit, add what it lacks, look back on the way."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from app.diagnoses.work import DiagnosisWork
+from app.fits import repository
+from tests.hidden_dead_zone import HALF_WIDTH, zipped
+
+API = "/api/v1"
+
+
+def ended(service: TestClient, answer: Any) -> dict[str, Any]:
+    """The job of a 202, when it has ended."""
+    assert answer.status_code == 202, answer.text
+    assert answer.headers["Location"] == f"{API}/jobs/{answer.json()['id']}"
+    service.get(f"{answer.headers['Location']}/events")
+    job: dict[str, Any] = service.get(answer.headers["Location"]).json()
+    return job
+
+
+@pytest.fixture(scope="module")
+def matrix(service: TestClient) -> str:
+    """A matrix of a machine with a dead zone."""
+    return str(service.post(f"{API}/matrices", files={"files": ("m.zip", zipped())}).json()["id"])
+
+
+@pytest.fixture(scope="module")
+def linear(service: TestClient, matrix: str) -> str:
+    """A fit of it that lacks the dead zone."""
+    job = ended(service, service.post(f"{API}/fits", json={"matrix": matrix}))
+    assert job["state"] == "succeeded", job
+    return str(job["fit"])
+
+
+@pytest.fixture(scope="module")
+def diagnosis(service: TestClient, linear: str) -> dict[str, Any]:
+    """Its diagnosis."""
+    job = ended(service, service.post(f"{API}/diagnoses", json={"fit": linear, "max_effects": 2, "seed": 5}))
+    assert (job["kind"], job["state"], job["fit"], job["parent"]) == ("diagnosis", "succeeded", None, linear), job
+    found: dict[str, Any] = service.get(f"{API}/diagnoses/{job['diagnosis']}").json()
+    return found
+
+
+@pytest.fixture(scope="module")
+def mended(service: TestClient, linear: str) -> str:
+    """The fit with the dead zone."""
+    job = ended(service, service.post(f"{API}/fits/{linear}/effects", json={"effect": "dead_zone"}))
+    assert (job["kind"], job["state"], job["parent"]) == ("fit", "succeeded", linear), job
+    return str(job["fit"])
+
+
+def test_the_diagnosis_of_a_fit_finds_what_was_hidden(diagnosis, linear, matrix):
+    assert (diagnosis["fit"], diagnosis["matrix"], diagnosis["serial"]) == (linear, matrix, "DZ-1")
+    assert diagnosis["verdict"]["effects"] == ["dead_zone"]
+    assert diagnosis["candidates"][0]["effect"] == "dead_zone"
+    assert diagnosis["ladder"][-1]["error"]["verify"] < diagnosis["baseline"]["error"]["verify"] / 2
+    assert diagnosis["seed"] == 5
+    promised = "baseline noise_floor budget candidates ladder verdict next_experiment seconds id created_at"
+    assert set(promised.split()) <= set(diagnosis)
+
+
+def test_the_diagnoses_of_a_fit_are_listed(service, diagnosis, linear):
+    listed = service.get(f"{API}/diagnoses", params={"fit": linear}).json()["items"]
+    assert [one["id"] for one in listed] == [diagnosis["id"]]
+    assert service.get(f"{API}/diagnoses", params={"fit": "none"}).json()["items"] == []
+    assert service.get(f"{API}/diagnoses/none").status_code == 404
+
+
+def test_a_diagnosis_without_a_fit_makes_one_first(service, matrix):
+    body = {"matrix": matrix, "seed": 2, "max_effects": 0}
+    job = ended(service, service.post(f"{API}/diagnoses", json=body))
+    assert job["fit"] == job["diagnosis"] == job["id"]
+    assert service.get(f"{API}/fits/{job['fit']}").json()["result"]["seed"] == 2
+    found = service.get(f"{API}/diagnoses/{job['id']}").json()
+    assert (found["fit"], len(found["ladder"])) == (job["id"], 1)
+
+
+def test_an_effect_is_added_and_the_ladder_leads_back(service, linear, mended):
+    fit = service.get(f"{API}/fits/{mended}").json()
+    assert fit["parent"] == linear
+    assert fit["result"]["effects"] == ["dead_zone"]
+    assert fit["result"]["parameters"]["dead_zone.half_width"]["value"] == pytest.approx(HALF_WIDTH, rel=0.02)
+    first, second = service.get(f"{API}/fits/{mended}/ladder").json()["rungs"]
+    assert (first["fit"], first["added"], second["fit"], second["added"]) == (linear, [], mended, ["dead_zone"])
+    assert second["error"]["verify"] < first["error"]["verify"] / 2
+    assert first["data_hash"] == second["data_hash"]
+    assert {"seed", "version", "parameters"} <= set(second)
+
+
+def test_adding_is_undone_by_approving_the_fit_before(service, linear, mended):
+    for fit in (mended, linear):
+        assert service.post(f"{API}/fits/{fit}/approve").json()["current"] is True
+        found = service.get(f"{API}/parameter-sets", params={"serial": "DZ-1", "current": True}).json()["items"]
+        assert [one["id"] for one in found] == [fit]
+
+
+@pytest.mark.parametrize(
+    ("body", "status", "code"),
+    [
+        ({"effect": "magic"}, 422, "unknown-effect"),
+        ({"effects": ["dead_zone"]}, 409, "effect-there"),
+        ({}, 422, "bad-request"),
+    ],
+)
+def test_an_effect_that_cannot_be_added_is_refused(service, mended, body, status, code):
+    answer = service.post(f"{API}/fits/{mended}/effects", json=body)
+    assert (answer.status_code, answer.json()["code"]) == (status, code)
+    assert answer.json()["remedy"]
+
+
+@pytest.mark.parametrize(
+    ("body", "status", "code"),
+    [
+        ({}, 422, "bad-request"),
+        ({"fit": "FIT", "matrix": "x"}, 422, "bad-request"),
+        ({"fit": "FIT", "model": "first_order"}, 422, "bad-request"),
+        ({"fit": "FIT", "max_effects": 99}, 422, "bad-option"),
+        ({"matrix": "MATRIX", "model": "magic"}, 422, "unknown-model"),
+        ({"fit": "none"}, 404, "no-such-fit"),
+        ({"matrix": "none"}, 404, "no-such-matrix"),
+    ],
+)
+def test_a_diagnosis_that_cannot_be_is_refused(service, linear, matrix, body, status, code):
+    named = {"FIT": linear, "MATRIX": matrix}
+    answer = service.post(f"{API}/diagnoses", json={key: named.get(value, value) for key, value in body.items()})
+    assert (answer.status_code, answer.json()["code"]) == (status, code)
+
+
+def test_a_running_diagnosis_is_cancelled_and_leaves_nothing(service, linear):
+    job = service.post(f"{API}/diagnoses", json={"fit": linear, "seed": 9}).json()["id"]
+    with service.stream("GET", f"{API}/jobs/{job}/events") as stream:
+        for line in stream.iter_lines():
+            if '"stage":"predicting"' in line:
+                break
+    service.delete(f"{API}/jobs/{job}")
+    assert '"state":"cancelled"' in service.get(f"{API}/jobs/{job}/events").text
+    assert service.get(f"{API}/diagnoses/{job}").status_code == 404
+
+
+def test_a_result_is_stored_once_and_one_that_cannot_be_ends_its_job(service, diagnosis, linear, matrix):
+    """As after a kill between the last step and its record; nothing is left half written."""
+    context = service.app.state.context
+    work = DiagnosisWork(context.sessions, context.storage)
+    made = {"outcome": None, "state": {"diagnosis": {**diagnosis, "seconds": 1.0}, "fit": None}}
+    work.store(diagnosis["id"], made)
+    assert service.get(f"{API}/diagnoses/{diagnosis['id']}").json() == diagnosis
+    with context.sessions.begin() as session:
+        repository.add_job(session, "twice", matrix, {}, linear, "diagnosis")
+        repository.add_job(session, "broken", matrix, {}, linear, "diagnosis")
+    for _ in range(2):
+        work.store("twice", made)
+    work.store("broken", {"outcome": None, "state": {"diagnosis": {"x": object()}, "fit": None}})
+    listed = service.get(f"{API}/diagnoses", params={"fit": linear}).json()["items"]
+    assert sorted(one["id"] for one in listed) == sorted(["twice", diagnosis["id"]])
+    assert service.get(f"{API}/jobs/broken").json()["problem"]["code"] == "not-stored"
+
+
+def test_a_diagnosis_is_no_fit_of_the_actuators_page(service, diagnosis, linear):
+    page = service.get("/actuators/DZ-1").text
+    assert f"/fits/{linear}" in page
+    assert f"/fits/{diagnosis['id']}" not in page

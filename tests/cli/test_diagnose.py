@@ -1,0 +1,59 @@
+"""What a model lacks, on the command line: a dead zone hidden in the reference's data is found and told."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests import hidden_dead_zone
+
+
+@pytest.fixture(scope="module")
+def matrix(tmp_path_factory) -> Path:
+    """A matrix of a machine with a dead zone."""
+    return hidden_dead_zone.write(tmp_path_factory.mktemp("hidden"))
+
+
+@pytest.fixture(scope="module")
+def told(servoident, matrix, tmp_path_factory) -> tuple[str, dict]:
+    """What is printed, and the JSON."""
+    file = tmp_path_factory.mktemp("found") / "diagnosis.json"
+    done = servoident("diagnose", matrix, "--json", file)
+    assert done.returncode == 0, done.stderr
+    assert "confirming" in done.stderr
+    return done.stdout, json.loads(file.read_text())
+
+
+def test_the_hidden_effect_is_the_verdict(told):
+    """It leads the ranking and is the only rung; the error on runs that no fit saw falls to the noise."""
+    _, found = told
+    assert found["verdict"]["effects"] == [rung["added"] for rung in found["ladder"][1:]] == ["dead_zone"]
+    assert found["candidates"][0]["effect"] == "dead_zone"
+    assert found["ladder"][-1]["error"]["verify"] < 1.1 * found["noise_floor"]["verify"]
+
+
+def test_the_tables_say_it_with_units(told):
+    """Errors in per cent, the strength with its unit, the ladder from the fitted model to the floor, the verdict."""
+    printed, found = told
+    line = next(line for line in printed.splitlines() if line.startswith("dead_zone "))
+    strength = found["candidates"][0]["parameters"]["dead_zone.half_width"]["value"]
+    assert f"{strength:.4g} ±" in line
+    assert " m" in line
+    assert line.count("%") == 3
+    assert "noise floor" in printed
+    assert "(the fitted model)" in printed
+    assert "not refitted, predicted" in printed
+    assert found["verdict"]["text"] in printed
+
+
+def test_a_fit_from_a_file_is_diagnosed_as_it_is(servoident, matrix, tmp_path):
+    """Its errors are the baseline, --max-effects is obeyed, and only JSON goes to standard output."""
+    file = tmp_path / "fit.json"
+    assert servoident("fit", matrix, "--seed", 4, "--json", file).returncode == 0
+    done = servoident("diagnose", matrix, "--fit", file, "--max-effects", 0, "--json", "-")
+    assert done.returncode == 0, done.stderr
+    found, fit = json.loads(done.stdout), json.loads(file.read_text())
+    assert found["baseline"]["error"]["verify"] == pytest.approx(fit["error"]["verify"], rel=1e-3)
+    assert (found["seed"], len(found["ladder"])) == (4, 1)
