@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.addition import MOST, Addition
+from ident.diagnosis.addition import MOST, USUAL, Addition
 from ident.diagnosis.chance import gain
 from ident.diagnosis.models import Models, Refit
 from ident.diagnosis.ranking import Candidate
@@ -36,7 +36,7 @@ _NOISE_LIKE = 0.5  # correlation of neighbouring residuals that noise may have, 
 
 
 def diagnose(
-    matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None, most: int = MOST,
+    matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None, most: int = USUAL,
     custom: Sequence[Effect] = (), report: Report = silent,
 ) -> Diagnosis:  # fmt: skip
     """Rank what the fitted model lacks, add what helps beyond chance, and say what is left.

@@ -39,13 +39,13 @@ def diagnose(
     """Find what a model lacks. Effects are ranked by their error on held-out data, and added while they help."""
     from ident.custom import read_effect
     from ident.diagnose import diagnose as diagnosed
-    from ident.diagnosis.addition import MOST
+    from ident.diagnosis.addition import USUAL
     from ident.readers import read_matrix
 
     check_target(json)
     chosen = settings(model, effect, method, bounds, set_, load, seed, option)
     given = None if fit is None else given_fit(fit, chosen)
-    most = MOST if max_effects is None else max_effects
+    most = USUAL if max_effects is None else max_effects
     own = tuple(read_effect(one, model=given.model) for one in given.settings.get("custom", ())) if given else ()
     with shown() as report:
         found = diagnosed(read_matrix(matrix), given, chosen, most, own, report)

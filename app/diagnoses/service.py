@@ -12,7 +12,7 @@ from app.fits import service as fits
 from app.matrices import service as matrices
 from app.paging import cursor, keys_of
 from app.tables import DiagnosisRow
-from ident.diagnosis.addition import MOST
+from ident.diagnosis.addition import MOST, USUAL
 from ident.errors import Unusable
 from ident.fit.identification import check_settings
 from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView
@@ -23,7 +23,7 @@ _BESIDE_A_FIT = {"fit", "seed", "max_effects"}
 
 def submit(context: Context, request: DiagnosisRequest) -> JobView:
     """Queue a diagnosis. It is recorded before this returns, so that nothing can lose it."""
-    most = MOST if request.max_effects is None else request.max_effects
+    most = USUAL if request.max_effects is None else request.max_effects
     if most > MOST:
         raise Unusable("bad-option", f"{most} effects", "max_effects", f"give 0 to {MOST}")
     matrix_id, settings = _wanted(context, request)

@@ -15,6 +15,8 @@ from ident.diagnosis.models import Models, Refit
 from ident.diagnosis.ranking import Candidate, Report, rank
 
 MOST = 6  # effects that are added
+USUAL = 4  # where the user says nothing
+_WEIGHED = 3  # effects that are weighed against others in their place: of more the data tell too little
 _ROUNDS = 3  # of replacing
 
 
@@ -50,7 +52,7 @@ class Addition:
         seen: set[frozenset[str]] = set()
         for _ in range(_ROUNDS):
             self._forward()
-            if frozenset(self.added) in seen or not self._replaced():
+            if len(self.added) > _WEIGHED or frozenset(self.added) in seen or not self._replaced():
                 break
             seen.add(frozenset(self.added))
         return self

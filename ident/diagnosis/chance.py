@@ -22,7 +22,7 @@ from ident.diagnosis.held_out import HeldOut
 
 Array = NDArray[np.float64]
 BEYOND_CHANCE = 10.0  # nats: one in 20,000 by chance, if only the best of a large number could tell
-WORTHWHILE = 1e-3  # relative fall of the error: less is not worth a parameter, however certain
+WORTHWHILE = 1e-2  # relative fall of the error: less is not worth a parameter, however certain
 ALIKE = 3.0  # standard deviations below which two refits differ by chance
 _OFFSET_ALIKE = 4.5  # nats: three deviations
 _ALIKE_NATS = 2 * ALIKE**2  # where white noise of σ separates outputs f, g by ALIKE deviations: |f − g|² = 36 σ²

@@ -10,7 +10,7 @@ from ident.diagnosis.instant import Prediction, predict
 from ident.diagnosis.models import Models, Refit
 from ident.parallel import each
 
-_CONTENDERS, _FEW = 12, 10
+_CONTENDERS, _FEW = 12, 10  # refitted; fewer, the more effects there are already
 _QUICK = 200_000  # samples of a matrix so small that every promise can be tried
 _NEAR = 1.3  # times the best predicted error: the contenders for a further effect
 _FINALISTS = 5
@@ -55,7 +55,8 @@ def rank(models: Models, base: Refit, names: Iterable[str], report: Report, thor
     if not thorough:
         near = _NEAR * predictions[0].after.error
         quick = sum(run.length for run in models.runs) < _QUICK
-        contenders = [p for p in predictions if _promises(p) and p.after.error < near][: None if quick else _FEW]
+        few = _CONTENDERS if quick else max(_FEW - 2 * len(base.effects), _FINALISTS)
+        contenders = [p for p in predictions if _promises(p) and p.after.error < near][:few]
     done = 0
 
     def trial(prediction: Prediction) -> Candidate:

@@ -13,14 +13,17 @@ import time
 from pathlib import Path
 from typing import Any
 
-from tests.blind.trial import NAMES, several, single
+from tests.blind.trial import NAMES, label, outside, several, single
+from tests.reference.outside_reference import Outside
 
+NAMED = {"one": NAMES, "outside": Outside._fields, "label": ("mass", "stiffness", "gain")}
+"""What is hidden in the trials of a kind, by name; the other kinds draw it."""
 OUT = Path(__file__).parents[2] / "docs" / "blind-trials.jsonl"
 
 
 def key(row: dict[str, Any]) -> tuple[Any, ...]:
     """What a trial is told from others by."""
-    hidden = next(iter(row["hidden"]), "") if row["kind"] == "one" else ""
+    hidden = next(iter(row["hidden"]), "") if row["kind"] in NAMED else ""
     return row["kind"], row["matrix"], row["noise"], row.get("level"), row["seed"], hidden
 
 
@@ -53,11 +56,11 @@ def show(row: dict[str, Any]) -> None:
 def main() -> None:
     """Run what is asked for and is not there yet."""
     parser = argparse.ArgumentParser()
-    parser.add_argument("kind", choices=("one", "none", "two", "three"))
+    parser.add_argument("kind", choices=("one", "none", "two", "three", "outside", "label"))
     parser.add_argument("--noise", type=float, default=0.01)
     parser.add_argument("--level", type=float, default=3.0)
     parser.add_argument("--seeds", type=int, nargs="+", default=[1])
-    parser.add_argument("--effects", nargs="+", default=list(NAMES))
+    parser.add_argument("--effects", nargs="+")
     parser.add_argument("--small", action="store_true")
     parser.add_argument("--minutes", type=float, default=1e9)
     parser.add_argument("--out", type=Path, default=OUT)
@@ -65,13 +68,15 @@ def main() -> None:
     done = {key(row) for row in rows(asked.out)}
     end = time.monotonic() + 60 * asked.minutes
     for seed in asked.seeds:
-        for name in asked.effects if asked.kind == "one" else [""]:
+        for name in asked.effects or NAMED.get(asked.kind, ("",)):
             matrix = "small" if asked.small else "full"
             level = asked.level if asked.kind == "one" else None
             if (asked.kind, matrix, asked.noise, level, seed, name) in done or time.monotonic() > end:
                 continue
             if asked.kind == "one":
                 row = single(name, asked.level, asked.noise, asked.small, seed)
+            elif asked.kind in NAMED:
+                row = (outside if asked.kind == "outside" else label)(name, seed, asked.noise)
             else:
                 row = several({"none": 0, "two": 2, "three": 3}[asked.kind], seed, asked.noise)
             add(row, asked.out)

@@ -6,12 +6,11 @@ The linear error is eq. (17) after refitting all six parameters of the model wit
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ident.effect import Effect
-from ident.effects import EFFECTS, effect
+from ident.effects import effect
 from ident.fit.identification import identify
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run, Specimen
@@ -87,12 +86,12 @@ def _damped(plant: linear.Plant, cell: linear.Cell) -> bool:
 def linear_error(machine: Machine) -> float:
     """Eq. (17) of the refitted linear model, on a quarter of the runs' beginnings."""
     matrix = machine.measured(seconds=1.0, every=2 if machine.small else 4)
-    matrix = Matrix(matrix.actuator, tuple(_as_fit(run) for run in matrix.runs))
-    return float(identify(matrix, Settings()).error["fit"] or 0.0)
+    return float(identify(as_fit(matrix), Settings()).error["fit"] or 0.0)
 
 
-def _as_fit(run: Run) -> Run:
-    return Run(run.id, "", run.sample_rate, run.channels, specimen=run.specimen, gain=run.gain, kind=run.kind)
+def as_fit(matrix: Matrix) -> Matrix:
+    """The matrix with every run to be fitted."""
+    return replace(matrix, runs=tuple(replace(run, use="fit") for run in matrix.runs))
 
 
 def strength_for(machine: Machine, name: str, wanted: float) -> tuple[float, float]:
@@ -126,8 +125,3 @@ def offset_strength(machine: Machine, name: str, wanted: float) -> float:
     matrix = Machine(machine.plant, {name: strength}, 0.0, machine.small, machine.seed).measured(0.5, 8)
     shift = float(np.mean([abs(run.measured[1024:].mean()) / run.measured.std() for run in matrix.runs]))
     return min(strength * wanted * machine.noise / max(shift, 1e-12), effect(name).strength.upper)
-
-
-def catalogue() -> tuple[Effect, ...]:
-    """Every effect."""
-    return EFFECTS

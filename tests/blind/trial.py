@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,8 +13,10 @@ from ident.diagnosis.result import Diagnosis
 from ident.effects import EFFECTS
 from ident.fit.identification import identify
 from ident.fit.settings import Settings
-from ident.matrix import Matrix
-from tests.blind.machines import OFFSET, Machine, drawn_plant, offset_strength, strength_for
+from ident.matrix import Matrix, Run, Specimen
+from tests.blind.machines import OFFSET, Machine, as_fit, drawn_plant, matrix_of, offset_strength, strength_for
+from tests.reference import qian_reference as linear
+from tests.reference.outside_reference import Outside, measure_all
 
 NAMES = tuple(effect.name for effect in EFFECTS)
 _REACHED = 0.85  # of the wanted linear error: below it the cell is called unreachable
@@ -52,6 +55,55 @@ def several(count: int, seed: int, noise: float = 0.01) -> dict[str, Any]:
     kinds = {0: "none", 1: "one", 2: "two", 3: "three"}
     row: dict[str, Any] = {"kind": kinds[count], "matrix": "full", "noise": noise, "seed": seed, "hidden": hidden}
     return row | outcome(Machine(plant, hidden, noise, False, start))
+
+
+def outside(kind: str, seed: int, noise: float = 0.01) -> dict[str, Any]:
+    """An effect that the catalogue does not hold, at 2.5 to 5 times the floor."""
+    rng = np.random.default_rng([seed, 2000 + Outside._fields.index(kind)])
+    plant, start = drawn_plant(rng), int(rng.integers(1 << 30))
+    goal = noise * float(np.sqrt(np.exp(rng.uniform(np.log(2.5), np.log(5.0))) ** 2 - 1))
+    strength, trials = 0.1, linear.trials()
+    for _ in range(6):
+        records = measure_all(Outside(**{kind: strength}), trials[::4], plant, seconds=1.0, noise=noise, seed=start)
+        error = identify(as_fit(matrix_of(records, plant)), Settings()).error["fit"] or 1.0
+        excess = float(np.sqrt(max(error**2 - noise**2, (0.02 * noise) ** 2)))
+        if abs(excess / goal - 1) < 0.15:
+            break
+        strength *= float(np.clip(goal / excess, 0.2, 5.0))
+    records = measure_all(Outside(**{kind: strength}), trials, plant, seconds=2.0, noise=noise, seed=start)
+    row = {"kind": "outside", "matrix": "full", "noise": noise, "seed": seed, "hidden": {kind: strength}}
+    found = judged(matrix_of(records, plant), {kind: strength})
+    at_floor = found["after"] < 1.02 * found["floor"]
+    return row | found | {"named": bool(found["unexplained"] or not found["found"] or at_floor)}
+
+
+def label(what: str, seed: int, noise: float = 0.01) -> dict[str, Any]:
+    """A wrong mass, stiffness or gain on one run, which lifts its error to at least 1.5 times its floor."""
+    rng = np.random.default_rng([seed, 3000 + ("mass", "stiffness", "gain").index(what)])
+    machine = Machine(drawn_plant(rng), {}, noise, False, int(rng.integers(1 << 30)))
+    matrix = machine.measured()
+    fitted = matrix.of_use("fit")
+    run = fitted[int(rng.integers(len(fitted)))]
+    sizes = {"mass": 0.3, "stiffness": 5e3, "gain": 0.02}
+    sign, size = float(rng.choice([-1.0, 1.0])), sizes[what]
+    for _ in range(12):
+        wrong = _mislabelled(run, what, sign * size)
+        changed = replace(matrix, runs=tuple(wrong if r is run else r for r in matrix.runs))
+        error = next(r.error for r in identify(changed, Settings()).runs if r.id == run.id)
+        if error >= 1.5 * noise:
+            break
+        size, sign = 1.5 * size, 1.0
+    row = {"kind": "label", "matrix": "full", "noise": noise, "seed": seed, "hidden": {what: size}, "run": run.id}
+    found = judged(changed, {})
+    return row | found | {"named": [run.id, what] in found["suspects"], "lifted": error / noise}
+
+
+def _mislabelled(run: Run, what: str, change: float) -> Run:
+    specimen = run.specimen or Specimen()
+    if what == "gain":
+        return replace(run, gain=run.Kp * (1 + change))
+    name = {"mass": "mass", "stiffness": "stiffness"}[what]
+    return replace(run, specimen=replace(specimen, **{name: max(getattr(specimen, name) + change, 0.0)}))
 
 
 def outcome(machine: Machine) -> dict[str, Any]:

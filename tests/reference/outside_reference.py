@@ -1,0 +1,85 @@
+"""The linear actuator with one effect that the catalogue does not hold: a judge of what the diagnosis says then.
+
+Kutta's classical rule with many sub-steps a sample; flat, SI, from rest; the command is straight between samples.
+
+    tau q' = Kp (u - y) - q - f q |P| / P0                          flow_force on the spool
+    Q = Z0/A q (1 + d t) (1 + p sin(2 pi 23 t)) (1 + w)    gain_drift, pump_ripple, valve_temperature: w of the run
+    Ka P' = Q - Cl P - A v
+    (m0 + mL) v' = A P - (c0 + cL) v - k x - F (x/X)² tanh(v/Vs)    position_friction
+    y = x (1 + s (x/X)²)                                            sensor_curve, outside the loop
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from tests.reference import qian_reference as linear
+
+Samples = NDArray[np.float64]
+SUBSTEPS = 24
+X, VS, P0, RIPPLE = 2e-3, 2e-4, 1e6, 2 * np.pi * 23.0
+
+
+class Outside(NamedTuple):
+    """Strengths, all off by default."""
+
+    flow_force: float = 0.0
+    gain_drift: float = 0.0  # 1/s
+    pump_ripple: float = 0.0
+    valve_temperature: float = 0.0
+    position_friction: float = 0.0  # N
+    sensor_curve: float = 0.0
+
+
+@njit(inline="always")
+def derivative(plant, cell, o, warm, t, u, s, out):
+    q, p, v, x = s[0], s[1], s[2], s[3]
+    out[0] = (cell.gain * (u - x) - q - o.flow_force * q * abs(p) / P0) / plant.tau
+    gain = (1.0 + o.gain_drift * t) * (1.0 + o.pump_ripple * np.sin(RIPPLE * t)) * (1.0 + warm)
+    out[1] = (plant.Z0 / plant.A * q * gain - plant.Cl * p - plant.A * v) / plant.Ka
+    friction = o.position_friction * (x / X) ** 2 * np.tanh(v / VS)
+    force = plant.A * p - (plant.c0 + cell.damping) * v - cell.stiffness * x - friction
+    out[2] = force / (plant.m0 + cell.mass)
+    out[3] = v
+
+
+@njit(nogil=True)
+def integrate(plant, cell, o, warm, command, rate):
+    """Displacement (m), shape (n,), of one run."""
+    s, trial, k = np.zeros(4), np.empty(4), np.empty((4, 4))
+    out = np.zeros(len(command))
+    h = 1 / (rate * SUBSTEPS)
+    for n in range(len(command) - 1):
+        out[n] = s[3] * (1.0 + o.sensor_curve * (s[3] / X) ** 2)
+        rise = command[n + 1] - command[n]
+        for step in range(SUBSTEPS):
+            t = n / rate + step * h
+            for stage in range(4):
+                share = 0.0 if stage == 0 else (1.0 if stage == 3 else 0.5)
+                for i in range(4):
+                    trial[i] = s[i] + (share * h * k[stage - 1, i] if stage else 0.0)
+                u = command[n] + rise * (step + share) / SUBSTEPS
+                derivative(plant, cell, o, warm, t + share * h, u, trial, k[stage])
+            for i in range(4):
+                s[i] += h / 6 * (k[0, i] + 2 * k[1, i] + 2 * k[2, i] + k[3, i])
+    out[-1] = s[3] * (1.0 + o.sensor_curve * (s[3] / X) ** 2)
+    return out
+
+
+def measure_all(
+    outside: Outside, runs: list[linear.Trial], plant: linear.Plant, *, seconds: float, noise: float, seed: int
+) -> list[linear.Record]:  # fmt: skip
+    """Every run, each with its own command, noise and temperature of the valve."""
+    records = []
+    for number, trial in enumerate(runs):
+        rng = np.random.default_rng([seed, number])
+        command = linear.band_limited_noise(round(seconds * linear.SAMPLE_RATE), trial.amplitude, rng)
+        warm = outside.valve_temperature * rng.standard_normal()
+        clean = integrate(plant, trial.cell, outside, warm, command, linear.SAMPLE_RATE)
+        noisy = clean + noise * clean.std() * rng.standard_normal(len(clean))
+        records.append(linear.Record(trial, command, noisy))
+    return records
