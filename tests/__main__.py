@@ -36,4 +36,5 @@ def install_system_packages() -> None:
 
 if __name__ == "__main__":
     install_system_packages()
-    enter("requirements-tests.lock", ["-m", "pytest", *sys.argv[1:]])
+    everything = ["-n", "auto", "--dist", "loadfile"]  # a worker a core; the tests of a file share what they set up
+    enter("requirements-tests.lock", ["-m", "pytest", *(sys.argv[1:] or everything)])

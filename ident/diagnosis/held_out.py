@@ -156,7 +156,8 @@ def _step(point: Array, here: Local, parts: Parts) -> Array:
 
 
 def bounded_step(point: Array, H: Array, g: Array) -> Array:
-    """−H⁻¹ g on the axes that it leaves in the unit cube; an axis that would leave it goes to its bound and stays."""
+    """−H⁻¹ g on the axes that it leaves in the unit cube; the axis that would leave it farthest stays at its bound, and
+    so on with the others."""
     step = np.zeros(len(point))
     free = np.arange(len(point))
     while len(free):
@@ -167,12 +168,13 @@ def bounded_step(point: Array, H: Array, g: Array) -> Array:
         seen = directions[:, strengths > _LOST * strengths[-1]]
         move = -seen @ ((seen.T @ (rest[free] / scale)) / strengths[strengths > _LOST * strengths[-1]]) / scale
         there = point[free] + move
-        out = (there < 0.0) | (there > 1.0)
-        if not out.any():
+        inside = np.clip(there, 0.0, 1.0)
+        worst = int(np.argmax(np.abs(there - inside)))
+        if there[worst] == inside[worst]:
             step[free] = move
             break
-        step[free[out]] = np.clip(there[out], 0.0, 1.0) - point[free[out]]
-        free = free[~out]
+        step[free[worst]] = inside[worst] - point[free[worst]]
+        free = np.delete(free, worst)
     return step
 
 

@@ -1,0 +1,128 @@
+"""A small matrix of the independent reference with something hidden in it: the diagnosis says what."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ident.diagnose import diagnose
+from ident.diagnosis.result import Diagnosis
+from ident.errors import Unusable
+from ident.fit.identification import identify
+from ident.fit.settings import Settings
+from ident.matrix import Matrix
+from tests.blind.machines import Machine, matrix_of
+from tests.reference import outside_reference as outside
+from tests.reference import qian_reference as linear
+
+PLANT = linear.Plant()
+NOISE = 0.01
+
+
+def measured(**hidden: float) -> Matrix:
+    """Nine of the 36 runs of the small matrix, a second each, of every amplitude."""
+    return Machine(PLANT, hidden, NOISE, small=True, seed=20).measured(seconds=1.0, every=4)
+
+
+@pytest.fixture(scope="module")
+def dead_zone() -> Diagnosis:
+    """A dead zone of 0.25 mm is hidden."""
+    return diagnose(measured(dead_zone=2.5e-4))
+
+
+def test_a_hidden_effect_is_named_first_and_alone(dead_zone):
+    assert dead_zone.candidates[0].effect == "dead_zone"
+    assert dead_zone.verdict.effects == ("dead_zone",)
+    assert dead_zone.verdict.indistinguishable == ()
+    assert not dead_zone.verdict.unexplained
+
+
+def test_the_ladder_falls_to_the_floor_on_runs_that_no_fit_saw(dead_zone):
+    first, last = dead_zone.ladder[0], dead_zone.ladder[-1]
+    assert first.added is None
+    assert first.error["verify"] > 1.5 * dead_zone.noise_floor["verify"]
+    assert last.error["verify"] < 1.05 * dead_zone.noise_floor["verify"]
+
+
+def test_the_strength_is_found(dead_zone):
+    found = dead_zone.ladder[-1].parameters["dead_zone.half_width"]
+    assert found.value == pytest.approx(2.5e-4, rel=0.05)
+    assert found.unit == "m"
+    assert 0 < found.std_error < 0.05 * found.value
+
+
+def test_candidates_are_sorted_by_the_error_on_held_out_data(dead_zone):
+    errors = [c.error["held_out"] for c in dead_zone.candidates if c.error["held_out"] is not None]
+    assert len(errors) >= 5
+    assert errors == sorted(errors)
+    assert len(dead_zone.candidates) == 33
+
+
+def test_with_nothing_hidden_nothing_is_added():
+    found = diagnose(measured())
+    assert found.verdict.effects == ()
+    assert not found.verdict.unexplained
+    assert found.verdict.suspects == ()
+
+
+def test_two_hidden_effects_are_both_found():
+    found = diagnose(measured(dead_zone=2.5e-4, quadratic_damping=6e3))
+    assert set(found.verdict.effects) == {"dead_zone", "quadratic_damping"}
+
+
+def test_a_null_bias_is_found_by_the_offsets():
+    found = diagnose(measured(null_bias=1e-4))
+    assert found.verdict.effects in (("null_bias",), ("static_load",))
+    assert {"null_bias"} <= {*found.verdict.effects, *(name for g in found.verdict.indistinguishable for name in g)}
+
+
+def test_a_wrong_label_is_named_with_what_should_stand_there():
+    matrix = measured()
+    wrong = next(run for run in matrix.of_use("fit") if run.specimen.stiffness == 0)
+    label = replace(wrong.specimen, stiffness=40e3)
+    runs = tuple(replace(run, specimen=label) if run is wrong else run for run in matrix.runs)
+    found = diagnose(replace(matrix, runs=runs))
+    assert [(s.run, s.what) for s in found.verdict.suspects] == [(wrong.id, "stiffness")]
+    assert found.verdict.suspects[0].found < 2e3
+    assert found.verdict.effects == ()
+    assert wrong.id in found.verdict.text
+
+
+def test_what_the_catalogue_does_not_hold_is_called_unexplained():
+    """The recorder's curve is bent by a third of a per cent at 2 mm: no listed effect brings the error to the floor."""
+    trials = linear.trials(((0, 0), (0.87, 36.3e3), (2.67, 0)))[::4]
+    curve = outside.Outside(sensor_curve=0.03)
+    records = outside.measure_all(curve, trials, PLANT, seconds=1.0, noise=NOISE, seed=21)
+    found = diagnose(matrix_of(records, PLANT))
+    assert found.ladder[0].error["fit"] > 1.5 * found.noise_floor["fit"]
+    assert found.verdict.unexplained
+
+
+def test_the_same_matrix_gives_the_same_diagnosis():
+    matrix = measured(gain_asymmetry=0.08)
+    fit = identify(matrix, Settings())
+    once, again = (diagnose(matrix, fit).to_json() | {"seconds": 0} for _ in range(2))
+    assert once == again
+
+
+def test_verify_runs_never_rank():
+    """Verify runs that are nothing but noise change no ranking."""
+    matrix = measured(dead_zone=2.5e-4)
+    rng = np.random.default_rng(3)
+    spoilt = tuple(
+        run
+        if run.use == "fit"
+        else replace(run, channels={**run.channels, "displacement": 1e-3 * rng.standard_normal(run.length)})
+        for run in matrix.runs
+    )
+    fit = identify(matrix, Settings())
+    sound, other = (diagnose(replace(matrix, runs=runs), fit) for runs in (matrix.runs, spoilt))
+    assert [c.effect for c in sound.candidates] == [c.effect for c in other.candidates]
+    assert sound.verdict.effects == other.verdict.effects
+
+
+def test_more_effects_than_there_are_places_for_are_refused():
+    with pytest.raises(Unusable, match="99 effects"):
+        diagnose(measured(), most=99)

@@ -1,0 +1,115 @@
+"""Held-out errors and what is called chance."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ident.diagnosis.chance import gain
+from ident.diagnosis.held_out import HeldOut, bounded_step, held_out, independent_samples
+from ident.fit.objective import Local, local
+from ident.fit.record import Moments, moments_of
+from ident.matrix import Run
+
+RNG = np.random.default_rng(8)
+N, BLOCKS = 512, 32
+
+
+def records(count: int) -> list[tuple[Run, np.ndarray]]:
+    """Runs whose output is a line in two parameters, with noise, and the sensitivities."""
+    found = []
+    for i in range(count):
+        J = RNG.standard_normal((N, 2))
+        y = J @ [0.3, -0.2] + 0.5 * RNG.standard_normal(N) + 0.1
+        found.append((Run(f"r{i}", "", 1.0, {"command": y, "displacement": y}), J))
+    return found
+
+
+def objective(data, point: np.ndarray) -> Local:
+    """The objective of the line at a point of the unit cube, values = point − 0.5."""
+    runs: list[Moments] = []
+    for run, J in data:
+        residual = run.measured - run.measured.mean() - J @ (point - 0.5)
+        z = np.column_stack([J, np.ones(N), residual]).reshape(BLOCKS, -1, 4)
+        runs.append(moments_of(run, np.einsum("bni,bnj->bij", z, z), 2))
+    return local(runs)
+
+
+def weighted_optimum(data, used: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """The parameters that the used samples of all runs ask for, with what the means of the whole records leave."""
+    A, b = np.zeros((2, 2)), np.zeros(2)
+    for (run, J), weight in zip(data, weights, strict=True):
+        D, r = (J - J.mean(axis=0))[used], (run.measured - run.measured.mean())[used]
+        A += weight * D.T @ D
+        b += weight * D.T @ r
+    return np.linalg.solve(A, b)
+
+
+def test_held_out_errors_of_a_line_are_those_of_fits_without_each_fold():
+    """One step from the optimum of everything is exact: the same as solving without the fold."""
+    data = records(9)
+    point = np.array([0.8, 0.3])
+    for _ in range(6):
+        here = objective(data, point)
+        point = point - np.linalg.solve(here.curvature, here.gradient)
+    here = objective(data, point)
+    found = held_out(point, here, lambda p: objective(data, p), 1.0)
+    weights = np.array([1 / np.sqrt(run.gram[-1, -1] * run.total) for run in here.runs])
+    for fold in range(4):
+        chunk = np.arange(N) * 8 // N
+        used = chunk % 4 != fold
+        best = weighted_optimum(data, used, weights)
+        for i, (run, J) in enumerate(data):
+            left = run.measured - run.measured.mean() - (J - J.mean(axis=0)) @ best
+            expected = [np.sum(left[chunk == c] ** 2) for c in range(8) if c % 4 == fold]
+            assert found.squares[i, fold::4] == pytest.approx(expected, rel=1e-6)
+
+
+def test_a_useless_parameter_makes_held_out_data_worse():
+    """Of a hundred columns of noise, fitted, hardly any lowers the held-out error, and none beyond chance."""
+    data = records(9)
+    lower = 0
+    for _ in range(30):
+        noisy = [(run, np.column_stack([J[:, 0], RNG.standard_normal(N)])) for run, J in data]
+        known = [(Run(r.id, "", 1.0, {"command": r.command, "displacement": r.measured - J @ [0.3, -0.2]}), K)
+                 for (r, J), (_, K) in zip(data, noisy, strict=True)]  # fmt: skip
+        without, point = objective(known, np.full(2, 0.5)), np.full(2, 0.5)
+        here = without
+        for _ in range(4):
+            point = point - np.linalg.solve(here.curvature, here.gradient)
+            here = objective(known, point)
+        before = HeldOut(*_plain(without), sum(r.length for r, _ in known), 9.0 * N)
+        after = held_out(point, here, lambda p, known=known: objective(known, p), 9.0 * N)
+        found = gain(before, after)
+        lower += found.share > 0
+        assert not found.beyond_chance
+    assert lower < 15
+
+
+def _plain(here: Local) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    squares = np.array([run.blocks[:, -1, -1].reshape(8, -1).sum(axis=1) for run in here.runs])
+    return squares, np.array([run.total for run in here.runs]), np.zeros(len(here.runs))
+
+
+def test_what_one_run_alone_asks_for_is_not_beyond_chance():
+    """The error falls by a tenth in all, but in one run only: a doubt about that run."""
+    squares = 100.0 + RNG.standard_normal((20, 8))
+    better = squares.copy()
+    better[3] *= 0.1
+    before, after = (HeldOut(s, np.full(20, 1e6), np.zeros(20), 20_000, 20_000.0) for s in (squares, better))
+    assert gain(before, after).share > 0.03
+    assert not gain(before, after).beyond_chance
+    better = 0.9 * squares
+    assert gain(before, HeldOut(better, np.full(20, 1e6), np.zeros(20), 20_000, 20_000.0)).beyond_chance
+
+
+def test_white_noise_is_all_new_and_a_slow_one_is_not():
+    white = RNG.standard_normal(4096)
+    assert independent_samples(white) > 2000
+    assert independent_samples(np.convolve(white, np.ones(32) / 32, "same")) < 400
+
+
+def test_a_step_stays_in_the_cube_and_the_rest_makes_up_for_it():
+    H, g = np.array([[2.0, 1.0], [1.0, 2.0]]), np.array([4.0, 0.0])
+    step = bounded_step(np.array([0.1, 0.5]), H, g)
+    assert step == pytest.approx([-0.1, 0.05])
