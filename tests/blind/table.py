@@ -1,0 +1,109 @@
+"""The table of the blind trials, made from their rows:  python -m tests.blind.table  writes docs/blind-trials.md."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.stats import beta
+
+from tests.blind.campaign import OUT, rows
+
+PAGE = OUT.with_suffix(".md")
+Row = dict[str, Any]
+GOALS = {"one full": 97, "one small": 90, "none full": 98, "two full": 92, "three full": 80,
+         "outside full": 90, "label full": 95}  # fmt: skip
+_WORDS = {
+    "one": "one effect hidden", "none": "nothing hidden", "two": "two effects", "three": "three effects",
+    "outside": "an effect that is not listed", "label": "a wrong label on one run",
+}  # fmt: skip
+
+
+def interval(hits: int, trials: int) -> tuple[float, float]:
+    """The exact 95 % interval of a rate (Clopper and Pearson 1934)."""
+    lower = float(beta.ppf(0.025, hits, trials - hits + 1)) if hits else 0.0
+    upper = float(beta.ppf(0.975, hits + 1, trials - hits)) if hits < trials else 1.0
+    return lower, upper
+
+
+def rate(found: Sequence[Row]) -> str:
+    """Hits, trials, rate with its interval."""
+    hits = sum(row["named"] for row in found)
+    lower, upper = interval(hits, len(found))
+    return f"{hits} of {len(found)} | {100 * hits / len(found):.1f} ({100 * lower:.0f}-{100 * upper:.0f})"
+
+
+def summary(tried: Sequence[Row]) -> Iterable[str]:
+    """One line a kind of trial and matrix."""
+    columns = "hidden, matrix, named, rate in % (95 % interval), goal in %, mean group, strength off in % (median), "
+    yield f"| {' | '.join((columns + 'verify / floor (median)').split(', '))} |"
+    yield "|---|---|---|---|---|---|---|---|"
+    for key, goal in GOALS.items():
+        kind, matrix = key.split()
+        found = [row for row in tried if row["kind"] == kind and row["matrix"] == matrix]
+        if found:
+            groups = np.mean([np.mean([len(group) for group in row["groups"]] or [1]) for row in found])
+            misses = [abs(row["strengths"][n] / value - 1) for row in found if row["kind"] not in ("outside", "label")
+                      for n, value in row["hidden"].items() if n in row["strengths"]]  # fmt: skip
+            strength = f"{100 * np.median(misses):.2f}" if misses else "–"
+            verify = f"{np.median([row['verify'] for row in found]):.3f}"
+            yield f"| {_WORDS[kind]} | {matrix} | {rate(found)} | {goal} | {groups:.2f} | {strength} | {verify} |"
+
+
+def levels(tried: Sequence[Row]) -> Iterable[str]:
+    """One effect hidden, by noise and by how far the linear model is off."""
+    yield "| matrix | noise | linear error / floor | named | rate in % (95 % interval) |"
+    yield "|---|---|---|---|---|"
+    singles = [row for row in tried if row["kind"] == "one"]
+    for cell in sorted({(row["matrix"], row["noise"], row["level"]) for row in singles}):
+        found = [row for row in singles if (row["matrix"], row["noise"], row["level"]) == cell]
+        yield f"| {cell[0]} | {100 * cell[1]:g} % | {cell[2]:g} | {rate(found)} |"
+
+
+def confusion(tried: Sequence[Row]) -> Iterable[str]:
+    """What was named for each hidden effect."""
+    yield "| hidden | named (trials) |"
+    yield "|---|---|"
+    singles = [row for row in tried if row["kind"] == "one"]
+    for name in sorted({next(iter(row["hidden"])) for row in singles}):
+        said = Counter(" + ".join(row["found"]) or "nothing" for row in singles if name in row["hidden"])
+        yield f"| {name} | {', '.join(f'{what} ({count})' for what, count in said.most_common())} |"
+
+
+def unreachable(everything: Sequence[Row]) -> Iterable[str]:
+    """Cells in which the bounds of the catalogue do not allow the wanted error."""
+    yield "| effect | matrix | noise | wanted / floor | largest / floor |"
+    yield "|---|---|---|---|---|"
+    for row in everything:
+        if not row.get("reachable", True):
+            name = next(iter(row["hidden"]))
+            largest = row["linear_error"] / row["noise"]
+            yield f"| {name} | {row['matrix']} | {100 * row['noise']:g} % | {row['level']:g} | {largest:.2f} |"
+
+
+def page(everything: Sequence[Row]) -> str:
+    """The whole page."""
+    tried = [row for row in everything if row.get("reachable", True)]
+    parts: list[tuple[str, Callable[[Sequence[Row]], Iterable[str]], Sequence[Row]]] = [
+        ("Rates", summary, tried), ("One effect, by noise and size", levels, tried),
+        ("What was named", confusion, tried), ("Unreachable", unreachable, everything),
+    ]  # fmt: skip
+    head = (
+        "# Blind trials\n\nWritten by `python -m tests.blind.table` from blind-trials.jsonl. Data come from the "
+        "independent reference with parameters drawn anew for each trial; the seed of each stands in its row. `named`: "
+        "the verdict is the hidden set, each effect itself or in a group of at most three. For an effect that is not "
+        "listed: not a confident wrong name, unless the error is at the floor.\n"
+    )
+    return head + "\n".join(f"\n## {title}\n\n" + "\n".join(make(of)) + "\n" for title, make, of in parts)
+
+
+def main(path: Path = OUT) -> None:
+    """Write the page."""
+    PAGE.write_text(page(rows(path)))
+
+
+if __name__ == "__main__":
+    main()
