@@ -21,7 +21,7 @@ from ident.diagnosis.suspects import Suspect, suspects
 from ident.diagnosis.words import verdict_text, why
 from ident.effect import Effect, parameter_name
 from ident.errors import Unusable
-from ident.fit.identification import identify
+from ident.fit.identify import identify
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.fit.space import Space

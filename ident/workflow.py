@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ident.check import Finding, check
 from ident.compare import Comparison, compare
-from ident.fit.identification import identify
+from ident.fit.identify import identify
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.progress import Report, silent

@@ -12,7 +12,7 @@ import scipy.io
 
 from ident.contender import Contender
 from ident.experiment import Experiment
-from ident.fit.identification import identify
+from ident.fit.identify import identify
 from ident.fit.output_error import OutputError
 from ident.fit.polish import polish
 from ident.fit.settings import Settings

@@ -38,7 +38,7 @@ def fit(
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the fit as JSON; - is stdout.")] = None,
 ) -> None:
     """Identify the parameters of a model. With standard errors, and the error on runs that no fit saw."""
-    from ident.fit.identification import identify
+    from ident.fit.identify import identify
     from ident.readers import read_matrix
 
     check_target(json)

@@ -28,7 +28,7 @@ def report(
     from app.cli.progress import shown
     from app.report.diagnosis import read_diagnosis
     from app.report.document import document
-    from ident.fit.identification import identify
+    from ident.fit.identify import identify
     from ident.fit.settings import Settings
     from ident.readers import read_matrix
 

@@ -14,7 +14,7 @@ from app.tables import JobRow
 from ident.custom import read_effect
 from ident.diagnose import diagnose
 from ident.errors import Unusable
-from ident.fit.identification import identify
+from ident.fit.identify import identify
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 

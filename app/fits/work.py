@@ -9,7 +9,8 @@ from app.steps import State, Steps
 from app.storage import Storage
 from app.tables import JobRow
 from ident.bench.identification import BenchIdentification
-from ident.fit.identification import Identification, identification
+from ident.fit.identification import Identification
+from ident.fit.identify import identification
 from ident.fit.settings import Settings
 
 Work = Identification | BenchIdentification

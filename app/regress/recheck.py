@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from ident.compare import compare
 from ident.errors import Unusable
-from ident.fit.identification import identify
+from ident.fit.identify import identify
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix

@@ -11,7 +11,7 @@ import zlib
 from pathlib import Path
 
 from ident.figures import figure, render
-from ident.fit.identification import identify
+from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.readers import read_matrix
 from ident.synthesis import simulate_matrix

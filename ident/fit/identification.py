@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.bench.identification import OPTIONS as BENCH_OPTIONS
-from ident.bench.identification import BenchIdentification
 from ident.custom import preset_with
 from ident.errors import Unusable
 from ident.fit import genetic
@@ -112,7 +111,7 @@ class Identification:
             self.settings, effects=(), custom=(), method="ga", load="none", options={},
             bounds=own(self.settings.bounds), fixed=own(self.settings.fixed),
         )  # fmt: skip
-        found = identify(self.matrix, settings, self.report)
+        found = completed(Identification(self.matrix, settings, self.report))
         values = {self.preset.parameter(name).name: value for name, value in found.values.items()}
         return {p.name: 0.0 for p in self.preset.parameters if p.name not in self._linear} | values
 
@@ -235,6 +234,8 @@ def check_settings(settings: Settings) -> None:
     if settings.method not in METHODS:
         remedy = f"choose from {', '.join(METHODS)}"
         raise Unusable("unknown-method", f"no method {settings.method!r}", "method", remedy)
+    if settings.method == "inverse-dynamics" and settings.model != "drive":
+        raise Unusable("unknown-method", "inverse dynamics is of a drive", "method", "use it with model drive")
     if settings.method == "gradient" and settings.model != "kononykhin":
         remedy = "use ga, or the model kononykhin"
         raise Unusable("unknown-method", "gradient is the way of the bench's procedures", "method", remedy)
@@ -272,17 +273,8 @@ def _refuse(matrix: Matrix) -> None:
             raise Unusable("missing-channel", "no command channel", f"run {run.id}", "name the column of the command")
 
 
-def identification(matrix: Matrix, settings: Settings, report: Report = silent) -> Identification | BenchIdentification:
-    """The fit that a model asks for: of test runs, or of the records of a bench."""
-    check_settings(settings)
-    if settings.model == "kononykhin":
-        return BenchIdentification(matrix, settings, report)
-    return Identification(matrix, settings, report)
-
-
-def identify(matrix: Matrix, settings: Settings, report: Report = silent) -> FitResult:
-    """The whole fit in one call."""
-    work = identification(matrix, settings, report)
+def completed(work: Identification) -> FitResult:
+    """The whole of a fit, without a break."""
     state = work.start()
     while not work.finished(state):
         state = work.advance(state, work.generations)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-METHODS = ("ga", "paper-ga", "differential-evolution", "cma-es", "gradient")
+METHODS = ("ga", "paper-ga", "differential-evolution", "cma-es", "gradient", "inverse-dynamics")
 
 
 @dataclass(frozen=True)

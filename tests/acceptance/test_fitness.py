@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ident.fit.identification import Identification, identify
+from ident.fit.identification import Identification
+from ident.fit.identify import identify
 from ident.fit.objective import UNSTABLE
 from ident.fit.settings import Settings
 from tests.acceptance.matrices import as_matrix, records_of

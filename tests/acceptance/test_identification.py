@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ident.fit.identification import Identification, identify
+from ident.fit.identification import Identification
+from ident.fit.identify import identify
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
@@ -132,7 +133,7 @@ from dataclasses import replace
 from pathlib import Path
 cores = set(json.loads(sys.argv[2]))
 os.sched_setaffinity(0, cores)
-from ident.fit.identification import identify
+from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.readers import read_matrix
 fit = replace(identify(read_matrix(Path(sys.argv[1])), Settings(seed=3)), seconds=0.0)

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from ident.fit.identification import identify
+from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.presets import PRESETS
 from ident.readers import read_matrix

@@ -12,7 +12,7 @@ from ident.bench.records import bench_set
 from ident.errors import Unusable
 from ident.figures import BENCH_FIGURES, figure, figures_of, render
 from ident.figures.acceptance_sheet import acceptance_sheet
-from ident.fit.identification import identify
+from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from tests.bench.sets import as_matrix
 from tests.reference import kononykhin_reference as reference

@@ -10,7 +10,7 @@ import pytest
 
 from ident.bench.identification import BenchIdentification
 from ident.errors import Unusable
-from ident.fit.identification import identification, identify
+from ident.fit.identify import identification, identify
 from ident.fit.settings import Settings
 from tests.bench.sets import as_matrix, true_model
 from tests.reference import kononykhin_reference as reference

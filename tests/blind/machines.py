@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ident.effects import effect
-from ident.fit.identification import identify
+from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run, Specimen
 from tests.reference import nonlinear_reference as reference

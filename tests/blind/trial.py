@@ -11,7 +11,7 @@ import numpy as np
 from ident.diagnose import diagnose
 from ident.diagnosis.result import Diagnosis
 from ident.effects import EFFECTS
-from ident.fit.identification import identify
+from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.matrix import Matrix, Run, Specimen
 from tests.blind.machines import OFFSET, Machine, as_fit, drawn_plant, matrix_of, offset_strength, strength_for

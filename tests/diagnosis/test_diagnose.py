@@ -10,7 +10,7 @@ import pytest
 from ident.diagnose import diagnose
 from ident.diagnosis.result import Diagnosis
 from ident.errors import Unusable
-from ident.fit.identification import identify
+from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from tests.blind.machines import Machine, matrix_of

@@ -13,7 +13,7 @@ import numpy as np
 
 from ident.effect import Effect
 from ident.effects import EFFECTS, effect
-from ident.fit.identification import identify
+from ident.fit.identify import identify
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run, Specimen

@@ -9,7 +9,8 @@ import pytest
 
 from ident.compare import compare
 from ident.custom import definition_of
-from ident.fit.identification import Identification, identify
+from ident.fit.identification import Identification
+from ident.fit.identify import identify
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run, Specimen

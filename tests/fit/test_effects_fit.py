@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from ident.effect import Effect
-from ident.fit.identification import Identification, identify
+from ident.fit.identification import Identification
+from ident.fit.identify import identify
 from ident.fit.output_error import OutputError
 from ident.fit.polish import polish
 from ident.fit.settings import Settings

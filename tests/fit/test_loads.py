@@ -10,7 +10,7 @@ import pytest
 
 from ident.compare import compare, modelled
 from ident.errors import Unusable
-from ident.fit.identification import identify
+from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run, Specimen
 from ident.presets import PRESETS
@@ -61,3 +61,22 @@ def test_a_drive_under_its_position_loop_has_friction():
     found = identify(matrix, Settings(model="drive", effects=("coulomb_friction", "static_load")))
     assert found.error["fit"] < plain.error["fit"] / 3
     assert compare(matrix, found).error["fit"] == pytest.approx(found.error["fit"], rel=1e-4)
+
+
+def test_inverse_dynamics_is_a_method_of_the_drive():
+    """Mass, viscous and dry friction and offset of the measured drive within 5 % of what was published."""
+    if not EMPS.exists():
+        pytest.skip("the measured data emps is not here")
+    found = identify(read_matrix(EMPS), Settings(model="drive", method="inverse-dynamics"))
+    published = {"m0": 95.0, "c0": 203.0, "coulomb_friction.force": 20.4, "static_load.force": 3.2}
+    for name, value in published.items():
+        assert found.values[name] == pytest.approx(value, rel=0.05)
+        assert 0 < found.parameters[name].std_error < 0.1 * value
+    assert found.method == "inverse-dynamics"
+    assert found.error["fit"] < 1e-4
+    assert sum("force residual" in note for note in found.notes) == 2
+
+
+def test_inverse_dynamics_of_an_actuator_is_refused():
+    with pytest.raises(Unusable, match="of a drive"):
+        identify(loaded(Specimen()), Settings(method="inverse-dynamics"))

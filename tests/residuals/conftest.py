@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import cache
 
 from ident.compare import Comparison, compare
-from ident.fit.identification import identify
+from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.presets import preset
 from tests.fit.recovery import matrix

@@ -8,7 +8,7 @@ import pytest
 from ident.compare import compare
 from ident.errors import Unusable
 from ident.figures import figure
-from ident.fit.identification import identify
+from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.presets import preset
 from ident.residuals.coarse import Response

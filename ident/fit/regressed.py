@@ -1,0 +1,63 @@
+"""A drive by inverse-dynamics regression: mass and friction from measured force and motion, the rest by output error.
+
+    drive_force = m₀ v′ + c₀ v + Fc sgn v − F0
+
+gives mass, viscous and dry friction and the constant force at once, see :mod:`ident.inverse_dynamics`; only the gains
+of a position loop, where there is one, are then searched. Errors are those of the simulated position, as of any fit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from ident.errors import Unusable
+from ident.fit.identification import Identification
+from ident.fit.result import FitResult
+from ident.fit.settings import Settings
+from ident.inverse_dynamics import InverseDynamics, regress
+from ident.matrix import Matrix
+from ident.progress import Report, silent
+
+NAME = "inverse-dynamics"
+EFFECTS = ("coulomb_friction", "static_load")
+_SLACK = 1e-6  # N/m: the regression knows no spring
+
+
+class RegressedIdentification(Identification):
+    """One fit of the model `drive`. Raises Unusable for another model, with effects of its own, or without a force."""
+
+    def __init__(self, matrix: Matrix, settings: Settings, report: Report = silent) -> None:
+        if settings.model != "drive" or set(settings.effects) - set(EFFECTS):
+            raise Unusable("method-does-not-fit", f"{NAME} finds mass, friction and a constant force", "method",
+                           f"use it with --model drive and no effect but {' and '.join(EFFECTS)}")  # fmt: skip
+        self.asked, self.regression = settings, regress(matrix)
+        fixed = {**_values(self.regression), "k0": _SLACK, **settings.fixed}
+        super().__init__(matrix, replace(settings, method="ga", effects=EFFECTS, fixed=fixed), report)
+
+    def finish(self, state: dict[str, Any]) -> FitResult:
+        """The fit, with the regression's standard errors."""
+        found = super().finish(state)
+        parameters = dict(found.parameters)
+        for name, source in _SOURCES.items():
+            error = self.regression.coefficients[source].std_error
+            parameters[name] = replace(parameters[name], std_error=error, fixed=False)
+        with_, without = self.regression.residual, self.regression.residual_without_friction
+        said = tuple(
+            f"run {run}: force residual {100 * with_[run]:.3g} %, without dry friction {100 * without[run]:.3g} %"
+            for run in with_
+        )
+        return replace(found, method=NAME, parameters=parameters, notes=(*found.notes, *said),
+                       settings={**found.settings, "method": NAME})  # fmt: skip
+
+
+_SOURCES = {"m0": "mass", "c0": "viscous", "coulomb_friction.force": "coulomb", "static_load.force": "offset"}
+
+
+def _values(regression: InverseDynamics) -> dict[str, float]:
+    values = {name: regression.coefficients[source].value for name, source in _SOURCES.items()}
+    for name in ("m0", "c0", "coulomb_friction.force"):
+        if values[name] <= 0:
+            raise Unusable("not-a-drive", f"{name} would be {values[name]:.3g}", NAME,
+                           "check the signs of force and position")  # fmt: skip
+    return values | {"static_load.force": -values["static_load.force"]}
