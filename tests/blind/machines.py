@@ -23,6 +23,7 @@ OFFSET = ("null_bias", "static_load")  # invisible to eq. (17), judged by the ru
 _SPREAD = 0.25  # the parameters' range about those of the paper, in logarithms
 _CLOSE = 0.1  # of the wanted excess
 _TRIES = 10
+_RUN_AWAY = 0.05  # m: a softening spring beyond its range
 
 
 @dataclass(frozen=True)
@@ -86,6 +87,8 @@ def _damped(plant: linear.Plant, cell: linear.Cell) -> bool:
 def linear_error(machine: Machine) -> float:
     """Eq. (17) of the refitted linear model, on a quarter of the runs' beginnings."""
     matrix = machine.measured(seconds=1.0, every=2 if machine.small else 4)
+    if not all(np.abs(run.measured).max() < _RUN_AWAY for run in matrix.runs):
+        return 1.0
     return float(identify(as_fit(matrix), Settings()).error["fit"] or 0.0)
 
 
@@ -94,20 +97,20 @@ def as_fit(matrix: Matrix) -> Matrix:
     return replace(matrix, runs=tuple(replace(run, use="fit") for run in matrix.runs))
 
 
-def strength_for(machine: Machine, name: str, wanted: float) -> tuple[float, float]:
+def strength_for(machine: Machine, name: str, wanted: float, sign: float = 1.0) -> tuple[float, float]:
     """The strength with which the linear error is `wanted` times the noise, or its bound; and that error."""
     wanted_error, floor = wanted * machine.noise, machine.noise
     top = effect(name).strength.upper
 
     def excess(strength: float) -> float:
-        error = linear_error(Machine(machine.plant, {name: strength}, machine.noise, machine.small, machine.seed))
+        error = linear_error(replace(machine, hidden={name: sign * strength}))
         return float(np.sqrt(max(error**2 - floor**2, (0.02 * floor) ** 2)))
 
     goal = float(np.sqrt(wanted_error**2 - floor**2))
     low, high = 0.0, top
     at_top = excess(top)
     if at_top < goal:
-        return top, float(np.hypot(at_top, floor))
+        return sign * top, float(np.hypot(at_top, floor))
     strength, found = top, at_top
     for attempt in range(_TRIES):
         guess = strength * goal / found
@@ -116,7 +119,7 @@ def strength_for(machine: Machine, name: str, wanted: float) -> tuple[float, flo
         if abs(found / goal - 1) < _CLOSE:
             break
         low, high = (strength, high) if found < goal else (low, strength)
-    return strength, float(np.hypot(found, floor))
+    return sign * strength, float(np.hypot(found, floor))
 
 
 def offset_strength(machine: Machine, name: str, wanted: float) -> float:

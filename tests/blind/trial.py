@@ -26,11 +26,11 @@ def single(name: str, level: float, noise: float, small: bool, seed: int) -> dic
     """One effect hidden, at `level` times the floor where its bounds allow it."""
     rng = np.random.default_rng([seed, NAMES.index(name), round(10 * level), round(1e4 * noise), small])
     machine = Machine(drawn_plant(rng), {}, noise, small, int(rng.integers(1 << 30)))
+    sign = -1.0 if rng.random() < 0.5 and EFFECTS[NAMES.index(name)].strength.lower < 0 else 1.0
     if name in OFFSET:
-        strength, reached = offset_strength(machine, name, level), noise
+        strength, reached = sign * offset_strength(machine, name, level), noise
     else:
-        strength, reached = strength_for(machine, name, level)
-    strength *= -1.0 if rng.random() < 0.5 and EFFECTS[NAMES.index(name)].strength.lower < 0 else 1.0
+        strength, reached = strength_for(machine, name, level, sign)
     row: dict[str, Any] = {
         "kind": "one", "matrix": "small" if small else "full", "noise": noise, "level": level, "seed": seed,
         "hidden": {name: strength}, "linear_error": reached,
