@@ -29,12 +29,16 @@ class CandidateView(BaseModel):
 
 
 class RungView(BaseModel):
-    """A step of the ladder: what was added to the model before it, null for the fitted model itself."""
+    """A step of the ladder: what was added to the model before it, null for the fitted model itself.
+
+    `nats` by which it made the held-out data more likely.
+    """
 
     model_config = ConfigDict(extra="allow")
     added: str | None
     error: dict[str, float | None]
     parameters: dict[str, dict[str, Any]]
+    nats: float | None = None
 
 
 class VerdictView(BaseModel):

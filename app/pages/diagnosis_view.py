@@ -76,11 +76,11 @@ class SuspectCard:
 
 @dataclass(frozen=True)
 class Rung:
-    """A step that the diagnosis would take."""
+    """A step that the diagnosis would take; `nats` by which it made the held-out data more likely."""
 
     added: str
     error: Mapping[str, float | None]
-    deviations: str
+    nats: str
 
 
 @dataclass(frozen=True)
@@ -213,8 +213,7 @@ def _suspect(entry: Mapping[str, Any]) -> SuspectCard:
 
 def _ladder(found: DiagnosisView) -> Iterator[Rung]:
     for rung in found.ladder:
-        deviations = (rung.model_extra or {}).get("deviations")
-        said = "–" if deviations is None else f"{deviations:.1f}"
+        said = "–" if rung.nats is None else numbers.plain(rung.nats, 3)
         errors = {use: rung.error.get(use) for use in _USES}
         yield Rung(title(rung.added) if rung.added else "the fit as it is", errors, said)
 

@@ -44,6 +44,9 @@ def test_the_tables_say_it_with_units(told):
     assert line.count("%") == 3
     assert "noise floor" in printed
     assert "(the fitted model)" in printed
+    rung = [line for line in printed.splitlines() if line.startswith("dead_zone ")][-1]
+    assert rung.split()[-1] == f"{found['ladder'][1]['nats']:.3g}"
+    assert "evidence (nats)" in printed
     assert "not refitted, predicted" in printed
     assert found["verdict"]["text"] in printed
 

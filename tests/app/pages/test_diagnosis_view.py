@@ -34,8 +34,8 @@ def found() -> DiagnosisView:
         noise_floor={"fit": 0.005, "verify": None}, seconds=3.2,
         candidates=[candidate("coulomb_friction", 0.01, group), candidate("stribeck_friction", 0.0101, group),
                     candidate("own_effect", 0.012), candidate("lead", 0.0199, beyond=False)],
-        ladder=[{"added": None, "error": {"fit": 0.02}, "parameters": {}, "deviations": None},
-                {"added": "coulomb_friction", "error": {"fit": 0.01}, "parameters": {}, "deviations": 7.0}],
+        ladder=[{"added": None, "error": {"fit": 0.02}, "parameters": {}, "nats": None},
+                {"added": "coulomb_friction", "error": {"fit": 0.01}, "parameters": {}, "nats": 7.0}],
         verdict={"effects": ["coulomb_friction"], "indistinguishable": [list(group)], "suspects": [suspect],
                  "unexplained": True, "text": "The model lacks something."},
     )  # fmt: skip
@@ -55,6 +55,7 @@ def test_what_does_not_help_stands_apart_and_what_is_left_is_said():
     lacks = missing(found(), None)
     assert [card.title for card in lacks.chance] == ["lead"]
     assert lacks.left == "The error is 1.00 % with all that helps, above the noise floor of 0.500 %."
+    assert [rung.nats for rung in lacks.ladder] == ["–", "7.00"]
     assert (lacks.suspects[0].stated, lacks.suspects[0].found) == ("2.670 kg", "0.9000 kg")
 
 
