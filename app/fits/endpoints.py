@@ -6,7 +6,7 @@ from fastapi import APIRouter, Request, Response
 
 from app.context import Here
 from app.errors import COMMON
-from app.fits import lineage, service
+from app.fits import drawing, lineage, service
 from app.idempotency import Key, fingerprint, once
 from schemas.fit import ComparisonView, EffectsRequest, FitRequest, FitView, JobView, LadderView
 
@@ -68,5 +68,5 @@ def drawn(here: Here, request: Request, fit: str, name: str, kind: str) -> Respo
     """A figure as json (Vega-Lite), svg, png or pdf; query parameters choose what it shows."""
     query = request.query_params
     options = {key: values if len(values := query.getlist(key)) > 1 else values[0] for key in query}
-    content, media = service.drawn(here, fit, name, kind, options)
+    content, media = drawing.drawn(here, fit, name, kind, options)
     return Response(content, media_type=media)

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Sequence
-from typing import Any
 
 from app.context import Context
-from app.errors import Failure, missing
+from app.errors import missing
 from app.fits import repository
 from app.matrices import service as matrices
 from app.paging import cursor, keys_of
 from app.tables import FitRow, JobRow, now
 from ident.compare import compare
 from ident.custom import definition_of, preset_with
-from ident.figures import MEDIA, figure, render
 from ident.fit.identification import check_settings
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
@@ -143,20 +141,6 @@ def comparison(context: Context, fit_id: str) -> ComparisonView:
     found = compare(matrices.load(context, row.matrix), FitResult.from_json(row.result))
     runs = [ComparedRun(id=r.run.id, use=r.run.use, error=r.error, offset=r.offset) for r in found.runs]
     return ComparisonView(fit=fit_id, error=found.error, offset=found.offset, runs=runs, **survey(found).to_json())
-
-
-def drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str, Any]) -> tuple[bytes, str]:
-    """A figure of a fit as bytes and their media type."""
-    row = find(context, fit_id)
-    if kind not in MEDIA:
-        raise Failure(404, "no-such-format", f"no figures as {kind!r}", "figure", f"use {', '.join(MEDIA)}")
-    theme = options.pop("theme", "light")
-    if options.get("candidate"):
-        options["candidate"] = FitResult.from_json(find(context, str(options["candidate"])).result)
-    else:
-        options.pop("candidate", None)
-    matrix = matrices.load(context, row.matrix)
-    return render(figure(name, matrix, FitResult.from_json(row.result), theme, **options), kind), MEDIA[kind]
 
 
 def job_view(row: JobRow, serial: str) -> JobView:
