@@ -76,3 +76,29 @@ class DiagnosisPage(BaseModel):
 
     items: list[DiagnosisView]
     next: str | None = None
+
+
+class ProposalView(BaseModel):
+    """The run that the lab should add, SI: `text` says why, `conditions` what, `run` is its entry in matrix.yaml.
+
+    `separation` are the standard deviations of the noise by which the models in question will then differ, `so_far`
+    those by the runs there are; `std_errors` the share of each standard error that is expected to be left.
+    """
+
+    model_config = ConfigDict(extra="allow")
+    text: str
+    conditions: str
+    signal: str
+    amplitude: float
+    unit: str
+    frequency: float
+    seconds: float
+    sample_rate: float
+    seed: int
+    gain: float | None
+    specimen: dict[str, float] | None
+    separation: float | None
+    so_far: float | None
+    information: float
+    std_errors: dict[str, float]
+    run: dict[str, Any]

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import io
+import json
+import zipfile
 from typing import Any
 
+import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
@@ -90,6 +94,32 @@ def test_an_effect_is_added_and_the_ladder_leads_back(service, linear, mended):
     assert second["error"]["verify"] < first["error"]["verify"] / 2
     assert first["data_hash"] == second["data_hash"]
     assert {"seed", "version", "parameters"} <= set(second)
+
+
+def test_the_way_is_drawn_with_its_errors_and_the_floor(service, mended):
+    spec = service.get(f"{API}/fits/{mended}/figures/ladder.json").json()
+    rows = spec["datasets"]["steps"]
+    assert [row["step"].rpartition(". ")[2] for row in rows[2:]] == ["dead zone", "dead zone"]
+    assert {row["u"] for row in rows} == {"runs to fit", "runs to verify"}
+    assert "noise floor 0." in str(spec["title"])
+    for kind, start in (("svg", b"<svg"), ("png", b"\x89PNG"), ("pdf", b"%PDF")):
+        assert service.get(f"{API}/fits/{mended}/figures/ladder.{kind}").content.startswith(start)
+    answer = service.get(f"{API}/fits/{mended}/figures/ladder.json", params={"kp": "1"})
+    assert (answer.status_code, answer.json()["code"]) == (422, "unknown-option")
+
+
+def test_the_next_experiment_is_told_and_downloaded(service, diagnosis):
+    """The words are those of the archive, whose command has the amplitude that they state."""
+    told = service.get(f"{API}/diagnoses/{diagnosis['id']}/proposal").json()
+    answer = service.get(f"{API}/diagnoses/{diagnosis['id']}/next-experiment")
+    assert answer.headers["content-type"] == "application/zip"
+    with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:
+        assert sorted(archive.namelist()) == ["command.csv", "command.mat", "experiment.json"]
+        assert json.loads(archive.read("experiment.json"))["text"] == told["text"]
+        rows = np.loadtxt(io.BytesIO(archive.read("command.csv")), delimiter=",", skiprows=1)
+    assert len(rows) == round(told["seconds"] * told["sample_rate"])
+    assert np.sqrt(np.mean(rows[:, 1] ** 2)) == pytest.approx(1e3 * told["amplitude"], rel=0.01)
+    assert service.get(f"{API}/diagnoses/none/next-experiment").status_code == 404
 
 
 def test_adding_is_undone_by_approving_the_fit_before(service, linear, mended):

@@ -49,6 +49,11 @@ def test_from_upload_to_a_mended_model_in_force(page, site, tmp_path, screenshot
     page.get_by_text("others that do not help beyond chance").click()
     pictures(page, screenshots, "missing")
     page.locator("#missing").screenshot(path=screenshots / "cards.png")
+    page.get_by_role("button", name="Propose a run").click()
+    expect(page.locator(".next [data-text]")).to_contain_text("Run a ", timeout=LONG)
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Download its command").click()
+    assert download.value.suggested_filename == "DZ-SHOP-next-experiment.zip"
     add = card.get_by_role("button", name="Add it (dead zone)")
     add.focus()
     page.keyboard.press("Enter")
@@ -58,6 +63,8 @@ def test_from_upload_to_a_mended_model_in_force(page, site, tmp_path, screenshot
     assert page.url != before
     first, second = (float(text.split()[0]) for text in way.locator("td:nth-child(4)").all_inner_texts())
     assert second < first / 2
+    page.locator("#figure-ladder").scroll_into_view_if_needed()
+    expect(page.locator("#figure-ladder canvas")).to_be_visible(timeout=LONG)
     pictures(page, screenshots, "mended")
     expect(page.get_by_role("link", name="Undo: back to the fit before")).to_have_attribute(
         "href", before.removeprefix(site.address)
