@@ -8,7 +8,10 @@ from schemas.fit import Chosen
 
 
 class DiagnosisRequest(Chosen):
-    """A diagnosis to be queued: of a stored `fit`, or of a `matrix`, whose fit with these settings is made first."""
+    """A diagnosis to be queued: of a stored `fit`, or of a `matrix`, whose fit with these settings is made first.
+
+    The effects that `custom` defines are ranked beside those of the catalogue.
+    """
 
     fit: str | None = None
     matrix: str | None = None

@@ -16,6 +16,10 @@ from app.fits import repository
 from tests.hidden_dead_zone import HALF_WIDTH, zipped
 
 API = "/api/v1"
+OWN = {
+    "name": "overlap", "place": "spool", "equation": "w = w - clip(w, -h, h)", "meaning": "the lands overlap",
+    "strength": {"symbol": "h", "unit": "mm", "lower": 0, "upper": 1},
+}  # fmt: skip
 
 
 def ended(service: TestClient, answer: Any) -> dict[str, Any]:
@@ -194,3 +198,19 @@ def test_a_diagnosis_is_no_fit_of_the_actuators_page(service, diagnosis, linear)
     page = service.get("/actuators/DZ-1").text
     assert f"/fits/{linear}" in page
     assert f"/fits/{diagnosis['id']}" not in page
+
+
+def test_an_own_effect_is_ranked_beside_the_catalogue_and_added(service, linear):
+    """A dead zone under another name: the data cannot tell the two apart, and either can be added."""
+    job = ended(service, service.post(f"{API}/diagnoses", json={"fit": linear, "max_effects": 1, "custom": [OWN]}))
+    found = service.get(f"{API}/diagnoses/{job['diagnosis']}").json()
+    own, listed = (next(c for c in found["candidates"] if c["effect"] == name) for name in ("overlap", "dead_zone"))
+    assert own["error"]["held_out"] == pytest.approx(listed["error"]["held_out"], rel=0.01)
+    assert found["settings"]["custom"][0]["equation"] == OWN["equation"]
+    assert service.get(f"{API}/diagnoses/{job['diagnosis']}/proposal").status_code == 200
+    assert "overlap" in service.get(f"/fits/{linear}").text
+    added = service.post(f"{API}/fits/{linear}/effects", json={"effects": ["overlap"], "custom": [OWN]})
+    fit = service.get(f"{API}/fits/{ended(service, added)['fit']}").json()["result"]
+    assert fit["parameters"]["overlap.h"]["value"] == pytest.approx(HALF_WIDTH, rel=0.02)
+    bad = {"fit": linear, "custom": [OWN | {"equation": "w = w +"}]}
+    assert service.post(f"{API}/diagnoses", json=bad).json()["where"] == "equation, character 8"

@@ -53,7 +53,7 @@ def test_from_upload_to_a_mended_model_in_force(page, site, tmp_path, screenshot
     expect(page.locator(".next [data-text]")).to_contain_text("Run a ", timeout=LONG)
     with page.expect_download() as download:
         page.get_by_role("link", name="Download its command").click()
-    assert download.value.suggested_filename == "DZ-SHOP-next-experiment.zip"
+    assert download.value.suggested_filename.startswith("next-experiment-")
     add = card.get_by_role("button", name="Add it (dead zone)")
     add.focus()
     page.keyboard.press("Enter")

@@ -13,9 +13,17 @@ for (const form of document.querySelectorAll("form[data-diagnose]")) {
 
 for (const form of document.querySelectorAll("form[data-add]")) {
   onSubmit(form, async () => {
-    const { data } = await send("POST", form.dataset.add, { effects: new FormData(form).getAll("effects") });
+    const { data } = await send("POST", form.dataset.add, wanted(form));
     location.assign(`/fits/${data.id}`);
   });
+}
+
+// The effects by name, with the definitions of those that are the user's own.
+function wanted(form) {
+  const fields = new FormData(form);
+  const option = form.querySelector("select")?.selectedOptions[0];
+  const custom = [...fields.getAll("custom"), option?.dataset.custom].filter(Boolean).map((text) => JSON.parse(text));
+  return { effects: fields.getAll("effects"), custom };
 }
 
 function onSubmit(form, work) {
