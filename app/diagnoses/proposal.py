@@ -13,7 +13,7 @@ from app.context import Context
 from app.diagnoses import service
 from app.matrices import service as matrices
 from ident.experiment import Experiment
-from ident.in_question import floor_of, in_question
+from ident.in_question import floor_of, in_question, trusted
 from ident.next_experiment import propose
 from schemas.diagnosis import ProposalView
 
@@ -46,7 +46,8 @@ def _experiment(context: Context, diagnosis: str, seed: int) -> Experiment:
             return _known[key]
     stored = service.get(context, diagnosis)
     data = stored.model_dump()
-    found = propose(in_question(data), matrices.load(context, stored.matrix), floor_of(data), seed)
+    matrix = trusted(data, matrices.load(context, stored.matrix))
+    found = propose(in_question(data), matrix, floor_of(data), seed)
     with _lock:
         _known[key] = found
         while len(_known) > _KEPT:

@@ -19,6 +19,8 @@ from schemas.diagnosis import CandidateView, DiagnosisView
 from schemas.fit import JobView
 
 _CATALOGUE = {effect.name: effect for effect in EFFECTS}
+_LABELS = {"mass": "kg", "stiffness": "N/m", "gain": ""}
+"""Labels that a revision can mend, with the unit that it writes."""
 _USES = ("fit", "held_out", "verify")
 
 
@@ -71,13 +73,14 @@ class Card:
 
 @dataclass(frozen=True)
 class SuspectCard:
-    """A run whose label is doubted."""
+    """A run whose label is doubted; `mend` is the revision that writes what the data say, as JSON, "" for none."""
 
     run: str
     what: str
     stated: str
     found: str
     words: str
+    mend: str
 
 
 @dataclass(frozen=True)
@@ -227,7 +230,18 @@ def _suspect(entry: Mapping[str, Any]) -> SuspectCard:
         stated=numbers.quantity(entry.get("stated"), unit),
         found=numbers.quantity(entry.get("found"), unit),
         words=str(entry["evidence"]),
+        mend=_mend(entry),
     )
+
+
+def _mend(entry: Mapping[str, Any]) -> str:
+    """What a revision of the matrix would change."""
+    what, found = str(entry["what"]), entry.get("found")
+    if what not in _LABELS or found is None:
+        return ""
+    unit = _LABELS[what]
+    label = {"specimen": {what: f"{found:.4g} {unit}"}} if unit else {what: float(f"{found:.4g}")}
+    return json.dumps({"runs": {str(entry["run"]): label}})
 
 
 def _ladder(found: DiagnosisView) -> Iterator[Rung]:

@@ -60,10 +60,11 @@ def test_what_does_not_help_stands_apart_and_what_is_left_is_said():
 
 
 def test_the_section_is_markup_with_everything_escaped():
-    page = {"id": "f", "serial": "S", "matrix": "m", "missing": missing(found(), None)}
+    page = {"id": "f", "serial": "S", "matrix": "m", "again": "{}", "missing": missing(found(), None)}
     text = _TEMPLATES.get_template("missing.html").render(fit=page)
     assert "r &lt;1&gt;" in text
     assert "cannot tell these 2 apart" in text
+    assert "{&#34;runs&#34;: {&#34;r &lt;1&gt;&#34;: {&#34;specimen&#34;: {&#34;mass&#34;: &#34;0.9 kg&#34;}}}}" in text
     assert text.count('data-add="/api/v1/fits/f/effects"') == 2  # the group and the one by chance
     assert "In data: flat tops." in text
 
