@@ -8,7 +8,7 @@ from app.context import Here
 from app.errors import COMMON
 from app.fits import drawing, lineage, service
 from app.idempotency import Key, fingerprint, once
-from schemas.fit import ComparisonView, EffectsRequest, FitRequest, FitView, JobView, LadderView
+from schemas.fit import ComparisonView, EffectsRequest, ErrorBudget, FitRequest, FitView, JobView, LadderView
 
 router = APIRouter(prefix="/fits", tags=["fits"], responses=COMMON)
 _MEDIA = ("application/json", "image/svg+xml", "image/png", "application/pdf")
@@ -36,6 +36,12 @@ def one(here: Here, fit: str) -> FitView:
 def compared(here: Here, fit: str) -> ComparisonView:
     """Eq. (17) of every run, recomputed, where the model fails, and what the error is made of."""
     return service.comparison(here, fit)
+
+
+@router.get("/{fit}/budget")
+def budget(here: Here, fit: str) -> ErrorBudget:
+    """What the error on the runs to fit is made of: noise, what a linear and what only a nonlinear model could take."""
+    return service.budget_of(here, fit)
 
 
 @router.post("/{fit}/approve", response_model=FitView)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Sequence
+from dataclasses import replace
 
 from app.context import Context
 from app.errors import missing
@@ -17,8 +18,19 @@ from ident.fit.identification import check_settings
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.quantity import parameter_value
+from ident.residuals.budget import budget
 from ident.residuals.survey import survey
-from schemas.fit import Chosen, ComparedRun, ComparisonView, FitRequest, FitView, JobPage, JobView, ProgressView
+from schemas.fit import (
+    Chosen,
+    ComparedRun,
+    ComparisonView,
+    ErrorBudget,
+    FitRequest,
+    FitView,
+    JobPage,
+    JobView,
+    ProgressView,
+)
 
 
 def submit(context: Context, request: FitRequest) -> JobView:
@@ -141,6 +153,14 @@ def comparison(context: Context, fit_id: str) -> ComparisonView:
     found = compare(matrices.load(context, row.matrix), FitResult.from_json(row.result))
     runs = [ComparedRun(id=r.run.id, use=r.run.use, error=r.error, offset=r.offset) for r in found.runs]
     return ComparisonView(fit=fit_id, error=found.error, offset=found.offset, runs=runs, **survey(found).to_json())
+
+
+def budget_of(context: Context, fit_id: str) -> ErrorBudget:
+    """What the error on the runs to fit is made of. Raises Unusable where the model is unstable at every run."""
+    row = find(context, fit_id)
+    matrix = matrices.load(context, row.matrix)
+    fitted = replace(matrix, runs=matrix.of_use("fit") or matrix.runs)
+    return ErrorBudget(**budget(compare(fitted, FitResult.from_json(row.result))).to_json())
 
 
 def job_view(row: JobRow, serial: str) -> JobView:

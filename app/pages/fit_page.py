@@ -15,6 +15,7 @@ from app.pages.figure_forms import FigureForm, forms
 from app.pages.fit_view import Determined, ErrorRow, ParameterRow, combination_rows, error_rows, parameter_rows
 from app.pages.job_view import settings_facts
 from app.pages.ladder_view import Step, steps
+from app.pages.matrix_view import counted
 from app.pages.run_view import Conditions, conditions
 from ident.custom import HANDED_ON, preset_with
 from ident.expression import Equation
@@ -65,6 +66,8 @@ class FitPageView:
     ladder: tuple[Step, ...]
     places: tuple[tuple[str, str], ...]
     again: str
+    findings: str
+    worst: str
 
 
 def fit_page(stored: FitView, matrix: MatrixView, lacks: MissingView, ladder: LadderView) -> FitPageView:
@@ -96,6 +99,8 @@ def fit_page(stored: FitView, matrix: MatrixView, lacks: MissingView, ladder: La
         missing=lacks,
         ladder=steps(ladder),
         places=tuple((place, HANDED_ON.get(place, "")) for place in dict.fromkeys(s.place for s in model.chain.stages)),
+        findings=counted(serious := [entry for entry in matrix.findings if entry.severity != "note"]),
+        worst="fault" if any(entry.severity == "fault" for entry in serious) else "doubt",
         again=json.dumps(fit_request(fit, stored.id)),
     )
 

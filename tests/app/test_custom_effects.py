@@ -52,7 +52,9 @@ def test_a_fit_with_an_own_effect_is_stored_with_it(service: TestClient, matrix:
     result = service.get(f"/api/v1/fits/{fit}").json()["result"]
     assert result["effects"] == ["overlap"]
     assert result["settings"]["custom"][0]["equation"] == OWN["equation"]
-    assert service.get(f"/api/v1/fits/{fit}/compare").status_code == 200
+    compared = service.get(f"/api/v1/fits/{fit}/compare")
+    assert compared.status_code == 200
+    assert service.get(f"/api/v1/fits/{fit}/budget").json() == compared.json()["budget"]
     assert service.get(f"/fits/{fit}").status_code == 200
     again = FitRequest(matrix=matrix, **fit_request(FitResult.from_json(result), fit))
     assert settings_of(again).to_json() == result["settings"]  # what the page sends to fit it again
