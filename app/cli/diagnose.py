@@ -59,7 +59,7 @@ def diagnose(
     check_target(json)
     chosen = settings(model, effect, method, bounds, set_, load, seed, option)
     given = None if fit is None else given_fit(fit, chosen)
-    own = definitions(custom or [])
+    own = together((), definitions(custom or []))
     if given is not None:
         model, own = given.model, together(given.settings.get("custom", ()), own)
         given = given.with_custom(own)

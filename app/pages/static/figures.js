@@ -80,7 +80,7 @@ for (const figure of figures) {
 }
 
 document.addEventListener("themechange", () => {
-  for (const figure of figures) if (!figure.hidden && figure.dataset.drawn) draw(figure);
+  for (const figure of figures) if (!figure.hidden && figure.turn) draw(figure);
 });
 
 if (tabs.length) show(tabs[0]);
