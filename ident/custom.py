@@ -101,6 +101,16 @@ def _read(text: str, model: str) -> Effect:
     return effect
 
 
+def together(known: Sequence[Definition], more: Sequence[Definition]) -> tuple[Definition, ...]:
+    """The definitions of both; raises Unusable where two effects have one name."""
+    found = {str(definition["name"]): definition for definition in known}
+    for definition in more:
+        name = str(definition["name"])
+        if found.setdefault(name, definition) != definition:
+            raise Unusable("name-taken", f"there are two definitions of {name}", "effect name", "give one another name")
+    return tuple(found.values())
+
+
 def _models(model: str) -> tuple[Preset, ...]:
     return (preset(model),) if model else tuple(PRESETS.values())
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from ident.custom import preset_with
 from ident.effects import EFFECTS
 from ident.errors import Unusable
+from ident.matrix import Matrix
 from ident.presets import Preset
 
 Model = tuple[Preset, dict[str, float]]
@@ -34,6 +36,15 @@ def floor_of(diagnosis: Mapping[str, Any]) -> float:
     floor = diagnosis.get("noise_floor")
     found = floor.get("fit") if isinstance(floor, Mapping) else floor
     return float(found) if isinstance(found, int | float) and 0 < found < math.inf else NOISE
+
+
+def trusted(diagnosis: Mapping[str, Any], matrix: Matrix) -> Matrix:
+    """The matrix without the runs whose labels are doubted, as far as runs to fit are left."""
+    verdict = diagnosis.get("verdict")
+    suspects = verdict.get("suspects") if isinstance(verdict, Mapping) else None
+    doubted = {str(entry.get("run")) for entry in suspects or () if isinstance(entry, Mapping)}
+    rest = replace(matrix, runs=tuple(run for run in matrix.runs if run.id not in doubted))
+    return rest if rest.of_use("fit") else matrix
 
 
 def _chosen(diagnosis: Mapping[str, Any]) -> list[Mapping[str, Any]]:

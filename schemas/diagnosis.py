@@ -8,7 +8,10 @@ from schemas.fit import Chosen
 
 
 class DiagnosisRequest(Chosen):
-    """A diagnosis to be queued: of a stored `fit`, or of a `matrix`, whose fit with these settings is made first."""
+    """A diagnosis to be queued: of a stored `fit`, or of a `matrix`, whose fit with these settings is made first.
+
+    The effects that `custom` defines are ranked beside those of the catalogue.
+    """
 
     fit: str | None = None
     matrix: str | None = None
@@ -29,12 +32,16 @@ class CandidateView(BaseModel):
 
 
 class RungView(BaseModel):
-    """A step of the ladder: what was added to the model before it, null for the fitted model itself."""
+    """A step of the ladder: what was added to the model before it, null for the fitted model itself.
+
+    `nats` by which it made the held-out data more likely.
+    """
 
     model_config = ConfigDict(extra="allow")
     added: str | None
     error: dict[str, float | None]
     parameters: dict[str, dict[str, Any]]
+    nats: float | None = None
 
 
 class VerdictView(BaseModel):
@@ -72,3 +79,29 @@ class DiagnosisPage(BaseModel):
 
     items: list[DiagnosisView]
     next: str | None = None
+
+
+class ProposalView(BaseModel):
+    """The run that the lab should add, SI: `text` says why, `conditions` what, `run` is its entry in matrix.yaml.
+
+    `separation` are the standard deviations of the noise by which the models in question will then differ, `so_far`
+    those by the runs there are; `std_errors` the share of each standard error that is expected to be left.
+    """
+
+    model_config = ConfigDict(extra="allow")
+    text: str
+    conditions: str
+    signal: str
+    amplitude: float
+    unit: str
+    frequency: float
+    seconds: float
+    sample_rate: float
+    seed: int
+    gain: float | None
+    specimen: dict[str, float] | None
+    separation: float | None
+    so_far: float | None
+    information: float
+    std_errors: dict[str, float]
+    run: dict[str, Any]

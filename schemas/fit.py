@@ -33,11 +33,15 @@ class FitRequest(Chosen):
 
 
 class EffectsRequest(BaseModel):
-    """Effects to add to a fit: one by `effect`, or some by `effects`."""
+    """Effects to add to a fit: one by `effect`, or some by `effects`, or what `custom` defines.
+
+    A definition whose name is not among `effects` is added all the same.
+    """
 
     model_config = ConfigDict(extra="forbid")
     effect: str | None = None
     effects: list[str] = Field(default_factory=list, max_length=50)
+    custom: list[dict[str, Any] | str] = Field(default_factory=list, max_length=10)
 
 
 class ProgressView(BaseModel):

@@ -17,7 +17,7 @@ from ident.fit.output_error import OutputError
 from ident.fit.polish import polish
 from ident.fit.settings import Settings
 from ident.fit.space import search_space
-from ident.in_question import floor_of, in_question
+from ident.in_question import floor_of, in_question, trusted
 from ident.matrix import Matrix, Run
 from ident.next_experiment import propose, ranked
 from ident.possible_runs import possible_runs
@@ -165,3 +165,16 @@ def test_the_command_writes_the_signals(servoident, diagnosis, tmp_path):
     (tmp_path / "d.json").write_text('{"candidates": [1]}')
     refused = servoident("next", few, "--diagnosis", tmp_path / "d.json", "--out", tmp_path / "out")
     assert (refused.returncode, "not the JSON of a diagnosis" in refused.stderr) == (2, True)
+
+
+def test_a_run_with_a_doubted_label_does_not_say_what_the_bench_can_do():
+    """It is left out, unless nothing to fit would be left."""
+    few, _ = confused()
+    names = [run.id for run in few.runs]
+
+    def doubted(*runs: str) -> dict[str, object]:
+        return {"verdict": {"suspects": [{"run": run} for run in runs]}}
+
+    assert [run.id for run in trusted(doubted(names[0]), few).runs] == names[1:]
+    assert [run.id for run in trusted(doubted(*names), few).runs] == names
+    assert [run.id for run in trusted({}, few).runs] == names

@@ -8,7 +8,19 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.cli.fit_options import Bounds, Effects, Load, MatrixPath, Method, Model, Options, Seed, Values, settings
+from app.cli.fit_options import (
+    Bounds,
+    Effects,
+    Load,
+    MatrixPath,
+    Method,
+    Model,
+    Options,
+    Ranked,
+    Seed,
+    Values,
+    settings,
+)
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
 from ident.errors import Unusable
@@ -25,6 +37,7 @@ def diagnose(
     ] = None,
     model: Model = "qian2014",
     effect: Effects = None,
+    custom: Ranked = None,
     method: Method = "ga",
     bounds: Bounds = None,
     set_: Values = None,
@@ -37,7 +50,8 @@ def diagnose(
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the diagnosis as JSON; - is stdout.")] = None,
 ) -> None:
     """Find what a model lacks. Effects are ranked by their error on held-out data, and added while they help."""
-    from ident.custom import read_effect
+    from app.cli.arguments import definitions
+    from ident.custom import read_effect, together
     from ident.diagnose import diagnose as diagnosed
     from ident.diagnosis.addition import USUAL
     from ident.readers import read_matrix
@@ -45,10 +59,14 @@ def diagnose(
     check_target(json)
     chosen = settings(model, effect, method, bounds, set_, load, seed, option)
     given = None if fit is None else given_fit(fit, chosen)
+    own = together((), definitions(custom or []))
+    if given is not None:
+        model, own = given.model, together(given.settings.get("custom", ()), own)
+        given = given.with_custom(own)
     most = USUAL if max_effects is None else max_effects
-    own = tuple(read_effect(one, model=given.model) for one in given.settings.get("custom", ())) if given else ()
+    effects = tuple(read_effect(definition, model=model) for definition in own)
     with shown() as report:
-        found = diagnosed(read_matrix(matrix), given, chosen, most, own, report)
+        found = diagnosed(read_matrix(matrix), given, replace(chosen, custom=own), most, effects, report)
     if json is not None:
         write_json(found.to_json(), json)
     if json != STANDARD_OUTPUT:

@@ -24,8 +24,10 @@ def show_diagnosis(found: Diagnosis) -> None:
     console.print(table(header, ranking_rows(found), numbers=header[1:4]))
     if rest := unconfirmed(found):
         console.print(rest, markup=False)
-    steps = ("added", *uses, "floor")
+    steps = ("added", *uses, "floor", "evidence (nats)")
     console.print(table(steps, ladder_rows(found), numbers=steps[1:]))
+    if len(found.ladder) > 1:
+        console.print("evidence: nats by which the step made the held-out data more likely", markup=False)
     if found.verdict.suspects:
         rows = [(suspect.run, suspect.what, suspect.evidence) for suspect in found.verdict.suspects]
         console.print(table(("suspect run", "label", "evidence"), rows, numbers=()))
@@ -75,7 +77,8 @@ def of_effect(parameters: Mapping[str, Found], effect: str) -> Found | None:
 
 
 def ladder_rows(found: Diagnosis) -> Iterator[Row]:
-    """One row a step: what was added, the errors after it, the floor below them."""
+    """One row a step: what was added, the errors after it, the floor below them, the evidence for it."""
     floor = percent(found.noise_floor.get("fit"))
     for rung in found.ladder:
-        yield rung.added or "(the fitted model)", *(percent(rung.error.get(use)) for use in USES), floor
+        evidence = "–" if rung.nats is None else f"{rung.nats:.3g}"
+        yield rung.added or "(the fitted model)", *(percent(rung.error.get(use)) for use in USES), floor, evidence

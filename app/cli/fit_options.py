@@ -24,6 +24,10 @@ Custom = Annotated[
     list[Path] | None,
     typer.Option("--custom", metavar="EFFECT.yaml", help="Own effect to add, defined in a file; may be repeated."),
 ]
+Ranked = Annotated[
+    list[Path] | None,
+    typer.Option("--custom", metavar="EFFECT.yaml", help="Own effect to rank beside the catalogue; may be repeated."),
+]
 Method = Annotated[str, typer.Option(help=f"One of {', '.join(METHODS)}.")]
 Bounds = Annotated[
     list[str] | None,

@@ -1,4 +1,4 @@
-"""/diagnoses: queue one, look at it, list those of a fit."""
+"""/diagnoses: queue one, look at it, list those of a fit, propose the next run."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Response
 
 from app.context import Here
-from app.diagnoses import service
+from app.diagnoses import proposal, service
 from app.errors import COMMON
 from app.idempotency import Key, fingerprint, once
-from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView
+from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView, ProposalView
 from schemas.fit import JobView
 
 router = APIRouter(prefix="/diagnoses", tags=["diagnoses"], responses=COMMON)
+Seed = Annotated[int, Query(ge=0, lt=2**31)]
 
 
 @router.post("", status_code=202, response_model=JobView)
@@ -39,3 +40,18 @@ def listed(
 def one(here: Here, diagnosis: str) -> DiagnosisView:
     """A diagnosis: what the fit lacks, ranked, with the ladder and the verdict."""
     return service.get(here, diagnosis)
+
+
+@router.get("/{diagnosis}/proposal")
+def proposed(here: Here, diagnosis: str, seed: Seed = 0) -> ProposalView:
+    """The run that best tells apart what the diagnosis leaves in question, in words and numbers."""
+    return proposal.proposal(here, diagnosis, seed)
+
+
+@router.get("/{diagnosis}/next-experiment", response_class=Response,
+            responses={200: {"content": {"application/zip": {}}}})  # fmt: skip
+def next_experiment(here: Here, diagnosis: str, seed: Seed = 0) -> Response:
+    """The same run as a .zip: its command as CSV and MAT, and experiment.json."""
+    name = f'attachment; filename="next-experiment-{diagnosis[:12]}.zip"'
+    content = proposal.archive(here, diagnosis, seed)
+    return Response(content, media_type="application/zip", headers={"Content-Disposition": name})

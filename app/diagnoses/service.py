@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import uuid
+from dataclasses import replace
 
 from app.context import Context
 from app.diagnoses import repository
@@ -12,13 +13,15 @@ from app.fits import service as fits
 from app.matrices import service as matrices
 from app.paging import cursor, keys_of
 from app.tables import DiagnosisRow
+from ident.custom import definition_of, read_effect, together
 from ident.diagnosis.addition import MOST, USUAL
 from ident.errors import Unusable
 from ident.fit.identification import check_settings
+from ident.fit.result import FitResult
 from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView
 from schemas.fit import Chosen, JobView
 
-_BESIDE_A_FIT = {"fit", "seed", "max_effects"}
+_BESIDE_A_FIT = {"fit", "seed", "max_effects", "custom"}
 
 
 def submit(context: Context, request: DiagnosisRequest) -> JobView:
@@ -46,12 +49,20 @@ def _wanted(context: Context, request: DiagnosisRequest) -> tuple[str, dict[str,
             raise Failure(422, "bad-request", "a fit is given, and a matrix or settings beside it", "fit",
                           "give a fit, or a matrix and settings")  # fmt: skip
         row = fits.find(context, request.fit)
-        return row.matrix, dict(row.result["settings"])
+        return row.matrix, _with_own(FitResult.from_json(row.result), request)
     if request.matrix is None:
         raise Failure(422, "bad-request", "neither a fit nor a matrix is given", "fit", "give one of them")
-    settings = fits.settings_of(request)
+    settings = replace(fits.settings_of(request), effects=tuple(request.effects))
     check_settings(settings)
     return request.matrix, settings.to_json()
+
+
+def _with_own(fit: FitResult, request: DiagnosisRequest) -> dict[str, object]:
+    """The settings of a fit, with the definitions that are to be ranked. Raises Unusable where one cannot be."""
+    more = [definition_of(definition) for definition in request.custom]
+    for definition in more:
+        read_effect(definition, model=fit.model)
+    return dict(fit.with_custom(together(fit.settings.get("custom", ()), more)).settings)
 
 
 def get(context: Context, diagnosis_id: str) -> DiagnosisView:

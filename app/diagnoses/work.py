@@ -52,6 +52,7 @@ class DiagnosisWork:
             settings = Settings.from_json({name: value for name, value in chosen.items() if name not in OWN})
             fit = identify(matrix, settings, report)
         else:
+            given = given.with_custom(chosen.get("custom", ()))
             fit = given if chosen["reseed"] is None else _reseeded(given, chosen["reseed"])
         own = tuple(read_effect(definition, model=fit.model) for definition in fit.settings.get("custom", ()))
         found = diagnose(matrix, fit, most=chosen["max_effects"], custom=own, report=report)

@@ -6,9 +6,9 @@ from fastapi import APIRouter, Request, Response
 
 from app.context import Here
 from app.errors import COMMON
-from app.fits import lineage, service
+from app.fits import drawing, lineage, service
 from app.idempotency import Key, fingerprint, once
-from schemas.fit import ComparisonView, EffectsRequest, FitRequest, FitView, JobView, LadderView
+from schemas.fit import ComparisonView, EffectsRequest, ErrorBudget, FitRequest, FitView, JobView, LadderView
 
 router = APIRouter(prefix="/fits", tags=["fits"], responses=COMMON)
 _MEDIA = ("application/json", "image/svg+xml", "image/png", "application/pdf")
@@ -36,6 +36,12 @@ def one(here: Here, fit: str) -> FitView:
 def compared(here: Here, fit: str) -> ComparisonView:
     """Eq. (17) of every run, recomputed, where the model fails, and what the error is made of."""
     return service.comparison(here, fit)
+
+
+@router.get("/{fit}/budget")
+def budget(here: Here, fit: str) -> ErrorBudget:
+    """What the error on the runs to fit is made of: noise, what a linear and what only a nonlinear model could take."""
+    return service.budget_of(here, fit)
 
 
 @router.post("/{fit}/approve", response_model=FitView)
@@ -68,5 +74,5 @@ def drawn(here: Here, request: Request, fit: str, name: str, kind: str) -> Respo
     """A figure as json (Vega-Lite), svg, png or pdf; query parameters choose what it shows."""
     query = request.query_params
     options = {key: values if len(values := query.getlist(key)) > 1 else values[0] for key in query}
-    content, media = service.drawn(here, fit, name, kind, options)
+    content, media = drawing.drawn(here, fit, name, kind, options)
     return Response(content, media_type=media)

@@ -8,6 +8,7 @@ from app.context import Context
 from app.errors import Failure
 from app.fits import repository, service
 from app.tables import FitRow
+from ident.custom import definition_of, together
 from ident.effects import effect
 from ident.fit.settings import Settings
 from schemas.fit import EffectsRequest, JobView, LadderRung, LadderView
@@ -16,10 +17,13 @@ from schemas.fit import EffectsRequest, JobView, LadderRung, LadderView
 def add(context: Context, fit_id: str, request: EffectsRequest) -> JobView:
     """Queue the refit of a fit with more effects and otherwise its own settings."""
     parent = service.find(context, fit_id)
-    wanted = dict.fromkeys([*([request.effect] if request.effect is not None else []), *request.effects])
+    more = [definition_of(definition) for definition in request.custom]
+    named = [*([request.effect] if request.effect is not None else []), *request.effects]
+    wanted = dict.fromkeys([*named, *(str(definition["name"]) for definition in more)])
     if not wanted:
         raise Failure(422, "bad-request", "no effect is given", "effect", "name one of those at /api/v1/effects")
     settings = _settings(parent)
+    settings = replace(settings, custom=together(settings.custom, more))
     own = {definition["name"] for definition in settings.custom}
     for name in wanted.keys() - own:
         effect(name)

@@ -4,23 +4,33 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Sequence
-from typing import Any
+from dataclasses import replace
 
 from app.context import Context
-from app.errors import Failure, missing
+from app.errors import missing
 from app.fits import repository
 from app.matrices import service as matrices
 from app.paging import cursor, keys_of
 from app.tables import FitRow, JobRow, now
 from ident.compare import compare
 from ident.custom import definition_of, preset_with
-from ident.figures import MEDIA, figure, render
 from ident.fit.identification import check_settings
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.quantity import parameter_value
+from ident.residuals.budget import budget
 from ident.residuals.survey import survey
-from schemas.fit import Chosen, ComparedRun, ComparisonView, FitRequest, FitView, JobPage, JobView, ProgressView
+from schemas.fit import (
+    Chosen,
+    ComparedRun,
+    ComparisonView,
+    ErrorBudget,
+    FitRequest,
+    FitView,
+    JobPage,
+    JobView,
+    ProgressView,
+)
 
 
 def submit(context: Context, request: FitRequest) -> JobView:
@@ -145,18 +155,12 @@ def comparison(context: Context, fit_id: str) -> ComparisonView:
     return ComparisonView(fit=fit_id, error=found.error, offset=found.offset, runs=runs, **survey(found).to_json())
 
 
-def drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str, Any]) -> tuple[bytes, str]:
-    """A figure of a fit as bytes and their media type."""
+def budget_of(context: Context, fit_id: str) -> ErrorBudget:
+    """What the error on the runs to fit is made of. Raises Unusable where the model is unstable at every run."""
     row = find(context, fit_id)
-    if kind not in MEDIA:
-        raise Failure(404, "no-such-format", f"no figures as {kind!r}", "figure", f"use {', '.join(MEDIA)}")
-    theme = options.pop("theme", "light")
-    if options.get("candidate"):
-        options["candidate"] = FitResult.from_json(find(context, str(options["candidate"])).result)
-    else:
-        options.pop("candidate", None)
     matrix = matrices.load(context, row.matrix)
-    return render(figure(name, matrix, FitResult.from_json(row.result), theme, **options), kind), MEDIA[kind]
+    fitted = replace(matrix, runs=matrix.of_use("fit") or matrix.runs)
+    return ErrorBudget(**budget(compare(fitted, FitResult.from_json(row.result))).to_json())
 
 
 def job_view(row: JobRow, serial: str) -> JobView:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -10,19 +11,25 @@ from markupsafe import Markup
 
 from app.pages import numbers
 from app.pages.job_view import JobPageView, job_page
+from ident.custom import read_effect
 from ident.effect import Effect
 from ident.effects import EFFECTS
 from ident.mathml import mathml
 from schemas.diagnosis import CandidateView, DiagnosisView
 from schemas.fit import JobView
 
-_KNOWN = {effect.name: effect for effect in EFFECTS}
+_CATALOGUE = {effect.name: effect for effect in EFFECTS}
+_LABELS = {"mass": "kg", "stiffness": "N/m", "gain": ""}
+"""Labels that a revision can mend, with the unit that it writes."""
 _USES = ("fit", "held_out", "verify")
 
 
 @dataclass(frozen=True)
 class Member:
-    """An effect on a card; `known` is False where this version's catalogue does not have it."""
+    """An effect on a card; `known` is False where neither the catalogue nor the diagnosis has it.
+
+    `definition` is that of a user's own effect, as JSON, "" for one of the catalogue.
+    """
 
     name: str
     title: str
@@ -32,6 +39,7 @@ class Member:
     equations: tuple[Markup, ...]
     strength: str
     strength_is: str
+    definition: str = ""
 
 
 @dataclass(frozen=True)
@@ -65,22 +73,23 @@ class Card:
 
 @dataclass(frozen=True)
 class SuspectCard:
-    """A run whose label is doubted."""
+    """A run whose label is doubted; `mend` is the revision that writes what the data say, as JSON, "" for none."""
 
     run: str
     what: str
     stated: str
     found: str
     words: str
+    mend: str
 
 
 @dataclass(frozen=True)
 class Rung:
-    """A step that the diagnosis would take."""
+    """A step that the diagnosis would take; `nats` by which it made the held-out data more likely."""
 
     added: str
     error: Mapping[str, float | None]
-    deviations: str
+    nats: str
 
 
 @dataclass(frozen=True)
@@ -90,7 +99,7 @@ class MissingView:
     job: JobPageView | None
     found: DiagnosisView | None
     seconds: str = ""
-    would_add: tuple[str, ...] = ()
+    would_add: tuple[Member, ...] = ()
     cards: tuple[Card, ...] = ()
     chance: tuple[Card, ...] = ()
     suspects: tuple[SuspectCard, ...] = ()
@@ -108,13 +117,19 @@ def missing(found: DiagnosisView | None, job: JobView | None) -> MissingView:
         job=shown,
         found=found,
         seconds=numbers.quantity(found.seconds, "s"),
-        would_add=tuple(name for name in found.verdict.effects if name in _KNOWN),
+        would_add=_would_add(cards, found.verdict.effects),
         cards=tuple(card for card in cards if card.confirmed),
         chance=tuple(card for card in cards if not card.confirmed),
         suspects=tuple(map(_suspect, found.verdict.suspects)),
         ladder=tuple(_ladder(found)),
         left=_left(found) if found.verdict.unexplained else "",
     )
+
+
+def _would_add(cards: tuple[Card, ...], names: list[str]) -> tuple[Member, ...]:
+    """The members of that name that can be added, in the order of the verdict."""
+    members = {member.name: member for card in cards for member in card.addable}
+    return tuple(members[name] for name in names if name in members)
 
 
 def title(name: str) -> str:
@@ -138,12 +153,12 @@ def _cards(found: DiagnosisView) -> Iterator[Card]:
 
 
 def _card(rank: int, together: list[CandidateView], found: DiagnosisView) -> Card:
-    best = together[0]
+    best, own = together[0], definitions(found)
     looks = str(best.evidence.get("looks", ""))
     return Card(
         rank=rank,
         title=" or ".join(title(candidate.effect) for candidate in together),
-        members=tuple(map(_member, together)),
+        members=tuple(_member(candidate, own.get(candidate.effect)) for candidate in together),
         predicted=best.predicted_error,
         error={use: best.error.get(use) for use in _USES},
         words=best.why,
@@ -163,8 +178,14 @@ def _gauge(best: CandidateView, found: DiagnosisView) -> tuple[float, float, flo
     return round(confirmed, 1), round(predicted, 1), round(lowest, 1)
 
 
-def _member(candidate: CandidateView) -> Member:
-    effect: Effect | None = _KNOWN.get(candidate.effect)
+def definitions(found: DiagnosisView) -> dict[str, Mapping[str, Any]]:
+    """The user's own effects that a diagnosis ranked, by name."""
+    settings = (found.model_extra or {}).get("settings") or {}
+    return {str(definition["name"]): definition for definition in settings.get("custom", ())}
+
+
+def _member(candidate: CandidateView, own: Mapping[str, Any] | None) -> Member:
+    effect: Effect | None = read_effect(own) if own is not None else _CATALOGUE.get(candidate.effect)
     return Member(
         name=candidate.effect,
         title=title(candidate.effect),
@@ -174,6 +195,7 @@ def _member(candidate: CandidateView) -> Member:
         equations=tuple(Markup(mathml(line.text)) for line in effect.equations) if effect else (),
         strength=_strength(candidate),
         strength_is=f"{effect.strength.symbol}, {effect.strength.meaning}" if effect else "strength",
+        definition=json.dumps(own) if own is not None else "",
     )
 
 
@@ -208,13 +230,23 @@ def _suspect(entry: Mapping[str, Any]) -> SuspectCard:
         stated=numbers.quantity(entry.get("stated"), unit),
         found=numbers.quantity(entry.get("found"), unit),
         words=str(entry["evidence"]),
+        mend=_mend(entry),
     )
+
+
+def _mend(entry: Mapping[str, Any]) -> str:
+    """What a revision of the matrix would change."""
+    what, found = str(entry["what"]), entry.get("found")
+    if what not in _LABELS or found is None:
+        return ""
+    unit = _LABELS[what]
+    label = {"specimen": {what: f"{found:.4g} {unit}"}} if unit else {what: float(f"{found:.4g}")}
+    return json.dumps({"runs": {str(entry["run"]): label}})
 
 
 def _ladder(found: DiagnosisView) -> Iterator[Rung]:
     for rung in found.ladder:
-        deviations = (rung.model_extra or {}).get("deviations")
-        said = "–" if deviations is None else f"{deviations:.1f}"
+        said = "–" if rung.nats is None else numbers.plain(rung.nats, 3)
         errors = {use: rung.error.get(use) for use in _USES}
         yield Rung(title(rung.added) if rung.added else "the fit as it is", errors, said)
 

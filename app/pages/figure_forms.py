@@ -46,17 +46,19 @@ class FigureForm:
 
 
 def forms(runs: Sequence[RunView], fit: FitResult) -> tuple[FigureForm, ...]:
-    """The figures that this fit has, in the order of the tabs."""
+    """The figures that this fit has, in the order of the tabs: where it fails comes first."""
     run = Field("run", "Run", (("", "a typical one"), *((each.id, each.id) for each in runs)))
     pictures = [
+        FigureForm("residual-map", "By run and frequency", _conditions(runs)),
+        FigureForm(
+            "residual-curve", "Missing characteristic", (Field("view", "Curve", _views(fit)), *_conditions(runs))
+        ),
         FigureForm("bode", "Bode plot", _bode(runs)),
         FigureForm("time", "Time record", (run, Field("start", "Start (s)"), Field("seconds", "Length (s)"))),
-        FigureForm("residual-map", "Where it fails", _conditions(runs)),
-        FigureForm("residual-curve", "What is missing", (Field("view", "Curve", _views(fit)), *_conditions(runs))),
         FigureForm("sensitivity", "Sensitivity", (run,)),
     ]
     if fit.evolution:
-        pictures.insert(2, FigureForm("evolution", "Evolution", _evolution(fit)))
+        pictures.insert(4, FigureForm("evolution", "Evolution", _evolution(fit)))
     pictures += [FigureForm(name, title, fields) for name, title, fields in _OF_BENCH]
     shown = figures_of(fit)
     return tuple(picture for picture in pictures if picture.name in shown)

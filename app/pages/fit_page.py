@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 from markupsafe import Markup
 
@@ -13,8 +15,9 @@ from app.pages.figure_forms import FigureForm, forms
 from app.pages.fit_view import Determined, ErrorRow, ParameterRow, combination_rows, error_rows, parameter_rows
 from app.pages.job_view import settings_facts
 from app.pages.ladder_view import Step, steps
+from app.pages.matrix_view import counted
 from app.pages.run_view import Conditions, conditions
-from ident.custom import preset_with
+from ident.custom import HANDED_ON, preset_with
 from ident.expression import Equation
 from ident.fit.result import FitResult, Undetermined
 from ident.mathml import mathml
@@ -34,7 +37,10 @@ class FittedRun:
 
 @dataclass(frozen=True)
 class FitPageView:
-    """What the fit page shows."""
+    """What the fit page shows.
+
+    `places` are those of the model with the signal that each hands on, `again` what queues the same fit, as JSON.
+    """
 
     id: str
     serial: str
@@ -58,6 +64,10 @@ class FitPageView:
     facts: tuple[tuple[str, str], ...]
     missing: MissingView
     ladder: tuple[Step, ...]
+    places: tuple[tuple[str, str], ...]
+    again: str
+    findings: str
+    worst: str
 
 
 def fit_page(stored: FitView, matrix: MatrixView, lacks: MissingView, ladder: LadderView) -> FitPageView:
@@ -88,7 +98,22 @@ def fit_page(stored: FitView, matrix: MatrixView, lacks: MissingView, ladder: La
         facts=_facts(fit),
         missing=lacks,
         ladder=steps(ladder),
+        places=tuple((place, HANDED_ON.get(place, "")) for place in dict.fromkeys(s.place for s in model.chain.stages)),
+        findings=counted(serious := [entry for entry in matrix.findings if entry.severity != "note"]),
+        worst="fault" if any(entry.severity == "fault" for entry in serious) else "doubt",
+        again=json.dumps(fit_request(fit, stored.id)),
     )
+
+
+def fit_request(fit: FitResult, parent: str) -> dict[str, Any]:
+    """The request of a fit with the same settings, which comes from this one."""
+    given = dict(fit.settings)
+    names = ("method", "bounds", "options", "load")
+    return {
+        "model": fit.model, "effects": list(fit.effects), "seed": fit.seed, "parent": parent,
+        **{name: given[name] for name in names if name in given}, "set": given.get("fixed", {}),
+        "custom": [own for own in given.get("custom", ()) if own["name"] in fit.effects],
+    }  # fmt: skip
 
 
 def _equations(model: Preset) -> Iterator[Equation]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 
@@ -93,6 +93,11 @@ class FitResult:
     def values(self) -> dict[str, float]:
         """Parameter values by name, SI."""
         return {name: estimate.value for name, estimate in self.parameters.items()}
+
+    def with_custom(self, definitions: Sequence[Mapping[str, Any]]) -> FitResult:
+        """The same fit whose settings know these effects of the user; its model stays as it is."""
+        settings = {"model": self.model, **self.settings, "custom": [dict(definition) for definition in definitions]}
+        return replace(self, settings=settings)
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data (no NaN, no infinity)."""

@@ -5,6 +5,11 @@ from __future__ import annotations
 import pytest
 from fastapi.testclient import TestClient
 
+from app.fits.service import settings_of
+from app.pages.fit_page import fit_request
+from ident.fit.result import FitResult
+from schemas.fit import FitRequest
+
 OWN = {
     "name": "overlap", "place": "spool", "equation": "w = w - clip(w, -h, h)",
     "strength": {"symbol": "h", "unit": "mm", "lower": 0, "upper": 0.02}, "meaning": "the lands overlap",
@@ -47,7 +52,12 @@ def test_a_fit_with_an_own_effect_is_stored_with_it(service: TestClient, matrix:
     result = service.get(f"/api/v1/fits/{fit}").json()["result"]
     assert result["effects"] == ["overlap"]
     assert result["settings"]["custom"][0]["equation"] == OWN["equation"]
-    assert service.get(f"/api/v1/fits/{fit}/compare").status_code == 200
+    compared = service.get(f"/api/v1/fits/{fit}/compare")
+    assert compared.status_code == 200
+    assert service.get(f"/api/v1/fits/{fit}/budget").json() == compared.json()["budget"]
     assert service.get(f"/fits/{fit}").status_code == 200
+    again = FitRequest(matrix=matrix, **fit_request(FitResult.from_json(result), fit))
+    assert settings_of(again).to_json() == result["settings"]  # what the page sends to fit it again
+    assert again.parent == fit
     bad = service.post("/api/v1/fits", json=body | {"custom": [OWN | {"equation": "w = w +"}]})
     assert (bad.status_code, bad.json()["where"]) == (422, "equation, character 8")

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import io
+import json
+import zipfile
 from typing import Any
 
+import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
@@ -12,6 +16,10 @@ from app.fits import repository
 from tests.hidden_dead_zone import HALF_WIDTH, zipped
 
 API = "/api/v1"
+OWN = {
+    "name": "overlap", "place": "spool", "equation": "w = w - clip(w, -h, h)", "meaning": "the lands overlap",
+    "strength": {"symbol": "h", "unit": "mm", "lower": 0, "upper": 1},
+}  # fmt: skip
 
 
 def ended(service: TestClient, answer: Any) -> dict[str, Any]:
@@ -92,6 +100,32 @@ def test_an_effect_is_added_and_the_ladder_leads_back(service, linear, mended):
     assert {"seed", "version", "parameters"} <= set(second)
 
 
+def test_the_way_is_drawn_with_its_errors_and_the_floor(service, mended):
+    spec = service.get(f"{API}/fits/{mended}/figures/ladder.json").json()
+    rows = spec["datasets"]["steps"]
+    assert [row["step"].rpartition(". ")[2] for row in rows[2:]] == ["dead zone", "dead zone"]
+    assert {row["u"] for row in rows} == {"runs to fit", "runs to verify"}
+    assert "noise floor 0." in str(spec["title"])
+    for kind, start in (("svg", b"<svg"), ("png", b"\x89PNG"), ("pdf", b"%PDF")):
+        assert service.get(f"{API}/fits/{mended}/figures/ladder.{kind}").content.startswith(start)
+    answer = service.get(f"{API}/fits/{mended}/figures/ladder.json", params={"kp": "1"})
+    assert (answer.status_code, answer.json()["code"]) == (422, "unknown-option")
+
+
+def test_the_next_experiment_is_told_and_downloaded(service, diagnosis):
+    """The words are those of the archive, whose command has the amplitude that they state."""
+    told = service.get(f"{API}/diagnoses/{diagnosis['id']}/proposal").json()
+    answer = service.get(f"{API}/diagnoses/{diagnosis['id']}/next-experiment")
+    assert answer.headers["content-type"] == "application/zip"
+    with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:
+        assert sorted(archive.namelist()) == ["command.csv", "command.mat", "experiment.json"]
+        assert json.loads(archive.read("experiment.json"))["text"] == told["text"]
+        rows = np.loadtxt(io.BytesIO(archive.read("command.csv")), delimiter=",", skiprows=1)
+    assert len(rows) == round(told["seconds"] * told["sample_rate"])
+    assert np.sqrt(np.mean(rows[:, 1] ** 2)) == pytest.approx(1e3 * told["amplitude"], rel=0.01)
+    assert service.get(f"{API}/diagnoses/none/next-experiment").status_code == 404
+
+
 def test_adding_is_undone_by_approving_the_fit_before(service, linear, mended):
     for fit in (mended, linear):
         assert service.post(f"{API}/fits/{fit}/approve").json()["current"] is True
@@ -164,3 +198,19 @@ def test_a_diagnosis_is_no_fit_of_the_actuators_page(service, diagnosis, linear)
     page = service.get("/actuators/DZ-1").text
     assert f"/fits/{linear}" in page
     assert f"/fits/{diagnosis['id']}" not in page
+
+
+def test_an_own_effect_is_ranked_beside_the_catalogue_and_added(service, linear):
+    """A dead zone under another name: the data cannot tell the two apart, and either can be added."""
+    job = ended(service, service.post(f"{API}/diagnoses", json={"fit": linear, "max_effects": 1, "custom": [OWN]}))
+    found = service.get(f"{API}/diagnoses/{job['diagnosis']}").json()
+    own, listed = (next(c for c in found["candidates"] if c["effect"] == name) for name in ("overlap", "dead_zone"))
+    assert own["error"]["held_out"] == pytest.approx(listed["error"]["held_out"], rel=0.01)
+    assert found["settings"]["custom"][0]["equation"] == OWN["equation"]
+    assert service.get(f"{API}/diagnoses/{job['diagnosis']}/proposal").status_code == 200
+    assert "overlap" in service.get(f"/fits/{linear}").text
+    added = service.post(f"{API}/fits/{linear}/effects", json={"effects": ["overlap"], "custom": [OWN]})
+    fit = service.get(f"{API}/fits/{ended(service, added)['fit']}").json()["result"]
+    assert fit["parameters"]["overlap.h"]["value"] == pytest.approx(HALF_WIDTH, rel=0.02)
+    bad = {"fit": linear, "custom": [OWN | {"equation": "w = w +"}]}
+    assert service.post(f"{API}/diagnoses", json=bad).json()["where"] == "equation, character 8"

@@ -87,6 +87,7 @@ def test_the_run_table_sorts_by_number(page, site, fitted):
 def test_a_figure_follows_its_options_and_the_theme(page, site, fitted):
     page.emulate_media(color_scheme="light")
     page.goto(f"{site.address}/fits/{fitted}")
+    page.locator("#tab-bode").click()
     link = page.locator(f"{FIGURE} a[data-format=svg]")
     expect(link).to_have_attribute("href", re.compile("theme=light"))
     page.locator("#bode-axis").select_option("linear")

@@ -23,7 +23,30 @@ def pictures(page, folder, name):
             page.screenshot(path=folder / f"{name}-{width}-{theme}.png", full_page=True)
 
 
-def test_from_upload_to_a_mended_model_in_force(page, site, tmp_path, screenshots):
+def the_next_run_is_proposed(page):
+    page.get_by_role("button", name="Propose a run").click()
+    expect(page.locator(".next [data-text]")).to_contain_text("Run a ", timeout=LONG)
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Download its command").click()
+    assert download.value.suggested_filename.startswith("next-experiment-")
+
+
+def an_own_effect_is_tried(page, watch):
+    """Refused at its character, then shown as mathematics."""
+    own = page.locator("form[data-own]")
+    for label, text in (("Name", "overlap"), ("Strength, symbol", "h"), ("Unit", "mm"), ("Largest", "1")):
+        own.get_by_label(label, exact=True).fill(text)
+    own.get_by_label("Equation").fill("w = w - clip(w, -h, q!)")
+    own.get_by_role("button", name="Check").click()
+    expect(own.locator("mark")).to_have_text("!", timeout=LONG)
+    expect(own.get_by_role("alert")).to_contain_text("character 22")
+    watch.complaints.clear()  # the browser's own line on the refusal
+    own.get_by_label("Equation").fill("w = w - clip(w, -h, h)")
+    own.get_by_role("button", name="Check").click()
+    expect(own.locator("math")).to_have_count(1, timeout=LONG)
+
+
+def test_from_upload_to_a_mended_model_in_force(page, site, watch, tmp_path, screenshots):
     archive = tmp_path / "matrix.zip"
     archive.write_bytes(zipped("DZ-SHOP"))
     page.goto(f"{site.address}/upload")
@@ -49,6 +72,8 @@ def test_from_upload_to_a_mended_model_in_force(page, site, tmp_path, screenshot
     page.get_by_text("others that do not help beyond chance").click()
     pictures(page, screenshots, "missing")
     page.locator("#missing").screenshot(path=screenshots / "cards.png")
+    the_next_run_is_proposed(page)
+    an_own_effect_is_tried(page, watch)
     add = card.get_by_role("button", name="Add it (dead zone)")
     add.focus()
     page.keyboard.press("Enter")
@@ -58,6 +83,8 @@ def test_from_upload_to_a_mended_model_in_force(page, site, tmp_path, screenshot
     assert page.url != before
     first, second = (float(text.split()[0]) for text in way.locator("td:nth-child(4)").all_inner_texts())
     assert second < first / 2
+    page.locator("#figure-ladder").scroll_into_view_if_needed()
+    expect(page.locator("#figure-ladder canvas")).to_be_visible(timeout=LONG)
     pictures(page, screenshots, "mended")
     expect(page.get_by_role("link", name="Undo: back to the fit before")).to_have_attribute(
         "href", before.removeprefix(site.address)

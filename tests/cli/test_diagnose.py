@@ -44,8 +44,27 @@ def test_the_tables_say_it_with_units(told):
     assert line.count("%") == 3
     assert "noise floor" in printed
     assert "(the fitted model)" in printed
+    rung = [line for line in printed.splitlines() if line.startswith("dead_zone ")][-1]
+    assert rung.split()[-1] == f"{found['ladder'][1]['nats']:.3g}"
+    assert "evidence (nats)" in printed
     assert "not refitted, predicted" in printed
     assert found["verdict"]["text"] in printed
+
+
+def test_an_own_effect_is_ranked_beside_the_catalogue(servoident, matrix, tmp_path):
+    """Its definition is in the result, beside a fit too; one that is none of its model is refused with its file."""
+    own, fit = tmp_path / "overlap.yaml", tmp_path / "fit.json"
+    own.write_text("place: spool\nequation: w - clip(w, -h, h)\nstrength: {symbol: h, unit: mm, lower: 0, upper: 1}\n")
+    assert servoident("fit", matrix, "--json", fit).returncode == 0
+    done = servoident("diagnose", matrix, "--fit", fit, "--custom", own, "--max-effects", 1, "--json", "-")
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert "overlap" in {candidate["effect"] for candidate in found["candidates"][:2]}
+    assert [definition["name"] for definition in found["settings"]["custom"]] == ["overlap"]
+    own.write_text("place: spool\nequation: w -\nstrength: {symbol: h, unit: mm, lower: 0, upper: 1}\n")
+    done = servoident("diagnose", matrix, "--custom", own)
+    assert done.returncode == 2
+    assert f"{own} equation, character" in done.stderr
 
 
 def test_a_fit_from_a_file_is_diagnosed_as_it_is(servoident, matrix, tmp_path):

@@ -14,14 +14,15 @@ export async function send(method, path, body) {
     throw new Error("The service does not answer. Check that it is running, then try again.");
   }
   const data = (answer.headers.get("Content-Type") ?? "").includes("json") ? await answer.json() : null;
-  if (!answer.ok) throw new Error(sentence(data, answer));
+  if (!answer.ok) throw Object.assign(new Error(sentence(data, answer)), { problem: data });
   return { data, status: answer.status, location: answer.headers.get("Location") };
 }
 
 function sentence(problem, answer) {
   if (!problem) return `The service answered ${answer.status} ${answer.statusText}.`;
   const parts = [problem.where, problem.what ?? problem.detail ?? problem.title].filter(Boolean).join(": ");
-  return problem.remedy ? `${parts}. ${problem.remedy}.` : `${parts}.`;
+  const remedy = problem.remedy && problem.remedy[0].toUpperCase() + problem.remedy.slice(1);
+  return remedy ? `${parts}. ${remedy}.` : `${parts}.`;
 }
 
 function key() {

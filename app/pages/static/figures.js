@@ -80,8 +80,17 @@ for (const figure of figures) {
 }
 
 document.addEventListener("themechange", () => {
-  const shown = figures.find((figure) => !figure.hidden);
-  if (shown) draw(shown);
+  for (const figure of figures) if (!figure.hidden && figure.turn) draw(figure);
 });
 
 if (tabs.length) show(tabs[0]);
+
+// A figure without a tab is drawn when it comes near to sight.
+const near = new IntersectionObserver((entries) => {
+  for (const { target, isIntersecting } of entries) {
+    if (!isIntersecting) continue;
+    near.unobserve(target);
+    draw(target);
+  }
+}, { rootMargin: "400px" });
+for (const figure of figures) if (figure.getAttribute("role") !== "tabpanel") near.observe(figure);

@@ -1,4 +1,4 @@
-// What is missing: start the search, add what it found.
+// What is missing: start the search, add what it found, mend a label that is doubted.
 
 import { guarded, send } from "./api.js";
 import "./progress.js";
@@ -13,9 +13,34 @@ for (const form of document.querySelectorAll("form[data-diagnose]")) {
 
 for (const form of document.querySelectorAll("form[data-add]")) {
   onSubmit(form, async () => {
-    const { data } = await send("POST", form.dataset.add, { effects: new FormData(form).getAll("effects") });
+    const { data } = await send("POST", form.dataset.add, wanted(form));
     location.assign(`/fits/${data.id}`);
   });
+}
+
+for (const form of document.querySelectorAll("form[data-mend]")) {
+  onSubmit(form, async () => {
+    const { data: matrix } = await send("POST", form.dataset.mend, JSON.parse(form.dataset.change));
+    const { data: fit } = await send("POST", "/api/v1/fits", { ...JSON.parse(form.dataset.again), matrix: matrix.id });
+    const links = [link(`/matrices/${matrix.id}`, "the revised matrix"), " and ", link(`/fits/${fit.id}`, "its fit")];
+    form.querySelector("[role=status]").replaceChildren("Mended: ", ...links);
+    form.querySelector("button").hidden = true;
+  });
+}
+
+function link(address, text) {
+  const made = document.createElement("a");
+  made.href = address;
+  made.textContent = text;
+  return made;
+}
+
+// The effects by name, with the definitions of those that are the user's own.
+function wanted(form) {
+  const fields = new FormData(form);
+  const option = form.querySelector("select")?.selectedOptions[0];
+  const custom = [...fields.getAll("custom"), option?.dataset.custom].filter(Boolean).map((text) => JSON.parse(text));
+  return { effects: fields.getAll("effects"), custom };
 }
 
 function onSubmit(form, work) {

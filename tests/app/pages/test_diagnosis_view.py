@@ -34,8 +34,8 @@ def found() -> DiagnosisView:
         noise_floor={"fit": 0.005, "verify": None}, seconds=3.2,
         candidates=[candidate("coulomb_friction", 0.01, group), candidate("stribeck_friction", 0.0101, group),
                     candidate("own_effect", 0.012), candidate("lead", 0.0199, beyond=False)],
-        ladder=[{"added": None, "error": {"fit": 0.02}, "parameters": {}, "deviations": None},
-                {"added": "coulomb_friction", "error": {"fit": 0.01}, "parameters": {}, "deviations": 7.0}],
+        ladder=[{"added": None, "error": {"fit": 0.02}, "parameters": {}, "nats": None},
+                {"added": "coulomb_friction", "error": {"fit": 0.01}, "parameters": {}, "nats": 7.0}],
         verdict={"effects": ["coulomb_friction"], "indistinguishable": [list(group)], "suspects": [suspect],
                  "unexplained": True, "text": "The model lacks something."},
     )  # fmt: skip
@@ -55,14 +55,16 @@ def test_what_does_not_help_stands_apart_and_what_is_left_is_said():
     lacks = missing(found(), None)
     assert [card.title for card in lacks.chance] == ["lead"]
     assert lacks.left == "The error is 1.00 % with all that helps, above the noise floor of 0.500 %."
+    assert [rung.nats for rung in lacks.ladder] == ["–", "7.00"]
     assert (lacks.suspects[0].stated, lacks.suspects[0].found) == ("2.670 kg", "0.9000 kg")
 
 
 def test_the_section_is_markup_with_everything_escaped():
-    page = {"id": "f", "serial": "S", "matrix": "m", "missing": missing(found(), None)}
+    page = {"id": "f", "serial": "S", "matrix": "m", "again": "{}", "missing": missing(found(), None)}
     text = _TEMPLATES.get_template("missing.html").render(fit=page)
     assert "r &lt;1&gt;" in text
     assert "cannot tell these 2 apart" in text
+    assert "{&#34;runs&#34;: {&#34;r &lt;1&gt;&#34;: {&#34;specimen&#34;: {&#34;mass&#34;: &#34;0.9 kg&#34;}}}}" in text
     assert text.count('data-add="/api/v1/fits/f/effects"') == 2  # the group and the one by chance
     assert "In data: flat tops." in text
 

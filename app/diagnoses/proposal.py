@@ -1,0 +1,55 @@
+"""The run that the lab should add after a diagnosis: in words, and as an archive of its command signal."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections import OrderedDict
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from threading import Lock
+
+from app.context import Context
+from app.diagnoses import service
+from app.matrices import service as matrices
+from ident.experiment import Experiment
+from ident.in_question import floor_of, in_question, trusted
+from ident.next_experiment import propose
+from schemas.diagnosis import ProposalView
+
+_KEPT = 32
+_known: OrderedDict[tuple[str, str, int], Experiment] = OrderedDict()
+_lock = Lock()
+
+
+def proposal(context: Context, diagnosis: str, seed: int) -> ProposalView:
+    """The proposed run, without its samples."""
+    found = _experiment(context, diagnosis, seed)
+    return ProposalView(**found.to_json(), conditions=found.conditions, run=found.entry())
+
+
+def archive(context: Context, diagnosis: str, seed: int) -> bytes:
+    """command.csv, command.mat and experiment.json as one .zip."""
+    found, packed = _experiment(context, diagnosis, seed), io.BytesIO()
+    with TemporaryDirectory() as folder, zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as files:
+        found.write(Path(folder))
+        for path in sorted(Path(folder).iterdir()):
+            files.write(path, path.name)
+    return packed.getvalue()
+
+
+def _experiment(context: Context, diagnosis: str, seed: int) -> Experiment:
+    """The best further run: computed once, since the words and the archive are mostly wanted one after the other."""
+    key = (str(context.storage.folder), diagnosis, seed)
+    with _lock:
+        if key in _known:
+            return _known[key]
+    stored = service.get(context, diagnosis)
+    data = stored.model_dump()
+    matrix = trusted(data, matrices.load(context, stored.matrix))
+    found = propose(in_question(data), matrix, floor_of(data), seed)
+    with _lock:
+        _known[key] = found
+        while len(_known) > _KEPT:
+            _known.popitem(last=False)
+    return found

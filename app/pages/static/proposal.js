@@ -1,0 +1,40 @@
+// The next experiment: computed when it is asked for, told in words, its command to download.
+
+import { guarded, send } from "./api.js";
+
+for (const form of document.querySelectorAll("form[data-propose]")) {
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    const button = form.querySelector("button");
+    guarded(button, form.querySelector("[role=alert]"), async () => {
+      button.textContent = "Weighing runs…";
+      try {
+        const { data } = await send("GET", form.dataset.propose);
+        tell(form.parentElement.querySelector(".found"), data);
+        form.hidden = true;
+      } finally {
+        button.textContent = "Propose a run";
+      }
+    });
+  });
+}
+
+function tell(place, run) {
+  place.querySelector("[data-text]").textContent = run.text;
+  place.querySelector("[data-facts]").replaceChildren(...facts(run).flatMap(([name, value]) => [made("dt", name), made("dd", value)]));
+  place.hidden = false;
+}
+
+function facts(run) {
+  const rows = [["Sampled at", `${run.sample_rate} Hz`]];
+  if (run.separation !== null) rows.push(["Sets the models apart by", `${run.separation.toPrecision(3)} standard deviations of the noise`]);
+  if (run.so_far !== null) rows.push(["The runs so far do so by", run.so_far.toPrecision(3)]);
+  rows.push(["Teaches", `${run.information.toPrecision(3)} nats of the parameters`]);
+  return rows;
+}
+
+function made(tag, text) {
+  const element = document.createElement(tag);
+  element.textContent = text;
+  return element;
+}
