@@ -24,8 +24,10 @@ from ident.parallel import each
 Array = NDArray[np.float64]
 SAMPLES = 65_536
 _LADDER = (0.01, 0.03, 0.1, 0.3, 1.0)  # of the way from off to each bound
+_FINER = (1e-4, 3e-4, 1e-3, 3e-3)  # besides, for a machine of unknown size, whose bounds are wide
 _TOGETHER = 5  # effects simulated in one go
 _REACH = 2.0  # by which factor a response may be scaled: beyond, it would be another strength's
+_FAR = 0.1  # of an axis: a parameter that hardly matters where it is may be sent anywhere by a linearisation
 _ROUNDS = 3  # of weighting each run by what it is left with
 
 
@@ -64,15 +66,23 @@ class Prediction:
 
 def predict(models: Models, base: Refit, names: Sequence[str]) -> list[Prediction]:
     """What adding each effect to the refitted model promises, in the order of the names."""
-    fitness = models.fitness((*base.effects, *names), SAMPLES, whole=True)
-    shares = [list(names[i : i + _TOGETHER]) for i in range(0, len(names), _TOGETHER)]
-    return list(chain.from_iterable(each(lambda share: _predicted(models, fitness, base, share), shares)))
+    together = _TOGETHER if models.fit_together else 1
+    shares = [list(names[i : i + together]) for i in range(0, len(names), together)]
+
+    def of_share(share: list[str]) -> list[Prediction]:
+        simulated = names if models.fit_together else share
+        fitness = models.fitness((*base.effects, *simulated), SAMPLES, whole=models.fit_together)
+        return _predicted(models, fitness, base, share)
+
+    if models.fit_together:
+        models.fitness((*base.effects, *names), SAMPLES, whole=True)
+    return list(chain.from_iterable(each(of_share, shares)))
 
 
 def _predicted(models: Models, fitness: OutputError, base: Refit, names: list[str]) -> list[Prediction]:
     """The predictions of a few effects, simulated in one go."""
     off = {symbol: value for symbol, value in models.off.items() if symbol not in base.values}
-    known = {**off, **base.values}
+    known = {name: value for name, value in {**off, **base.values}.items() if name in fitness.space.order}
     trials = [(name, strength) for name in names for strength in _strengths(fitness, models.strength(name), known)]
     values, strides = _cloud(base, known, [(models.strength(name), strength) for name, strength in trials])
     gram, means = fitness.differences(values, strides)
@@ -96,7 +106,7 @@ def _predicted(models: Models, fitness: OutputError, base: Refit, names: list[st
 def _start(models: Models, base: Refit, name: str, step: Array, strength: float) -> dict[str, float]:
     """The values from which to refit with the effect."""
     p = len(base.point)
-    point = np.clip(base.point + step[:p], 0.0, 1.0)
+    point = np.clip(base.point + np.clip(step[:p], -_FAR, _FAR), 0.0, 1.0)
     start = {key: float(value[0]) for key, value in base.space.values(point[None]).items()}
     return {**base.values, **start, models.strength(name): strength * float(step[p])}
 
@@ -110,7 +120,8 @@ def _strengths(fitness: OutputError, symbol: str, values: Mapping[str, float]) -
     """The strengths to try, SI: shares of the way from off to each bound."""
     lower, upper = fitness.space.bounds(values)[symbol]
     ends = [end for end in (upper, lower) if end]
-    return [share * end for end in ends for share in _LADDER]
+    shares = (*_FINER, *_LADDER) if fitness.space.scale_free else _LADDER
+    return [share * end for end in ends for share in shares]
 
 
 def _cloud(

@@ -108,6 +108,11 @@ class Models:
         """The values of all effects' parameters where they are off, by the equations' names."""
         return {effect.symbol(p.name): p.value for effect in self.effects.values() for p in effect.parameters}
 
+    @cached_property
+    def fit_together(self) -> bool:
+        """Whether one chain can hold every effect: in a drive without a valve some close a circle of signals."""
+        return _fits(self.preset, *self.effects.values())
+
     def strength(self, effect: str) -> str:
         """The name of an effect's strength in the equations."""
         return self.effects[effect].symbol(self.effects[effect].strength.name)
@@ -150,9 +155,10 @@ class Models:
         return self.refit(effects, ways[int(np.argmin(errors))], _TRIAL)
 
 
-def _fits(preset: Preset, effect: Effect) -> bool:
+def _fits(preset: Preset, *effects: Effect) -> bool:
+    """Whether the model has a place for the effects and no circle of signals with them."""
     try:
-        preset.with_effects((effect,))
+        _ = preset.with_effects(effects).chain.signals
     except Unusable:
         return False
     return True

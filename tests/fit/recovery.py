@@ -16,7 +16,8 @@ from ident.effects import EFFECTS, effect
 from ident.fit.identify import identify
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.matrix import Matrix
+from tests.blind.machines import matrix_of
 from tests.reference import nonlinear_reference as reference
 from tests.reference import qian_reference as linear
 
@@ -54,15 +55,7 @@ def matrix(name: str, strength: float, seed: int, seconds: float = SECONDS, ever
     """The paper's matrix of 63 + 21 runs with one hidden effect, from the reference, position in 18 bits."""
     hidden = reference.named({f"{name}.{effect(name).strength.symbol}": strength})
     records = reference.measure_all(hidden, linear.trials()[::every], seconds=seconds, noise=NOISE, seed=seed)
-    runs = tuple(
-        Run(
-            r.trial.id, "", linear.SAMPLE_RATE, {"command": r.command, "displacement": r.displacement},
-            specimen=Specimen(r.trial.cell.mass, r.trial.cell.stiffness, r.trial.cell.damping),
-            gain=r.trial.cell.gain, kind="blwn", use=r.trial.use,
-        )
-        for r in records
-    )  # fmt: skip
-    return Matrix(Actuator("REFERENCE-1", piston_area=linear.Plant().A), runs)
+    return matrix_of(records, linear.Plant())
 
 
 def strength_for(name: str, seed: int, wanted: float = WANTED) -> float:

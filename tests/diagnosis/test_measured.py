@@ -1,0 +1,42 @@
+"""What is missing in measured data."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from ident.diagnose import diagnose
+from ident.fit.identify import identify
+from ident.fit.settings import Settings
+from ident.readers import read_matrix
+
+DRY = {"coulomb_friction", "presliding_friction", "stribeck_friction"}
+
+
+@pytest.fixture
+def data(measured_data: Path) -> Path:
+    """The folder of measured data."""
+    return measured_data
+
+
+def test_a_measured_drive_lacks_dry_friction(data):
+    """The first 15 s of the electro-mechanical drive: dry friction comes first, and the error falls by half."""
+    matrix = read_matrix(data / "emps")
+    runs = tuple(run.part(0, 15_000) for run in matrix.of_use("fit"))
+    found = diagnose(replace(matrix, runs=runs), settings=Settings(model="drive"), most=1)
+    assert found.candidates[0].effect in DRY
+    assert set(found.verdict.effects) <= DRY
+    assert found.ladder[-1].error["held_out"] < 0.5 * found.ladder[0].error["held_out"]
+
+
+def test_the_ladder_of_a_measured_actuator_helps_on_the_run_held_back(data, full):
+    """From 3.70 % on the verify run, which never ranks, to 2.6 % at most; each step helps there, too."""
+    if not full:
+        pytest.skip("minutes long: run with --full")
+    matrix = read_matrix(data / "mts_actuator")
+    found = diagnose(matrix, identify(matrix, Settings()))
+    errors = [rung.error["verify"] for rung in found.ladder]
+    assert errors == sorted(errors, reverse=True)
+    assert errors[-1] <= 0.026
