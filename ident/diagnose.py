@@ -27,7 +27,7 @@ from ident.fit.settings import Settings
 from ident.fit.space import Space
 from ident.fit.uncertainty import covariance
 from ident.matrix import Matrix
-from ident.noise import noise_floor, noise_floors
+from ident.noise import averaged, floors_by_run
 from ident.progress import Progress, Report, silent
 from ident.spectra import excited_band
 
@@ -60,8 +60,7 @@ class Work:
 
     def __init__(self, models: Models, fit: FitResult, most: int, report: Report) -> None:
         self.models, self.fit, self.most, self.report = models, fit, most, report
-        runs = models.matrix.of_use("fit")
-        self.floors = {run.id: noise_floor(run, models.band) for run in runs}
+        self.floors = floors_by_run(models.matrix, models.band)
 
     def diagnosis(self, begun: float) -> Diagnosis:
         """The whole of it."""
@@ -71,7 +70,7 @@ class Work:
             addition = self._added(self.models.without(suspect.run for suspect in doubted))
             doubted = self._doubted(addition)
         ladder = self._ladder(addition)
-        floor = noise_floors(addition.models.matrix, self.models.band)
+        floor = averaged(self.models.matrix, self.floors)
         unexplained = self._unexplained(addition)
         groups = tuple(tuple(c.effect for c in group) for group in addition.groups.values() if len(group) > 1)
         base = addition.base
@@ -79,7 +78,7 @@ class Work:
         return Diagnosis(
             model=self.fit.model,
             given=base.effects,
-            baseline={"error": self._errors(addition.models, base), "offset": base.offset},
+            baseline={"error": dict(ladder[0].error), "offset": base.offset},
             noise_floor=floor,
             candidates=tuple(self._ranked(addition, floor["fit"])),
             ladder=tuple(ladder),

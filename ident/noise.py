@@ -32,9 +32,18 @@ def noise_floor(run: Run, band: float) -> float | None:
 
 def noise_floors(matrix: Matrix, band: float) -> Mapping[str, float | None]:
     """The noise floor averaged over the runs of each use; None where it cannot be told of every run."""
+    return averaged(matrix, floors_by_run(matrix, band))
+
+
+def floors_by_run(matrix: Matrix, band: float) -> Mapping[str, float | None]:
+    """The noise floor of each run by its id."""
     floors = each(lambda run: noise_floor(run, band), matrix.runs)
-    by_use = {use: [f for run, f in zip(matrix.runs, floors, strict=True) if run.use == use] for use in USES}
-    return {use: _mean(found) for use, found in by_use.items()}
+    return {run.id: floor for run, floor in zip(matrix.runs, floors, strict=True)}
+
+
+def averaged(matrix: Matrix, floors: Mapping[str, float | None]) -> Mapping[str, float | None]:
+    """Floors by run averaged over the runs of each use; None where one of them is."""
+    return {use: _mean([floors[run.id] for run in matrix.of_use(use)]) for use in USES}
 
 
 def _mean(floors: Sequence[float | None]) -> float | None:

@@ -67,14 +67,23 @@ class HeldOut:
     @property
     def score(self) -> float:
         """The error, and with its due small weight the offset: least for the most likely model."""
-        share = len(self.totals) / self.samples if len(self.totals) > 2 else 0.0
-        return self.error * (1.0 + share * float(np.log(max(self.offset, 1e-9))))
+        return scored(self.error, self.offset, weight_of_offsets(len(self.totals), self.samples))
+
+
+def weight_of_offsets(runs: int, samples: int) -> float:
+    """What the runs' offsets weigh beside their records: an observation each; two tell nothing beside the zero."""
+    return runs / samples if runs > 2 else 0.0
+
+
+def scored(error: float, offset: float, weight: float) -> float:
+    """Error and offsets in one number, as in :func:`ident.fit.objective.local`: least for the most likely model."""
+    return error * (1.0 + weight * float(np.log(max(offset, 1e-9))))
 
 
 def held_out(point: Array, here: Local, evaluate: Callable[[Array], Local], independent: float) -> HeldOut:
     """The held-out errors at the optimum `point` of the unit cube; `evaluate` is the objective."""
     few = len(here.runs) < CHUNKS
-    count = min(_FINER, *(len(run.blocks) for run in here.runs), _FINER) if few else CHUNKS
+    count = min(_FINER, *(len(run.blocks) for run in here.runs)) if few else CHUNKS
     chunks = [_chunk_of(run, count) for run in here.runs]
     squares = np.zeros((len(here.runs), count))
     for fold in range(FOLDS):

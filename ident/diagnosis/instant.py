@@ -15,7 +15,7 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.held_out import bounded_step
+from ident.diagnosis.held_out import bounded_step, scored, weight_of_offsets
 from ident.diagnosis.models import Models, Refit
 from ident.fit.objective import STEP
 from ident.fit.output_error import OutputError
@@ -66,16 +66,13 @@ class Prediction:
 
 def predict(models: Models, base: Refit, names: Sequence[str]) -> list[Prediction]:
     """What adding each effect to the refitted model promises, in the order of the names."""
-    together = _TOGETHER if models.fit_together else 1
+    whole = models.fitness((*base.effects, *names), SAMPLES, whole=True) if models.fit_together else None
+    together = 1 if whole is None else _TOGETHER
     shares = [list(names[i : i + together]) for i in range(0, len(names), together)]
 
     def of_share(share: list[str]) -> list[Prediction]:
-        simulated = names if models.fit_together else share
-        fitness = models.fitness((*base.effects, *simulated), SAMPLES, whole=models.fit_together)
-        return _predicted(models, fitness, base, share)
+        return _predicted(models, whole or models.fitness((*base.effects, *share), SAMPLES), base, share)
 
-    if models.fit_together:
-        models.fitness((*base.effects, *names), SAMPLES, whole=True)
     return list(chain.from_iterable(each(of_share, shares)))
 
 
@@ -155,7 +152,7 @@ def _after(
     p, runs = gram.shape[-1] - 1, len(gram)
     here = np.append(point, np.zeros(p - fitted))  # the strength's axis runs from 0 to _REACH
     scale = np.append(np.ones(fitted), np.full(p - fitted, _REACH))
-    share = runs / records.lengths.sum() if runs > 2 else 0.0
+    share = weight_of_offsets(runs, int(records.lengths.sum()))
     offsets = (means - means.mean(axis=0)) / np.sqrt(records.totals / records.lengths)[:, None]
     of_offsets = offsets.T @ offsets
     left = gram[:, p, p]
@@ -172,4 +169,4 @@ def _after(
         left = np.maximum(np.einsum("i,rij,j->r", direction, gram, direction), 1e-12 * records.totals)
     error = float(np.mean(np.sqrt(left / records.totals)))
     offset = float(np.sqrt(max(direction @ of_offsets @ direction, 1e-18 * runs) / runs))
-    return Outlook(error, offset, error * (1.0 + share * float(np.log(offset)))), step
+    return Outlook(error, offset, scored(error, offset, share)), step

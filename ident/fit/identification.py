@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.bench.identification import OPTIONS as BENCH_OPTIONS
+from ident.bench.identification import BenchIdentification
 from ident.custom import preset_with
 from ident.errors import Unusable
 from ident.fit import genetic
@@ -273,7 +274,7 @@ def _refuse(matrix: Matrix) -> None:
             raise Unusable("missing-channel", "no command channel", f"run {run.id}", "name the column of the command")
 
 
-def completed(work: Identification) -> FitResult:
+def completed(work: Identification | BenchIdentification) -> FitResult:
     """The whole of a fit, without a break."""
     state = work.start()
     while not work.finished(state):

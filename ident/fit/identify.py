@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ident.bench.identification import BenchIdentification
-from ident.fit.identification import Identification, check_settings
+from ident.fit.identification import Identification, check_settings, completed
 from ident.fit.regressed import RegressedIdentification
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
@@ -23,8 +23,4 @@ def identification(matrix: Matrix, settings: Settings, report: Report = silent) 
 
 def identify(matrix: Matrix, settings: Settings, report: Report = silent) -> FitResult:
     """The whole fit in one call."""
-    work = identification(matrix, settings, report)
-    state = work.start()
-    while not work.finished(state):
-        state = work.advance(state, work.generations)
-    return work.finish(state)
+    return completed(identification(matrix, settings, report))
