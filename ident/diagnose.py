@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.diagnosis.addition import MOST, USUAL, Addition
+from ident.diagnosis.advice import error_budget, next_run
 from ident.diagnosis.chance import gain
 from ident.diagnosis.models import Models, Refit
 from ident.diagnosis.ranking import Candidate
@@ -51,8 +52,10 @@ def diagnose(
     fit = fit or identify(matrix, settings or Settings(), report)
     given = replace(Settings.from_json(dict(fit.settings)), effects=()) if fit.settings else Settings(model=fit.model)
     models = Models.of(matrix, given, excited_band(matrix.of_use("fit")), custom)
-    work = Work(models, fit, most, report)
-    return work.diagnosis(begun)
+    found = Work(models, fit, most, report).diagnosis()
+    report(Progress("next run", 0, 1))
+    advised = replace(found, budget=error_budget(matrix, fit), next_experiment=next_run(matrix, found))
+    return replace(advised, seconds=time.monotonic() - begun)
 
 
 class Work:
@@ -62,7 +65,7 @@ class Work:
         self.models, self.fit, self.most, self.report = models, fit, most, report
         self.floors = floors_by_run(models.matrix, models.band)
 
-    def diagnosis(self, begun: float) -> Diagnosis:
+    def diagnosis(self) -> Diagnosis:
         """The whole of it."""
         addition = self._added(self.models)
         doubted = self._doubted(addition)
@@ -84,7 +87,6 @@ class Work:
             ladder=tuple(ladder),
             verdict=Verdict(addition.added, groups, tuple(doubted), unexplained, text),
             seed=self.fit.seed,
-            seconds=time.monotonic() - begun,
             version=version("servoident"),
             data_hash=self.models.matrix.data_hash,
             settings=dict(self.fit.settings),

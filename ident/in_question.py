@@ -20,9 +20,10 @@ NOISE = 0.005
 
 
 def in_question(diagnosis: Mapping[str, Any]) -> list[Model]:
-    """Presets and their values by the equations' names: what the verdict cannot tell apart, else the best candidates.
+    """Presets and their values by the equations' names: what the verdict cannot tell apart, else what it settled on.
 
-    Where no candidate was refitted it is the last rung of the ladder alone. Raises Unusable for JSON of another form.
+    Where it settled on nothing, and something is left, it is the best candidates. Raises Unusable for JSON of another
+    form.
     """
     try:
         found = _chosen(diagnosis)
@@ -55,8 +56,9 @@ def _chosen(diagnosis: Mapping[str, Any]) -> list[Mapping[str, Any]]:
         if len(known) > 1:
             return known[:MOST]
     ladder = [rung["parameters"] for rung in diagnosis.get("ladder", ()) if rung["parameters"]]
-    added = diagnosis["verdict"].get("effects", ())
-    if len(added) > 1 and ladder:  # the verdict goes beyond single candidates
+    verdict = diagnosis["verdict"]
+    settled = bool(verdict.get("effects")) or not verdict.get("unexplained", True)
+    if settled and ladder:  # nothing is in question but how well the parameters are known
         return ladder[-1:]
     return list(refitted.values())[:MOST] or ladder[-1:]
 

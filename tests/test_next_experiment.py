@@ -150,6 +150,14 @@ def test_a_diagnosis_says_what_is_in_question(diagnosis):
     assert floor_of(diagnosis) == NOISE
 
 
+def test_what_a_diagnosis_settled_on_is_not_in_question(diagnosis):
+    """Then the next run is to teach the parameters of the last step."""
+    step = {"added": diagnosis["candidates"][0]["effect"], "parameters": diagnosis["candidates"][0]["parameters"]}
+    verdict = {"effects": [step["added"]], "indistinguishable": [], "unexplained": False}
+    again = in_question(diagnosis | {"ladder": [step], "verdict": verdict})
+    assert [model.effects[0].name for model, _ in again] == [step["added"]]
+
+
 def test_the_command_writes_the_signals(servoident, diagnosis, tmp_path):
     """CSV and MAT hold the same command; a file that is no diagnosis is refused."""
     (tmp_path / "d.json").write_text(json.dumps(diagnosis))

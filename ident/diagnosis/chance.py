@@ -30,7 +30,8 @@ VISIBLE = 3e-4  # of the standard deviation: offsets below are nobody's concern
 _SINGLE = 5.0  # nats that are to be left without the run that gains most
 _STEADY = 3.0  # deviations of the mean gain of the chunks that are beyond chance by themselves
 _SINGLE_STEADY = 2.5  # deviations that are to be left without the run that gains most
-_UNSTEADY = 1.5  # deviations below which it is a few chunks against the rest
+_UNSTEADY = 1.5  # deviations below which few chunks gain
+_LOST = 0.1  # of what these few gain that the rest may lose: more, and it is they against the rest
 
 
 @dataclass(frozen=True)
@@ -38,8 +39,9 @@ class Gain:
     """How much better one refit is than another on data that neither saw.
 
     `share` is the relative fall of the error, `nats` by how much the data become more likely, `deviations` the mean
-    gain of a chunk over its standard error, both also without the run that gains most; `offset` are the nats of the
-    runs' offsets, `visible` whether these are large enough to matter.
+    gain of a chunk over its standard error, both also without the run that gains most; `lost` what the chunks that get
+    worse lose of that which the others gain, without that run. `offset` are the nats of the runs' offsets, `visible`
+    whether these are large enough to matter.
     """
 
     share: float
@@ -47,13 +49,15 @@ class Gain:
     nats_without: float
     deviations: float
     deviations_without: float
+    lost: float
     offset: float
     visible: bool
 
     @property
     def beyond_chance(self) -> bool:
         """Whether the better one would be chosen again with other noise."""
-        likely = self.nats > BEYOND_CHANCE and self.nats_without > _SINGLE and self.deviations > _UNSTEADY
+        few = self.deviations > _UNSTEADY or self.lost < _LOST
+        likely = self.nats > BEYOND_CHANCE and self.nats_without > _SINGLE and few
         steady = self.deviations > _STEADY and self.deviations_without > _SINGLE_STEADY
         of_error = self.share > WORTHWHILE and (likely or steady)
         return of_error or (self.visible and self.offset > BEYOND_CHANCE and self.nats > -_SINGLE)
@@ -85,6 +89,7 @@ def gain(before: HeldOut, after: HeldOut) -> Gain:
         _nats(before, after, best),
         _deviations(difference),
         _deviations(difference[~best]),
+        _lost(difference[~best]),
         offset,
         visible,
     )
@@ -96,6 +101,12 @@ def _nats(before: HeldOut, after: HeldOut, but: NDArray[np.bool_]) -> float:
         float(np.mean(np.sqrt(np.where(but, 0.0, side.squares).sum(axis=1) / side.totals))) for side in (before, after)
     ]
     return before.independent * float(np.log(max(errors[0], 1e-12) / max(errors[1], 1e-12)))
+
+
+def _lost(differences: Array) -> float:
+    """The losses over the gains."""
+    gains = float(np.maximum(differences, 0.0).sum())
+    return float(np.maximum(-differences, 0.0).sum()) / gains if gains > 0 else np.inf
 
 
 def _deviations(values: Array) -> float:

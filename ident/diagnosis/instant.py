@@ -28,6 +28,8 @@ _FINER = (1e-4, 3e-4, 1e-3, 3e-3)  # besides, for a machine of unknown size, who
 _TOGETHER = 5  # effects simulated in one go
 _REACH = 2.0  # by which factor a response may be scaled: beyond, it would be another strength's
 _FAR = 0.1  # of an axis: a parameter that hardly matters where it is may be sent anywhere by a linearisation
+_PARTS = (1.0, 0.5, 0.2)  # of the way to a prediction: it may be too bold
+_BACK = (0.67, 0.33, 0.0)  # powers of the share of the simulated strength
 _ROUNDS = 3  # of weighting each run by what it is left with
 
 
@@ -44,14 +46,16 @@ class Outlook:
 class Prediction:
     """An effect's predicted error and offset, the same without it, and the values from which to refit with it.
 
-    All on the beginnings of the records; `runs` is their number.
+    All on the beginnings of the records; `runs` is their number. `starts` are the fitted model with the effect on, from
+    the strength that was simulated to the share of it that fits best: what has a threshold needs the former, for a
+    share of its response is not the response to a share; what is proportional the latter.
     """
 
     effect: str
     after: Outlook
     before: Outlook
     runs: int
-    start: Mapping[str, float]
+    starts: tuple[Mapping[str, float], ...]
 
     @property
     def fall(self) -> float:
@@ -95,17 +99,24 @@ def _predicted(models: Models, fitness: OutputError, base: Refit, names: list[st
             if after.score < best[name][0].score:
                 best[name] = (after, step, strength)
     return [
-        Prediction(name, after, before, len(gram), _start(models, base, name, step, strength))
+        Prediction(name, after, before, len(gram), _starts(models, base, name, step, strength))
         for name, (after, step, strength) in ((name, best[name]) for name in names)
     ]
 
 
-def _start(models: Models, base: Refit, name: str, step: Array, strength: float) -> dict[str, float]:
-    """The values from which to refit with the effect."""
-    p = len(base.point)
-    point = np.clip(base.point + np.clip(step[:p], -_FAR, _FAR), 0.0, 1.0)
-    start = {key: float(value[0]) for key, value in base.space.values(point[None]).items()}
-    return {**base.values, **start, models.strength(name): strength * float(step[p])}
+def _starts(models: Models, base: Refit, name: str, step: Array, strength: float) -> tuple[dict[str, float], ...]:
+    """The values from which to refit with the effect: parts of the way to the prediction, and of the way back."""
+    p, symbol = len(base.point), models.strength(name)
+    moved = np.clip(step[:p], -_FAR, _FAR)
+
+    def at(share: float, here: float) -> dict[str, float]:
+        point = np.clip(base.point + share * moved, 0.0, 1.0)
+        values = {key: float(value[0]) for key, value in base.space.values(point[None]).items()}
+        return {**base.values, **values, symbol: here}
+
+    scaled = float(step[p])
+    parts = [at(share, share * scaled * strength) for share in _PARTS]
+    return (*parts, *(at(1.0, scaled**share * strength) for share in _BACK)) if scaled else tuple(parts)
 
 
 def _columns(gram: Array, means: Array, columns: list[int]) -> tuple[Array, Array]:

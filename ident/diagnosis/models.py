@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -25,7 +25,6 @@ Array = NDArray[np.float64]
 _TRIAL = 131_072  # samples of a first refit; the finalists take every sample
 _FITTING = 1e-7, 20  # relative promise of a further step below which a refit stops, and its most steps
 _TRYING = 1e-5, 10
-_SHARES = (1.0, 0.5, 0.2)  # of the way to a predicted start
 
 
 @dataclass(frozen=True)
@@ -143,16 +142,12 @@ class Models:
         values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}
         return Refit(effects, values, fitness.space, point, here, fitness)
 
-    def trial(self, effects: tuple[str, ...], start: Mapping[str, float], base: Mapping[str, float]) -> Refit:
-        """A first refit on the beginnings of the records, from between `base` and `start`, wherever the error is least.
-
-        The start is a prediction: where it was too bold a part of the way to it is better.
-        """
-        fitness, known = self.fitness(effects, _TRIAL), {**self.off, **base}
-        ways = [{name: known[name] + share * (start[name] - known[name]) for name in start} for share in _SHARES]
-        points = [fitness.space.point({**way, **fitness.space.fixed}) for way in ways]
+    def trial(self, effects: tuple[str, ...], starts: Sequence[Mapping[str, float]]) -> Refit:
+        """A first refit on the beginnings of the records, from the one of the starts where the error is least."""
+        fitness = self.fitness(effects, _TRIAL)
+        points = [fitness.space.point({**self.off, **start, **fitness.space.fixed}) for start in starts]
         errors = [fitness.exact(point, sensitivities=False).error for point in points]
-        return self.refit(effects, ways[int(np.argmin(errors))], _TRIAL)
+        return self.refit(effects, starts[int(np.argmin(errors))], _TRIAL)
 
 
 def _fits(preset: Preset, *effects: Effect) -> bool:

@@ -61,7 +61,7 @@ def rank(models: Models, base: Refit, names: Iterable[str], report: Report, thor
 
     def trial(prediction: Prediction) -> Candidate:
         nonlocal done
-        refit = models.trial((*base.effects, prediction.effect), prediction.start, base.values)
+        refit = models.trial((*base.effects, prediction.effect), prediction.starts)
         done += 1
         report("trying", done, len(contenders) + _FINALISTS)
         return Candidate(prediction, refit if refit.finite else None)

@@ -103,9 +103,9 @@ class Diagnosis:
     ladder: tuple[Rung, ...]
     verdict: Verdict
     seed: int
-    seconds: float
     version: str
     data_hash: str
+    seconds: float = 0.0
     budget: Mapping[str, Any] = field(default_factory=dict)
     next_experiment: Mapping[str, Any] = field(default_factory=dict)
     settings: Mapping[str, Any] = field(default_factory=dict)
