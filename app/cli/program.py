@@ -15,6 +15,7 @@ from app.cli.demo import demo
 from app.cli.diagnose import diagnose
 from app.cli.failures import INTERRUPTED, UNREAD, report
 from app.cli.fit import fit
+from app.cli.interrupts import heard
 from app.cli.migrate import migrate
 from app.cli.next import next_
 from app.cli.query import query
@@ -46,7 +47,8 @@ def main(arguments: list[str] | None = None) -> NoReturn:
     """Run a command and leave with its exit status; every failure is one line on standard error."""
     try:
         given = sys.argv[1:] if arguments is None else arguments
-        status = program(given or ["--help"], prog_name="servoident", standalone_mode=False)
+        with heard():
+            status = program(given or ["--help"], prog_name="servoident", standalone_mode=False)
         if status == INTERRUPTED:
             raise KeyboardInterrupt
         sys.stdout.flush()

@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 
+from app.cli.interrupts import heed
 from app.cli.numbers import percent
 from ident.progress import Progress, Report
 
@@ -19,8 +20,14 @@ def shown() -> Iterator[Report]:
     """A report to hand to long work, shown until the block ends; what is compiled meanwhile is reported too."""
     from ident.compiled import watching
 
-    with bar() if sys.stderr.isatty() else nullcontext(Lines()) as report, watching(lambda: report(COMPILING)):
-        yield report
+    with bar() if sys.stderr.isatty() else nullcontext(Lines()) as show:
+
+        def report(progress: Progress) -> None:
+            heed()
+            show(progress)
+
+        with watching(lambda: report(COMPILING)):
+            yield report
 
 
 @contextmanager

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import signal
+import time
 from typing import Annotated
 
 import typer
 
 from app.cli.place import Data, Database, settings
 from ident.errors import Unusable
+
+_PULSE = 0.5  # s, after which Ctrl-C is heard even where another thread has taken the signal
 
 
 def worker(
@@ -26,7 +28,8 @@ def worker(
     context.jobs.launch()
     print(f"worker {executor} is waiting for jobs  (Ctrl-C stops it)", flush=True)
     try:
-        signal.pause()
+        while True:
+            time.sleep(_PULSE)
     except KeyboardInterrupt:
         print("stopped; its unfinished jobs go on when it starts again")
     finally:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import signal
 import uuid
+from contextlib import suppress
 
 import pytest
 
+from app.cli.interrupts import heard
 from app.cli.progress import shown
 from ident import compiled
 from ident.progress import Progress
@@ -57,3 +60,14 @@ def test_nobody_is_told_after_the_work(new_function, capsys):
         pass
     new_function()
     assert not capsys.readouterr().err
+
+
+def test_ctrl_c_ends_the_work_at_its_next_report_where_it_was_swallowed():
+    """A compiler that catches everything would otherwise let the work go on to its end."""
+    with heard(), shown() as report:
+        with suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        with pytest.raises(KeyboardInterrupt):
+            report(Progress("prepare", 1, 1))
+    with heard(), shown() as report:
+        report(Progress("prepare", 1, 1))
