@@ -111,15 +111,14 @@ class Simulation:
             rows[row] = constant(node, values)
         for known in built.filters:
             _pack_filter(rows, known, values)
-        undelayed = (
-            np.full(lanes, True)
-            if built.shift is None
-            else np.broadcast_to(constant(built.shift, values) == 0, (lanes,))
-        )
         for name, first in built.inputs.items():
             record = commands if name == INPUT else forces
             # The first value did not jump there: what the command did before the record is not known.
-            rows[first], rows[first + 1] = record[np.where(undelayed, where, where - 1)], record[where]
+            rows[first] = rows[first + 1] = record[where]
+            if name == INPUT and built.shift is not None:
+                delay = np.broadcast_to(constant(built.shift, values) / values[STEP], (lanes,))
+                late = _begun_late(record, where, delay, values[HELD])
+                rows[first], rows[first + 1] = np.where(delay > 0, late, rows[first])
         if self.start is not None:
             for i, name in enumerate(self.chain.states):
                 rows[built.states[name]] = _filled(self.start[..., i].ravel(), lanes)
@@ -172,9 +171,31 @@ def _fine(run: Run, channel: str, steps: int, before: int) -> Array:
     else:
         fine = samples
     front = np.full(before, 0.0 if channel == INPUT and run.starts_at_rest else fine[0])
-    if front[-1] != fine[0] and run.hold == "linear":
-        front[-1] -= 0.5 * (fine[0] - front[-1])  # the lines to and from it have the area of a jump at the start
+    if run.hold == "linear":
+        front[-1] -= _jump_share(np.array(2.0)) * (fine[0] - front[-1])
     return np.concatenate([front, fine, np.full(steps + 2, fine[-1])])
+
+
+def _begun_late(record: Array, where: NDArray[np.int64], delay: Array, held: Array) -> Array:
+    """A late command before and at the first fine step, (2, lanes); `delay` in fine steps."""
+    whole = np.floor(delay + 1e-9).astype(np.int64)
+    start = where + whole
+    front, jump = record[start - 2], record[start] - record[start - 2]
+    last = front - _jump_share(np.maximum(delay, 1e-9)) * jump
+    drawn = held == 0
+    before = np.where(drawn & (whole == 0), last, record[where - 1])
+    return np.array(
+        [np.where(drawn & (whole == 1), front, before), np.where(drawn & (whole == 1), last, record[where])]
+    )
+
+
+def _jump_share(delay: Array) -> Array:
+    """How far the value one step before a jump goes the other way, in jumps, (lanes,); `delay` in steps.
+
+    The record is drawn in lines: then those to and from it have, as far as the simulation sees them, which begins
+    `delay` before the jump, the area of the jump.
+    """
+    return np.where(delay < 1, 2 / delay - 1, 1 / (1 + (np.minimum(delay, 2) - 1) * (3 - np.minimum(delay, 2))))
 
 
 # Filters ----------------------------------------------------------------------------------------------------------

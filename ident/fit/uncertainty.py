@@ -36,8 +36,8 @@ class Covariance:
     valley: Array
 
     def relative(self, quantity: Callable[[Array], Array]) -> float:
-        """Relative standard error of a positive quantity, a function of points (v, p) → (v,)."""
-        along = np.ptp(np.log(quantity(self.valley))) if len(self.valley) else 0.0
+        """Relative standard error of a quantity of one sign, a function of points (v, p) → (v,)."""
+        along = np.ptp(np.log(np.abs(quantity(self.valley)))) if len(self.valley) else 0.0
         return float(np.sqrt(max(self._joint(self._gradient(quantity), self._gradient(quantity)), 0.0) + along**2))
 
     def deviation(self, quantity: Callable[[Array], Array]) -> float:
@@ -68,7 +68,7 @@ class Covariance:
         return np.asarray((ends[:p] - ends[p:]) / (2 * step))
 
     def _gradient(self, quantity: Callable[[Array], Array]) -> Array:
-        return self._slope(lambda points: np.log(quantity(points)))
+        return self._slope(lambda points: np.log(np.abs(quantity(points))))
 
 
 def covariance(here: Local, point: Array, valley: Array) -> Covariance:

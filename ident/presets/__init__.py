@@ -9,10 +9,11 @@ from ident.errors import Unusable
 from ident.presets.drive import DRIVE
 from ident.presets.first_order import FIRST_ORDER
 from ident.presets.kononykhin import KONONYKHIN
+from ident.presets.open_valve import OPEN_VALVE
 from ident.presets.preset import Preset, Scale
 from ident.presets.qian2014 import QIAN2014
 
-PRESETS: dict[str, Preset] = {preset.name: preset for preset in (QIAN2014, FIRST_ORDER, DRIVE, KONONYKHIN)}
+PRESETS: dict[str, Preset] = {preset.name: preset for preset in (QIAN2014, FIRST_ORDER, DRIVE, OPEN_VALVE, KONONYKHIN)}
 
 
 def preset(name: str, effects: Sequence[str] = (), custom: Sequence[Effect] = ()) -> Preset:

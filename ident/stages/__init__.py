@@ -1,6 +1,6 @@
 """The linear core of each place of the chain; a preset picks one core a place."""
 
-from ident.stages.controller import PROPORTIONAL
+from ident.stages.controller import OPENED_BY_COMMAND, PROPORTIONAL
 from ident.stages.drive import CASCADE, DIRECT_FORCE, IDEAL_DRIVE
 from ident.stages.flow import LINEAR_FLOW
 from ident.stages.load import DRIVEN_MASS, MASS_SPRING_DAMPER, MEASURED_LOAD
@@ -21,6 +21,7 @@ __all__ = [
     "LINEAR_FLOW",
     "MASS_SPRING_DAMPER",
     "MEASURED_LOAD",
+    "OPENED_BY_COMMAND",
     "PLACES",
     "PROPORTIONAL",
     "RIGID_SPOOL",

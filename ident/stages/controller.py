@@ -17,3 +17,15 @@ PROPORTIONAL = stage(
     ("v_in = v_fb", "and so its rate"),
     ("e = Kp * (r - y_in)", "proportional position loop with gain Kp (Qian et al. 2014, section 2.1.1)"),
 )
+
+OPENED_BY_COMMAND = stage(
+    "controller",
+    (
+        Quantity("r", "m", "command as it acts"),
+        Quantity("dr", "m/s", "rate of the command"),
+        Quantity("e", "m", "drive signal: the opening that is asked for"),
+    ),
+    ("r = u", "the command acts at once"),
+    ("dr = du", "its rate"),
+    ("e = r", "no loop: the command opens the valve"),
+)

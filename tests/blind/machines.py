@@ -87,9 +87,14 @@ def _damped(plant: linear.Plant, cell: linear.Cell) -> bool:
 def linear_error(machine: Machine) -> float:
     """Eq. (17) of the refitted linear model, on a quarter of the runs' beginnings."""
     matrix = machine.measured(seconds=1.0, every=2 if machine.small else 4)
-    if not all(np.abs(run.measured).max() < _RUN_AWAY for run in matrix.runs):
+    if runs_away(matrix):
         return 1.0
     return float(identify(as_fit(matrix), Settings()).error["fit"] or 0.0)
+
+
+def runs_away(matrix: Matrix) -> bool:
+    """Whether a run left the stroke: nothing is measured then."""
+    return not all(np.abs(run.measured).max() < _RUN_AWAY for run in matrix.runs)
 
 
 def as_fit(matrix: Matrix) -> Matrix:
@@ -119,6 +124,9 @@ def strength_for(machine: Machine, name: str, wanted: float, sign: float = 1.0) 
         if abs(found / goal - 1) < _CLOSE:
             break
         low, high = (strength, high) if found < goal else (low, strength)
+    while runs_away(replace(machine, hidden={name: sign * strength}).measured()):
+        strength *= 0.8
+        found = excess(strength)
     return sign * strength, float(np.hypot(found, floor))
 
 

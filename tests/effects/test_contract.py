@@ -101,6 +101,19 @@ def test_one_percent_of_its_strength_is_seen(effect):
     assert max(miss for miss, _ in deviations(effect, factor=1.01)) > tolerance(effect)
 
 
+@pytest.mark.parametrize("samples", [0.3, 1.0, 1.0127, 1.9, 2.4])
+def test_a_command_that_begins_with_a_jump_may_be_late_by_a_sample(samples):
+    """The jump falls into the first steps of the simulation, or between them."""
+    delay = samples / linear.SAMPLE_RATE
+    for hold in ("linear", "zoh"):
+        wanted = expected("command_delay", "T", delay, 2, hold)
+        steps = 1 if hold == "linear" else 8
+        got = ours(
+            preset("qian2014", ("command_delay",)), {"command_delay": delay}, CELLS[2], command(2), hold, steps=steps
+        )
+        assert np.std(got - wanted) < 1e-4 * np.std(wanted)
+
+
 @pytest.mark.parametrize("output", ["displacement", "load_pressure", "force"])
 def test_all_effects_off_is_the_chain_without_them(output):
     """The kernel of the whole catalogue, every strength 0, is the chain's own kernel to 1e-12."""

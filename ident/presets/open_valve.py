@@ -1,0 +1,61 @@
+"""A valve-controlled cylinder in open loop: valve opening → load pressure."""
+
+from ident.chain import Chain
+from ident.parameter import Parameter
+from ident.presets.preset import Combined, Preset, Scale
+from ident.stages import (
+    COMPRESSIBLE,
+    FIRST_ORDER_VALVE,
+    IDEAL_SENSOR,
+    LINEAR_FLOW,
+    MASS_SPRING_DAMPER,
+    OPENED_BY_COMMAND,
+    RIGID_SPOOL,
+)
+
+SOURCE = "order of magnitude; searched over scale-free ratios"
+
+OPEN_VALVE = Preset(
+    name="open_valve",
+    title="Valve-controlled cylinder in open loop",
+    citation=(
+        "H. E. Merritt: Hydraulic Control Systems. Wiley (1967), section 6-2: valve-controlled piston; "
+        "the valve's lag as in Qian et al. (2014), eq. 1."
+    ),
+    chain=Chain(
+        stages=(
+            OPENED_BY_COMMAND,
+            FIRST_ORDER_VALVE,
+            RIGID_SPOOL,
+            LINEAR_FLOW,
+            COMPRESSIBLE,
+            MASS_SPRING_DAMPER,
+            IDEAL_SENSOR,
+        ),
+        outputs={"load_pressure": "P"},
+    ),
+    parameters=(
+        Parameter("m0", "m₀", "kg", 1e-2, 1e6, 1.0, "moving mass", SOURCE),
+        Parameter("tau", "τ", "s", 1e-5, 1e2, 1e-2, "time constant of the valve", SOURCE),
+        Parameter("c0", "c₀", "N*s/m", 1e-6, 1e8, 1.0, "viscous damping of the moving mass", SOURCE),
+        Parameter("Ka", "Kₐ", "m^3/Pa", 1e-18, 1e6, 1.0, "compressibility of the oil, Vt/(4 βe)", SOURCE),
+        Parameter("Cl", "Cₗ", "m^3/(s*Pa)", 1e-18, 1e6, 1e-3, "leakage across the piston", SOURCE),
+        Parameter("Z0", "Z₀", "m^4/s", -1e6, 1e6, 1.0, "flow gain of the valve times the piston area", SOURCE),
+    ),
+    scales=(
+        Scale("m0", "1", 1e-2, 1e6),
+        Scale("tau", "1 / W", 1e-3, 3e1),
+        Scale("c0", "m0 * W", 1e-4, 1e2),
+        Scale("Ka", "A**2 / (m0 * W**2)", 1e-3, 1e3),
+        Scale("Cl", "Ka * W", 1e-5, 1e1),
+        Scale("Z0", "A**3 * X / (m0 * W * U)", -3e1, 3e1, logarithmic=False),
+    ),
+    without_area={"Z0": ("Z0/A^3", "1/(m^2*s)"), "Ka": ("Ka/A^2", "m/N"), "Cl": ("Cl/A^2", "m/(N*s)"),
+                  "m0": ("m0/A^2", "kg/m^4")},
+    combinations=(
+        Combined("A**2 / (Ka*m0)", "1/s^2", "ωh², the oil column against the moving mass"),
+        Combined("Z0 / (A*Ka)", "Pa/(m*s)", "rate of pressure for each unit of opening"),
+        Combined("c0 / m0", "1/s", "damping of the moving mass"),
+        Combined("Cl / Ka", "1/s", "decay of a pressure by leakage"),
+    ),
+)  # fmt: skip
