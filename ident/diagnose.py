@@ -28,7 +28,7 @@ from ident.fit.settings import Settings
 from ident.fit.space import Space
 from ident.fit.uncertainty import covariance
 from ident.matrix import Matrix
-from ident.noise import averaged, floors_by_run
+from ident.noise import averaged
 from ident.progress import Progress, Report, silent
 from ident.spectra import excited_band
 
@@ -63,7 +63,7 @@ class Work:
 
     def __init__(self, models: Models, fit: FitResult, most: int, report: Report) -> None:
         self.models, self.fit, self.most, self.report = models, fit, most, report
-        self.floors = floors_by_run(models.matrix, models.band)
+        self.floors = models.floors
 
     def diagnosis(self) -> Diagnosis:
         """The whole of it."""

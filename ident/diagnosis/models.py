@@ -19,12 +19,16 @@ from ident.fit.polish import polish
 from ident.fit.settings import Settings
 from ident.fit.space import Space, search_space
 from ident.matrix import Matrix, Run
+from ident.noise import floors_by_run
 from ident.presets import PRESETS, Preset
 
 Array = NDArray[np.float64]
 _TRIAL = 131_072  # samples of a first refit; the finalists take every sample
 _FITTING = 1e-7, 20  # relative promise of a further step below which a refit stops, and its most steps
 _TRYING = 1e-5, 10
+_SEARCHING = 1e-5, 30
+_BETTER = 0.99  # times the error: a new optimum, not the same one
+_AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be noise
 
 
 @dataclass(frozen=True)
@@ -132,12 +136,39 @@ class Models:
             self._known[key] = OutputError(model, self.matrix, runs, space, self.band)
         return self._known[key]
 
-    def refit(self, effects: tuple[str, ...], start: Mapping[str, float], samples: int = 0) -> Refit:
+    @cached_property
+    def floors(self) -> Mapping[str, float | None]:
+        """The noise floor of each run of the matrix by its id."""
+        return floors_by_run(self.matrix, self.band)
+
+    def at_floor(self, refit: Refit) -> bool:
+        """Whether the error of a refit is noise alone; never where the floor cannot be told."""
+        floors = [floor for run in self.runs if (floor := self.floors[run.id]) is not None]
+        return len(floors) == len(self.runs) and refit.error < (1.0 + _AT_FLOOR) * float(np.mean(floors))
+
+    def best_of(self, refit: Refit, starts: Sequence[Mapping[str, float]]) -> Refit | None:
+        """The best refit of the same model from other starts, where one is better than `refit`."""
+        fitness = self.fitness(refit.effects, _TRIAL)
+        others = [self.refit(refit.effects, start, _TRIAL, _SEARCHING) for start in starts]
+        best = min(others, key=lambda other: other.here.error)
+        if best.here.error > _BETTER * fitness.exact(refit.point, sensitivities=False).error:
+            return None
+        found = self.refit(refit.effects, best.values)
+        return found if found.here.error < refit.here.error else None
+
+    def refit(
+        self,
+        effects: tuple[str, ...],
+        start: Mapping[str, float],
+        samples: int = 0,
+        until: tuple[float, int] | None = None,
+    ) -> Refit:
         """The optimum near `start`, on shortened records where `samples` is given."""
         fitness = self.fitness(effects, samples)
         known = {p.name: p.value for p in fitness.preset.parameters} | dict(start)
         point = fitness.space.point({**known, **fitness.space.fixed})
-        point, here = polish(fitness.exact, point, _silent, fitness.accept, *(_TRYING if samples else _FITTING))
+        until = until or (_TRYING if samples else _FITTING)
+        point, here = polish(fitness.exact, point, _silent, fitness.accept, *until)
         off = {symbol for name, e in self.effects.items() if name not in effects for symbol in map(e.symbol, _names(e))}
         values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}
         return Refit(effects, values, fitness.space, point, here, fitness)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from functools import partial
 
 from ident.diagnosis.chance import VISIBLE, WORTHWHILE, Gain, gain
 from ident.diagnosis.instant import Prediction, predict
@@ -15,6 +16,8 @@ _QUICK = 200_000  # samples of a matrix so small that every promise can be tried
 _NEAR = 1.3  # times the best predicted error: the contenders for a further effect
 _FINALISTS = 5
 _CLOSE = 1.05  # times the best trial's error: also a finalist
+_DEEPER = 2  # of the finalists are looked for elsewhere, too
+_STRONG = (1.0, 0.3)  # of the largest strength, from where
 _PROMISING = 0.3 * WORTHWHILE  # relative fall of the score that is worth a refit
 _NATS = 3.0  # of the offsets, too
 Report = Callable[[str, int, int], None]
@@ -81,9 +84,25 @@ def rank(models: Models, base: Refit, names: Iterable[str], report: Report, thor
             return replace(candidate, trial=None)
         return replace(candidate, refit=refit, gain=gain(base.held_out, refit.held_out))
 
-    confirmed = {candidate.effect: candidate for candidate in (*tried, *each(final, finalists))}
+    found = sorted(each(final, finalists), key=lambda candidate: candidate.score)
+    report("confirming", done, done + 1)
+    found = [*each(partial(_elsewhere, models, base), found[:_DEEPER]), *found[_DEEPER:]]
+    confirmed = {candidate.effect: candidate for candidate in (*tried, *found)}
     rest = [confirmed.get(p.effect, Candidate(p)) for p in predictions]
     return sorted(rest, key=lambda candidate: candidate.score)
+
+
+def _elsewhere(models: Models, base: Refit, candidate: Candidate) -> Candidate:
+    """The candidate, refitted from strong effects too where its error stays above the noise: there are local optima."""
+    refit, symbol = candidate.refit, models.strength(candidate.effect)
+    if refit is None or models.at_floor(refit):
+        return candidate
+    lower, upper = refit.fitness.space.bounds(refit.values)[symbol]
+    end = lower if refit.values[symbol] < 0 else upper
+    other = models.best_of(refit, [{**base.values, symbol: share * end} for share in _STRONG])
+    if other is None:
+        return candidate
+    return replace(candidate, refit=other, gain=gain(base.held_out, other.held_out))
 
 
 def _promises(prediction: Prediction) -> bool:
