@@ -124,19 +124,14 @@ def rest(answer: Array, measured: Array, first: int, end: int, scale: float, dri
 @njit(cache=True, nogil=True, error_model="numpy")
 def residuals(
     current: Array, step: float, held: bool, constants: Array, nodes: Array, pieces: Array,
-    active: NDArray[np.bool_], position: Array, pressure: Array, parts: NDArray[np.int64], scales: Array,
-    drifting: bool, out: Array,
+    position: Array, pressure: Array, parts: NDArray[np.int64], scales: Array, drifting: bool, out: Array,
 ) -> None:  # fmt: skip
     """Fill `out` (models, samples compared) with the scaled residuals of several models on one record.
 
-    `scales` are those of position and pressure, 0 where it is not compared; `pressure` is empty then. A model that is
-    not `active` answers as the first one does.
+    `scales` are those of position and pressure, 0 where it is not compared; `pressure` is empty then.
     """
     answer, start = np.empty((3, len(current))), np.empty(4)
     for j in range(len(constants)):
-        if not active[j]:
-            out[j] = out[0]
-            continue
         B, I0 = constants[j, 1], constants[j, 2]
         start[0], start[1], start[2] = position[0], current[0], current[0]
         start[3] = min(max(I0, current[0] - B), current[0] + B)
