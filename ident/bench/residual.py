@@ -94,6 +94,12 @@ class Observed:
         return out
 
     @cached_property
+    def power(self) -> float:
+        """Mean square of the position, the mean of each part taken off, in squares of its scale."""
+        rests = np.concatenate([self.record.position[a:b] - self.record.position[a:b].mean() for a, b in self.parts])
+        return float(np.mean((rests / self.position_scale) ** 2))
+
+    @cached_property
     def size(self) -> float:
         """Amplitude of the position, m: √2 times the deviation of what is compared."""
         rests = [self.record.position[first:end] for first, end in self.parts]

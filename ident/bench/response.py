@@ -63,15 +63,15 @@ def respond(
     """Fill `out` (3, n) with position (m), pressure difference (Pa) and the current after the play.
 
     `constants` holds T, B, I0, kp, ΔPfr, Ps and what the four blocks lack: second lag (s), stiction (Pa above ΔPfr),
-    load (Pa/m), delay (s). `start` holds position and currents after the lags and the play, and is left as they are
+    load (Pa/m), delay (s), and the position (m) at which the load is zero. `start` holds position and currents after the lags and the play, and is left as they are
     at the end; `steps` divides a sample.
     """
-    T, B, I0, kp, friction, supply, T2, sticking, load, delay = constants
+    T, B, I0, kp, friction, supply, T2, sticking, load, delay, centre = constants
     late = delay / step
     phi, g0, g1 = filter_gains(T, step / steps)
     phi2, h0, h1 = filter_gains(T2, step / steps)
     x, q, q2, w = start
-    centre, speed, moving, length = x, 0.0, False, len(current)
+    speed, moving, length = 0.0, False, len(current)
     half = 0.5 * step / steps
     for k in range(length):
         for part in range(steps if k else 1):
