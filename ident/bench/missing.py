@@ -55,7 +55,7 @@ LACKING = {
 }  # fmt: skip
 """The four, by name."""
 _QUICK = ("T", "B", "I0", "kp", "dPfr")
-_TRIED = (0.05, 0.2, 0.6, 1.2)
+_TRIED = (0.05, 0.2, 0.6)
 _STEPS, _FINAL = 6, 12
 RATE = 500.0  # Hz
 

@@ -27,6 +27,7 @@ IMPERFECT = 2e-3  # of a record's standard deviation
 _SETTLED = 0.25  # s at the start of a record that its unknown past may have shaped
 _MOVED = 3.0  # steps of the converter that are no accident
 _STEP = 1e-4  # relative, of a difference
+_STRIDE = {"stiction": 0.1}  # the same where a value acts in jumps, from one sample to the next
 _NOTHING = np.empty(0)
 _BLOCKS = 8  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
 _REACH = {"I0": 1e-2, "delay": 1e-2, "second_lag": 1e-2, "stiction": 1e5, "load": 1e7}
@@ -205,11 +206,9 @@ class Residual:
 
     def normal(self, point: Array) -> Normal:
         """The sum of squares with its derivatives; what a record cannot see is not computed."""
-        here, models = self.at(point), []
-        for i in range(len(self.names)):
-            moved = point.copy()
-            moved[i] += _STEP
-            models.append(self.at(moved))
+        here = self.at(point)
+        strides = np.array([_STRIDE.get(name, _STEP) for name in self.names])
+        models = [self.at(moved) for moved in point + np.diag(strides)]
         limits = np.array([-1.0, *(_seen_from(here.table, name) for name in self.names)])
         every = [here, *models]
         constants = np.array([model.constants for model in every])
@@ -219,7 +218,7 @@ class Residual:
             seen = np.flatnonzero(observed.reach + abs(here.I0) > limits)
             rows = observed.residuals(constants[seen], here.table.nodes, pieces[seen])
             base = rows[0].copy()
-            rows[:-1] = (rows[1:] - base) / _STEP
+            rows[:-1] = (rows[1:] - base) / strides[seen[1:] - 1, None]
             rows[-1] = base
             found = np.empty((_BLOCKS, len(rows), len(rows)))
             products(rows, _BLOCKS, found)

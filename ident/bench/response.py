@@ -92,7 +92,7 @@ def respond(
             available = kp * a if kp * a < supply else supply
             sign = 1.0 if u > 0.0 else -1.0
             needed = friction + sign * load * (x - centre)
-            moving = available > (needed if moving else needed + sticking) and a > 0.0
+            moving = a > 0.0 and available > needed and (moving or available > needed + sticking)
             now = 0.0
             if moving:
                 now = sign * characteristic(u, nodes, pieces) * sqrt(1.0 - needed / available)

@@ -27,7 +27,11 @@ def acceptance_sheet(
     matrix: Matrix, bench: BenchSet, analysis: Analysis, lines: Sequence[Line], theme: str = "light"
 ) -> Chart:
     """Table of the quantities with pass or fail, then pressure loop, speed and frequency characteristics."""
-    of = look(theme)
+    return sheet_chart(matrix, bench, analysis, lines, look(theme))
+
+
+def sheet_chart(matrix: Matrix, bench: BenchSet, analysis: Analysis, lines: Sequence[Line], of: Look) -> Chart:
+    """The same in a look that is at hand."""
     panels: list[Any] = [_table(lines, of)]
     model = analysis.model or analysis.steps or (analysis.static.model if analysis.static else None)
     pictures: list[Any] = []
