@@ -24,6 +24,9 @@ def in_question(diagnosis: Mapping[str, Any]) -> list[Model]:
 
     Where no candidate was refitted it is the last rung of the ladder alone. Raises Unusable for JSON of another form.
     """
+    if diagnosis.get("model") == "kononykhin":
+        raise Unusable("no-experiment", "no run is proposed for the records of a bench", "model kononykhin",
+                       "repeat the records on which the effects differ")  # fmt: skip
     try:
         found = _chosen(diagnosis)
         return [_model(diagnosis, parameters) for parameters in found]

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+
 def independent_samples(residual: Array) -> float:
     """How many samples of a residual (n,) tell something new: n / Σ ρ_k² over all lags k (Bartlett 1946)."""
     n, r = len(residual), residual - residual.mean()

@@ -142,7 +142,7 @@ class Refitter:
 
     def _refit(self, effects: tuple[str, ...], start: Model) -> Refit:
         names = (*CONSTANTS, *start.table.names, *effects)
-        first = solve(Residual(start, self._coarse, names), steps=_FINAL).model
+        first = _longer_first(solve(Residual(start, self._coarse, names), steps=_FINAL).model)
         weighed = tuple(each(lambda one: one.weighed(first), self._fine))
         solution = solve(Residual(first, weighed, names), steps=_FINAL)
         squares = self._squares(Residual(solution.model, weighed, names))
@@ -177,6 +177,12 @@ class Refitter:
         return np.maximum(squares, 0.0).reshape(-1, count)
 
 
+def _longer_first(model: Model) -> Model:
+    """Two lags in series may change places: the longer one is T."""
+    second = model.extra.get("second_lag", 0.0)
+    return replace(model.with_values({"second_lag": model.T}), T=second) if second > model.T else model
+
+
 def _bounded(products: Array) -> Array:
     """The Gauss-Newton step of [J, r] products, no longer than half a natural size of each value."""
     p = len(products) - 1
@@ -187,8 +193,7 @@ def _starts(model: Model, name: str) -> list[Model]:
     """Models with some of an effect, the lag made shorter by what a second lag or a delay takes over."""
     if name in ("delay", "second_lag"):
         return [
-            replace(model.with_values({name: share * model.T}), T=max(1.0 - share, 0.2) * model.T)
-            for share in _TRIED
+            replace(model.with_values({name: share * model.T}), T=max(1.0 - share, 0.2) * model.T) for share in _TRIED
         ]
     size = model.dPfr if name == "stiction" else 10.0 * model.dPfr
     signs = (1.0,) if name == "stiction" else (1.0, -1.0)

@@ -124,11 +124,15 @@ def _advance(state, i0, i1, dt, T, B, I0, kp, fr, Ps, G, asymmetry, bend, T2, st
         state[4] = q2
         u = state[1] - I0
         force = load * (state[2] - 0.5 * STROKE)
-        state[3] = np.sign(u) * fr + force if state[5] > 0.0 else min(max(kp * u, force - fr - stick), force + fr + stick)
+        state[3] = (
+            np.sign(u) * fr + force if state[5] > 0.0 else min(max(kp * u, force - fr - stick), force + fr + stick)
+        )
 
 
 @njit(cache=True)
-def _bench(law, settings, samples, dt, lsb, start, T, B, I0, kp, fr, Ps, G, asymmetry, bend, delay, T2, stick, load, steps):
+def _bench(
+    law, settings, samples, dt, lsb, start, T, B, I0, kp, fr, Ps, G, asymmetry, bend, delay, T2, stick, load, steps
+):
     """A record under one of the bench's laws; the controller sees the quantised position of the sample before."""
     state = np.array([settings[0], 0.0, start, 0.0, settings[0], 0.0])
     state[1] = min(max(I0, state[0] - B), state[0] + B)
