@@ -1,4 +1,4 @@
-"""A diagnosis of a bench's model: what of :data:`ident.bench.missing.LACKING` is added, in the words of any diagnosis."""
+"""A diagnosis of a bench's model: what of its four effects is added, in the words of any diagnosis."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class BenchWork:
             verdict=Verdict(found.effects, groups, (), unexplained, text), seed=self.fit.seed,
             seconds=time.monotonic() - self.begun, version=version("servoident"), data_hash=self.matrix.data_hash,
             settings=dict(self.fit.settings),
-            notes=("Ranked are the four effects of a bench's model; a fit cannot take them up, the refits stand here.",),
+            notes=("Ranked are the four effects of a bench's model; a fit cannot take them up: the refits are here.",),
         )  # fmt: skip
 
     def _added(self, base: Refit) -> tuple[list[Candidate], list[Refit]]:
@@ -139,5 +139,6 @@ def _why(candidate: Candidate, base: Refit, best: bool) -> str:
     change = f"On data held out from the fit the error goes from {before} to {after}"
     looks = LACKING[candidate.effect].looks
     if not candidate.gain.beyond_chance:
-        return f"{change}, {candidate.gain.deviations:.1f} standard errors: no more than chance. It would show as: {looks}."
+        steadily = f"{candidate.gain.deviations:.1f} standard errors"
+        return f"{change}, {steadily}: no more than chance. It would show as: {looks}."
     return f"{change}. {'No other effect does better. ' if best else ''}It shows as: {looks}."

@@ -110,8 +110,8 @@ class Observed:
     def weighed(self, model: Model) -> Observed:
         """Itself with the scales that the residual of a fitted model shows: its RMS, and how far it remembers.
 
-        A reading in steps stays off by the same part of a step while the link rests, and in a slow motion from sample to
-        sample: thousands of samples may tell no more than ten, so that their RMS alone would give them too much weight.
+        A reading in steps stays off by the same part of a step while the link rests, and nearly so in a slow motion:
+        thousands of samples may tell no more than ten, so that their RMS alone would give them too much weight.
         """
         found, count = self.residual(model), sum(end - first for first, end in self.parts)
         if not np.isfinite(self.position_scale):

@@ -63,7 +63,8 @@ def respond(
     """Fill `out` (3, n) with position (m), pressure difference (Pa) and the current after the play.
 
     `constants` holds T, B, I0, kp, ΔPfr, Ps and what the four blocks lack: second lag (s), stiction (Pa above ΔPfr),
-    load (Pa/m), delay (s), and the position (m) at which the load is zero. `start` holds position and currents after the lags and the play, and is left as they are
+    load (Pa/m), delay (s), and the position (m) at which the load is zero.
+    `start` holds position and currents after the lags and the play, and is left as they are
     at the end; `steps` divides a sample.
     """
     T, B, I0, kp, friction, supply, T2, sticking, load, delay, centre = constants

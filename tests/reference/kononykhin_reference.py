@@ -9,7 +9,7 @@ Currents are in % of the rated one, lengths in mm, pressures in MPa; time in s.
     pressure difference: at rest kp (I_BL - I0), moving +-dPfr
 
 Hidden, where a truth has them: a delay of the current; a second lag T2 behind the first; stiction, the pressure above
-dPfr that breaks the link loose; a spring of `load` MPa a mm from the middle of the stroke, which adds to what is needed.
+dPfr that breaks the link loose; a spring of `load` MPa a mm from the middle of the stroke, added to what is needed.
 """
 
 from __future__ import annotations
