@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.diagnosis import diagnose_bench
 from ident.diagnosis.addition import MOST, USUAL, Addition
 from ident.diagnosis.advice import error_budget, next_run
 from ident.diagnosis.chance import gain
@@ -50,6 +51,8 @@ def diagnose(
     if not 0 <= most <= MOST:
         raise Unusable("bad-option", f"{most} effects", "max-effects", f"give 0 to {MOST}")
     fit = fit or identify(matrix, settings or Settings(), report)
+    if fit.model == "kononykhin":
+        return diagnose_bench(matrix, fit, most, report)
     given = replace(Settings.from_json(dict(fit.settings)), effects=()) if fit.settings else Settings(model=fit.model)
     models = Models.of(matrix, given, excited_band(matrix.of_use("fit")), custom)
     found = Work(models, fit, most, report).diagnosis()

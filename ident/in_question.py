@@ -25,6 +25,9 @@ def in_question(diagnosis: Mapping[str, Any]) -> list[Model]:
     Where it settled on nothing, and something is left, it is the best candidates. Raises Unusable for JSON of another
     form.
     """
+    if diagnosis.get("model") == "kononykhin":
+        raise Unusable("no-experiment", "no run is proposed for the records of a bench", "model kononykhin",
+                       "repeat the records on which the effects differ")  # fmt: skip
     try:
         found = _chosen(diagnosis)
         return [_model(diagnosis, parameters) for parameters in found]

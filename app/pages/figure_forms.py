@@ -33,6 +33,7 @@ _OF_BENCH = (
         "Speed",
         (Field("smoothing", "Smoothing", (("", SMOOTHINGS[0]), *((m, m) for m in SMOOTHINGS[1:]))),),
     ),
+    ("acceptance-sheet", "Acceptance sheet", ()),
 )
 
 

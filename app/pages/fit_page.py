@@ -68,6 +68,7 @@ class FitPageView:
     again: str
     findings: str
     worst: str
+    on_bench: bool
 
 
 def fit_page(stored: FitView, matrix: MatrixView, lacks: MissingView, ladder: LadderView) -> FitPageView:
@@ -102,6 +103,7 @@ def fit_page(stored: FitView, matrix: MatrixView, lacks: MissingView, ladder: La
         findings=counted(serious := [entry for entry in matrix.findings if entry.severity != "note"]),
         worst="fault" if any(entry.severity == "fault" for entry in serious) else "doubt",
         again=json.dumps(fit_request(fit, stored.id)),
+        on_bench=fit.model == "kononykhin",
     )
 
 

@@ -32,12 +32,19 @@ def conditions(run: RunView) -> Conditions:
         use=run.use,
         kind=run.kind,
         gain="–" if run.gain is None else f"{run.gain:g}",
-        amplitude="–" if run.amplitude is None else words.amplitude(run.amplitude),
+        amplitude=_amplitude(run),
         amplitude_value="" if run.amplitude is None else f"{run.amplitude:g}",
         specimen="–" if run.mass is None else words.specimen(specimen_of(run)),
         length=numbers.quantity(run.duration, "s"),
         rate=numbers.quantity(run.sample_rate, "Hz"),
     )
+
+
+def _amplitude(run: RunView) -> str:
+    """RMS of the command; of a bench's sine the share of the rated current."""
+    if run.amplitude is None:
+        return "–"
+    return f"{100 * run.amplitude:.4g} %" if run.kind == "frequency" else words.amplitude(run.amplitude)
 
 
 def specimen_of(run: RunView) -> Specimen | None:

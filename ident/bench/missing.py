@@ -1,77 +1,200 @@
-"""What the four blocks lack, ranked: each of four extras is refitted with T, B and I0 over the frequency records.
+"""What the four blocks lack, ranked: each of four effects is refitted with every value of the model to every record.
 
-The model's residual itself is :class:`ident.bench.residual.Residual`; whoever ranks by other means starts there.
+The catalogue's effects belong to a chain with a controller; the bench drives its actuator by a current, so that these
+four are its own. What is better beyond chance is judged as for any model, see :mod:`ident.diagnosis.chance`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ident.bench.least_squares import Solution, solve
-from ident.bench.model import Model
+from ident.bench.model import CONSTANTS, Model
 from ident.bench.records import Record
-from ident.bench.residual import Residual, errors, observe
+from ident.bench.residual import Observed, Residual, observe
+from ident.diagnosis.chance import Gain, gain
+from ident.diagnosis.held_out import FOLDS, HeldOut, bounded_step
+from ident.memory import independent_samples
+from ident.parallel import each
 
-REFITTED = ("T", "B", "I0")
-MEANING = {
-    "delay": ("s", "pure delay before the lag"),
-    "second_lag": ("s", "second lag in series with T"),
-    "stiction": ("Pa", "pressure above friction that breaks the link loose"),
-    "load": ("Pa/m", "load that grows with the position, so that the speed depends on it"),
-}
-"""Unit and meaning of each extra."""
-_TRIED = (0.05, 0.2, 0.6, 1.5)
-_LEAST = 1e-2  # of the error: a smaller gain is none
+Array = NDArray[np.float64]
+
+
+def _unsaid(_done: int, _total: int) -> None:
+    """Report nothing."""
 
 
 @dataclass(frozen=True)
-class Candidate:
-    """An extra with the strength that fits best, and the mean position error of the frequency records with it."""
+class Lacking:
+    """An effect that the blocks lack: unit of its strength, what it is, what it looks like in data."""
 
     name: str
-    strength: float
+    symbol: str
     unit: str
+    meaning: str
+    looks: str
+
+
+LACKING = {
+    one.name: one
+    for one in (
+        Lacking("delay", "T_d", "s", "pure delay before the lag",
+                "a phase lag that grows with the frequency, at the same gain"),
+        Lacking("second_lag", "T_2", "s", "second lag in series with T: the lag is of second order",
+                "more phase lag than T explains, and a rounded start of every movement"),
+        Lacking("stiction", "ΔP_st", "Pa", "pressure above friction that breaks the link loose",
+                "movements that begin late and with a jump, and pressures beyond friction before them"),
+        Lacking("load", "c_F", "Pa/m", "load that grows with the position, so that the speed depends on it",
+                "speeds that differ from place to place, and a zero shift of each range of positions"),
+    )
+}  # fmt: skip
+"""The four, by name."""
+_QUICK = ("T", "B", "I0", "kp", "dPfr")
+_TRIED = (0.05, 0.2, 0.6)
+_STEPS, _FINAL = 6, 12
+RATE = 500.0  # Hz
+
+
+@dataclass(frozen=True, eq=False)
+class Refit:
+    """The model with these effects at its optimum: errors of eq. (17) of each record, with nothing left out and held
+    out, and what is compared with another refit: each record over what the fitted model leaves of it."""
+
+    effects: tuple[str, ...]
+    solution: Solution
     error: float
-    without: float
+    held_out_error: float
+    held_out: HeldOut
+
+    @property
+    def model(self) -> Model:
+        """With its values."""
+        return self.solution.model
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """An effect, the error of its first refit, to the constants only, its full refit and what that gains."""
+
+    effect: str
+    predicted: float
+    refit: Refit
+    gain: Gain
+
+
+@dataclass(frozen=True, eq=False)
+class Refitter:
+    """Refits of a fitted model with effects, to the records of the fit."""
+
     model: Model
+    records: tuple[Record, ...]
 
-    @property
-    def gain(self) -> float:
-        """The share of the error that it takes away."""
-        return 1.0 - self.error / self.without if self.without else 0.0
+    @cached_property
+    def _coarse(self) -> tuple[Observed, ...]:
+        """The records as a first refit takes them."""
+        return observe(self.records)
 
-    @property
-    def helps(self) -> bool:
-        """Whether it does at all."""
-        return self.gain > _LEAST
+    @cached_property
+    def _fine(self) -> tuple[Observed, ...]:
+        """The records in steps so fine that a mean over samples is not taken for a lag."""
+        return observe(self.records, rate=RATE)
 
+    @cached_property
+    def _start(self) -> Model:
+        ends = [(record.position.min(), record.position.max()) for record in self.records]
+        return replace(self.model, centre=float(0.5 * (min(a for a, _ in ends) + max(b for _, b in ends))))
 
-def rank(model: Model, records: Sequence[Record]) -> tuple[Candidate, ...]:
-    """The four extras, best first, against the model refitted without any."""
-    observed = observe(records, pressure=False, drifting=True)
-    plain = solve(Residual(model, observed, REFITTED), steps=6)
+    @cached_property
+    def base(self) -> Refit:
+        """The fitted model, refitted to the weighed records."""
+        return self._refit((), self._start)
 
-    def error(solution: Solution) -> float:
-        return float(np.mean(list(errors(solution.model, observed).values())))
+    @cached_property
+    def _left(self) -> Array:
+        """Mean square, of the position of each record, that the fitted model leaves."""
+        residual = self._positions(self._start)
+        return np.array([float(np.mean(r**2)) for r in residual])
 
-    without, out = error(plain), []
-    for name, (unit, _) in MEANING.items():
-        tried = [solve(Residual(start, observed, (*REFITTED, name)), steps=8) for start in _starts(plain.model, name)]
+    @cached_property
+    def _shown(self) -> list[Observed]:
+        """The records whose positions are compared, without their pressures."""
+        return [replace(one, pressure_scale=None) for one in self._fine if np.isfinite(one.position_scale)]
+
+    def rank(self, base: Refit, names: Sequence[str], done: Callable[[int, int], None] = _unsaid) -> list[Candidate]:
+        """The effects beside those of `base`, best first by held-out error; `done` is told after each."""
+        found = []
+        for name in names:
+            found.append(self._candidate(base, name))
+            done(len(found), len(names))
+        return sorted(found, key=lambda one: one.refit.held_out_error)
+
+    def _candidate(self, base: Refit, name: str) -> Candidate:
+        names = (*_QUICK, *base.effects, name)
+        tried = [solve(Residual(start, self._coarse, names), steps=_STEPS) for start in _starts(base.model, name)]
         best = min(tried, key=lambda solution: solution.cost)
-        out.append(Candidate(name, best.values[name], unit, min(error(best), without), without, best.model))
-    return tuple(sorted(out, key=lambda candidate: candidate.error))
+        refit = self._refit((*base.effects, name), best.model)
+        return Candidate(name, self._error(best.model), refit, gain(base.held_out, refit.held_out))
+
+    def _refit(self, effects: tuple[str, ...], start: Model) -> Refit:
+        names = (*CONSTANTS, *start.table.names, *effects)
+        first = _longer_first(solve(Residual(start, self._coarse, names), steps=_FINAL).model)
+        weighed = tuple(each(lambda one: one.weighed(first), self._fine))
+        solution = solve(Residual(first, weighed, names), steps=_FINAL)
+        squares = self._squares(Residual(solution.model, weighed, names))
+        residual = self._positions(solution.model)
+        lengths = np.array([len(r) for r in residual])
+        sizes = np.array([one.power for one in self._shown])
+        held = np.sqrt(squares.sum(axis=1) / lengths / sizes)
+        judged = HeldOut(squares, self._left * lengths, np.zeros(len(lengths)), int(lengths.sum()),
+                         sum(independent_samples(r) for r in residual))  # fmt: skip
+        return Refit(effects, solution, self._error(solution.model), float(held.mean()), judged)
+
+    def _positions(self, model: Model) -> list[Array]:
+        return [one.residual(model) for one in self._shown]
+
+    def _error(self, model: Model) -> float:
+        """Eq. (17), averaged over the records."""
+        pairs = zip(self._positions(model), self._shown, strict=True)
+        return float(np.mean([np.sqrt(np.mean(r**2) / one.power) for r, one in pairs]))
+
+    def _squares(self, whole: Residual) -> Array:
+        """Σ of squares of the positions of each record and block, each block without having been fitted to."""
+        fitted, shown = whole.normal(whole.origin), replace(whole, observed=tuple(self._shown))
+        blocks = shown.normal(shown.origin).products
+        count = len(blocks) // len(self._shown)
+        squares = np.zeros(len(blocks))
+        for fold in range(FOLDS):
+            inside, used = np.arange(len(blocks)) % FOLDS == fold, np.arange(len(fitted.products)) % FOLDS != fold
+            total = fitted.products[used].sum(axis=0)
+            step = _bounded(total)
+            direction = np.append(step, 1.0)
+            squares[inside] = np.einsum("i,bij,j->b", direction, blocks[inside], direction)
+        return np.maximum(squares, 0.0).reshape(-1, count)
+
+
+def _longer_first(model: Model) -> Model:
+    """Two lags in series may change places: the longer one is T."""
+    second = model.extra.get("second_lag", 0.0)
+    return replace(model.with_values({"second_lag": model.T}), T=second) if second > model.T else model
+
+
+def _bounded(products: Array) -> Array:
+    """The Gauss-Newton step of [J, r] products, no longer than half a natural size of each value."""
+    p = len(products) - 1
+    return bounded_step(np.full(p, 0.5), products[:p, :p], products[:p, p])
 
 
 def _starts(model: Model, name: str) -> list[Model]:
-    """Models with some of an extra, the lag made shorter by what a second lag or a delay takes over."""
-    size = {"delay": model.T, "second_lag": model.T, "stiction": model.dPfr, "load": 10.0 * model.dPfr}[name]
-    out = []
-    for share in _TRIED:
-        start = model.with_values({name: share * size})
-        if name in ("delay", "second_lag"):
-            start = replace(start, T=max(model.T - min(share, 0.8) * size, 0.1 * model.T))
-        out.append(start)
-    return out
+    """Models with some of an effect, the lag made shorter by what a second lag or a delay takes over."""
+    if name in ("delay", "second_lag"):
+        return [
+            replace(model.with_values({name: share * model.T}), T=max(1.0 - share, 0.2) * model.T) for share in _TRIED
+        ]
+    size = model.dPfr if name == "stiction" else 10.0 * model.dPfr
+    signs = (1.0,) if name == "stiction" else (1.0, -1.0)
+    return [model.with_values({name: sign * share * size}) for share in _TRIED for sign in signs]

@@ -37,7 +37,7 @@ class Model:
     d: V = V0 sqrt(max(0, 1 − needed/available)), available = min(kp |I_BL − I0|, Ps), needed = ΔPfr (Pa)
 
     At rest the pressure difference is what is available, kp (I_BL − I0); in motion what is needed, ±ΔPfr. `extra`
-    holds what the four blocks lack, all zero: see :data:`MISSING`.
+    holds what the four blocks lack, all zero: see :data:`MISSING`; `centre` (m) is where the lacking load is zero.
     """
 
     T: float
@@ -48,6 +48,7 @@ class Model:
     table: SpeedTable
     Ps: float = np.inf
     extra: Mapping[str, float] = field(default_factory=dict)
+    centre: float = 0.0
 
     @property
     def dead_space(self) -> float:
@@ -58,7 +59,7 @@ class Model:
     def constants(self) -> Array:
         """As the compiled simulation takes them."""
         lacking = [self.extra.get(name, 0.0) for name in MISSING]
-        return np.array([self.T, self.B, self.I0, self.kp, self.dPfr, self.Ps, *lacking])
+        return np.array([self.T, self.B, self.I0, self.kp, self.dPfr, self.Ps, *lacking, self.centre])
 
     def with_values(self, values: Mapping[str, float]) -> Model:
         """The model with other values of constants, of extras, or of the table (``V_p5``: at +5 %)."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.bench.model import Model
-from ident.bench.records import bench_set
+from ident.bench.records import Record, bench_set
 from ident.bench.speed_table import SpeedTable
 from ident.fit.result import RunError
 from ident.matrix import Matrix
@@ -34,10 +34,16 @@ def outputs(matrix: Matrix, values: Mapping[str, float]) -> dict[str, Array]:
 
 def run_errors(matrix: Matrix, values: Mapping[str, float]) -> tuple[RunError, ...]:
     """Eq. (17) of each bench record's run, and its offset."""
-    found, bench = outputs(matrix, values), bench_set(matrix)
+    bench = bench_set(matrix)
+    return errors_of(bench.records, model_of(values, bench.supply_pressure))
+
+
+def errors_of(records: Sequence[Record], model: Model) -> tuple[RunError, ...]:
+    """The same of a model, whatever it has beside the four blocks."""
     out = []
-    for record in bench.records:
-        difference, size = record.position - found[record.id], float(np.std(record.position))
+    for record in records:
+        found = model.answer(record.current, record.rate, record.hold, float(record.position[0])).position
+        difference, size = record.position - found, float(np.std(record.position))
         error, offset = float(np.std(difference)) / size, float(np.mean(difference)) / size
         out.append(RunError(record.id, record.use, min(error, 1e3), float(np.clip(offset, -1e3, 1e3))))
     return tuple(out)

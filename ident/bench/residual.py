@@ -19,6 +19,7 @@ from ident.bench.model import Model
 from ident.bench.records import Record
 from ident.bench.response import products, residuals
 from ident.bench.speed_table import SpeedTable
+from ident.memory import independent_samples
 from ident.parallel import cores, each
 
 Array = NDArray[np.float64]
@@ -26,6 +27,7 @@ IMPERFECT = 2e-3  # of a record's standard deviation
 _SETTLED = 0.25  # s at the start of a record that its unknown past may have shaped
 _MOVED = 3.0  # steps of the converter that are no accident
 _STEP = 1e-4  # relative, of a difference
+_STRIDE = {"stiction": 0.1}  # the same where a value acts in jumps, from one sample to the next
 _NOTHING = np.empty(0)
 _BLOCKS = 8  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
 _REACH = {"I0": 1e-2, "delay": 1e-2, "second_lag": 1e-2, "stiction": 1e5, "load": 1e7}
@@ -78,22 +80,25 @@ class Observed:
         """Everything compared, scaled: position part by part, then pressure."""
         return np.asarray(self.residuals(model.constants[None], model.table.nodes, model.table.pieces[None])[0])
 
-    def residuals(
-        self, constants: Array, nodes: Array, pieces: Array, active: NDArray[np.bool_] | None = None
-    ) -> Array:
-        """The residuals of several models, (models, samples compared); one that is not active is as the first."""
+    def residuals(self, constants: Array, nodes: Array, pieces: Array) -> Array:
+        """The residuals of several models, (models, samples compared)."""
         record = self.record
-        used = np.ones(len(constants), dtype=np.bool_) if active is None else active
         positions, pressures = bool(np.isfinite(self.position_scale)), self.pressure_scale is not None
         count = sum(end - first for first, end in self.parts) * (positions + pressures)
         out = np.empty((len(constants), count))
         scales = np.array([self.position_scale if positions else 0.0, self.pressure_scale or 0.0])
         residuals(
-            record.current, 1.0 / record.rate, record.hold == "zoh", constants, nodes, pieces, used, record.position,
+            record.current, 1.0 / record.rate, record.hold == "zoh", constants, nodes, pieces, record.position,
             record.pressure if record.pressure is not None else _NOTHING,
             np.array(self.parts, dtype=np.int64).reshape(-1, 2), scales, self.drifting, out,
         )  # fmt: skip
         return out
+
+    @cached_property
+    def power(self) -> float:
+        """Mean square of the position, the mean of each part taken off, in squares of its scale."""
+        rests = np.concatenate([self.record.position[a:b] - self.record.position[a:b].mean() for a, b in self.parts])
+        return float(np.mean((rests / self.position_scale) ** 2))
 
     @cached_property
     def size(self) -> float:
@@ -101,6 +106,22 @@ class Observed:
         rests = [self.record.position[first:end] for first, end in self.parts]
         rests = [straightened(x) if self.drifting else x - x.mean() for x in rests]
         return float(np.sqrt(2.0) * np.std(np.concatenate(rests)))
+
+    def weighed(self, model: Model) -> Observed:
+        """Itself with the scales that the residual of a fitted model shows: its RMS, and how far it remembers.
+
+        A reading in steps stays off by the same part of a step while the link rests, and nearly so in a slow motion:
+        thousands of samples may tell no more than ten, so that their RMS alone would give them too much weight.
+        """
+        found, count = self.residual(model), sum(end - first for first, end in self.parts)
+        if not np.isfinite(self.position_scale):
+            return self
+        own = [found[:count]] if self.pressure_scale is None else [found[:count], found[count:]]
+        larger = [float(np.std(r)) * np.sqrt(len(r) / independent_samples(r)) for r in own]
+        least = 1e-7 / self.position_scale
+        position = self.position_scale * max(larger[0], least)
+        pressure = None if self.pressure_scale is None else self.pressure_scale * max(larger[-1], 1.0)
+        return replace(self, position_scale=position, pressure_scale=pressure)
 
     @cached_property
     def reach(self) -> float:
@@ -185,24 +206,24 @@ class Residual:
 
     def normal(self, point: Array) -> Normal:
         """The sum of squares with its derivatives; what a record cannot see is not computed."""
-        here, models = self.at(point), []
-        for i in range(len(self.names)):
-            moved = point.copy()
-            moved[i] += _STEP
-            models.append(self.at(moved))
-        limits = np.array([0.0, *(_seen_from(here.table, name) for name in self.names)])
+        here = self.at(point)
+        strides = np.array([_STRIDE.get(name, _STEP) for name in self.names])
+        models = [self.at(moved) for moved in point + np.diag(strides)]
+        limits = np.array([-1.0, *(_seen_from(here.table, name) for name in self.names)])
         every = [here, *models]
         constants = np.array([model.constants for model in every])
         pieces = np.array([model.table.pieces for model in every])
 
         def one(observed: Observed) -> tuple[int, Array]:
-            active = observed.reach + abs(here.I0) > limits
-            rows = observed.residuals(constants, here.table.nodes, pieces, active)
+            seen = np.flatnonzero(observed.reach + abs(here.I0) > limits)
+            rows = observed.residuals(constants[seen], here.table.nodes, pieces[seen])
             base = rows[0].copy()
-            rows[:-1] = (rows[1:] - base) / _STEP
+            rows[:-1] = (rows[1:] - base) / strides[seen[1:] - 1, None]
             rows[-1] = base
-            out = np.empty((_BLOCKS, len(rows), len(rows)))
-            products(rows, _BLOCKS, out)
+            found = np.empty((_BLOCKS, len(rows), len(rows)))
+            products(rows, _BLOCKS, found)
+            out, place = np.zeros((_BLOCKS, len(every), len(every))), np.append(seen[1:] - 1, len(every) - 1)
+            out[:, place[:, None], place] = found
             return len(base), out
 
         shares = each(lambda share: [(i, one(self.observed[i])) for i in share], self._shares)
@@ -248,7 +269,7 @@ class Normal:
 def _seen_from(table: SpeedTable, name: str) -> float:
     """The current from which on a value acts: of a monotone table, two nodes before its own."""
     if name not in table.names:
-        return 0.0
+        return -1.0
     place = table.names.index(name) % len(table.fractions)
     return float(table.nodes[max(0, place - 1)])
 

@@ -63,15 +63,16 @@ def respond(
     """Fill `out` (3, n) with position (m), pressure difference (Pa) and the current after the play.
 
     `constants` holds T, B, I0, kp, ΔPfr, Ps and what the four blocks lack: second lag (s), stiction (Pa above ΔPfr),
-    load (Pa/m), delay (s). `start` holds position and currents after the lags and the play, and is left as they are
+    load (Pa/m), delay (s), and the position (m) at which the load is zero.
+    `start` holds position and currents after the lags and the play, and is left as they are
     at the end; `steps` divides a sample.
     """
-    T, B, I0, kp, friction, supply, T2, sticking, load, delay = constants
+    T, B, I0, kp, friction, supply, T2, sticking, load, delay, centre = constants
     late = delay / step
     phi, g0, g1 = filter_gains(T, step / steps)
     phi2, h0, h1 = filter_gains(T2, step / steps)
     x, q, q2, w = start
-    centre, speed, moving, length = x, 0.0, False, len(current)
+    speed, moving, length = 0.0, False, len(current)
     half = 0.5 * step / steps
     for k in range(length):
         for part in range(steps if k else 1):
@@ -92,7 +93,7 @@ def respond(
             available = kp * a if kp * a < supply else supply
             sign = 1.0 if u > 0.0 else -1.0
             needed = friction + sign * load * (x - centre)
-            moving = available > (needed if moving else needed + sticking) and a > 0.0
+            moving = a > 0.0 and available > needed and (moving or available > needed + sticking)
             now = 0.0
             if moving:
                 now = sign * characteristic(u, nodes, pieces) * sqrt(1.0 - needed / available)
@@ -124,19 +125,14 @@ def rest(answer: Array, measured: Array, first: int, end: int, scale: float, dri
 @njit(cache=True, nogil=True, error_model="numpy")
 def residuals(
     current: Array, step: float, held: bool, constants: Array, nodes: Array, pieces: Array,
-    active: NDArray[np.bool_], position: Array, pressure: Array, parts: NDArray[np.int64], scales: Array,
-    drifting: bool, out: Array,
+    position: Array, pressure: Array, parts: NDArray[np.int64], scales: Array, drifting: bool, out: Array,
 ) -> None:  # fmt: skip
     """Fill `out` (models, samples compared) with the scaled residuals of several models on one record.
 
-    `scales` are those of position and pressure, 0 where it is not compared; `pressure` is empty then. A model that is
-    not `active` answers as the first one does.
+    `scales` are those of position and pressure, 0 where it is not compared; `pressure` is empty then.
     """
     answer, start = np.empty((3, len(current))), np.empty(4)
     for j in range(len(constants)):
-        if not active[j]:
-            out[j] = out[0]
-            continue
         B, I0 = constants[j, 1], constants[j, 2]
         start[0], start[1], start[2] = position[0], current[0], current[0]
         start[3] = min(max(I0, current[0] - B), current[0] + B)

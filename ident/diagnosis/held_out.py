@@ -187,14 +187,3 @@ def bounded_step(point: Array, H: Array, g: Array) -> Array:
         step[free[worst]] = inside[worst] - point[free[worst]]
         free = np.delete(free, worst)
     return step
-
-
-def independent_samples(residual: Array) -> float:
-    """How many samples of a residual (n,) tell something new: n / Σ ρ_k² over all lags k (Bartlett 1946)."""
-    n, r = len(residual), residual - residual.mean()
-    power = np.abs(np.fft.rfft(r, 2 * n)) ** 2
-    correlation = np.fft.irfft(power)[: n // 4]
-    if not correlation[0] > 0:
-        return float(n)
-    rho = correlation / correlation[0]
-    return float(n / max(2.0 * np.sum(rho**2) - 1.0, 1.0))

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.held_out import HeldOut, held_out, independent_samples
+from ident.diagnosis.held_out import HeldOut, held_out
 from ident.effect import Effect
 from ident.effects import EFFECTS
 from ident.errors import Unusable
@@ -19,6 +19,7 @@ from ident.fit.polish import polish
 from ident.fit.settings import Settings
 from ident.fit.space import Space, search_space
 from ident.matrix import Matrix, Run
+from ident.memory import independent_samples
 from ident.noise import floors_by_run
 from ident.presets import PRESETS, Preset
 

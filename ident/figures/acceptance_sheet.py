@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import altair as alt
+import numpy as np
 
 from ident.bench.acceptance import Line, passed
 from ident.bench.analysis import Analysis
@@ -19,6 +20,7 @@ from ident.matrix import Matrix
 
 _COLUMNS = {"quantity": 0, "value": 230, "std error": 330, "unit": 390, "min": 480, "max": 560, "": 620}
 _ROW = 18
+_MOST, _LIMIT = 5, 4  # decimals, digits of a limit
 _UNITS = {"1": (100.0, "%"), "s": (1e3, "ms"), "Pa": (1e-6, "MPa"), "m/s": (1e3, "mm/s")}
 _SLOPE = (1e-8, "MPa/%")
 
@@ -27,7 +29,11 @@ def acceptance_sheet(
     matrix: Matrix, bench: BenchSet, analysis: Analysis, lines: Sequence[Line], theme: str = "light"
 ) -> Chart:
     """Table of the quantities with pass or fail, then pressure loop, speed and frequency characteristics."""
-    of = look(theme)
+    return sheet_chart(matrix, bench, analysis, lines, look(theme))
+
+
+def sheet_chart(matrix: Matrix, bench: BenchSet, analysis: Analysis, lines: Sequence[Line], of: Look) -> Chart:
+    """The same in a look that is at hand."""
     panels: list[Any] = [_table(lines, of)]
     model = analysis.model or analysis.steps or (analysis.static.model if analysis.static else None)
     pictures: list[Any] = []
@@ -42,7 +48,7 @@ def acceptance_sheet(
         sines = bench.of_kind("frequency")
         panels.append(
             alt.hconcat(
-                *frequency_panels(analysis.frequency, sines, analysis.model, of, 400, 170), spacing=30
+                *frequency_panels(analysis.frequency, sines, analysis.model, of, 400, 170, beside=True), spacing=30
             ).resolve_scale(color="independent")
         )
     verdict = "passed" if passed(tuple(lines)) and not analysis.missing else "NOT passed"
@@ -71,7 +77,7 @@ def _table(lines: Sequence[Line], of: Look) -> Panel:
         alt.Chart(alt.InlineData(values=cells), width=660, height=height)
         .mark_text(align="left", fontSize=11)
         .encode(
-            x=alt.X("x:Q", axis=None, scale=alt.Scale(domain=[0, 660], nice=False)),
+            x=alt.X("x:Q", axis=None, scale=alt.Scale(domain=[-8, 660], nice=False)),
             y=alt.Y("y:Q", axis=None, scale=scale), text="t:N", color=colour,
         )
     )  # fmt: skip
@@ -80,12 +86,19 @@ def _table(lines: Sequence[Line], of: Look) -> Panel:
 
 def _texts(line: Line) -> tuple[str, ...]:
     factor, unit = _SLOPE if line.quantity == "kp" else _UNITS[line.unit]
-    numbers = (
-        "" if n is None else f"{factor * n:.4g}" for n in (line.value, line.deviation or None, line.lower, line.upper)
+    places = _places(line, factor)
+    value, deviation, lower, upper = (
+        "" if n is None else f"{factor * n:.{places if i < 2 else _LIMIT}{'f' if i < 2 else 'g'}}".replace("-", "−")
+        for i, n in enumerate((line.value, line.deviation or None, line.lower, line.upper))
     )
-    value, deviation, lower, upper = numbers
     verdict = {None: "", True: "pass", False: "FAIL"}[line.passed]
     return line.quantity.replace("_", " "), value or "not found", deviation, unit, lower, upper, verdict
+
+
+def _places(line: Line, factor: float) -> int:
+    """Decimals of a value and its standard error: two digits of the error, or four of a value that has none."""
+    size = factor * (line.deviation or abs(line.value or 0.0) / 50.0)
+    return int(np.clip(1 - np.floor(np.log10(size)), 0, _MOST)) if size > 0 else 1
 
 
 def _cell(text: str, x: int, row: int, kind: str) -> dict[str, Any]:

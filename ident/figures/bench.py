@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from ident.bench.acceptance import read_limits, sheet
+from ident.bench.analysis import analyse
 from ident.bench.frequency import frequency_response
 from ident.bench.model import Model
 from ident.bench.outputs import model_of
@@ -12,6 +14,7 @@ from ident.bench.records import BenchSet, Record, bench_set
 from ident.bench.speed import levels
 from ident.errors import Unusable
 from ident.figures import words
+from ident.figures.acceptance_sheet import sheet_chart
 from ident.figures.frequency_characteristics import frequency_characteristics
 from ident.figures.look import Look
 from ident.figures.pressure_loop import pressure_loop
@@ -56,9 +59,18 @@ def _speed(matrix: Matrix, fit: FitResult, look: Look, options: Mapping[str, Any
     return speed_characteristic(records, levels(model, records), model, look, options.get("smoothing") or "iir", title)
 
 
+def _sheet(matrix: Matrix, _fit: FitResult, look: Look, _options: Mapping[str, Any]) -> Chart:
+    """The records as the procedures judge them: the sheet of `servoident bench`, whatever the fit."""
+    bench = bench_set(matrix)
+    analysis = analyse(bench)
+    lines = sheet(analysis, read_limits(matrix.limits_text, matrix.limits or "limits"))
+    return sheet_chart(matrix, bench, analysis, lines, look)
+
+
 BENCH_FIGURES: Mapping[str, tuple[Draw, tuple[str, ...]]] = {
     "pressure-loop": (_loop, ()),
     "frequency-characteristics": (_frequency, ()),
     "speed-characteristic": (_speed, ("smoothing",)),
+    "acceptance-sheet": (_sheet, ()),
 }
 """Figures of a fit of the model kononykhin, each with the options that it takes."""

@@ -23,24 +23,25 @@ def frequency_characteristics(
 ) -> Chart:
     """Gain (dB of mm per % of rated current) and phase (degrees)."""
     panels = frequency_panels(responses, records, model, look)
-    chart: Chart = alt.vconcat(*panels, title=title).configure(**look.config())
+    whole = alt.vconcat(*panels, title=title).resolve_scale(color="independent")  # else the gain's missing legend rules
+    chart: Chart = whole.configure(**look.config())
     return chart
 
 
 def frequency_panels(
     responses: Sequence[Response], records: Sequence[Record], model: Model | None, look: Look, width: int = 420,
-    height: int = 150,
+    height: int = 150, beside: bool = False,
 ) -> tuple[Panel, Panel]:  # fmt: skip
-    """Measured as points, the model, put through the same procedure, as lines."""
+    """Measured as points, the model, put through the same procedure, as lines; one above the other, or `beside` it."""
     measured = _rows(responses)
     modelled = [] if model is None else _rows([point(_of_model(record, model)) for record in records])
     names = list(dict.fromkeys(row["a"] for row in sorted(measured, key=lambda row: row["o"])))
     colours = [look.series[i % len(look.series)] for i in range(len(names))]
 
     def panel(field: str, what: str, last: bool) -> Panel:
-        legend = alt.Legend(orient="bottom", title="Amplitude") if last else None
+        legend = alt.Legend(orient="bottom", title="Amplitude") if last or beside else None
         colour = alt.Color("a:N", scale=alt.Scale(domain=names, range=colours), legend=legend)
-        x = alt.X("f:Q", title="Frequency (Hz)" if last else None, scale=alt.Scale(type="log", nice=False))
+        x = alt.X("f:Q", title="Frequency (Hz)" if last or beside else None, scale=alt.Scale(type="log", nice=False))
         y = alt.Y(f"{field}:Q", title=what, scale=alt.Scale(zero=False))
         dots = alt.Chart(alt.InlineData(values=measured)).mark_circle(size=36).encode(x=x, y=y, color=colour)
         lines = alt.Chart(alt.InlineData(values=modelled)).mark_line(strokeWidth=1.3).encode(x=x, y=y, color=colour)

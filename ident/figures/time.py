@@ -51,7 +51,7 @@ def time(
     factor, printed = words.engineering(run.measured[window], unit)
     fine, small = words.engineering(residual[window], unit)
     signals = {"measured": run.measured, "model": compared.modelled}
-    if run.units.get("command", "m") == unit:
+    if "command" in run.channels and run.units.get("command", "m") == unit:
         signals = {"command": run.command} | signals
     upper = _traces(tuple(signals), run, window, look, printed)
     lower = _residual(run, window, look, small)

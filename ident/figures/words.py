@@ -85,7 +85,12 @@ def describe(run: Run) -> str:
     if run.gain is not None:
         parts.append(gain(run.gain))
     if run.amplitude is not None:
-        parts.append(f"{amplitude(run.amplitude, run.units.get('command', 'm'))} RMS")
+        of_bench = run.kind == "frequency"
+        parts.append(
+            f"{100 * run.amplitude:.4g} %"
+            if of_bench
+            else f"{amplitude(run.amplitude, run.units.get('command', 'm'))} RMS"
+        )
     if run.specimen is not None:
         parts.append(specimen(run.specimen))
     return ", ".join(parts)

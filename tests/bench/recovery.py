@@ -1,4 +1,4 @@
-"""`python -m tests.bench.recovery [COUNT]`: how well scattered actuators are found again, a row a quantity."""
+"""`python -m tests.bench.recovery [COUNT [FIRST]]`: how well scattered actuators are found again, a row a quantity."""
 
 from __future__ import annotations
 
@@ -49,9 +49,9 @@ def recover(seed: int) -> Found:
     return Found(true_model(truth), analyse(as_set(truth, records)), records)
 
 
-def main(count: int) -> None:
-    """Print the rows of the table."""
-    found = [recover(seed) for seed in range(count)]
+def main(count: int, first: int = 0) -> None:
+    """Print the rows of the table, for actuators from a first number on."""
+    found = [recover(seed) for seed in range(first, first + count)]
     for name in ("hysteresis", "dead_space", "kp", "friction", "T"):
         show(name, [actuator.relative(name) for actuator in found])
     show("zero shift, of rated current", [actuator.zero_shift for actuator in found])
@@ -70,4 +70,4 @@ def show(name: str, errors: list[float]) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 50)
+    main(*(int(number) for number in sys.argv[1:] or [50]))

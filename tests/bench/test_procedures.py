@@ -10,7 +10,6 @@ from scipy.optimize import minimize
 
 from ident.bench.analysis import analyse
 from ident.bench.frequency import frequency_response
-from ident.bench.missing import rank
 from ident.bench.motion import groups
 from ident.bench.residual import observe
 from ident.bench.sine_fit import as_printed, dominant, fit_sine, gauss_newton
@@ -97,18 +96,6 @@ def test_a_delay_does_not_spoil_the_time_constant_silently(delay):
     assert abs(check.correlation["B"]["delay"]) <= 1
     assert any("pure delay" in note and "correlation" in note for note in analysis.notes)
     assert pytest.approx(truth.B / 100, rel=0.05) == analysis.model.B
-
-
-def test_what_the_four_blocks_lack_is_ranked():
-    """A hidden delay comes first of four, and nothing helps where nothing is hidden."""
-    truth = reference.scattered(8)
-    for delay, helpful in ((0.0, set()), (0.004, {"delay", "second_lag"})):
-        hidden = truth._replace(delay=delay)
-        bench = as_set(hidden, reference.full_set(hidden, 8))
-        ranked = rank(true_model(truth), bench.of_kind("frequency"))
-        assert {candidate.name for candidate in ranked if candidate.helps} == helpful
-        assert len(ranked) == 4
-    assert ranked[0].name == "delay"
 
 
 # Static ----------------------------------------------------------------------------------------------------------

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from ident.diagnosis.chance import gain
-from ident.diagnosis.held_out import HeldOut, bounded_step, held_out, independent_samples
+from ident.diagnosis.held_out import HeldOut, bounded_step, held_out
 from ident.fit.objective import Local, local
 from ident.fit.record import Moments, moments_of
 from ident.matrix import Run
+from ident.memory import independent_samples
 
 RNG = np.random.default_rng(8)
 N, BLOCKS = 512, 32

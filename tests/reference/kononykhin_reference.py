@@ -7,6 +7,9 @@ Currents are in % of the rated one, lengths in mm, pressures in MPa; time in s.
     T I' + I = Iin;  play of half-width B;  V0 = G side(s) (I_BL - I0)/100 (1 + n - n |I_BL - I0|/100)
     V = V0 sqrt(1 - dPfr/available), available = min(kp |I_BL - I0|, Ps), 0 where it is less than dPfr
     pressure difference: at rest kp (I_BL - I0), moving +-dPfr
+
+Hidden, where a truth has them: a delay of the current; a second lag T2 behind the first; stiction, the pressure above
+dPfr that breaks the link loose; a spring of `load` MPa a mm from the middle of the stroke, added to what is needed.
 """
 
 from __future__ import annotations
@@ -31,7 +34,7 @@ RANGES = ((15.0, 25.0), (45.0, 55.0), (75.0, 85.0))  # mm
 
 
 class Truth(NamedTuple):
-    """One actuator; `delay` is what the model does not have."""
+    """One actuator; `delay` and what follows it is what the model does not have."""
 
     T: float = 0.02
     B: float = 0.2
@@ -43,6 +46,9 @@ class Truth(NamedTuple):
     asymmetry: float = 0.1  # (forward - back) / mean
     nonlinearity: float = 0.05  # of full speed, against the chord
     delay: float = 0.0
+    second_lag: float = 0.0
+    stiction: float = 0.0  # MPa
+    load: float = 0.0  # MPa/mm
 
     @property
     def dead_space(self) -> float:
@@ -84,16 +90,20 @@ class Record:
 
 
 @njit(cache=True)
-def _advance(state, i0, i1, dt, T, B, I0, kp, fr, Ps, G, asymmetry, bend, steps):
-    """One sample of the actuator: state = lagged current, play, position, pressure difference."""
+def _advance(state, i0, i1, dt, T, B, I0, kp, fr, Ps, G, asymmetry, bend, T2, stick, load, steps):
+    """One sample of the actuator: state = lagged current, play, position, pressure, twice lagged current, moving."""
     h = dt / steps
     for k in range(steps):
         a = i0 + (i1 - i0) * k / steps
         b = i0 + (i1 - i0) * (k + 1) / steps
         slope = (a - state[0]) / T
         q = state[0] + 0.5 * h * (slope + (b - state[0] - h * slope) / T)
+        q2 = q
+        if T2 > 0.0:
+            share = 1.0 - np.exp(-h / T2)
+            q2 = state[4] + share * (0.5 * (state[0] + q) - state[4])
         for part in range(2):
-            seen = 0.5 * (state[0] + q) if part == 0 else q
+            seen = 0.5 * (state[4] + q2) if part == 0 else q2
             if seen > state[1] + B:
                 state[1] = seen - B
             if seen < state[1] - B:
@@ -102,19 +112,29 @@ def _advance(state, i0, i1, dt, T, B, I0, kp, fr, Ps, G, asymmetry, bend, steps)
                 break
             u = state[1] - I0
             available = min(kp * abs(u), Ps)
-            if available > fr:
+            needed = fr + np.sign(u) * load * (state[2] - 0.5 * STROKE)
+            if available > needed + (0.0 if state[5] > 0.0 else stick):
                 side = 1.0 + 0.5 * asymmetry * np.sign(u)
                 v = G * side * u / 100.0 * (1.0 + bend - bend * abs(u) / 100.0)
-                state[2] += h * v * np.sqrt(1.0 - fr / available)
+                state[2] += h * v * np.sqrt(1.0 - needed / available)
+                state[5] = 1.0
+            else:
+                state[5] = 0.0
         state[0] = q
+        state[4] = q2
         u = state[1] - I0
-        state[3] = min(max(kp * u, -fr), fr)
+        force = load * (state[2] - 0.5 * STROKE)
+        state[3] = (
+            np.sign(u) * fr + force if state[5] > 0.0 else min(max(kp * u, force - fr - stick), force + fr + stick)
+        )
 
 
 @njit(cache=True)
-def _bench(law, settings, samples, dt, lsb, start, T, B, I0, kp, fr, Ps, G, asymmetry, bend, delay, steps):
+def _bench(
+    law, settings, samples, dt, lsb, start, T, B, I0, kp, fr, Ps, G, asymmetry, bend, delay, T2, stick, load, steps
+):
     """A record under one of the bench's laws; the controller sees the quantised position of the sample before."""
-    state = np.array([settings[0], 0.0, start, 0.0])
+    state = np.array([settings[0], 0.0, start, 0.0, settings[0], 0.0])
     state[1] = min(max(I0, state[0] - B), state[0] + B)
     current, x, p = np.empty(samples), np.empty(samples), np.empty(samples)
     old = settings[0]
@@ -161,7 +181,7 @@ def _bench(law, settings, samples, dt, lsb, start, T, B, I0, kp, fr, Ps, G, asym
             drive = current[k - late] if k >= late else settings[0]
             before = current[k - late - 1] if k >= late + 1 else settings[0]
         if k > 0:
-            _advance(state, before, drive, dt, T, B, I0, kp, fr, Ps, G, asymmetry, bend, steps)
+            _advance(state, before, drive, dt, T, B, I0, kp, fr, Ps, G, asymmetry, bend, T2, stick, load, steps)
         current[k], x[k], p[k] = now, state[2], state[3]
         old = now
     return current, x, p
@@ -174,7 +194,7 @@ def record(truth: Truth, name: str, kind: str, law: int, settings: list[float], 
     current, x, p = _bench(
         law, np.array([*settings, 0.0, 0.0, 0.0, 0.0][:6]), round(seconds * RATE), 1 / RATE, lsb, start, truth.T,
         truth.B, truth.I0, truth.kp, truth.dPfr, truth.Ps, truth.G, truth.asymmetry, 4 * truth.nonlinearity,
-        truth.delay, SUBSTEPS,
+        truth.delay, truth.second_lag, truth.stiction, truth.load, SUBSTEPS,
     )  # fmt: skip
     noise = PRESSURE_NOISE * rng.standard_normal((2, len(x)))
     middle = 0.5 * truth.Ps

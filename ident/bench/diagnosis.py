@@ -1,0 +1,144 @@
+"""A diagnosis of a bench's model: what of its four effects is added, in the words of any diagnosis."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+
+from ident.bench.missing import LACKING, Candidate, Refit, Refitter
+from ident.bench.outputs import errors_of, model_of, noise_floor
+from ident.bench.records import Record, bench_set
+from ident.diagnosis.chance import gain
+from ident.diagnosis.result import Diagnosis, Found, Ranked, Rung, Verdict
+from ident.diagnosis.words import percent, verdict_text
+from ident.fit.result import FitResult
+from ident.matrix import Matrix
+from ident.presets.kononykhin import KONONYKHIN
+from ident.progress import Progress, Report, silent
+
+_NEAR_FLOOR = 1.25
+"""Times the converter's part of the error, up to which an error is its noise: a reading that rests is off for long."""
+
+
+def diagnose_bench(matrix: Matrix, fit: FitResult, most: int, report: Report = silent) -> Diagnosis:
+    """Rank the four effects, add what helps beyond chance on held-out data, and say what is left."""
+    return BenchWork(matrix, fit, most, report).diagnosis()
+
+
+class BenchWork:
+    """One diagnosis of bench records."""
+
+    def __init__(self, matrix: Matrix, fit: FitResult, most: int, report: Report) -> None:
+        self.matrix, self.fit, self.most, self.report = matrix, fit, most, report
+        self.begun = time.monotonic()
+        bench = bench_set(matrix)
+        self.records = {use: tuple(r for r in bench.records if r.use == use) for use in ("fit", "verify")}
+        self.refitter = Refitter(model_of(fit.values, bench.supply_pressure), self.records["fit"])
+        self.floor = {use: noise_floor(matrix, use) for use in ("fit", "verify")}
+
+    def diagnosis(self) -> Diagnosis:
+        """The whole of it."""
+        base = self.refitter.base
+        first, steps = self._added(base)
+        found, group = steps[-1], _alike(first)
+        groups = (group,) if len(group) > 1 and group[0] in found.effects else ()
+        errors, before = self._errors(found), self._errors(base)
+        unexplained = bool(self.floor["fit"] and (errors["fit"] or 0.0) > _NEAR_FLOOR * self.floor["fit"])
+        text = verdict_text(found.effects, groups, (), unexplained, errors, float(before["fit"] or 0.0))
+        return Diagnosis(
+            model=self.fit.model, given=(), baseline={"error": before, "offset": self._offset(base)},
+            noise_floor={"fit": self.floor["fit"], "held_out": None, "verify": self.floor["verify"]},
+            candidates=tuple(self._ranked(c, group, base, i == 0) for i, c in enumerate(first)),
+            ladder=tuple(self._rung(step, steps[i - 1] if i else None) for i, step in enumerate(steps)),
+            verdict=Verdict(found.effects, groups, (), unexplained, text), seed=self.fit.seed,
+            seconds=time.monotonic() - self.begun, version=version("servoident"), data_hash=self.matrix.data_hash,
+            settings=dict(self.fit.settings),
+            notes=("Ranked are the four effects of a bench's model; a fit cannot take them up: the refits are here.",),
+        )  # fmt: skip
+
+    def _added(self, base: Refit) -> tuple[list[Candidate], list[Refit]]:
+        """The first ranking, and the refits from the fitted model to the last, each with one effect more."""
+        first: list[Candidate] = []
+        steps = [base]
+        while len(steps) <= min(self.most, len(LACKING)):
+            names = [name for name in LACKING if name not in steps[-1].effects]
+            if not names:
+                break
+            ranking = self.refitter.rank(steps[-1], names, self._progress)
+            first = first or ranking
+            if not ranking[0].gain.beyond_chance:
+                break
+            steps.append(ranking[0].refit)
+        return first or self.refitter.rank(base, list(LACKING), self._progress), steps
+
+    def _progress(self, done: int, total: int) -> None:
+        self.report(Progress("confirming", done, total))
+
+    # What is said ----------------------------------------------------------------------------------------------
+
+    def _mean(self, refit: Refit, records: tuple[Record, ...], what: str) -> float | None:
+        found = [float(getattr(run, what)) for run in errors_of(records, refit.model)]
+        return float(np.mean(found)) if found else None
+
+    def _errors(self, refit: Refit) -> dict[str, float | None]:
+        on = {use: self._mean(refit, self.records[use], "error") for use in ("fit", "verify")}
+        return {"fit": on["fit"], "held_out": refit.held_out_error, "verify": on["verify"]}
+
+    def _offset(self, refit: Refit) -> float:
+        return self._mean(refit, self.records["fit"], "offset") or 0.0
+
+    def _parameters(self, refit: Refit) -> dict[str, Found]:
+        known, deviations = {p.name: p for p in KONONYKHIN.parameters}, refit.solution.deviations
+        out = {}
+        for name, value in refit.solution.values.items():
+            effect = LACKING.get(name)
+            if effect is not None:
+                out[f"{name}.{effect.symbol}"] = Found(value, effect.unit, deviations[name], effect.symbol)
+            else:
+                out[name] = Found(value, known[name].unit, deviations[name], known[name].symbol)
+        return dict(sorted(out.items(), key=lambda entry: "." not in entry[0]))
+
+    def _ranked(self, candidate: Candidate, group: tuple[str, ...], base: Refit, best: bool) -> Ranked:
+        refit = candidate.refit
+        return Ranked(
+            effect=candidate.effect, error=self._errors(refit), offset=self._offset(refit),
+            predicted_error=candidate.predicted, parameters=self._parameters(refit),
+            group=group if candidate.effect in group and len(group) > 1 else (), evidence=_evidence(candidate),
+            why=_why(candidate, base, best),
+        )  # fmt: skip
+
+    def _rung(self, step: Refit, before: Refit | None) -> Rung:
+        nats = None if before is None else gain(before.held_out, step.held_out).nats
+        added = None if before is None else step.effects[-1]
+        return Rung(added, self._errors(step), self._offset(step), self._parameters(step), nats)
+
+
+def _alike(ranking: list[Candidate]) -> tuple[str, ...]:
+    """The best and those that are worse by no more than chance, where the best helps."""
+    if not ranking or not ranking[0].gain.beyond_chance:
+        return ()
+    best = ranking[0].refit.held_out
+    return tuple(c.effect for c in ranking if c is ranking[0] or gain(c.refit.held_out, best).within_chance)
+
+
+def _evidence(candidate: Candidate) -> Mapping[str, Any]:
+    found = candidate.gain
+    return {
+        "confirmed": True, "fall": found.share, "deviations": found.deviations, "nats": found.nats,
+        "nats_without_best_run": found.nats_without, "beyond_chance": found.beyond_chance,
+        "looks": LACKING[candidate.effect].looks, "meaning": LACKING[candidate.effect].meaning,
+    }  # fmt: skip
+
+
+def _why(candidate: Candidate, base: Refit, best: bool) -> str:
+    before, after = percent(base.held_out_error), percent(candidate.refit.held_out_error)
+    change = f"On data held out from the fit the error goes from {before} to {after}"
+    looks = LACKING[candidate.effect].looks
+    if not candidate.gain.beyond_chance:
+        steadily = f"{candidate.gain.deviations:.1f} standard errors"
+        return f"{change}, {steadily}: no more than chance. It would show as: {looks}."
+    return f"{change}. {'No other effect does better. ' if best else ''}It shows as: {looks}."

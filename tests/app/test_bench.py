@@ -1,0 +1,80 @@
+"""Bench records over HTTP: upload, fit, figures and the acceptance sheet, what is missing, the page."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from ident.bench.synthesis import write_bench
+from ident.figures import BENCH_FIGURES
+
+API = "/api/v1"
+OPTIONS = {"population": 16, "generations": 2, "elite": 3}
+
+
+def ended(service: TestClient, answer: Any) -> dict[str, Any]:
+    """The job of a 202, when it has ended."""
+    assert answer.status_code == 202, answer.text
+    service.get(f"{answer.headers['Location']}/events")
+    job: dict[str, Any] = service.get(answer.headers["Location"]).json()
+    assert job["state"] == "succeeded", job
+    return job
+
+
+@pytest.fixture(scope="module")
+def fit(service: TestClient, tmp_path_factory: pytest.TempPathFactory) -> str:
+    """A fit of an uploaded set."""
+    folder = Path(tmp_path_factory.mktemp("bench"))
+    (folder / "runs").mkdir()
+    write_bench(folder, seed=5, noise=0.005)
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        for path in sorted(folder.rglob("*.*")):
+            archive.write(path, path.relative_to(folder))
+    answer = service.post(f"{API}/matrices", files={"files": ("bench.zip", packed.getvalue())})
+    assert answer.status_code == 201, answer.text
+    wanted = {"matrix": answer.json()["id"], "model": "kononykhin", "options": OPTIONS}
+    return str(ended(service, service.post(f"{API}/fits", json=wanted))["fit"])
+
+
+def test_the_values_and_the_procedures_beside_them(service, fit):
+    result = service.get(f"{API}/fits/{fit}").json()["result"]
+    assert result["parameters"]["T"]["value"] == pytest.approx(0.02, rel=0.03)
+    assert result["parameters"]["kp"]["value"] == pytest.approx(4.2e8, rel=0.03)
+    assert any("Step by step" in note for note in result["notes"])
+
+
+@pytest.mark.parametrize("name", ["time", *BENCH_FIGURES])
+def test_every_figure_is_served(service, fit, name):
+    """As SVG for the page and PDF for the file; the sheet says whether the limits of the set are kept."""
+    drawn = service.get(f"{API}/fits/{fit}/figures/{name}.svg")
+    assert drawn.status_code == 200, drawn.text
+    assert "SIM-BENCH-0001" in drawn.text
+    assert service.get(f"{API}/fits/{fit}/figures/{name}.pdf").content.startswith(b"%PDF")
+    if name == "acceptance-sheet":
+        assert "acceptance test passed" in drawn.text
+
+
+def test_a_diagnosis_of_a_sound_set_names_nothing(service, fit):
+    """And no run is proposed after it: the reason is in the answer."""
+    job = ended(service, service.post(f"{API}/diagnoses", json={"fit": fit}))
+    found = service.get(f"{API}/diagnoses/{job['diagnosis']}").json()
+    assert found["verdict"]["effects"] == []
+    assert {c["effect"] for c in found["candidates"]} == {"delay", "second_lag", "stiction", "load"}
+    refused = service.get(f"{API}/diagnoses/{job['diagnosis']}/proposal")
+    assert refused.status_code == 422
+    assert "bench" in refused.json()["detail"]
+
+
+def test_the_page_offers_what_a_bench_has(service, fit):
+    """The sheet's tab, amplitudes in shares of the rated current; no budget, no effect of one's own."""
+    page = service.get(f"/fits/{fit}").text
+    assert "Acceptance sheet" in page
+    assert "data-budget" not in page
+    assert "Your own effect" not in page
+    assert ">50 %<" in page

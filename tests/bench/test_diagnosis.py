@@ -1,0 +1,70 @@
+"""What the four blocks lack: hidden in the independent reference, named by the diagnosis, nothing where nothing is."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from ident.diagnose import diagnose
+from ident.diagnosis.result import Diagnosis
+from ident.errors import Unusable
+from ident.fit.identify import identify
+from ident.fit.settings import Settings
+from ident.in_question import in_question
+from ident.matrix import Matrix
+from tests.bench.sets import as_matrix
+from tests.reference import kononykhin_reference as reference
+
+SEED = 66
+HIDDEN = {"delay": 0.004, "second_lag": 0.005, "stiction": 0.3, "load": 0.005}
+SI = {"delay": 1.0, "second_lag": 1.0, "stiction": 1e6, "load": 1e9}
+
+
+def matrix_with(seed: int = SEED, **hidden: float) -> Matrix:
+    """A set of an actuator with effects that the model does not have."""
+    truth = reference.scattered(seed)._replace(**hidden)
+    return as_matrix(truth, reference.full_set(truth, seed))
+
+
+def diagnosed(matrix: Matrix, most: int = 2) -> Diagnosis:
+    """The diagnosis of what the procedures found."""
+    return diagnose(matrix, identify(matrix, Settings(model="kononykhin", method="gradient")), most=most)
+
+
+@pytest.mark.parametrize("name", HIDDEN)
+def test_a_hidden_effect_is_named_with_its_strength(name):
+    """First of four by the held-out error, alone in the verdict, within 10 % of the truth."""
+    found = diagnosed(matrix_with(**{name: HIDDEN[name]}))
+    first = found.candidates[0]
+    assert name in {first.effect, *first.group}
+    assert found.verdict.effects == (first.effect,)
+    assert not found.verdict.unexplained
+    if first.effect == name:
+        value = next(iter(first.parameters.values())).value
+        assert value == pytest.approx(HIDDEN[name] * SI[name], rel=0.1)
+    errors = [candidate.error["held_out"] for candidate in found.candidates]
+    assert errors == sorted(errors)
+    assert found.ladder[-1].error["fit"] < found.ladder[0].error["fit"]
+
+
+def test_nothing_is_named_where_nothing_is_hidden():
+    found = diagnosed(matrix_with())
+    assert found.verdict.effects == ()
+    assert not found.verdict.unexplained
+    assert not [c for c in found.candidates if c.evidence["beyond_chance"]]
+    assert "Nothing is missing" in found.verdict.text
+
+
+def test_runs_to_verify_report_only():
+    """A sine that no fit saw gets an error of its own, which the missing load shows and the refit takes away."""
+    matrix = matrix_with(load=HIDDEN["load"])
+    kept = tuple(replace(run, use="verify") if run.id == "sine-50-0.5" else run for run in matrix.runs)
+    found = diagnosed(replace(matrix, runs=kept), most=1)
+    assert found.verdict.effects == ("load",)
+    assert found.ladder[1].error["verify"] < 0.5 * found.ladder[0].error["verify"]
+
+
+def test_no_run_is_proposed_for_a_bench():
+    with pytest.raises(Unusable, match="bench"):
+        in_question({"model": "kononykhin", "candidates": [], "verdict": {}})
