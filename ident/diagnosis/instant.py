@@ -8,9 +8,10 @@ tiny ones: kinks need room, and what approaches zero as a fast time constant wou
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain
+from functools import cached_property
+from itertools import chain, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,8 @@ _TOGETHER = 5  # effects simulated in one go
 _REACH = 2.0  # by which factor a response may be scaled: beyond, it would be another strength's
 _FAR = 0.1  # of an axis: a parameter that hardly matters where it is may be sent anywhere by a linearisation
 _PARTS = (1.0, 0.5, 0.2)  # of the way to a prediction: it may be too bold
+_SUDDEN, _WIDE = 300.0, 4.0  # a response grows so much in power, over so wide a step, by a threshold between
+_BETWEEN = (0.2, 0.4, 0.6, 0.8)  # powers of the step
 _BACK = (0.67, 0.33, 0.0)  # powers of the share of the simulated strength
 _ROUNDS = 3  # of weighting each run by what it is left with
 
@@ -81,27 +84,74 @@ def predict(models: Models, base: Refit, names: Sequence[str]) -> list[Predictio
 
 
 def _predicted(models: Models, fitness: OutputError, base: Refit, names: list[str]) -> list[Prediction]:
-    """The predictions of a few effects, simulated in one go."""
+    """The predictions of a few effects, simulated in one go, and again where a threshold was jumped over."""
     off = {symbol: value for symbol, value in models.off.items() if symbol not in base.values}
     known = {name: value for name, value in {**off, **base.values}.items() if name in fitness.space.order}
     trials = [(name, strength) for name in names for strength in _strengths(fitness, models.strength(name), known)]
-    values, strides = _cloud(base, known, [(models.strength(name), strength) for name, strength in trials])
-    gram, means = fitness.differences(values, strides)
-    records = _Records(np.array([np.sum((r.measured - r.measured.mean()) ** 2) for r in fitness.runs]),
-                       np.array([r.length for r in fitness.runs]))  # fmt: skip
-    p, last = len(base.point), len(strides)
-    before, _ = _after(*_columns(gram, means, [*range(p), last]), records, base.point, p)
-    best = {name: (before, np.zeros(p + 1), strength) for name, strength in reversed(trials)}
-    for i, (name, strength) in enumerate(trials):
-        part, of_part = _columns(gram, means, [*range(p), p + i, last])
-        if part[:, p, p].any():
-            after, step = _after(part, of_part, records, base.point, p)
-            if after.score < best[name][0].score:
-                best[name] = (after, step, strength)
+    found = _Simulated.of(models, fitness, base, known, trials)
+    between = found.thresholds()
+    every = [found, _Simulated.of(models, fitness, base, known, between)] if between else [found]
+    best = {name: (found.before, np.zeros(len(base.point) + 1), strength) for name, strength in reversed(trials)}
+    for name, after, step, strength in chain.from_iterable(simulated.outlooks() for simulated in every):
+        if after.score < best[name][0].score:
+            best[name] = after, step, strength
     return [
-        Prediction(name, after, before, len(gram), _starts(models, base, name, step, strength))
+        Prediction(name, after, found.before, len(found.gram), _starts(models, base, name, step, strength))
         for name, (after, step, strength) in ((name, best[name]) for name in names)
     ]
+
+
+@dataclass(frozen=True)
+class _Simulated:
+    """The products of a fitted model's sensitivities, of its responses to effects of some strengths, and its residual.
+
+    `gram` (runs, q, q) and `means` (runs, q): the p parameters, one column each trial, the residual.
+    """
+
+    point: Array
+    trials: list[tuple[str, float]]
+    gram: Array
+    means: Array
+    records: _Records
+
+    @classmethod
+    def of(
+        cls, models: Models, fitness: OutputError, base: Refit, known: Mapping[str, float],
+        trials: list[tuple[str, float]],
+    ) -> _Simulated:  # fmt: skip
+        """Simulate the model with each strength alone."""
+        values, strides = _cloud(base, known, [(models.strength(name), strength) for name, strength in trials])
+        gram, means = fitness.differences(values, strides)
+        totals = np.array([np.sum((r.measured - r.measured.mean()) ** 2) for r in fitness.runs])
+        return cls(base.point, trials, gram, means, _Records(totals, np.array([r.length for r in fitness.runs])))
+
+    @cached_property
+    def before(self) -> Outlook:
+        """Without any effect."""
+        return self._after(list(range(len(self.point))))[0]
+
+    def outlooks(self) -> Iterator[tuple[str, Outlook, Array, float]]:
+        """Effect, what is left with a share of its response, the step to there, the strength that was simulated."""
+        p = len(self.point)
+        for i, (name, strength) in enumerate(self.trials):
+            if self._power(i) > 0:
+                yield name, *self._after([*range(p), p + i]), strength
+
+    def thresholds(self) -> list[tuple[str, float]]:
+        """Strengths between two neighbours of which one does next to nothing and the other much."""
+        found: list[tuple[str, float]] = []
+        for i, ((name, a), (other, b)) in enumerate(pairwise(self.trials)):
+            if name == other and 1 < b / a < _WIDE and self._power(i + 1) > _SUDDEN * self._power(i):
+                found += [(name, a * (b / a) ** share) for share in _BETWEEN]
+        return found
+
+    def _power(self, trial: int) -> float:
+        column = len(self.point) + trial
+        return float(self.gram[:, column, column].sum())
+
+    def _after(self, columns: list[int]) -> tuple[Outlook, Array]:
+        kept = np.array([*columns, self.gram.shape[-1] - 1])
+        return _after(self.gram[:, kept[:, None], kept], self.means[:, kept], self.records, self.point, len(self.point))
 
 
 def _starts(models: Models, base: Refit, name: str, step: Array, strength: float) -> tuple[dict[str, float], ...]:
@@ -117,11 +167,6 @@ def _starts(models: Models, base: Refit, name: str, step: Array, strength: float
     scaled = float(step[p])
     parts = [at(share, share * scaled * strength) for share in _PARTS]
     return (*parts, *(at(1.0, scaled**share * strength) for share in _BACK)) if scaled else tuple(parts)
-
-
-def _columns(gram: Array, means: Array, columns: list[int]) -> tuple[Array, Array]:
-    kept = np.array(columns)
-    return gram[:, kept[:, None], kept], means[:, kept]
 
 
 def _strengths(fitness: OutputError, symbol: str, values: Mapping[str, float]) -> list[float]:
