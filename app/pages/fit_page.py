@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from app.pages import numbers
 from app.pages.diagnosis_view import MissingView
-from app.pages.figure_forms import FigureForm, forms
+from app.pages.figure_forms import MAP, FigureForm, forms
 from app.pages.fit_view import Determined, ErrorRow, ParameterRow, combination_rows, error_rows, parameter_rows
 from app.pages.job_view import settings_facts
 from app.pages.ladder_view import Step, steps
@@ -59,6 +59,7 @@ class FitPageView:
     undetermined: tuple[Undetermined, ...]
     notes: tuple[str, ...]
     runs: tuple[FittedRun, ...]
+    map: FigureForm | None
     figures: tuple[FigureForm, ...]
     equations: tuple[tuple[str, str, Markup], ...]
     facts: tuple[tuple[str, str], ...]
@@ -75,6 +76,7 @@ def fit_page(stored: FitView, matrix: MatrixView, lacks: MissingView, ladder: La
     fit = FitResult.from_json(stored.result)
     model = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
     known = {run.id: run for run in matrix.runs}
+    figures = forms(matrix.runs, fit)
     return FitPageView(
         id=stored.id,
         serial=stored.serial,
@@ -93,7 +95,8 @@ def fit_page(stored: FitView, matrix: MatrixView, lacks: MissingView, ladder: La
         undetermined=fit.undetermined,
         notes=fit.notes,
         runs=tuple(FittedRun(conditions(known[run.id]), run.error, run.offset) for run in fit.runs if run.id in known),
-        figures=forms(matrix.runs, fit),
+        map=next((figure for figure in figures if figure.name == MAP), None),
+        figures=tuple(figure for figure in figures if figure.name != MAP),
         equations=tuple((line.place, line.meaning, Markup(mathml(line.text))) for line in _equations(model)),
         facts=_facts(fit),
         missing=lacks,

@@ -12,9 +12,10 @@ from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.choose import by_gain, representative
 from ident.figures.look import Look
-from ident.figures.render import Chart, Panel
+from ident.figures.render import Chart, Panel, datasets
 from ident.figures.responses import Responses
-from ident.figures.thin import decade_ticks
+from ident.figures.selection import HIGH, LOW, Band, band_params, brush, zoomed
+from ident.figures.thin import decade_ticks, fine_ticks
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Run
 
@@ -38,17 +39,19 @@ def bode(
     *,
     axis: str = "log",
     candidates: int | None = None,
+    band: Band = Band(),
 ) -> Chart:
     """Magnitude (dB), phase (degrees, unwrapped) and coherence over frequency; one column a gain Kp.
 
     Measured points fade with their coherence; lines are the model. `axis` is "log" or "linear"; `candidates` is
-    the number of runs from which these were taken.
+    the number of runs from which these were taken; `band` is shaded, and drawn with what is around it.
     """
     if axis not in ("log", "linear"):
         raise Unusable("unknown-axis", f"no frequency axis {axis!r}", "figure option axis", "use log or linear")
     responses = Responses(compared, axis == "log")
     gains = list(by_gain([entry.run for entry in compared]))
     columns = [_column(responses, look, place, gains) for place in range(len(gains))]
+    columns[0][0] = columns[0][0].add_params(brush())
     panels = [panel for row in zip(*columns, strict=True) for panel in row]
     data = {_data(place): responses.rows[gain] for place, gain in enumerate(gains)}
     chart: Chart = (
@@ -57,9 +60,10 @@ def bode(
             columns=len(gains),
             spacing={"row": 12, "column": 22},
             bounds="flush",
-            datasets=data,
+            datasets=datasets(data),
             title=_title(responses, actuator, fit, candidates),
         )
+        .add_params(*band_params(band))
         .resolve_scale(color="shared", opacity="shared")
         .configure(**look.config())
     )
@@ -88,7 +92,7 @@ def _data(place: int) -> str:
 
 def _column(responses: Responses, look: Look, place: int, gains: Sequence[float | None]) -> list[Panel]:
     """The three panels of one gain; only the first column names the vertical axes."""
-    width = _WIDTHS.get(len(gains), 240)
+    width = look.across(_WIDTHS.get(len(gains), 240))
     data = alt.NamedData(_data(place))
     first = place == 0
     panels: list[Panel] = [
@@ -129,30 +133,43 @@ def _panel(
         tooltip=_tooltip(responses, fields, title),
     )
     lines = base.mark_line(strokeWidth=1.6, clip=True, interpolate="monotone").encode(y=f"{model}:Q", detail="r:N")
-    return alt.layer(points, lines)
+    return alt.layer(_shade(responses, look, named=False), points, lines)
 
 
 def _coherence(responses: Responses, look: Look, data: alt.NamedData, first: bool) -> Panel:
     ticks = alt.Axis(title="Coherence (–)" if first else None, labels=first, values=[0, 0.5, 1])
     base = alt.Chart(data, height=70).encode(x=_frequency(responses, named=True), color=_colour(responses, look))
-    return alt.layer(
-        base.mark_line(strokeWidth=1, clip=True).encode(
-            y=alt.Y("c:Q", scale=alt.Scale(domain=[0, 1.02], nice=False), axis=ticks), detail="r:N"
-        )
+    line = base.mark_line(strokeWidth=1, clip=True).encode(
+        y=alt.Y("c:Q", scale=alt.Scale(domain=[0, 1.02], nice=False), axis=ticks), detail="r:N"
+    )
+    return alt.layer(_shade(responses, look, named=True), line)
+
+
+def _shade(responses: Responses, look: Look, named: bool) -> alt.Chart:
+    """The chosen band, as a ground behind the curves."""
+    lower, upper = responses.band
+    ends = {"low": f"{LOW} || {lower:.6g}", "high": f"{HIGH} || {upper:.6g}"}
+    shown = alt.Chart(alt.InlineData(values=[{}])).transform_filter(f"{LOW} > 0 || {HIGH} > 0")
+    return (
+        shown.transform_calculate(**ends)
+        .mark_rect(color=look.faint, opacity=0.13, clip=True)
+        .encode(x=_frequency(responses, named, "low"), x2="high:Q")
     )
 
 
-def _frequency(responses: Responses, named: bool) -> alt.X:
+def _frequency(responses: Responses, named: bool, field: str = "f") -> alt.X:
     """The common frequency axis; only the lowest panel names it."""
     unit = "Hz" if responses.compared[0].run.time_unit == "s" else "cycles/sample"
     lower, upper = responses.band
     if responses.logarithmic:
-        scale = alt.Scale(type="log", domain=[lower, upper], nice=False)
+        scale = alt.Scale(type="log", domain=zoomed(lower, upper), nice=False)
     else:
         scale = alt.Scale(domain=[0, upper], nice=True)
-    ticks = {"values": decade_ticks(lower, upper)} if responses.logarithmic else {"tickCount": 8}
+    near, far = fine_ticks(lower, upper), decade_ticks(lower, upper)
+    values = alt.ExprRef(f"{LOW} > 0 || {HIGH} > 0 ? {near} : {far}")
+    ticks = {"values": values} if responses.logarithmic else {"tickCount": 8}
     axis = alt.Axis(labels=named, title=f"Frequency ({unit})" if named else None, format="~r", **ticks)
-    return alt.X("f:Q", scale=scale, axis=axis)
+    return alt.X(f"{field}:Q", scale=scale, axis=axis)
 
 
 def _colour(responses: Responses, look: Look) -> alt.Color:

@@ -11,7 +11,7 @@ import altair as alt
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.look import Look
-from ident.figures.render import Chart, Panel
+from ident.figures.render import Chart, Panel, datasets
 from ident.figures.thin import significant
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
@@ -31,7 +31,7 @@ def residual_curve(
     candidate: Sequence[Curve] = (),
     candidate_name: str = "the candidate",
     view: str | None = None,
-    runs: int = 0,
+    runs: str = "",
 ) -> Chart:
     """The four curves that explain most of the residual, or the one called `view`, each with its 95 % band.
 
@@ -49,12 +49,12 @@ def residual_curve(
         words.headline(actuator, "what the model lacks, against its own signals"),
         subtitle=[
             words.verdict(fit),
-            f"{runs} runs · percentage: share of the residual's power that the curve takes off, on stretches it was "
-            "not fitted to",
+            f"{runs} · percentage: share of the residual's power that the curve takes off,",
+            "on stretches it was not fitted to",
         ],
     )
     chart: Chart = (
-        alt.concat(*panels, columns=2, spacing={"row": 26, "column": 34}, datasets=tables, title=title)
+        alt.concat(*panels, columns=2, spacing={"row": 26, "column": 34}, datasets=datasets(tables), title=title)
         .resolve_scale(color="shared")
         .configure(**look.config())
     )
@@ -120,13 +120,13 @@ def _panel(curve: Curve, names: Sequence[str], look: Look, wide: bool) -> Panel:
         predicted = base.transform_filter(f"datum.s != '{names[0]}'")
         layers.append(predicted.mark_line(strokeWidth=2, strokeDash=[6, 4]).encode(y=y, color=colour))
     width, height = (640, 340) if wide else (_WIDTH, _HEIGHT)
-    hint = textwrap.wrap(curve.shows, 95 if wide else 54)
+    hint = textwrap.wrap(curve.shows, look.across(95 if wide else 54))
     hint += [""] * (2 - len(hint))  # titles of one height: the panels of a row stand side by side
     title = alt.TitleParams(
         f"{curve.name.capitalize()}: {_share(curve)}",
         fontSize=12, subtitle=hint, subtitleFontSize=11, subtitleLineHeight=13, offset=8, frame="group",
     )  # fmt: skip
-    panel: Panel = alt.layer(*layers, width=width, height=height, title=title)
+    panel: Panel = alt.layer(*layers, width=look.across(width), height=height, title=title)
     return panel
 
 

@@ -10,6 +10,7 @@ import ast
 from dataclasses import dataclass, replace
 
 from ident.chain import FORCE, INPUT, INPUT_RATE, Chain
+from ident.effect import Effect
 from ident.expression import Equation
 from ident.presets import Preset
 
@@ -60,6 +61,16 @@ def views(preset: Preset) -> tuple[View, ...]:
         return where is not None and not where.is_rate and set(view.signals) <= equations.keys()
 
     return tuple(view for view in VIEWS if fits(view))
+
+
+def view_of(effect: Effect, preset: Preset) -> View | None:
+    """The view in which an effect of this model shows best: where it acts, against what it reads; None without any."""
+    acts = {equation.target for equation in effect.equations}
+    reads = frozenset[str]().union(*(equation.names for equation in effect.equations))
+    known = views(preset)
+    there = [view for view in known if view.at in acts]
+    shows = [view for view in there if view.by != view.at and view.by in reads]
+    return next(iter([*shows, *there, *(view for view in known if view.by in reads), *known[-1:]]), None)
 
 
 def showing(chain: Chain, signals: tuple[str, ...]) -> Chain:
