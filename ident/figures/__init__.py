@@ -35,10 +35,10 @@ def figure(
 ) -> Chart:
     """The chart of that name, "light" or "dark", `share` as wide as usual; only what it shows is computed.
 
-    Options, all optional: bode takes run, kp, amplitude, specimen, use, low, high, axis; time takes run, start,
-    seconds, low, high; evolution takes x, y, generations; sensitivity takes run; residual-map takes what bode takes but
-    axis; residual-curve takes these, view, and candidate, the fit of another model; speed-characteristic, of a
-    bench, takes smoothing.
+    Options, all optional: bode takes run, kp, amplitude, specimen, use, low, high, axis, candidate; time takes run, start,
+    seconds, low, high; evolution takes x, y, generations; sensitivity takes run; residual-map takes what bode
+    takes but axis and candidate; residual-curve takes these, view, and candidate, the fit of another model drawn
+    dashed; speed-characteristic, of a bench, takes smoothing.
 
     Raises Unusable for an unknown name, theme or option.
     """
@@ -54,10 +54,11 @@ def figure(
 
 def _bode(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) -> Chart:
     candidates = chosen(matrix, wish(**_only(options, _RUNS)))
-    shown = _compared(matrix, fit, readable(candidates))
+    runs, other = readable(candidates), _candidate(options)
     return bode(
-        shown.runs, matrix.actuator, fit, of,
+        _compared(matrix, fit, runs).runs, matrix.actuator, fit, of,
         axis=options.get("axis") or "log", candidates=len(candidates), band=band_of(options),
+        others=_compared(matrix, other, runs).runs if other else (), other_name=_name(other),
     )  # fmt: skip
 
 
@@ -88,23 +89,33 @@ def _residual_curve(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[s
     filters, band, view = _only(options, _RUNS), band_of(options), options.get("view") or None
     shown = chosen(matrix, wish(**filters)) if any(filters.values()) else matrix.of_use("fit") or matrix.runs
     own, ends = _compared(matrix, fit, shown), ((band.low, band.high) if band else None)
-    other = options.get("candidate")
-    if other is not None and not isinstance(other, FitResult):
-        raise Unusable("bad-fit", f"candidate is {other!r}", "figure residual-curve", "give a fit")
+    other = _candidate(options)
     predicted = curves(own, _compared(matrix, other, shown), view=view, band=ends) if other else ()
     runs = words.describe(shown[0]) if len(shown) == 1 else f"{len(shown)} runs"
     return residual_curve(
         curves(own, view=view, band=ends), matrix.actuator, fit, of, candidate=predicted, view=view,
         runs=f"{runs}, {band.words}" if band else runs,
-        candidate_name=" + ".join((other.model, *other.effects)) if other else "",
+        candidate_name=_name(other),
     )  # fmt: skip
+
+
+def _candidate(options: Mapping[str, Any]) -> FitResult | None:
+    """The other fit that is drawn beside this one. Raises Unusable where it is none."""
+    other = options.get("candidate")
+    if other is not None and not isinstance(other, FitResult):
+        raise Unusable("bad-fit", f"candidate is {other!r}", "figure option candidate", "give a fit")
+    return other
+
+
+def _name(other: FitResult | None) -> str:
+    return " + ".join((other.model, *other.effects)) if other else ""
 
 
 _CONDITIONS = ("kp", "amplitude", "specimen", "use")
 _RUNS = ("run", *_CONDITIONS)
 _BAND = ("low", "high")
 FIGURES: Mapping[str, tuple[Callable[[Matrix, FitResult, Look, Mapping[str, Any]], Chart], tuple[str, ...]]] = {
-    "bode": (_bode, (*_RUNS, *_BAND, "axis")),
+    "bode": (_bode, (*_RUNS, *_BAND, "axis", "candidate")),
     "time": (_time, ("run", *_BAND, "start", "seconds")),
     "evolution": (_evolution, ("x", "y", "generations")),
     "sensitivity": (_sensitivity, ("run",)),

@@ -40,15 +40,18 @@ def bode(
     axis: str = "log",
     candidates: int | None = None,
     band: Band = Band(),
+    others: Sequence[RunComparison] = (),
+    other_name: str = "",
 ) -> Chart:
     """Magnitude (dB), phase (degrees, unwrapped) and coherence over frequency; one column a gain Kp.
 
     Measured points fade with their coherence; lines are the model. `axis` is "log" or "linear"; `candidates` is
     the number of runs from which these were taken; `band` is shaded, and drawn with what is around it.
+    `others` are the same runs with another model, `other_name`, whose lines are dashed.
     """
     if axis not in ("log", "linear"):
         raise Unusable("unknown-axis", f"no frequency axis {axis!r}", "figure option axis", "use log or linear")
-    responses = Responses(compared, axis == "log")
+    responses = Responses(compared, axis == "log", others)
     gains = list(by_gain([entry.run for entry in compared]))
     columns = [_column(responses, look, place, gains) for place in range(len(gains))]
     columns[0][0] = columns[0][0].add_params(brush())
@@ -61,7 +64,7 @@ def bode(
             spacing={"row": 12, "column": 22},
             bounds="flush",
             datasets=datasets(data),
-            title=_title(responses, actuator, fit, candidates),
+            title=_title(responses, actuator, fit, candidates, other_name),
         )
         .add_params(*band_params(band))
         .resolve_scale(color="shared", opacity="shared")
@@ -70,7 +73,9 @@ def bode(
     return chart
 
 
-def _title(responses: Responses, actuator: Actuator, fit: FitResult, candidates: int | None) -> alt.TitleParams:
+def _title(
+    responses: Responses, actuator: Actuator, fit: FitResult, candidates: int | None, other_name: str
+) -> alt.TitleParams:
     compared = responses.compared
     if len(compared) == 1:
         shown = f"{words.describe(compared[0].run)}: error {words.percent(compared[0].error)}"
@@ -82,7 +87,12 @@ def _title(responses: Responses, actuator: Actuator, fit: FitResult, candidates:
         shown = ", ".join((shown, *responses.common))
     return alt.TitleParams(
         words.headline(actuator, "frequency response, measured and model"),
-        subtitle=[words.verdict(fit), f"{shown} · points: measured, fading with lost coherence · lines: model"],
+        subtitle=[
+            words.verdict(fit),
+            shown,
+            "points: measured, fading with lost coherence · lines: model"
+            + (f" · dashed: {other_name}" if other_name else ""),
+        ],
     )
 
 
@@ -97,9 +107,9 @@ def _column(responses: Responses, look: Look, place: int, gains: Sequence[float 
     first = place == 0
     panels: list[Panel] = [
         _panel(
-            responses, look, data, ("a", "A"), title=f"Magnitude ({responses.magnitude_unit})", height=200, first=first
+            responses, look, data, ("a", "A", "B"), title=f"Magnitude ({responses.magnitude_unit})", height=200, first=first
         ),
-        _panel(responses, look, data, ("p", "P"), title="Phase (°)", height=170, first=first),
+        _panel(responses, look, data, ("p", "P", "Q"), title="Phase (°)", height=170, first=first),
         _coherence(responses, look, data, first),
     ]
     panels[0] = panels[0].properties(title=_heading(gains[place], len(gains)))
@@ -116,15 +126,15 @@ def _panel(
     responses: Responses,
     look: Look,
     data: alt.NamedData,
-    fields: tuple[str, str],
+    fields: tuple[str, str, str],
     *,
     title: str,
     height: int,
     first: bool,
 ) -> Panel:
     """One quantity: measured as points, model as lines."""
-    measured, model = fields
-    scale = alt.Scale(domain=list(responses.limits(*fields)), nice=True, zero=False)
+    measured, model, other = fields
+    scale = alt.Scale(domain=list(responses.limits(measured, model)), nice=True, zero=False)
     ticks = alt.Axis(title=title if first else None, labels=first, tickCount=6)
     base = alt.Chart(data, height=height).encode(x=_frequency(responses, named=False), color=_colour(responses, look))
     points = base.mark_circle(size=14, clip=True).encode(
@@ -133,7 +143,14 @@ def _panel(
         tooltip=_tooltip(responses, fields, title),
     )
     lines = base.mark_line(strokeWidth=1.6, clip=True, interpolate="monotone").encode(y=f"{model}:Q", detail="r:N")
-    return alt.layer(_shade(responses, look, named=False), points, lines)
+    layers = [_shade(responses, look, named=False), points, lines]
+    if responses.others:
+        layers.append(
+            base.mark_line(strokeWidth=1.6, strokeDash=[6, 4], clip=True, interpolate="monotone").encode(
+                y=f"{other}:Q", detail="r:N", color=alt.value(look.ink if len(responses.compared) == 1 else look.faint)
+            )
+        )
+    return alt.layer(*layers)
 
 
 def _coherence(responses: Responses, look: Look, data: alt.NamedData, first: bool) -> Panel:
@@ -179,8 +196,8 @@ def _colour(responses: Responses, look: Look) -> alt.Color:
     return alt.Color("s:N", scale=alt.Scale(domain=entries, range=colours), legend=legend, title=None)
 
 
-def _tooltip(responses: Responses, fields: tuple[str, str], title: str) -> list[alt.Tooltip]:
-    measured, model = fields
+def _tooltip(responses: Responses, fields: tuple[str, str, str], title: str) -> list[alt.Tooltip]:
+    measured, model, _ = fields
     unit = "Hz" if responses.compared[0].run.time_unit == "s" else "cycles/sample"
     return [
         alt.Tooltip("r:N", title="Run"),

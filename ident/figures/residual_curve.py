@@ -19,6 +19,7 @@ from ident.residuals.curves import Curve
 
 SHOWN = 4
 _WIDTH, _HEIGHT = 340, 210
+_SMALL = 0.6  # of the usual width: then it stands beside words that say what it is
 _MEASURED, _CANDIDATE = "seen in the residual, 95 % band", "predicted by"
 
 
@@ -45,6 +46,7 @@ def residual_curve(
     tables = {curve.name: _rows(curve, other.get(curve.name), names) for curve in shown}
     wide = len(shown) == 1
     panels = [_panel(curve, names, look, wide) for curve in shown]
+    small = look.share < _SMALL
     title = alt.TitleParams(
         words.headline(actuator, "what the model lacks, against its own signals"),
         subtitle=[
@@ -53,8 +55,9 @@ def residual_curve(
             "on stretches it was not fitted to",
         ],
     )
+    heading = {} if small else {"title": title}
     chart: Chart = (
-        alt.concat(*panels, columns=2, spacing={"row": 26, "column": 34}, datasets=datasets(tables), title=title)
+        alt.concat(*panels, columns=2, spacing={"row": 26, "column": 34}, datasets=datasets(tables), **heading)
         .resolve_scale(color="shared")
         .configure(**look.config())
     )
@@ -119,7 +122,7 @@ def _panel(curve: Curve, names: Sequence[str], look: Look, wide: bool) -> Panel:
     if len(names) > 1:
         predicted = base.transform_filter(f"datum.s != '{names[0]}'")
         layers.append(predicted.mark_line(strokeWidth=2, strokeDash=[6, 4]).encode(y=y, color=colour))
-    width, height = (640, 340) if wide else (_WIDTH, _HEIGHT)
+    width, height = (640, 340 if look.share >= _SMALL else 200) if wide else (_WIDTH, _HEIGHT)
     hint = textwrap.wrap(curve.shows, look.across(95 if wide else 54))
     hint += [""] * (2 - len(hint))  # titles of one height: the panels of a row stand side by side
     title = alt.TitleParams(

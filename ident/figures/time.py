@@ -49,19 +49,19 @@ def time(
     the signals have within it.
     """
     run = compared.run
-    window = _window(run, start, seconds)
     unit = run.units.get(run.output, "m")
 
     def filtered(signal: Real) -> Real:
         return within(signal, run.sample_rate, band.low, band.high) if band else signal
 
-    measured, modelled = filtered(run.measured), filtered(compared.modelled)
+    command, measured, modelled = map(filtered, (run.command, run.measured, compared.modelled))
+    window = _window(run, command, start, seconds)
     residual = measured - modelled
     factor, printed = words.engineering(measured[window], unit)
     fine, small = words.engineering(residual[window], unit)
     signals = {"measured": measured, "model": modelled}
     if run.units.get("command", "m") == unit:
-        signals = {"command": filtered(run.command)} | signals
+        signals = {"command": command} | signals
     upper = _traces(tuple(signals), run, window, look, printed)
     lower = _residual(run, window, look, small)
     left = f"error {words.percent(compared.error)}, offset {words.percent(compared.offset)}"
@@ -74,9 +74,9 @@ def time(
     return chart
 
 
-def _window(run: Run, start: float | None, seconds: float | None) -> slice:
+def _window(run: Run, command: Real, start: float | None, seconds: float | None) -> slice:
     """The samples to show; raises Unusable for a stretch outside the record."""
-    length = seconds if seconds is not None else _twelve_periods(run)
+    length = seconds if seconds is not None else _twelve_periods(run, command)
     first = start if start is not None else max(0.0, min(run.duration / 3, run.duration - length))
     if not (0 <= first < run.duration and length > 0):
         stretch = f"a stretch of {length:g} from {first:g}"
@@ -85,9 +85,9 @@ def _window(run: Run, start: float | None, seconds: float | None) -> slice:
     return slice(begin, min(run.length, begin + max(2, round(length * run.sample_rate))))
 
 
-def _twelve_periods(run: Run) -> float:
+def _twelve_periods(run: Run, command: Real) -> float:
     """Twelve mean periods of the command, from its crossings of the mean, on a 1-2-5 scale."""
-    signal = run.command - run.command.mean()
+    signal = command - command.mean()
     crossings = int(np.count_nonzero(np.diff(np.signbit(signal))))
     length = min(PERIODS * 2 * run.duration / max(crossings, 1), run.duration)
     decade = 10.0 ** np.floor(np.log10(length))

@@ -50,6 +50,11 @@ VIEWS = (
     View("tracking", "v", "v", "Missing speed", "Speed", "what a single lag does not follow"),
 )  # fmt: skip
 """What engineers look for, in the order of the signal."""
+_SEEN = {
+    "w": "spool", "Ff": "friction", "R": "friction", "S": "spring", "xk": "spring", "xL": "spring",
+    "Q": "pressure-flow", "L": "leakage", "Ke": "leakage", "X": "frame",
+}  # fmt: skip
+"""By the signal that an effect redefines, the view in which that shows."""
 
 
 def views(preset: Preset) -> tuple[View, ...]:
@@ -64,13 +69,10 @@ def views(preset: Preset) -> tuple[View, ...]:
 
 
 def view_of(effect: Effect, preset: Preset) -> View | None:
-    """The view in which an effect of this model shows best: where it acts, against what it reads; None without any."""
-    acts = {equation.target for equation in effect.equations}
-    reads = frozenset[str]().union(*(equation.names for equation in effect.equations))
-    known = views(preset)
-    there = [view for view in known if view.at in acts]
-    shows = [view for view in there if view.by != view.at and view.by in reads]
-    return next(iter([*shows, *there, *(view for view in known if view.by in reads), *known[-1:]]), None)
+    """The view in which an effect of this model shows itself; None where it is no function of one signal."""
+    targets = {equation.target for equation in effect.equations}
+    name = next((name for signal, name in _SEEN.items() if signal in targets), None)
+    return next((view for view in views(preset) if view.name == name), None)
 
 
 def showing(chain: Chain, signals: tuple[str, ...]) -> Chain:
