@@ -202,22 +202,29 @@ def definitions(found: DiagnosisView) -> dict[str, Mapping[str, Any]]:
 
 def _member(candidate: CandidateView, own: Mapping[str, Any] | None) -> Member:
     effect: Effect | None = read_effect(own) if own is not None else _CATALOGUE.get(candidate.effect)
+    return member(candidate.effect, effect, candidate.parameters, own)
+
+
+def member(
+    name: str, effect: Effect | None, parameters: Mapping[str, Mapping[str, Any]], own: Mapping[str, Any] | None
+) -> Member:
+    """An effect as the page tells of it, with the strength that is among the parameters."""
     return Member(
-        name=candidate.effect,
-        title=title(candidate.effect),
+        name=name,
+        title=title(name),
         known=effect is not None,
         place=effect.place if effect else "",
         meaning=effect.meaning if effect else "",
         equations=tuple(Markup(mathml(line.text)) for line in effect.equations) if effect else (),
-        strength=_strength(candidate),
+        strength=_strength(name, parameters),
         strength_is=f"{effect.strength.symbol}, {effect.strength.meaning}" if effect else "strength",
         definition=json.dumps(own) if own is not None else "",
     )
 
 
-def _strength(candidate: CandidateView) -> str:
+def _strength(effect: str, parameters: Mapping[str, Mapping[str, Any]]) -> str:
     """The first parameter of the effect, with standard error and unit."""
-    own = (entry for name, entry in candidate.parameters.items() if name.startswith(f"{candidate.effect}."))
+    own = (entry for name, entry in parameters.items() if name.startswith(f"{effect}."))
     entry = next(own, None)
     if entry is None:
         return "–"

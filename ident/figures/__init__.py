@@ -58,7 +58,7 @@ def _bode(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) 
     return bode(
         _compared(matrix, fit, runs).runs, matrix.actuator, fit, of,
         axis=options.get("axis") or "log", candidates=len(candidates), band=band_of(options),
-        others=_compared(matrix, other, runs).runs if other else (), other_name=_name(other),
+        others=_compared(matrix, other, runs).runs if other else (), other_name=_name(other, fit),
     )  # fmt: skip
 
 
@@ -95,7 +95,7 @@ def _residual_curve(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[s
     return residual_curve(
         curves(own, view=view, band=ends), matrix.actuator, fit, of, candidate=predicted, view=view,
         runs=f"{runs}, {band.words}" if band else runs,
-        candidate_name=_name(other),
+        candidate_name=_name(other, fit),
     )  # fmt: skip
 
 
@@ -107,8 +107,13 @@ def _candidate(options: Mapping[str, Any]) -> FitResult | None:
     return other
 
 
-def _name(other: FitResult | None) -> str:
-    return " + ".join((other.model, *other.effects)) if other else ""
+def _name(other: FitResult | None, fit: FitResult) -> str:
+    """What the other fit is called: what it has more than this one, where it has no less."""
+    if other is None:
+        return ""
+    more = [effect.replace("_", " ") for effect in other.effects if effect not in fit.effects]
+    wider = other.model == fit.model and set(fit.effects) < set(other.effects)
+    return " + ".join(more if wider else (other.model, *other.effects))
 
 
 _CONDITIONS = ("kp", "amplitude", "specimen", "use")
