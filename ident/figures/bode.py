@@ -166,7 +166,7 @@ def _shade(responses: Responses, look: Look, named: bool) -> alt.Chart:
     """The chosen band, as a ground behind the curves."""
     lower, upper = responses.band
     ends = {"low": f"{LOW} || {lower:.6g}", "high": f"{HIGH} || {upper:.6g}"}
-    shown = alt.Chart(alt.InlineData(values=[{}])).transform_filter(f"{LOW} > 0 || {HIGH} > 0")
+    shown = alt.Chart(alt.sequence(1)).transform_filter(f"{LOW} > 0 || {HIGH} > 0")
     return (
         shown.transform_calculate(**ends)
         .mark_rect(color=look.faint, opacity=0.13, clip=True)

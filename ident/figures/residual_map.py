@@ -129,7 +129,7 @@ def _bands(order: Sequence[str], ends: Sequence[tuple[float, float]], unit: str,
     )
     row = alt.Chart(alt.NamedData("totals")).transform_filter(f"datum.r == {RUN}")
     ends = {"f": f"{LOW} || {lower:.6g}", "g": f"{HIGH} || {upper:.6g}"}
-    band = alt.Chart(alt.InlineData(values=[{}])).transform_filter(f"{LOW} > 0 || {HIGH} > 0")
+    band = alt.Chart(alt.sequence(1)).transform_filter(f"{LOW} > 0 || {HIGH} > 0")
     outline = {"filled": False, "stroke": look.ink, "strokeWidth": 1.5}
     panel: Panel = alt.layer(
         cells,
