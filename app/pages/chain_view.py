@@ -11,7 +11,6 @@ from ident.custom import HANDED_ON, preset_with, read_effect
 from ident.effects import EFFECTS
 from ident.errors import Unusable
 from ident.fit.result import FitResult
-from ident.presets import Preset
 
 _STEP, _WIDTH, _TOP, _LINE = 136, 108, 34, 15  # px of the drawing
 _LETTERS = 17  # that fit into a box
@@ -73,7 +72,7 @@ def drawing(fit: FitResult) -> Drawing:
     own = {str(definition["name"]): definition for definition in fit.settings.get("custom", ())}
     model = preset_with(fit.model, fit.effects, tuple(own.values()))
     names = tuple(dict.fromkeys(stage.place for stage in model.chain.stages))
-    on, off = tuple(_on(fit, own)), tuple(_off(fit, model))
+    on, off = tuple(_on(fit, own)), tuple(_off(fit))
     places = tuple(
         Place(
             name=name, x=10 + _STEP * number, signal=HANDED_ON.get(name, ""),
@@ -95,7 +94,7 @@ def _on(fit: FitResult, own: Mapping[str, Any]) -> Iterator[Member]:
         yield member(name, effect, parameters, own.get(name))
 
 
-def _off(fit: FitResult, model: Preset) -> Iterator[Member]:
+def _off(fit: FitResult) -> Iterator[Member]:
     """The effects of the catalogue that this model can take."""
     for effect in EFFECTS:
         if effect.name in fit.effects:

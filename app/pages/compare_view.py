@@ -88,9 +88,7 @@ def compare_view(first: FitView, second: FitView, matrix: MatrixView) -> Compare
 
 def _side(stored: FitView, fit: FitResult) -> Side:
     name = " + ".join((preset(fit.model).title, *map(title, fit.effects)))
-    return Side(
-        stored.id, stored.serial, stored.matrix, name, fit.method, fit.seed, stored.created_at, stored.current
-    )
+    return Side(stored.id, stored.serial, stored.matrix, name, fit.method, fit.seed, stored.created_at, stored.current)
 
 
 def _errors(a: FitResult, b: FitResult) -> Iterator[Compared]:

@@ -55,7 +55,10 @@ def forms(runs: Sequence[RunView], fit: FitResult) -> tuple[FigureForm, ...]:
         FigureForm("bode", "Bode plot", _bode(runs), PICKED),
         FigureForm("time", "Time record", (Field("start", "Start (s)"), Field("seconds", "Length (s)")), PICKED),
         FigureForm(
-            "residual-curve", "Missing characteristic", (Field("view", "Curve", _views(fit)), *_conditions(runs)), PICKED
+            "residual-curve",
+            "Missing characteristic",
+            (Field("view", "Curve", _views(fit)), *_conditions(runs)),
+            PICKED,
         ),
         FigureForm("sensitivity", "Sensitivity", (), PICKED[:1]),
     ]

@@ -10,10 +10,10 @@ from altair.utils.schemapi import debug_mode
 
 from ident.compare import Comparison, compare
 from ident.errors import Unusable
+from ident.figures import words
 from ident.figures.bench import BENCH_FIGURES
 from ident.figures.bode import bode, readable
 from ident.figures.choose import chosen, wish
-from ident.figures import words
 from ident.figures.evolution import evolution
 from ident.figures.ladder import ladder
 from ident.figures.look import Look, look
@@ -35,8 +35,8 @@ def figure(
 ) -> Chart:
     """The chart of that name, "light" or "dark", `share` as wide as usual; only what it shows is computed.
 
-    Options, all optional: bode takes run, kp, amplitude, specimen, use, low, high, axis, candidate; time takes run, start,
-    seconds, low, high; evolution takes x, y, generations; sensitivity takes run; residual-map takes what bode
+    Options, all optional: bode takes run, kp, amplitude, specimen, use, low, high, axis, candidate; time takes run,
+    start, seconds, low, high; evolution takes x, y, generations; sensitivity takes run; residual-map takes what bode
     takes but axis and candidate; residual-curve takes these, view, and candidate, the fit of another model drawn
     dashed; speed-characteristic, of a bench, takes smoothing.
 

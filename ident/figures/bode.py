@@ -14,7 +14,7 @@ from ident.figures.choose import by_gain, representative
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, datasets
 from ident.figures.responses import Responses
-from ident.figures.selection import HIGH, LOW, Band, band_params, brush, zoomed
+from ident.figures.selection import HIGH, LOW, OPEN, Band, band_params, brush, zoomed
 from ident.figures.thin import decade_ticks, fine_ticks
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Run
@@ -39,7 +39,7 @@ def bode(
     *,
     axis: str = "log",
     candidates: int | None = None,
-    band: Band = Band(),
+    band: Band = OPEN,
     others: Sequence[RunComparison] = (),
     other_name: str = "",
 ) -> Chart:
@@ -107,7 +107,13 @@ def _column(responses: Responses, look: Look, place: int, gains: Sequence[float 
     first = place == 0
     panels: list[Panel] = [
         _panel(
-            responses, look, data, ("a", "A", "B"), title=f"Magnitude ({responses.magnitude_unit})", height=200, first=first
+            responses,
+            look,
+            data,
+            ("a", "A", "B"),
+            title=f"Magnitude ({responses.magnitude_unit})",
+            height=200,
+            first=first,
         ),
         _panel(responses, look, data, ("p", "P", "Q"), title="Phase (°)", height=170, first=first),
         _coherence(responses, look, data, first),
@@ -166,12 +172,13 @@ def _shade(responses: Responses, look: Look, named: bool) -> alt.Chart:
     """The chosen band, as a ground behind the curves."""
     lower, upper = responses.band
     ends = {"low": f"{LOW} || {lower:.6g}", "high": f"{HIGH} || {upper:.6g}"}
-    shown = alt.Chart(alt.sequence(1)).transform_filter(f"{LOW} > 0 || {HIGH} > 0")
-    return (
+    shown = alt.Chart(alt.sequence(0, 1)).transform_filter(f"{LOW} > 0 || {HIGH} > 0")
+    shade: alt.Chart = (
         shown.transform_calculate(**ends)
         .mark_rect(color=look.faint, opacity=0.13, clip=True)
         .encode(x=_frequency(responses, named, "low"), x2="high:Q")
     )
+    return shade
 
 
 def _frequency(responses: Responses, named: bool, field: str = "f") -> alt.X:

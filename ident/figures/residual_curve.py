@@ -107,7 +107,12 @@ def _panel(curve: Curve, names: Sequence[str], look: Look, wide: bool) -> Panel:
     y = alt.Y("y:Q", scale=alt.Scale(zero=True), axis=across)
     colours = [look.series[0], look.series[1]][: len(names)]
     legend = alt.Legend(
-        title=None, orient="bottom", symbolType="stroke", symbolStrokeWidth=2, symbolOpacity=1, labelLimit=500,
+        title=None,
+        orient="bottom",
+        symbolType="stroke",
+        symbolStrokeWidth=2,
+        symbolOpacity=1,
+        labelLimit=500,
         columns=1 if look.share < _SMALL else 2,
     )
     colour = alt.Color("s:N", scale=alt.Scale(domain=list(names), range=colours), legend=legend)

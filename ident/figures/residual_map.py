@@ -12,7 +12,7 @@ from ident.compare import Comparison
 from ident.figures import words
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, datasets
-from ident.figures.selection import HIGH, LOW, RUN, Band, band_params, brush
+from ident.figures.selection import HIGH, LOW, OPEN, RUN, Band, band_params, brush
 from ident.figures.thin import decade_ticks
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Run
@@ -23,7 +23,7 @@ _ROW = 9  # pixels
 
 
 def residual_map(
-    compared: Comparison, actuator: Actuator, fit: FitResult, look: Look, *, run: str = "", band: Band = Band()
+    compared: Comparison, actuator: Actuator, fit: FitResult, look: Look, *, run: str = "", band: Band = OPEN
 ) -> Chart:
     """Runs by amplitude, gain and specimen, over frequency; colour is the error in the band, on a logarithmic scale.
 
@@ -128,13 +128,14 @@ def _bands(order: Sequence[str], ends: Sequence[tuple[float, float]], unit: str,
         .add_params(brush())
     )
     row = alt.Chart(alt.NamedData("totals")).transform_filter(f"datum.r == {RUN}")
-    ends = {"f": f"{LOW} || {lower:.6g}", "g": f"{HIGH} || {upper:.6g}"}
-    band = alt.Chart(alt.sequence(1)).transform_filter(f"{LOW} > 0 || {HIGH} > 0")
-    outline = {"filled": False, "stroke": look.ink, "strokeWidth": 1.5}
+    picked = {"f": f"{LOW} || {lower:.6g}", "g": f"{HIGH} || {upper:.6g}"}
+    band = alt.Chart(alt.sequence(0, 1)).transform_filter(f"{LOW} > 0 || {HIGH} > 0")
+    outline = alt.MarkDef(type="rect", filled=False, stroke=look.ink, strokeWidth=1.5, clip=True)
+    marked = row.properties(mark=outline).encode(y=_rows(order, labels=True), x=alt.value(0), x2=alt.value("width"))
     panel: Panel = alt.layer(
         cells,
-        row.mark_rect(**outline).encode(y=_rows(order, labels=True), x=alt.value(0), x2=alt.value("width")),
-        band.transform_calculate(**ends).mark_rect(clip=True, strokeDash=[4, 3], **outline).encode(x=x, x2="g:Q"),
+        marked,
+        band.transform_calculate(**picked).properties(mark=outline).encode(x=x, x2="g:Q"),
         width=look.across(520),
         height=height,
     )

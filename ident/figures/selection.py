@@ -1,4 +1,4 @@
-"""What the reader has picked out, as parameters of a chart: a page that draws it live can move them without a redraw."""
+"""What the reader has picked out, as parameters of a chart: a page that draws it live can move them at once."""
 
 from __future__ import annotations
 
@@ -31,6 +31,10 @@ class Band:
             ends = (("from", self.low), ("up to", self.high))
             return " ".join(f"{word} {end:.3g} Hz" for word, end in ends if end is not None)
         return f"{self.low:.3g} to {self.high:.3g} Hz"
+
+
+OPEN = Band()
+"""Every frequency."""
 
 
 def number(options: Mapping[str, Any], name: str) -> float | None:

@@ -13,7 +13,7 @@ from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, datasets
-from ident.figures.selection import Band
+from ident.figures.selection import OPEN, Band
 from ident.figures.thin import Real, envelope, significant
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Matrix, Run
@@ -40,7 +40,7 @@ def time(
     *,
     start: float | None = None,
     seconds: float | None = None,
-    band: Band = Band(),
+    band: Band = OPEN,
 ) -> Chart:
     """Command, measured and model over time, the residual below on its own scale.
 

@@ -174,7 +174,7 @@ def _basis(view: View, signals: Mapping[str, Array], knots: Array) -> Array:
 def _columns(
     trace: Trace, signals: Mapping[str, Array], view: View, knots: Array, path: Response, band: Band | None
 ) -> Array:
-    """[T*h, J, r] without their means and what is out of the band, each over the residual's size, (n, knots + p + 1)."""
+    """[T*h, J, r] without their means and what is out of the band, each over the residual's size, (n, knots+p+1)."""
     answers = path.only(1).to(_basis(view, signals, knots))[:, :, 0]
     columns = np.column_stack([answers, trace.sensitivities, trace.residual])
     if band is not None:

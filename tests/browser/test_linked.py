@@ -1,4 +1,4 @@
-"""The figures of a fit follow what is picked out; the chain, two fits side by side, copies, own effects with a state."""
+"""Figures that follow what is picked out; the chain, two fits side by side, copies, own effects with a state."""
 
 from __future__ import annotations
 
@@ -90,7 +90,6 @@ def test_run_and_band_are_picked_by_keyboard_alone(page, site, fitted):
 
 
 def test_a_band_upside_down_is_refused_with_the_remedy(page, site, watch, fitted):
-    opened(page, f"{site.address}/fits/{fitted}?figure=time")
     page.goto(f"{site.address}/fits/{fitted}?figure=time&low=9&high=3")
     expect(page.locator("#figure-time [role=status]")).to_contain_text("0 <= low < high", timeout=LONG)
     watch.complaints.clear()  # the browser's own line on the refusal
@@ -110,7 +109,7 @@ def test_a_place_of_the_chain_lists_its_effects(page, site, fitted):
 
 
 @pytest.fixture(scope="module")
-def second(site, matrix, fitted):
+def second(site, fitted):
     """Another fit of the same matrix."""
     job = site.client.post(f"/fits/{fitted}/effects", json={"effect": "dead_zone"}).json()["id"]
     assert site.ended(job)["state"] == "succeeded"
