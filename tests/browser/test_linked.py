@@ -124,7 +124,7 @@ def test_two_fits_stand_side_by_side(page, site, fitted, second, screenshots):
     page.get_by_role("link", name="Exchange A and B").click()
     zone = page.locator("tr", has_text="dead zone: half of the overlap")
     expect(zone.locator("td").nth(1)).to_have_text("off")
-    expect(zone.locator("td").nth(2)).to_contain_text("µm")
+    expect(zone.locator("td").nth(2)).to_contain_text(re.compile(r" ± .* µ?m$|⁻⁹ m"))
     page.locator("[data-pick]").first.click()
     answered(page, BODE, f"candidate={second}.*run=")
     expect(page.locator(f"{BODE} canvas")).to_be_visible(timeout=LONG)
@@ -143,7 +143,7 @@ def test_two_fits_stand_side_by_side(page, site, fitted, second, screenshots):
 def test_a_comparison_of_what_is_not_there_says_so(fits, page, site, watch):
     answer = page.goto(f"{site.address}/compare?fits={fits}")
     assert answer.status in (404, 422)
-    expect(page.locator("main")).to_contain_text(re.compile("no fit|give two"))
+    expect(page.locator("main")).to_contain_text(re.compile("no fit|give two", re.IGNORECASE))
     watch.complaints.clear()  # the browser notes the status itself
 
 
@@ -177,13 +177,13 @@ def test_an_own_effect_has_other_parameters_and_a_state(page, site, watch, fitte
     for label, text in (("Symbol", "T"), ("Unit", "ms"), ("Value", "20"), ("Lowest", "1"), ("Largest", "100")):
         shape.get_by_label(label).fill(text)
     own.get_by_label("State, symbol").fill("z")
-    own.get_by_label("Rate of the state").fill("(abs(Q) - z) / S")
+    own.get_by_label("Rate of the state").fill("(abs(Q) - z) / bad")
     own.get_by_role("button", name="Check").click()
-    expect(own.locator(".at mark")).to_have_text("S", timeout=LONG)
+    expect(own.locator(".at mark")).to_have_text("b", timeout=LONG)
     expect(own.get_by_role("alert")).to_contain_text("state rate, character 16")
     expect(own.get_by_label("Rate of the state")).to_be_focused()
     watch.complaints.clear()  # the browser's own line on the refusal
     own.get_by_label("Rate of the state").fill("(abs(Q) - z) / T")
     own.get_by_role("button", name="Check").click()
     expect(own.locator("math")).to_have_count(2, timeout=LONG)
-    expect(own.get_by_role("alert")).to_be_empty()
+    expect(own.locator("[role=alert]")).to_be_empty()
