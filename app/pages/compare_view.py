@@ -105,7 +105,8 @@ def _percent(one: float | None, other: float | None) -> str:
     """By how much of itself a number changed."""
     if not one or other is None or one * other < 0:
         return "–"
-    return f"{numbers.fixed(100 * (other / one - 1), 1)} %"
+    change = round(100 * (other / one - 1), 1) or 0.0  # never a minus before nothing
+    return f"{numbers.fixed(change, 1)} %"
 
 
 def _parameters(a: FitResult, b: FitResult) -> Iterator[Compared]:
