@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from benchmarks import bench, fitness, identification, kernel, memory, scaling, simulation, start
+from benchmarks import bench, fitness, identification, kernel, memory, pages, scaling, simulation, start
 from benchmarks.table import Table
 
 ALL: dict[str, Callable[[], Table]] = {
@@ -19,6 +19,7 @@ ALL: dict[str, Callable[[], Table]] = {
     "simulation": simulation.measure,
     "kernel": kernel.measure,
     "start": start.measure,
+    "pages": pages.measure,
     "scaling": scaling.measure,
 }
 PAGE = Path(__file__).parents[1] / "docs" / "benchmarks.md"

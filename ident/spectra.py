@@ -220,3 +220,11 @@ def _decays(filters: Recursion) -> Recursion:
     start[:, 0] = 1.0
     still = np.zeros_like(filters.gamma0)
     return Recursion(filters.phi, still, still, filters.C, filters.D, start)
+
+
+def within(signal: Array, sample_rate: float, low: float | None, high: float | None) -> Array:
+    """What a signal (n, ...) has between two frequencies in Hz, along its first axis, without any lag."""
+    spectrum = np.fft.rfft(signal, axis=0)
+    frequency = np.fft.rfftfreq(len(signal), 1 / sample_rate)
+    spectrum[(frequency < (low or 0.0)) | (frequency > (np.inf if high is None else high))] = 0.0
+    return np.asarray(np.fft.irfft(spectrum, len(signal), axis=0))

@@ -17,7 +17,7 @@ from ident.custom import definition_of, read_effect, together
 from ident.diagnosis.addition import MOST, USUAL
 from ident.errors import Unusable
 from ident.fit.identification import check_settings
-from ident.fit.result import FitResult
+from ident.fit.result import Estimate, FitResult
 from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView
 from schemas.fit import Chosen, JobView
 
@@ -72,6 +72,21 @@ def get(context: Context, diagnosis_id: str) -> DiagnosisView:
     if row is None:
         raise missing("diagnosis", diagnosis_id)
     return view(row)
+
+
+def refit(context: Context, diagnosis_id: str, fit: FitResult, effect: str) -> FitResult:
+    """The fit with an effect as the diagnosis refitted or, where it went no further, predicted it; else Failure 404."""
+    found = get(context, diagnosis_id)
+    candidate = next((one for one in found.candidates if one.effect == effect), None)
+    if candidate is None:
+        raise missing("candidate", f"{diagnosis_id}:{effect}")
+    settings = (found.model_extra or {}).get("settings") or {}
+    wider = fit.with_custom(settings.get("custom", ()))
+    estimates = {
+        name: Estimate(entry["value"], entry["unit"], entry["std_error"], entry["value"], entry["value"], False)
+        for name, entry in candidate.parameters.items()
+    }
+    return replace(wider, effects=(*fit.effects, effect), parameters={**fit.parameters, **estimates})
 
 
 def listed(context: Context, fit: str | None, after: str | None, limit: int) -> DiagnosisPage:

@@ -2,43 +2,72 @@
 
 from __future__ import annotations
 
+import json
+from collections import OrderedDict
 from collections.abc import Iterator
+from threading import Lock
 from typing import Any
 
 from app.context import Context
+from app.diagnoses import service as diagnoses
 from app.errors import Failure
 from app.fits import lineage, service
 from app.matrices import service as matrices
 from ident.errors import Unusable
-from ident.figures import MEDIA, Chart, figure, ladder, look, render
+from ident.figures import MEDIA, figure, ladder, look, render
 from ident.figures.ladder import Step
+from ident.figures.selection import number
 from ident.fit.result import FitResult
-from ident.matrix import Matrix
 from ident.presets import preset
 from schemas.fit import LadderRung
+
+_KEPT = 96  # figures in memory, about 100 kB each: fits and their data never change
+_cache: OrderedDict[str, bytes] = OrderedDict()
+_lock = Lock()
 
 
 def drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str, Any]) -> tuple[bytes, str]:
     """A figure of a fit as bytes and their media type."""
-    row = service.find(context, fit_id)
     if kind not in MEDIA:
         raise Failure(404, "no-such-format", f"no figures as {kind!r}", "figure", f"use {', '.join(MEDIA)}")
-    theme = options.pop("theme", "light")
+    key = json.dumps([str(context.storage.folder), fit_id, name, kind, options], sort_keys=True)
+    with _lock:
+        if key in _cache:
+            _cache.move_to_end(key)
+            return _cache[key], MEDIA[kind]
+    content = _drawn(context, fit_id, name, kind, options)
+    with _lock:
+        _cache[key] = content
+        while len(_cache) > _KEPT:
+            _cache.popitem(last=False)
+    return content, MEDIA[kind]
+
+
+def _drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str, Any]) -> bytes:
+    row = service.find(context, fit_id)
+    theme, share = options.pop("theme", "light"), number(options, "share") or 1.0
+    options.pop("share", None)
+    if not 0.2 <= share <= 4:
+        raise Unusable("out-of-range", f"share is {share:g}", "figure option share", "give 0.2 to 4")
     fit, matrix = FitResult.from_json(row.result), matrices.load(context, row.matrix)
     if name == "ladder":
         if options:
             raise Unusable("unknown-option", f"no option {next(iter(options))!r}", "figure ladder", "use theme")
         steps = list(_steps(lineage.ladder(context, fit_id).rungs, fit.model))
-        return render(ladder(steps, fit.noise_floor.get("fit"), matrix.actuator, look(theme)), kind), MEDIA[kind]
-    return render(_figure(context, name, matrix, fit, theme, options), kind), MEDIA[kind]
-
-
-def _figure(context: Context, name: str, matrix: Matrix, fit: FitResult, theme: str, options: dict[str, Any]) -> Chart:
+        return render(ladder(steps, fit.noise_floor.get("fit"), matrix.actuator, look(theme, share)), kind)
     if options.get("candidate"):
-        options["candidate"] = FitResult.from_json(service.find(context, str(options["candidate"])).result)
+        options["candidate"] = _candidate(context, fit, str(options["candidate"]))
     else:
         options.pop("candidate", None)
-    return figure(name, matrix, fit, theme, **options)
+    return render(figure(name, matrix, fit, theme, share, **options), kind)
+
+
+def _candidate(context: Context, fit: FitResult, wanted: str) -> FitResult:
+    """Another fit by its id, or what a diagnosis found of an effect: DIAGNOSIS:EFFECT. Raises Failure 404."""
+    diagnosis, colon, effect = wanted.partition(":")
+    if not colon:
+        return FitResult.from_json(service.find(context, wanted).result)
+    return diagnoses.refit(context, diagnosis, fit, effect)
 
 
 def _steps(rungs: list[LadderRung], model: str) -> Iterator[Step]:

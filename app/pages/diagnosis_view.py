@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
+from urllib.parse import urlencode
 
 from markupsafe import Markup
 
@@ -15,6 +16,8 @@ from ident.custom import read_effect
 from ident.effect import Effect
 from ident.effects import EFFECTS
 from ident.mathml import mathml
+from ident.presets import preset
+from ident.residuals.views import view_of
 from schemas.diagnosis import CandidateView, DiagnosisView
 from schemas.fit import JobView
 
@@ -46,7 +49,8 @@ class Member:
 class Card:
     """An effect that the model lacks, or a group that the data cannot tell apart, the best first.
 
-    `confirmed`: a refit helped beyond chance; `chosen`: the diagnosis would add it; `gauge`: see the page.
+    `confirmed`: a refit helped beyond chance; `chosen`: the diagnosis would add it; `gauge`: see the page;
+    `evidence`: name and query of the figure that shows it.
     """
 
     rank: int
@@ -59,6 +63,7 @@ class Card:
     confirmed: bool
     chosen: bool
     gauge: tuple[float, float, float]
+    evidence: tuple[str, str] | None
 
     @property
     def group(self) -> bool:
@@ -166,7 +171,18 @@ def _card(rank: int, together: list[CandidateView], found: DiagnosisView) -> Car
         confirmed=bool(best.evidence.get("beyond_chance")),
         chosen=any(candidate.effect in found.verdict.effects for candidate in together),
         gauge=_gauge(best, found),
+        evidence=_evidence(best, found, own.get(best.effect)),
     )
+
+
+def _evidence(best: CandidateView, found: DiagnosisView, own: Mapping[str, Any] | None) -> tuple[str, str] | None:
+    """The figure in which the effect shows, with what it predicts; None where it was not refitted."""
+    effect = read_effect(own) if own is not None else _CATALOGUE.get(best.effect)
+    if effect is None or not best.parameters:
+        return None
+    view = view_of(effect, preset(str((found.model_extra or {}).get("model", ""))))
+    query = {"candidate": f"{found.id}:{best.effect}", **({"view": view.name} if view else {})}
+    return "residual-curve" if view else "bode", urlencode(query)
 
 
 def _gauge(best: CandidateView, found: DiagnosisView) -> tuple[float, float, float]:
@@ -186,22 +202,29 @@ def definitions(found: DiagnosisView) -> dict[str, Mapping[str, Any]]:
 
 def _member(candidate: CandidateView, own: Mapping[str, Any] | None) -> Member:
     effect: Effect | None = read_effect(own) if own is not None else _CATALOGUE.get(candidate.effect)
+    return member(candidate.effect, effect, candidate.parameters, own)
+
+
+def member(
+    name: str, effect: Effect | None, parameters: Mapping[str, Mapping[str, Any]], own: Mapping[str, Any] | None
+) -> Member:
+    """An effect as the page tells of it, with the strength that is among the parameters."""
     return Member(
-        name=candidate.effect,
-        title=title(candidate.effect),
+        name=name,
+        title=title(name),
         known=effect is not None,
         place=effect.place if effect else "",
         meaning=effect.meaning if effect else "",
         equations=tuple(Markup(mathml(line.text)) for line in effect.equations) if effect else (),
-        strength=_strength(candidate),
+        strength=_strength(name, parameters),
         strength_is=f"{effect.strength.symbol}, {effect.strength.meaning}" if effect else "strength",
         definition=json.dumps(own) if own is not None else "",
     )
 
 
-def _strength(candidate: CandidateView) -> str:
+def _strength(effect: str, parameters: Mapping[str, Mapping[str, Any]]) -> str:
     """The first parameter of the effect, with standard error and unit."""
-    own = (entry for name, entry in candidate.parameters.items() if name.startswith(f"{candidate.effect}."))
+    own = (entry for name, entry in parameters.items() if name.startswith(f"{effect}."))
     entry = next(own, None)
     if entry is None:
         return "–"

@@ -61,6 +61,12 @@ def fit(request: Request, here: Here, fit: str) -> Response:
     return page(request, "fit.html", fit=shown, vega=assets.VEGA)
 
 
+@router.get("/compare")
+def compare(request: Request, here: Here, fits: str) -> HTMLResponse:
+    """Two fits side by side."""
+    return page(request, "compare.html", both=service.compared(here, fits), vega=assets.VEGA)
+
+
 def unknown() -> None:
     """No page is here."""
     raise HTTPException(404)

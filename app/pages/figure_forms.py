@@ -14,6 +14,8 @@ from ident.residuals.views import views
 from schemas.matrix import RunView
 
 Choices = tuple[tuple[str, str], ...]
+MAP = "residual-map"
+PICKED = ("run", "low", "high")
 
 
 @dataclass(frozen=True)
@@ -39,27 +41,30 @@ _OF_BENCH = (
 
 @dataclass(frozen=True)
 class FigureForm:
-    """One figure with its options."""
+    """One figure with its options; `picked` are those that it takes from what is picked out for all figures."""
 
     name: str
     title: str
     fields: tuple[Field, ...]
+    picked: tuple[str, ...] = ()
 
 
 def forms(runs: Sequence[RunView], fit: FitResult) -> tuple[FigureForm, ...]:
-    """The figures that this fit has, in the order of the tabs: where it fails comes first."""
-    run = Field("run", "Run", (("", "a typical one"), *((each.id, each.id) for each in runs)))
+    """The figures that this fit has: the map of where it fails, then those that follow it in the order of the tabs."""
     pictures = [
-        FigureForm("residual-map", "By run and frequency", _conditions(runs)),
+        FigureForm(MAP, "By run and frequency", _conditions(runs), PICKED),
+        FigureForm("bode", "Bode plot", _bode(runs), PICKED),
+        FigureForm("time", "Time record", (Field("start", "Start (s)"), Field("seconds", "Length (s)")), PICKED),
         FigureForm(
-            "residual-curve", "Missing characteristic", (Field("view", "Curve", _views(fit)), *_conditions(runs))
+            "residual-curve",
+            "Missing characteristic",
+            (Field("view", "Curve", _views(fit)), *_conditions(runs)),
+            PICKED,
         ),
-        FigureForm("bode", "Bode plot", _bode(runs)),
-        FigureForm("time", "Time record", (run, Field("start", "Start (s)"), Field("seconds", "Length (s)"))),
-        FigureForm("sensitivity", "Sensitivity", (run,)),
+        FigureForm("sensitivity", "Sensitivity", (), PICKED[:1]),
     ]
     if fit.evolution:
-        pictures.insert(4, FigureForm("evolution", "Evolution", _evolution(fit)))
+        pictures.insert(5, FigureForm("evolution", "Evolution", _evolution(fit)))
     pictures += [FigureForm(name, title, fields) for name, title, fields in _OF_BENCH]
     shown = figures_of(fit)
     return tuple(picture for picture in pictures if picture.name in shown)

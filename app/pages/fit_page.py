@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 from markupsafe import Markup
 
 from app.pages import numbers
-from app.pages.diagnosis_view import MissingView
-from app.pages.figure_forms import FigureForm, forms
+from app.pages.chain_view import Drawing, drawing
+from app.pages.diagnosis_view import MissingView, title
+from app.pages.figure_forms import MAP, FigureForm, forms
 from app.pages.fit_view import Determined, ErrorRow, ParameterRow, combination_rows, error_rows, parameter_rows
 from app.pages.job_view import settings_facts
 from app.pages.ladder_view import Step, steps
@@ -24,6 +25,7 @@ from ident.mathml import mathml
 from ident.presets import Preset
 from schemas.fit import FitView, LadderView
 from schemas.matrix import MatrixView
+from schemas.parameters import ParameterSetView
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,8 @@ class FitPageView:
     undetermined: tuple[Undetermined, ...]
     notes: tuple[str, ...]
     runs: tuple[FittedRun, ...]
+    chain: Drawing
+    map: FigureForm | None
     figures: tuple[FigureForm, ...]
     equations: tuple[tuple[str, str, Markup], ...]
     facts: tuple[tuple[str, str], ...]
@@ -69,13 +73,17 @@ class FitPageView:
     findings: str
     worst: str
     on_bench: bool
+    others: tuple[tuple[str, str], ...]
 
 
-def fit_page(stored: FitView, matrix: MatrixView, lacks: MissingView, ladder: LadderView) -> FitPageView:
-    """The page of a fit of this matrix."""
+def fit_page(
+    stored: FitView, matrix: MatrixView, lacks: MissingView, ladder: LadderView, others: Iterable[ParameterSetView] = ()
+) -> FitPageView:
+    """The page of a fit of this matrix; `others` are fits of the same actuator, to compare it with."""
     fit = FitResult.from_json(stored.result)
     model = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
     known = {run.id: run for run in matrix.runs}
+    figures = forms(matrix.runs, fit)
     return FitPageView(
         id=stored.id,
         serial=stored.serial,
@@ -94,7 +102,9 @@ def fit_page(stored: FitView, matrix: MatrixView, lacks: MissingView, ladder: La
         undetermined=fit.undetermined,
         notes=fit.notes,
         runs=tuple(FittedRun(conditions(known[run.id]), run.error, run.offset) for run in fit.runs if run.id in known),
-        figures=forms(matrix.runs, fit),
+        chain=drawing(fit),
+        map=next((figure for figure in figures if figure.name == MAP), None),
+        figures=tuple(figure for figure in figures if figure.name != MAP),
         equations=tuple((line.place, line.meaning, Markup(mathml(line.text))) for line in _equations(model)),
         facts=_facts(fit),
         missing=lacks,
@@ -102,9 +112,17 @@ def fit_page(stored: FitView, matrix: MatrixView, lacks: MissingView, ladder: La
         places=tuple((place, HANDED_ON.get(place, "")) for place in dict.fromkeys(s.place for s in model.chain.stages)),
         findings=counted(serious := [entry for entry in matrix.findings if entry.severity != "note"]),
         worst="fault" if any(entry.severity == "fault" for entry in serious) else "doubt",
+        others=tuple((other.id, _other(other)) for other in others if other.id != stored.id),
         again=json.dumps(fit_request(fit, stored.id)),
         on_bench=fit.model == "kononykhin",
     )
+
+
+def _other(fit: ParameterSetView) -> str:
+    """Another fit in a line: when, which model, how good."""
+    effects = dict.fromkeys(title(name.partition(".")[0]) for name in fit.parameters if "." in name)
+    made = fit.created_at[:16].replace("T", " ")
+    return f"{made} · {' + '.join((fit.model, *effects))} · {numbers.percent(fit.error_fit)}"
 
 
 def fit_request(fit: FitResult, parent: str) -> dict[str, Any]:

@@ -15,7 +15,10 @@ from ident.mathml import mathml
 
 @dataclass(frozen=True)
 class ParameterRow:
-    """One parameter; value, standard error and bounds are multiples of the printed unit."""
+    """One parameter; value, standard error and bounds are multiples of the printed unit.
+
+    `plain` is the value in SI with its unit, as a command or a matrix takes it.
+    """
 
     name: str
     symbol: str
@@ -27,6 +30,7 @@ class ParameterRow:
     lower: str
     upper: str
     remark: str
+    plain: str = ""
 
 
 @dataclass(frozen=True)
@@ -72,6 +76,7 @@ def _parameter(name: str, entry: Estimate, undetermined: bool) -> ParameterRow:
         lower=numbers.trimmed(entry.lower / 10.0**power),
         upper=numbers.trimmed(entry.upper / 10.0**power),
         remark="; ".join(_remarks(entry, undetermined)),
+        plain=f"{entry.value:.8g} {'' if entry.unit == '1' else entry.unit}".strip(),
     )
 
 

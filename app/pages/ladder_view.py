@@ -14,6 +14,7 @@ class Step:
     """A fit on the way: what it added, its strength, its errors, and by how much they fell."""
 
     fit: str
+    before: str
     here: bool
     added: tuple[tuple[str, str], ...]
     error_fit: float | None
@@ -38,7 +39,8 @@ def _step(rung: LadderRung, before: LadderRung | None, here: str) -> Step:
     if rung.approved_at and not rung.current:
         state = ("succeeded", "approved earlier")
     return Step(
-        fit=rung.fit, here=rung.fit == here, added=tuple((title(name), _strength(rung, name)) for name in rung.added),
+        fit=rung.fit, before=before.fit if before else "", here=rung.fit == here,
+        added=tuple((title(name), _strength(rung, name)) for name in rung.added),
         error_fit=rung.error["fit"], error_verify=rung.error["verify"], change=_change(rung, before),
         seed=rung.seed, version=rung.version, data=rung.data_hash[:12], made=rung.created_at,
         state=state[0], state_text=state[1],

@@ -12,6 +12,7 @@ from app.fits import lineage
 from app.fits import service as fits
 from app.matrices import service as matrices
 from app.pages.actuator_view import actuator_row, fit_rows
+from app.pages.compare_view import CompareView, compare_view
 from app.pages.diagnosis_view import missing
 from app.pages.fit_page import FitPageView, fit_page
 from app.pages.fit_view import parameter_rows
@@ -91,6 +92,15 @@ def job_list(context: Context, cursor: str | None) -> Shown:
     return {"jobs": [job_page(job) for job in found.items], "more": found.next}
 
 
+def compared(context: Context, wanted: str) -> CompareView:
+    """Two fits, by their ids with a comma between; raises Failure 404, 422."""
+    names = [name for name in wanted.split(",") if name]
+    if len(names) != 2:
+        raise Failure(422, "bad-request", f"{len(names)} fits are given", "fits", "give two: /compare?fits=A,B")
+    first, second = (fits.get(context, name) for name in names)
+    return compare_view(first, second, matrices.get(context, first.matrix))
+
+
 def fit(context: Context, fit_id: str) -> FitPageView | JobPageView:
     """A finished fit, or the job that has not made it; raises Failure 404."""
     try:
@@ -98,4 +108,6 @@ def fit(context: Context, fit_id: str) -> FitPageView | JobPageView:
     except Failure:
         return job_page(fits.job(context, fit_id))
     lacks = missing(*diagnoses.of_fit(context, fit_id))
-    return fit_page(found, matrices.get(context, found.matrix), lacks, lineage.ladder(context, fit_id))
+    way = lineage.ladder(context, fit_id)
+    others = parameters.page(context, Wanted(serial=found.serial), None, _ROWS).items
+    return fit_page(found, matrices.get(context, found.matrix), lacks, way, others)

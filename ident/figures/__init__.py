@@ -6,8 +6,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from altair.utils.schemapi import debug_mode
+
 from ident.compare import Comparison, compare
 from ident.errors import Unusable
+from ident.figures import words
 from ident.figures.bench import BENCH_FIGURES
 from ident.figures.bode import bode, readable
 from ident.figures.choose import chosen, wish
@@ -17,6 +20,7 @@ from ident.figures.look import Look, look
 from ident.figures.render import MEDIA, Chart, render
 from ident.figures.residual_curve import residual_curve
 from ident.figures.residual_map import residual_map
+from ident.figures.selection import band_of, number
 from ident.figures.sensitivity import loaded, sensitivity
 from ident.figures.time import time, typical
 from ident.fit.result import FitResult
@@ -26,13 +30,15 @@ from ident.residuals.curves import curves
 __all__ = ["BENCH_FIGURES", "FIGURES", "MEDIA", "Chart", "figure", "figures_of", "ladder", "look", "render"]
 
 
-def figure(name: str, matrix: Matrix, fit: FitResult, theme: str = "light", **options: Any) -> Chart:
-    """The chart of that name, "light" or "dark"; only what it shows is computed.
+def figure(
+    name: str, matrix: Matrix, fit: FitResult, theme: str = "light", share: float = 1.0, **options: Any
+) -> Chart:
+    """The chart of that name, "light" or "dark", `share` as wide as usual; only what it shows is computed.
 
-    Options, all optional: bode takes run, kp, amplitude, specimen, use, axis; time takes run, start, seconds;
-    evolution takes x, y, generations; sensitivity takes run; residual-map takes kp, amplitude, specimen, use;
-    residual-curve takes these, view, and candidate, the fit of another model; speed-characteristic, of a bench, takes
-    smoothing.
+    Options, all optional: bode takes run, kp, amplitude, specimen, use, low, high, axis, candidate; time takes run,
+    start, seconds, low, high; evolution takes x, y, generations; sensitivity takes run; residual-map takes what bode
+    takes but axis and candidate; residual-curve takes these, view, and candidate, the fit of another model drawn
+    dashed; speed-characteristic, of a bench, takes smoothing.
 
     Raises Unusable for an unknown name, theme or option.
     """
@@ -42,20 +48,25 @@ def figure(name: str, matrix: Matrix, fit: FitResult, theme: str = "light", **op
     for option in options:
         if option not in known:
             raise Unusable("unknown-option", f"no option {option!r}", f"figure {name}", f"use {', '.join(known)}")
-    return draw(matrix, fit, look(theme), options)
+    with debug_mode(False):  # Altair would check each part against its schema, which takes longer than all the rest
+        return draw(matrix, fit, look(theme, share), options)
 
 
 def _bode(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) -> Chart:
-    filters = {name: value for name, value in options.items() if name != "axis"}
-    candidates = chosen(matrix, wish(**filters))
-    shown = _compared(matrix, fit, readable(candidates))
-    return bode(shown.runs, matrix.actuator, fit, of, axis=options.get("axis") or "log", candidates=len(candidates))
+    candidates = chosen(matrix, wish(**_only(options, _RUNS)))
+    runs, other = readable(candidates), _candidate(options)
+    return bode(
+        _compared(matrix, fit, runs).runs, matrix.actuator, fit, of,
+        axis=options.get("axis") or "log", candidates=len(candidates), band=band_of(options),
+        others=_compared(matrix, other, runs).runs if other else (), other_name=_name(other, fit),
+    )  # fmt: skip
 
 
 def _time(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) -> Chart:
     run = _one(matrix, options) or typical(matrix, fit)
     (shown,) = _compared(matrix, fit, (run,)).runs
-    return time(shown, matrix.actuator, fit, of, start=_number(options, "start"), seconds=_number(options, "seconds"))
+    start, seconds = number(options, "start"), number(options, "seconds")
+    return time(shown, matrix.actuator, fit, of, start=start, seconds=seconds, band=band_of(options))
 
 
 def _evolution(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) -> Chart:
@@ -68,32 +79,53 @@ def _sensitivity(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str,
 
 
 def _residual_map(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) -> Chart:
-    shown = chosen(matrix, wish(**options)) if any(options.values()) else matrix.runs
-    return residual_map(_compared(matrix, fit, shown), matrix.actuator, fit, of)
+    filters = _only(options, _CONDITIONS)
+    shown = chosen(matrix, wish(**filters)) if any(filters.values()) else matrix.runs
+    run = str(options.get("run") or "")
+    return residual_map(_compared(matrix, fit, shown), matrix.actuator, fit, of, run=run, band=band_of(options))
 
 
 def _residual_curve(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) -> Chart:
-    filters = {name: value for name, value in options.items() if name not in ("view", "candidate")}
+    filters, band, view = _only(options, _RUNS), band_of(options), options.get("view") or None
     shown = chosen(matrix, wish(**filters)) if any(filters.values()) else matrix.of_use("fit") or matrix.runs
-    own = _compared(matrix, fit, shown)
-    other = options.get("candidate")
-    if other is not None and not isinstance(other, FitResult):
-        raise Unusable("bad-fit", f"candidate is {other!r}", "figure residual-curve", "give a fit")
-    predicted = curves(own, _compared(matrix, other, shown)) if other else ()
+    own, ends = _compared(matrix, fit, shown), ((band.low, band.high) if band else None)
+    other = _candidate(options)
+    predicted = curves(own, _compared(matrix, other, shown), view=view, band=ends) if other else ()
+    runs = words.describe(shown[0]) if len(shown) == 1 else f"{len(shown)} runs"
     return residual_curve(
-        curves(own), matrix.actuator, fit, of, candidate=predicted, view=options.get("view"), runs=len(shown),
-        candidate_name=" + ".join((other.model, *other.effects)) if other else "",
+        curves(own, view=view, band=ends), matrix.actuator, fit, of, candidate=predicted, view=view,
+        runs=f"{runs}, {band.words}" if band else runs,
+        candidate_name=_name(other, fit),
     )  # fmt: skip
 
 
+def _candidate(options: Mapping[str, Any]) -> FitResult | None:
+    """The other fit that is drawn beside this one. Raises Unusable where it is none."""
+    other = options.get("candidate")
+    if other is not None and not isinstance(other, FitResult):
+        raise Unusable("bad-fit", f"candidate is {other!r}", "figure option candidate", "give a fit")
+    return other
+
+
+def _name(other: FitResult | None, fit: FitResult) -> str:
+    """What the other fit is called: what it has more than this one, where it has no less."""
+    if other is None:
+        return ""
+    more = [effect.replace("_", " ") for effect in other.effects if effect not in fit.effects]
+    wider = other.model == fit.model and set(fit.effects) < set(other.effects)
+    return " + ".join(more if wider else (other.model, *other.effects))
+
+
 _CONDITIONS = ("kp", "amplitude", "specimen", "use")
+_RUNS = ("run", *_CONDITIONS)
+_BAND = ("low", "high")
 FIGURES: Mapping[str, tuple[Callable[[Matrix, FitResult, Look, Mapping[str, Any]], Chart], tuple[str, ...]]] = {
-    "bode": (_bode, ("run", "kp", "amplitude", "specimen", "use", "axis")),
-    "time": (_time, ("run", "start", "seconds")),
+    "bode": (_bode, (*_RUNS, *_BAND, "axis", "candidate")),
+    "time": (_time, ("run", *_BAND, "start", "seconds")),
     "evolution": (_evolution, ("x", "y", "generations")),
     "sensitivity": (_sensitivity, ("run",)),
-    "residual-map": (_residual_map, _CONDITIONS),
-    "residual-curve": (_residual_curve, (*_CONDITIONS, "view", "candidate")),
+    "residual-map": (_residual_map, (*_RUNS, *_BAND)),
+    "residual-curve": (_residual_curve, (*_RUNS, *_BAND, "view", "candidate")),
 }
 """Figures by name, each with the options that it takes."""
 
@@ -114,9 +146,5 @@ def _one(matrix: Matrix, options: Mapping[str, Any]) -> Run | None:
     return None if not options.get("run") else chosen(matrix, wish(run=options["run"]))[0]
 
 
-def _number(options: Mapping[str, Any], name: str) -> float | None:
-    value = options.get(name)
-    try:
-        return None if value in (None, "") else float(value)
-    except (TypeError, ValueError):
-        raise Unusable("not-a-number", f"{name} is {value!r}", "figure option", "give a number") from None
+def _only(options: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
+    return {name: options[name] for name in names if name in options}

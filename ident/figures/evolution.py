@@ -13,7 +13,7 @@ from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.choose import Option
 from ident.figures.look import Look
-from ident.figures.render import Chart, Panel
+from ident.figures.render import Chart, Panel, datasets
 from ident.figures.thin import significant
 from ident.fit.result import FitResult, Generation
 from ident.matrix import Actuator
@@ -59,7 +59,7 @@ def evolution(
         ],
     )
     chart: Chart = (
-        alt.vconcat(*panels, title=title, spacing=24, datasets=tables)
+        alt.vconcat(*panels, title=title, spacing=24, datasets=datasets(tables))
         .resolve_scale(color="independent")
         .configure(**look.config())
     )
@@ -151,7 +151,7 @@ def _scatter(look: Look, axes: tuple[_Axis, _Axis], pictured: Sequence[Generatio
     ramp = alt.Scale(type="log", domain=_ends(errors), range=list(reversed(look.ramp)), clamp=True)
     legend = alt.Legend(title="Error (%)", orient="right", format=".3~g", tickCount=4)
     colour = alt.Color("e:Q", scale=ramp, legend=legend)
-    width = max(150, 600 // len(pictured))
+    width = max(150, look.across(600 / len(pictured)))
     panels = [
         _generation(entry, axes, look, colour, first=entry is pictured[0]).properties(width=width) for entry in pictured
     ]
@@ -206,7 +206,7 @@ def _history(look: Look, wide: bool) -> Panel:
         alt.Tooltip("g:Q", title="Generation"), alt.Tooltip("s:N", title="Of"), alt.Tooltip("e:Q", title="Error (%)")
     ]  # fmt: skip
     panel: Panel = (
-        alt.Chart(alt.NamedData("history"), width=720 if wide else 640, height=190)
+        alt.Chart(alt.NamedData("history"), width=look.across(720 if wide else 640), height=190)
         .mark_line(point=alt.OverlayMarkDef(size=18), strokeWidth=1.6)
         .encode(x=x, y=y, color=colour, tooltip=tips)
     )

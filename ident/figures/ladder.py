@@ -10,7 +10,7 @@ import altair as alt
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.look import Look
-from ident.figures.render import Chart
+from ident.figures.render import Chart, datasets
 from ident.matrix import Actuator
 
 Step = tuple[str, float | None, float | None]
@@ -51,6 +51,6 @@ def ladder(steps: Sequence[Step], floor: float | None, actuator: Actuator, look:
     said = f"dashed: noise floor {words.percent(floor)}" if floor else "noise floor unknown"
     title = alt.TitleParams(words.headline(actuator, "the error with each effect added"), subtitle=[said])
     chart: Chart = alt.layer(
-        *layers, width=460, height=max(80, 38 * len(steps)), title=title, datasets={"steps": rows}
+        *layers, width=460, height=max(80, 38 * len(steps)), title=title, datasets=datasets({"steps": rows})
     ).configure(**look.config())
     return chart

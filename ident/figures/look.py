@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ident.errors import Unusable
@@ -22,6 +22,11 @@ class Look:
     grid: str
     series: tuple[str, ...]
     ramp: tuple[str, ...]  # for a quantity on a continuous scale, low to high
+    share: float = 1.0  # of the usual width
+
+    def across(self, pixels: float) -> int:
+        """The width of a panel that usually has so many pixels."""
+        return round(self.share * pixels)
 
     def config(self) -> dict[str, Any]:
         """The Vega-Lite configuration of this theme."""
@@ -63,8 +68,8 @@ LOOKS: Mapping[str, Look] = {
 }  # fmt: skip
 
 
-def look(theme: str) -> Look:
-    """The theme of that name; raises Unusable for any other."""
+def look(theme: str, share: float = 1.0) -> Look:
+    """The theme of that name, panels `share` as wide as usual; raises Unusable for any other."""
     if theme not in LOOKS:
         raise Unusable("unknown-theme", f"no theme {theme!r}", "figure", f"use one of {', '.join(LOOKS)}")
-    return LOOKS[theme]
+    return LOOKS[theme] if share == 1.0 else replace(LOOKS[theme], share=share)

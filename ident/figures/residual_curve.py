@@ -11,7 +11,7 @@ import altair as alt
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.look import Look
-from ident.figures.render import Chart, Panel
+from ident.figures.render import Chart, Panel, datasets
 from ident.figures.thin import significant
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
@@ -19,6 +19,7 @@ from ident.residuals.curves import Curve
 
 SHOWN = 4
 _WIDTH, _HEIGHT = 340, 210
+_SMALL = 0.6  # of the usual width: then it stands beside words that say what it is
 _MEASURED, _CANDIDATE = "seen in the residual, 95 % band", "predicted by"
 
 
@@ -31,7 +32,7 @@ def residual_curve(
     candidate: Sequence[Curve] = (),
     candidate_name: str = "the candidate",
     view: str | None = None,
-    runs: int = 0,
+    runs: str = "",
 ) -> Chart:
     """The four curves that explain most of the residual, or the one called `view`, each with its 95 % band.
 
@@ -45,16 +46,18 @@ def residual_curve(
     tables = {curve.name: _rows(curve, other.get(curve.name), names) for curve in shown}
     wide = len(shown) == 1
     panels = [_panel(curve, names, look, wide) for curve in shown]
+    small = look.share < _SMALL
     title = alt.TitleParams(
         words.headline(actuator, "what the model lacks, against its own signals"),
         subtitle=[
             words.verdict(fit),
-            f"{runs} runs · percentage: share of the residual's power that the curve takes off, on stretches it was "
-            "not fitted to",
+            f"{runs} · percentage: share of the residual's power that the curve takes off,",
+            "on stretches it was not fitted to",
         ],
     )
+    heading = {} if small else {"title": title}
     chart: Chart = (
-        alt.concat(*panels, columns=2, spacing={"row": 26, "column": 34}, datasets=tables, title=title)
+        alt.concat(*panels, columns=2, spacing={"row": 26, "column": 34}, datasets=datasets(tables), **heading)
         .resolve_scale(color="shared")
         .configure(**look.config())
     )
@@ -104,7 +107,13 @@ def _panel(curve: Curve, names: Sequence[str], look: Look, wide: bool) -> Panel:
     y = alt.Y("y:Q", scale=alt.Scale(zero=True), axis=across)
     colours = [look.series[0], look.series[1]][: len(names)]
     legend = alt.Legend(
-        title=None, orient="bottom", symbolType="stroke", symbolStrokeWidth=2, symbolOpacity=1, labelLimit=500
+        title=None,
+        orient="bottom",
+        symbolType="stroke",
+        symbolStrokeWidth=2,
+        symbolOpacity=1,
+        labelLimit=500,
+        columns=1 if look.share < _SMALL else 2,
     )
     colour = alt.Color("s:N", scale=alt.Scale(domain=list(names), range=colours), legend=legend)
     base = alt.Chart(alt.NamedData(curve.name)).encode(x=x)
@@ -119,14 +128,14 @@ def _panel(curve: Curve, names: Sequence[str], look: Look, wide: bool) -> Panel:
     if len(names) > 1:
         predicted = base.transform_filter(f"datum.s != '{names[0]}'")
         layers.append(predicted.mark_line(strokeWidth=2, strokeDash=[6, 4]).encode(y=y, color=colour))
-    width, height = (640, 340) if wide else (_WIDTH, _HEIGHT)
-    hint = textwrap.wrap(curve.shows, 95 if wide else 54)
+    width, height = (640, 340 if look.share >= _SMALL else 200) if wide else (_WIDTH, _HEIGHT)
+    hint = textwrap.wrap(curve.shows, look.across(95 if wide else 54))
     hint += [""] * (2 - len(hint))  # titles of one height: the panels of a row stand side by side
     title = alt.TitleParams(
         f"{curve.name.capitalize()}: {_share(curve)}",
         fontSize=12, subtitle=hint, subtitleFontSize=11, subtitleLineHeight=13, offset=8, frame="group",
     )  # fmt: skip
-    panel: Panel = alt.layer(*layers, width=width, height=height, title=title)
+    panel: Panel = alt.layer(*layers, width=look.across(width), height=height, title=title)
     return panel
 
 

@@ -11,7 +11,8 @@ import altair as alt
 from ident.compare import Comparison
 from ident.figures import words
 from ident.figures.look import Look
-from ident.figures.render import Chart, Panel
+from ident.figures.render import Chart, Panel, datasets
+from ident.figures.selection import HIGH, LOW, OPEN, RUN, Band, band_params, brush
 from ident.figures.thin import decade_ticks
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Run
@@ -21,31 +22,35 @@ MOST = 100  # rows
 _ROW = 9  # pixels
 
 
-def residual_map(compared: Comparison, actuator: Actuator, fit: FitResult, look: Look) -> Chart:
+def residual_map(
+    compared: Comparison, actuator: Actuator, fit: FitResult, look: Look, *, run: str = "", band: Band = OPEN
+) -> Chart:
     """Runs by amplitude, gain and specimen, over frequency; colour is the error in the band, on a logarithmic scale.
 
     The squares of a row add up to the square of its error, on the right. Of more than a hundred runs the worst are
-    shown.
+    shown. `run` and `band` are marked.
     """
     found = where(compared)
-    worst = {run.id for run in sorted(found.runs, key=lambda run: -run.error)[:MOST]}
-    runs = {run.run.id: run.run for run in compared.runs if run.run.id in worst}
+    worst = {each.id for each in sorted(found.runs, key=lambda each: -each.error)[:MOST]}
+    runs = {each.run.id: each.run for each in compared.runs if each.run.id in worst}
     order = sorted(runs, key=lambda name: _place(runs[name]))
     shown = f"{len(order)} of {len(compared.runs)} runs, the worst" if len(order) < len(compared.runs) else "every run"
     ends = _ends(found)
-    unit = "Hz" if all(run.time_unit == "s" for run in runs.values()) else "cycles/sample"
+    unit = "Hz" if all(each.time_unit == "s" for each in runs.values()) else "cycles/sample"
     height = max(60, _ROW * len(order))
     panels = [_bands(order, ends, unit, look, height), _totals(order, look, height)]
     title = alt.TitleParams(
         words.headline(actuator, "where the error is, by run and frequency"),
         subtitle=[
             words.verdict(fit),
-            f"{shown}, by amplitude, then Kp, then specimen · last column: all above {found.edges[-2]:.3g} {unit}",
+            f"{shown}, by amplitude, then Kp, then specimen",
+            f"last column: all above {found.edges[-2]:.3g} {unit}",
         ],
     )
     data = {"map": _cells(found, runs, ends), "totals": _errors(found, runs)}
     chart: Chart = (
-        alt.hconcat(*panels, spacing=10, bounds="flush", datasets=data, title=title)
+        alt.hconcat(*panels, spacing=10, bounds="flush", datasets=datasets(data), title=title)
+        .add_params(alt.param(name=RUN, value=run), *band_params(band))
         .resolve_scale(color="independent")
         .configure(**look.config())
     )
@@ -104,11 +109,12 @@ def _bands(order: Sequence[str], ends: Sequence[tuple[float, float]], unit: str,
         scale=alt.Scale(type="log", range=list(look.ramp), nice=False),
         legend=alt.Legend(title="Error in the band (%)", orient="top", format="~g", gradientLength=260, tickCount=4),
     )
-    panel: Panel = (
-        alt.Chart(alt.NamedData("map"), width=520, height=height)
-        .mark_rect()
+    x = alt.X("f:Q", scale=alt.Scale(type="log", domain=[lower, upper], nice=False), axis=axis)
+    cells = (
+        alt.Chart(alt.NamedData("map"))
+        .mark_rect(cursor="pointer")
         .encode(
-            x=alt.X("f:Q", scale=alt.Scale(type="log", domain=[lower, upper], nice=False), axis=axis),
+            x=x,
             x2="g:Q",
             y=_rows(order, labels=True),
             color=colour,
@@ -119,6 +125,19 @@ def _bands(order: Sequence[str], ends: Sequence[tuple[float, float]], unit: str,
                 alt.Tooltip("e:Q", title="Error (%)", format=".3g"),
             ],
         )
+        .add_params(brush())
+    )
+    row = alt.Chart(alt.NamedData("totals")).transform_filter(f"datum.r == {RUN}")
+    picked = {"f": f"{LOW} || {lower:.6g}", "g": f"{HIGH} || {upper:.6g}"}
+    band = alt.Chart(alt.sequence(0, 1)).transform_filter(f"{LOW} > 0 || {HIGH} > 0")
+    outline = alt.MarkDef(type="rect", filled=False, stroke=look.ink, strokeWidth=1.5, clip=True)
+    marked = row.properties(mark=outline).encode(y=_rows(order, labels=True), x=alt.value(0), x2=alt.value("width"))
+    panel: Panel = alt.layer(
+        cells,
+        marked,
+        band.transform_calculate(**picked).properties(mark=outline).encode(x=x, x2="g:Q"),
+        width=look.across(520),
+        height=height,
     )
     return panel
 
@@ -130,8 +149,8 @@ def _totals(order: Sequence[str], look: Look, height: int) -> Panel:
         legend=alt.Legend(title="Runs to", orient="top", symbolType="square"),
     )
     panel: Panel = (
-        alt.Chart(alt.NamedData("totals"), width=120, height=height)
-        .mark_bar()
+        alt.Chart(alt.NamedData("totals"), width=look.across(120), height=height)
+        .mark_bar(cursor="pointer")
         .encode(
             x=alt.X("e:Q", axis=alt.Axis(title="Error (%)", tickCount=4, format="~g"), scale=alt.Scale(zero=True)),
             y=_rows(order, labels=False),

@@ -21,10 +21,14 @@ RELIABLE = 0.5  # coherence under which a point does not count for the limits of
 
 @dataclass(frozen=True)
 class Responses:
-    """The responses of some runs, their common frequency band, and what tells them apart."""
+    """The responses of some runs, their common frequency band, and what tells them apart.
+
+    `others` are the same runs compared with another model, whose lines are drawn beside.
+    """
 
     compared: Sequence[RunComparison]
     logarithmic: bool = True
+    others: Sequence[RunComparison] = ()
 
     @cached_property
     def band(self) -> tuple[float, float]:
@@ -70,12 +74,20 @@ class Responses:
 
     @cached_property
     def rows(self) -> dict[float | None, list[dict[str, Any]]]:
-        """By gain: f frequency; a, A magnitude (dB) and p, P phase (deg), measured and model; c coherence; s label."""
+        """By gain: f frequency; a, A magnitude (dB) and p, P phase (deg), measured and model; c coherence; s label.
+
+        B and Q are magnitude and phase of another model.
+        """
         count = max(24, min(160, MOST_ROWS // len(self.compared)))
         rows: dict[float | None, list[dict[str, Any]]] = {}
         for entry in self.compared:
             places = spread(entry.frequency, *self.band, count, self.logarithmic)
-            rows.setdefault(entry.run.gain, []).extend(_rows(entry, places, self.labels[entry.run.id]))
+            found = _rows(entry, places, self.labels[entry.run.id])
+            other = next((each for each in self.others if each.run.id == entry.run.id), None)
+            if other is not None:
+                beside = _rows(other, places, "")
+                found = [row | {"B": o["A"], "Q": o["P"]} for row, o in zip(found, beside, strict=True)]
+            rows.setdefault(entry.run.gain, []).extend(found)
         return rows
 
     def limits(self, *fields: str) -> tuple[float, float]:

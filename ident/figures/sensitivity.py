@@ -14,7 +14,7 @@ from ident.chain import linear_model
 from ident.compare import fitted, response
 from ident.figures import words
 from ident.figures.look import Look
-from ident.figures.render import Chart, Panel
+from ident.figures.render import Chart, Panel, datasets
 from ident.figures.thin import decade_ticks, excited_band, significant
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Matrix, Run, Specimen
@@ -50,7 +50,7 @@ def sensitivity(run: Run, actuator: Actuator, fit: FitResult, look: Look) -> Cha
     }
     axes = _Axes(tables)
     columns = [
-        _column(name, text + _without(stable[name]), axes, look, first=place == 0, width=600 // len(varied))
+        _column(name, text + _without(stable[name]), axes, look, first=place == 0, width=look.across(600 / len(varied)))
         for place, (name, (text, _)) in enumerate(varied.items())
     ]
     title = alt.TitleParams(
@@ -63,7 +63,7 @@ def sensitivity(run: Run, actuator: Actuator, fit: FitResult, look: Look) -> Cha
             columns=len(varied),
             spacing={"row": 12, "column": 22},
             bounds="flush",
-            datasets=tables,
+            datasets=datasets(tables),
             title=title,
         )
         .resolve_scale(color="shared")

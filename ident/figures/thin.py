@@ -55,8 +55,13 @@ def excited_band(command: Real, sample_rate: float) -> tuple[float, float]:
     return float(frequency[max(low, 1)]), float(frequency[min(high + 1, len(frequency) - 1)])
 
 
-def decade_ticks(lower: float, upper: float) -> list[float]:
+def decade_ticks(lower: float, upper: float, steps: Iterable[float] = (1, 2, 5)) -> list[float]:
     """1, 2, 5, 10, ... between two positive frequencies."""
     first, last = math.floor(math.log10(lower)), math.ceil(math.log10(upper))
-    steps = [float(f"{step}e{power}") for power in range(first, last + 1) for step in (1, 2, 5)]
-    return [step for step in steps if lower <= step <= upper]
+    ticks = [float(f"{step}e{power}") for power in range(first, last + 1) for step in steps]
+    return [tick for tick in ticks if lower <= tick <= upper]
+
+
+def fine_ticks(lower: float, upper: float) -> list[float]:
+    """1, 1.2, 1.5, 2, 2.5, ... for less than a decade out of these."""
+    return decade_ticks(lower, upper, (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8))

@@ -12,10 +12,12 @@ from ident.compare import RunComparison
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.look import Look
-from ident.figures.render import Chart, Panel
+from ident.figures.render import Chart, Panel, datasets
+from ident.figures.selection import OPEN, Band
 from ident.figures.thin import Real, envelope, significant
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Matrix, Run
+from ident.spectra import within
 
 BINS = 350  # stretches of which smallest and largest sample are kept
 _DASHES = {"command": [2, 2], "measured": [1, 0], "model": [6, 3]}
@@ -38,36 +40,43 @@ def time(
     *,
     start: float | None = None,
     seconds: float | None = None,
+    band: Band = OPEN,
 ) -> Chart:
     """Command, measured and model over time, the residual below on its own scale.
 
     `start` and `seconds` are in s (or samples where the clock is unknown); by default twelve mean periods of the
-    command, a third into the record. Long stretches keep the extremes of each of 350 parts.
+    command, a third into the record. Long stretches keep the extremes of each of 350 parts. With a `band`, only what
+    the signals have within it.
     """
     run = compared.run
-    window = _window(run, start, seconds)
     unit = run.units.get(run.output, "m")
-    residual = run.measured - compared.modelled
-    factor, printed = words.engineering(run.measured[window], unit)
+
+    def filtered(signal: Real) -> Real:
+        return within(signal, run.sample_rate, band.low, band.high) if band else signal
+
+    command, measured, modelled = map(filtered, (run.command, run.measured, compared.modelled))
+    window = _window(run, command, start, seconds)
+    residual = measured - modelled
+    factor, printed = words.engineering(measured[window], unit)
     fine, small = words.engineering(residual[window], unit)
-    signals = {"measured": run.measured, "model": compared.modelled}
+    signals = {"measured": measured, "model": modelled}
     if "command" in run.channels and run.units.get("command", "m") == unit:
-        signals = {"command": run.command} | signals
+        signals = {"command": command} | signals
     upper = _traces(tuple(signals), run, window, look, printed)
     lower = _residual(run, window, look, small)
     left = f"error {words.percent(compared.error)}, offset {words.percent(compared.offset)}"
     title = alt.TitleParams(
         words.headline(actuator, "time record, measured and model"),
-        subtitle=[words.verdict(fit), f"{words.describe(run)}: {left}"],
+        subtitle=[words.verdict(fit), f"{words.describe(run)}: {left}", *([f"filtered: {band.words}"] if band else [])],
     )
     rows = {"traces": _table(signals, factor, run, window), "residual": _rows(fine * residual, run, window)}
-    chart: Chart = alt.vconcat(upper, lower, title=title, spacing=8, datasets=rows).configure(**look.config())
+    chart: Chart = alt.vconcat(upper, lower, title=title, spacing=8, datasets=datasets(rows)).configure(**look.config())
     return chart
 
 
-def _window(run: Run, start: float | None, seconds: float | None) -> slice:
+def _window(run: Run, command: Real, start: float | None, seconds: float | None) -> slice:
     """The samples to show; raises Unusable for a stretch outside the record."""
-    length = seconds if seconds is not None else _twelve_periods(run)
+    length = seconds if seconds is not None else _twelve_periods(run, command)
     first = start if start is not None else max(0.0, min(run.duration / 3, run.duration - length))
     if not (0 <= first < run.duration and length > 0):
         stretch = f"a stretch of {length:g} from {first:g}"
@@ -76,9 +85,9 @@ def _window(run: Run, start: float | None, seconds: float | None) -> slice:
     return slice(begin, min(run.length, begin + max(2, round(length * run.sample_rate))))
 
 
-def _twelve_periods(run: Run) -> float:
+def _twelve_periods(run: Run, command: Real) -> float:
     """Twelve mean periods of the command, from its crossings of the mean, on a 1-2-5 scale."""
-    signal = run.command - run.command.mean()
+    signal = command - command.mean()
     crossings = int(np.count_nonzero(np.diff(np.signbit(signal))))
     length = min(PERIODS * 2 * run.duration / max(crossings, 1), run.duration)
     decade = 10.0 ** np.floor(np.log10(length))
@@ -116,7 +125,7 @@ def _traces(shown: Sequence[str], run: Run, window: slice, look: Look, unit: str
     )
     name = run.output.replace("_", " ").capitalize()
     panel: Panel = (
-        alt.Chart(alt.NamedData("traces"), width=720, height=240)
+        alt.Chart(alt.NamedData("traces"), width=look.across(720), height=240)
         .mark_line(strokeWidth=1.5)
         .encode(
             x=_clock(run, window, title=False),
@@ -130,7 +139,7 @@ def _traces(shown: Sequence[str], run: Run, window: slice, look: Look, unit: str
 
 def _residual(run: Run, window: slice, look: Look, unit: str) -> Panel:
     panel: Panel = (
-        alt.Chart(alt.NamedData("residual"), width=720, height=110)
+        alt.Chart(alt.NamedData("residual"), width=look.across(720), height=110)
         .mark_line(strokeWidth=1.1, color=look.series[2])
         .encode(
             x=_clock(run, window, title=True),

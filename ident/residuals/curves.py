@@ -15,7 +15,7 @@ Bands are 95 % from the scores of separate stretches of the records, which holds
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -24,8 +24,9 @@ from numpy.typing import NDArray
 from ident.compare import Comparison, fitted
 from ident.parallel import each
 from ident.residuals.coarse import Response
-from ident.residuals.traces import Trace, Traces, traces
+from ident.residuals.traces import Band, Trace, Traces, traces
 from ident.residuals.views import View, unit, views
+from ident.spectra import within
 
 Array = NDArray[np.float64]
 LEVELS = (0.001, 0.006, 0.02, *(0.055 + 0.89 * i / 15 for i in range(16)), 0.98, 0.994, 0.999)
@@ -91,12 +92,15 @@ class _Normal:
         return 1.0 - with_curve / without if without > 0 else 0.0
 
 
-def curves(comparison: Comparison, of: Comparison | None = None) -> tuple[Curve, ...]:
-    """The curves of a compared model, those that explain most first.
+def curves(
+    comparison: Comparison, of: Comparison | None = None, *, view: str | None = None, band: Band | None = None
+) -> tuple[Curve, ...]:
+    """The curves of a compared model, those that explain most first, or the one of `view`.
 
     With `of`, another model of the same runs, what that model has beyond the first one: its prediction of the curves.
+    With `band` (Hz), from what the residual has within it.
     """
-    return curves_of(traced(comparison, of))
+    return curves_of(replace(traced(comparison, of), band=band), view)
 
 
 def traced(comparison: Comparison, of: Comparison | None = None) -> Traces:
@@ -106,9 +110,11 @@ def traced(comparison: Comparison, of: Comparison | None = None) -> Traces:
     return traces(comparison, signals, None if of is None else {run.run.id: run.modelled for run in of.runs})
 
 
-def curves_of(found: Traces) -> tuple[Curve, ...]:
-    """The curve of every view that the model has the signals for, those that explain most first."""
-    drawn = each(lambda view: curve(found, view), views(found.preset))
+def curves_of(found: Traces, view: str | None = None) -> tuple[Curve, ...]:
+    """The curve of every view that the model has the signals for, those that explain most first; or of one."""
+    known = views(found.preset)
+    wanted = [one for one in known if one.name == view] or known  # an unknown name is refused by who draws
+    drawn = each(lambda one: curve(found, one), wanted)
     return tuple(sorted((c for c in drawn if c is not None), key=lambda c: -c.explained))
 
 
@@ -165,10 +171,14 @@ def _basis(view: View, signals: Mapping[str, Array], knots: Array) -> Array:
     return hats * signals[view.relative][:, None] if view.relative else hats
 
 
-def _columns(trace: Trace, signals: Mapping[str, Array], view: View, knots: Array, path: Response) -> Array:
-    """[T*h, J, r] without their means, each over the residual's size, (n, knots + p + 1)."""
+def _columns(
+    trace: Trace, signals: Mapping[str, Array], view: View, knots: Array, path: Response, band: Band | None
+) -> Array:
+    """[T*h, J, r] without their means and what is out of the band, each over the residual's size, (n, knots+p+1)."""
     answers = path.only(1).to(_basis(view, signals, knots))[:, :, 0]
     columns = np.column_stack([answers, trace.sensitivities, trace.residual])
+    if band is not None:
+        columns = within(columns, trace.rate, *band)
     columns -= columns.mean(axis=0)
     return np.asarray(columns / max(float(np.std(columns[:, -1])), 1e-300))
 
@@ -177,7 +187,7 @@ def _normal(
     found: Traces, view: View, knots: Array, paths: Sequence[Response], now: Sequence[Mapping[str, Array]]
 ) -> _Normal:
     def of_run(i: int) -> Array:
-        rows = _columns(found.runs[i], now[i], view, knots, paths[i])
+        rows = _columns(found.runs[i], now[i], view, knots, paths[i], found.band)
         return np.array([part.T @ part for part in np.array_split(rows, _BLOCKS)])
 
     blocks = np.concatenate(each(of_run, range(len(now))))

@@ -24,6 +24,8 @@ from ident.residuals.views import View, injected, showing
 from ident.simulate import Simulation
 
 Array = NDArray[np.float64]
+Band = tuple[float | None, float | None]
+"""Lower and upper frequency (Hz), None where it is open."""
 Item = TypeVar("Item")
 Outcome = TypeVar("Outcome")
 _MOST = 400_000  # coarse samples of all runs together; records are cut to their beginnings
@@ -52,7 +54,7 @@ class Trace:
 
 @dataclass(frozen=True)
 class Traces:
-    """All runs; `values` are those of the fit under the equations' names."""
+    """All runs; `values` are those of the fit under the equations' names, `band` all that counts of a residual."""
 
     preset: Preset
     actuator: Actuator
@@ -60,6 +62,7 @@ class Traces:
     chain: Chain
     runs: tuple[Trace, ...]
     parameters: tuple[str, ...]
+    band: Band | None = None
 
     @property
     def units(self) -> Mapping[str, str]:

@@ -10,6 +10,7 @@ import ast
 from dataclasses import dataclass, replace
 
 from ident.chain import FORCE, INPUT, INPUT_RATE, Chain
+from ident.effect import Effect
 from ident.expression import Equation
 from ident.presets import Preset
 
@@ -49,6 +50,11 @@ VIEWS = (
     View("tracking", "v", "v", "Missing speed", "Speed", "what a single lag does not follow"),
 )  # fmt: skip
 """What engineers look for, in the order of the signal."""
+_SEEN = {
+    "w": "spool", "Ff": "friction", "R": "friction", "S": "spring", "xk": "spring", "xL": "spring",
+    "Q": "pressure-flow", "L": "leakage", "Ke": "leakage", "X": "frame",
+}  # fmt: skip
+"""By the signal that an effect redefines, the view in which that shows."""
 
 
 def views(preset: Preset) -> tuple[View, ...]:
@@ -60,6 +66,13 @@ def views(preset: Preset) -> tuple[View, ...]:
         return where is not None and not where.is_rate and set(view.signals) <= equations.keys()
 
     return tuple(view for view in VIEWS if fits(view))
+
+
+def view_of(effect: Effect, preset: Preset) -> View | None:
+    """The view in which an effect of this model shows itself; None where it is no function of one signal."""
+    targets = {equation.target for equation in effect.equations}
+    name = next((name for signal, name in _SEEN.items() if signal in targets), None)
+    return next((view for view in views(preset) if view.name == name), None)
 
 
 def showing(chain: Chain, signals: tuple[str, ...]) -> Chain:

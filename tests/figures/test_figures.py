@@ -82,7 +82,7 @@ def test_all_84_runs_become_one_column_a_gain_with_shared_scales(matrix, fit):
     spec = drawn("bode", matrix, fit, use="all")
     headings = [panel["title"]["text"] for panel in spec["concat"] if "title" in panel]
     assert headings == ["Kp 5", "Kp 6", "Kp 7", "Kp 10"]
-    magnitudes = [panel["layer"][0]["encoding"]["y"]["scale"]["domain"] for panel in spec["concat"][:4]]
+    magnitudes = [panel["layer"][1]["encoding"]["y"]["scale"]["domain"] for panel in spec["concat"][:4]]
     assert all(domain == magnitudes[0] for domain in magnitudes)
 
 

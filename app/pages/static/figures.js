@@ -1,6 +1,7 @@
 // Figures of a fit: the same Vega-Lite definition that the service draws as SVG, PNG and PDF, made live.
 // The content security policy forbids eval, so Vega runs with its expression interpreter (ast: true).
 
+import { pick, picked } from "./pick.js";
 import { currentTheme } from "./theme-now.js";
 
 let vega;
@@ -10,40 +11,94 @@ function loadVega(address) {
   return vega;
 }
 
+const CONDITIONS = ["kp", "amplitude", "specimen", "use"];
+
 function query(figure) {
-  const wanted = new URLSearchParams();
-  for (const [name, value] of new FormData(figure.querySelector("form"))) if (value !== "") wanted.append(name, value);
+  const wanted = new URLSearchParams(figure.dataset.fixed);
+  const form = figure.querySelector("form");
+  const chosen = Object.entries(picked()).filter(([name]) => (figure.dataset.picked ?? "").split(" ").includes(name));
+  // One run leaves nothing to choose by its conditions, but on the map, where it is only marked.
+  const one = figure.id !== "figure-residual-map" && chosen.some(([name, value]) => name === "run" && value);
+  for (const name of CONDITIONS) if (form?.elements[name]) form.elements[name].disabled = one;
+  for (const [name, value] of [...(form ? new FormData(form) : []), ...chosen]) if (value !== "") wanted.append(name, value);
   wanted.set("theme", currentTheme());
   return wanted;
+}
+
+// True where the figure that is there could follow by its own signals, at once, without the service.
+function moved(figure, wanted) {
+  if (!figure.view || figure.dataset.drawn === undefined) return false;
+  const before = new URLSearchParams(figure.dataset.drawn);
+  const changed = [...new Set([...before.keys(), ...wanted.keys()])].filter((name) => before.get(name) !== wanted.get(name));
+  if (!changed.every((name) => figure.signals.has(name))) return false;
+  for (const name of changed) figure.view.signal(name, name === "run" ? wanted.get(name) ?? "" : Number(wanted.get(name)));
+  figure.view.run();
+  return true;
 }
 
 async function draw(figure) {
   const plot = figure.querySelector(".plot");
   const wanted = query(figure);
   const note = figure.querySelector("[role=status]");
+  const hand = wanted.toString();
   for (const link of figure.querySelectorAll("a[data-format]")) {
     link.href = `${figure.dataset.url}.${link.dataset.format}?${wanted}`;
   }
   const turn = (figure.turn = (figure.turn ?? 0) + 1);
+  if (moved(figure, wanted)) {
+    figure.dataset.drawn = hand;
+    plot.setAttribute("aria-busy", "false");
+    return;
+  }
   plot.setAttribute("aria-busy", "true");
   note.textContent = "";
   try {
-    const answer = await fetch(`${figure.dataset.url}.json?${wanted}`, { credentials: "same-origin" });
+    const answer = await fetch(`${figure.dataset.url}.json?${wanted}&share=${figure.dataset.share}`, { credentials: "same-origin" });
     const spec = await answer.json();
     if (!answer.ok) throw new Error([spec.what ?? spec.detail ?? spec.title, spec.remedy].filter(Boolean).join("; "));
     const embed = await loadVega(figure.dataset.vega);
     if (turn !== figure.turn) return;
     figure.view?.finalize();
+    figure.view = undefined;
     const made = await embed(plot, spec, {
       ast: true, renderer: "canvas", actions: false, defaultStyle: false, tooltip: { disableDefaultStyle: true },
     });
-    figure.view = made;
-    figure.dataset.drawn = wanted;
+    if (turn !== figure.turn) return made.view.finalize();
+    figure.view = made.view;
+    figure.signals = new Set((spec.params ?? []).map(({ name }) => name));
+    figure.dataset.drawn = hand;
+    listen(figure);
   } catch (error) {
     if (turn === figure.turn) note.textContent = `This figure cannot be drawn: ${error.message}.`;
   } finally {
     if (turn === figure.turn) plot.setAttribute("aria-busy", "false");
   }
+}
+
+// A square that is clicked, a band that is drawn: both are picked out for every figure.
+function listen(figure) {
+  if (!figure.dataset.picked) return;
+  const { view } = figure;
+  let band, brushed = false;
+  view.addEventListener("mousedown", () => (brushed = false));
+  view.addEventListener("click", (event, item) => {
+    const { r: run, f: low, g: high } = item?.datum ?? {};
+    if (!run || brushed || figure.id !== "figure-residual-map") return;
+    pick(low === undefined ? { run } : { run, low: short(low), high: short(high) });
+  });
+  if (!figure.signals.has("brush")) return;
+  view.addSignalListener("brush", (_, value) => (band = Object.values(value).find(Array.isArray)));
+  figure.querySelector(".plot").onpointerup = () => setTimeout(() => {
+    if (!band) return;
+    const [low, high] = band.map(short);
+    [band, brushed] = [undefined, true];
+    view.data("brush_store", []).run();
+    if (low < high) pick({ low, high });
+  });
+}
+
+function short(frequency) {
+  return Number(frequency.toPrecision(3));
 }
 
 const figures = [...document.querySelectorAll(".figure")];
@@ -60,30 +115,39 @@ function show(tab) {
   if (figure.dataset.drawn !== String(query(figure))) draw(figure);
 }
 
+function choose(tab) {
+  show(tab);
+  pick({ figure: tab.id.replace("tab-", "") });
+}
+
 for (const [place, tab] of tabs.entries()) {
-  tab.addEventListener("click", () => show(tab));
+  tab.addEventListener("click", () => choose(tab));
   tab.addEventListener("keydown", (event) => {
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
     if (!step) return;
     const next = tabs[(place + step + tabs.length) % tabs.length];
     next.focus();
-    show(next);
+    choose(next);
   });
 }
 
-for (const figure of figures) {
-  figure.querySelector("form").addEventListener("change", () => draw(figure));
-  figure.querySelector("form").addEventListener("submit", (event) => {
+for (const form of figures.map((figure) => figure.querySelector("form")).filter(Boolean)) {
+  form.addEventListener("change", () => draw(form.closest(".figure")));
+  form.addEventListener("submit", (event) => {
     event.preventDefault();
-    draw(figure);
+    draw(form.closest(".figure"));
   });
 }
 
-document.addEventListener("themechange", () => {
-  for (const figure of figures) if (!figure.hidden && figure.turn) draw(figure);
-});
+for (const name of ["themechange", "picked"]) {
+  document.addEventListener(name, () => {
+    for (const figure of figures) {
+      if (!figure.hidden && figure.turn && figure.dataset.drawn !== String(query(figure))) draw(figure);
+    }
+  });
+}
 
-if (tabs.length) show(tabs[0]);
+if (tabs.length) show(tabs.find((tab) => tab.id === `tab-${picked().figure}`) ?? tabs[0]);
 
 // A figure without a tab is drawn when it comes near to sight.
 const near = new IntersectionObserver((entries) => {

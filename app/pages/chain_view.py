@@ -1,0 +1,116 @@
+"""The chain of a fitted model as a drawing: its places, what each hands on, the effects that live there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from app.pages.diagnosis_view import Member, member
+from ident.custom import HANDED_ON, preset_with, read_effect
+from ident.effects import EFFECTS
+from ident.errors import Unusable
+from ident.fit.result import FitResult
+
+_STEP, _WIDTH, _TOP, _LINE = 136, 108, 34, 15  # px of the drawing
+_LETTERS = 17  # that fit into a box
+_BACK = (("P", "pressure", "flow"), ("v", "load", "pressure"), ("y", "sensor", "controller"))
+"""What runs back against the chain: signal, from, to."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A place: where it is drawn, the signal that it hands on, its effects that are on and those that could be."""
+
+    name: str
+    x: int
+    signal: str
+    on: tuple[Member, ...]
+    off: tuple[Member, ...]
+
+    @property
+    def label(self) -> str:
+        """The place for a reader who does not see the drawing."""
+        on = ", ".join(one.title for one in self.on) or "none"
+        return f"{self.name}: switched on {on}; {len(self.off)} more to add"
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """What is written into the box: the effects that are on, shortened to it."""
+        names = [one.title if len(one.title) <= _LETTERS else f"{one.title[: _LETTERS - 1]}…" for one in self.on]
+        return (*names[:2], f"and {len(names) - 2} more") if len(names) > 3 else tuple(names)
+
+
+@dataclass(frozen=True)
+class Feedback:
+    """A signal that runs back, as the corners of its line and of its arrow's tip."""
+
+    signal: str
+    path: str
+    tip: str
+    x: float
+    y: float
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """The whole drawing and its size."""
+
+    places: tuple[Place, ...]
+    back: tuple[Feedback, ...]
+    box: int
+    width: int
+    height: int
+    step: int = _STEP
+    wide: int = _WIDTH
+    top: int = _TOP
+    line: int = _LINE
+
+
+def drawing(fit: FitResult) -> Drawing:
+    """The chain of a fit with its effects."""
+    own = {str(definition["name"]): definition for definition in fit.settings.get("custom", ())}
+    model = preset_with(fit.model, fit.effects, tuple(own.values()))
+    names = tuple(dict.fromkeys(stage.place for stage in model.chain.stages))
+    on, off = tuple(_on(fit, own)), tuple(_off(fit))
+    places = tuple(
+        Place(
+            name=name, x=10 + _STEP * number, signal=HANDED_ON.get(name, ""),
+            on=tuple(one for one in on if one.place == name), off=tuple(one for one in off if one.place == name),
+        )
+        for number, name in enumerate(names)
+    )  # fmt: skip
+    box = 30 + _LINE * max(2, *(len(place.lines) for place in places))
+    back = tuple(_back(places, _TOP + box))
+    return Drawing(places, back, box, _STEP * len(places) + 10, _TOP + box + 22 * len(back) + 18)
+
+
+def _on(fit: FitResult, own: Mapping[str, Any]) -> Iterator[Member]:
+    """The effects of the fit with the strengths that were found."""
+    known = {effect.name: effect for effect in EFFECTS}
+    parameters = {name: vars(entry) for name, entry in fit.parameters.items()}
+    for name in fit.effects:
+        effect = known[name] if name in known else read_effect(own[name])
+        yield member(name, effect, parameters, own.get(name))
+
+
+def _off(fit: FitResult) -> Iterator[Member]:
+    """The effects of the catalogue that this model can take."""
+    for effect in EFFECTS:
+        if effect.name in fit.effects:
+            continue
+        try:
+            preset_with(fit.model, (effect.name,))
+        except Unusable:
+            continue  # it acts on what this model has not
+        yield member(effect.name, effect, {}, None)
+
+
+def _back(places: tuple[Place, ...], below: int) -> Iterator[Feedback]:
+    """Lines under the boxes, the longest one lowest; those of neighbours leave room for each other."""
+    at = {place.name: place.x for place in places}
+    for level, (signal, start, end) in enumerate(each for each in _BACK if {each[1], each[2]} <= at.keys()):
+        y, aside = below + 18 + 22 * level, 0.15 if end != "controller" else 0.0
+        x0, x1 = at[start] + _WIDTH * (0.5 - aside), at[end] + _WIDTH * (0.5 + aside)
+        path, tip = f"M{x0:g} {below}V{y}H{x1:g}V{below + 6}", f"M{x1:g} {below}l-4 7h8z"
+        yield Feedback(signal, path, tip, (x0 + x1) / 2, y)

@@ -1,0 +1,144 @@
+"""Two fits side by side: errors, parameters and runs, each with what changed from the first to the second."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from app.pages import numbers
+from app.pages.diagnosis_view import title, with_error
+from app.pages.figure_forms import FigureForm, forms
+from ident.fit.result import Estimate, FitResult
+from ident.presets import preset
+from schemas.fit import FitView
+from schemas.matrix import MatrixView
+
+
+@dataclass(frozen=True)
+class Side:
+    """One of the two fits."""
+
+    id: str
+    serial: str
+    matrix: str
+    name: str
+    method: str
+    seed: int
+    made: str
+    current: bool
+
+
+@dataclass(frozen=True)
+class Compared:
+    """One quantity in both fits, as text; `sure` where the change is more than its uncertainty."""
+
+    name: str
+    meaning: str
+    first: str
+    second: str
+    change: str
+    sure: str = ""
+
+
+@dataclass(frozen=True)
+class ComparedRun:
+    """A run's error in both fits, fractions; None where a fit has not seen it."""
+
+    id: str
+    use: str
+    first: float | None
+    second: float | None
+    change: float | None
+
+
+@dataclass(frozen=True)
+class CompareView:
+    """What the page shows; `figures` of the second fit take the first one as candidate, where the data are the same."""
+
+    first: Side
+    second: Side
+    errors: tuple[Compared, ...]
+    parameters: tuple[Compared, ...]
+    runs: tuple[ComparedRun, ...]
+    figures: tuple[FigureForm, ...]
+
+    @property
+    def id(self) -> str:
+        """The fit that the figures are of."""
+        return self.first.id
+
+    @property
+    def serial(self) -> str:
+        """Its actuator, for the names of downloads."""
+        return self.first.serial
+
+
+def compare_view(first: FitView, second: FitView, matrix: MatrixView) -> CompareView:
+    """The page of two fits; `matrix` is that of the first."""
+    a, b = FitResult.from_json(first.result), FitResult.from_json(second.result)
+    known = {run.id for run in matrix.runs}
+    same = first.matrix == second.matrix or {run.id for run in b.runs} == known
+    figures = tuple(form for form in forms(matrix.runs, a) if form.name == "bode") if same else ()
+    return CompareView(
+        first=_side(first, a), second=_side(second, b), errors=tuple(_errors(a, b)),
+        parameters=tuple(_parameters(a, b)), runs=tuple(_runs(a, b)), figures=figures,
+    )  # fmt: skip
+
+
+def _side(stored: FitView, fit: FitResult) -> Side:
+    name = " + ".join((preset(fit.model).title, *map(title, fit.effects)))
+    return Side(stored.id, stored.serial, stored.matrix, name, fit.method, fit.seed, stored.created_at, stored.current)
+
+
+def _errors(a: FitResult, b: FitResult) -> Iterator[Compared]:
+    for use in ("fit", "held_out", "verify"):
+        for name, first, second in (("error", a.error, b.error), ("offset", a.offset, b.offset)):
+            one, other = first.get(use), second.get(use)
+            if one is None and other is None:
+                continue
+            meaning = f"{title(use)} runs, {name}"
+            yield Compared("", meaning, numbers.percent(one), numbers.percent(other), _percent(one, other))
+
+
+def _percent(one: float | None, other: float | None) -> str:
+    """By how much of itself a number changed."""
+    if not one or other is None or one * other < 0:
+        return "–"
+    change = round(100 * (other / one - 1), 1) or 0.0  # never a minus before nothing
+    return f"{numbers.fixed(change, 1)} %"
+
+
+def _parameters(a: FitResult, b: FitResult) -> Iterator[Compared]:
+    for name in dict.fromkeys((*a.parameters, *b.parameters)):
+        one, other = a.parameters.get(name), b.parameters.get(name)
+        known = one or other
+        if known is None:
+            continue
+        effect, dot, _ = name.partition(".")
+        meaning = f"{title(effect)}: {known.meaning}" if dot else known.meaning
+        change = _percent(one.value, other.value) if one and other else "–"
+        symbol = numbers.symbol(name, known.symbol)
+        yield Compared(symbol, meaning, _value(one, "off" if dot else "–"), _value(other, "off" if dot else "–"),
+                       change, _sure(one, other))  # fmt: skip
+
+
+def _value(entry: Estimate | None, without: str) -> str:
+    return without if entry is None else with_error(entry.value, entry.std_error, entry.unit)
+
+
+def _sure(one: Estimate | None, other: Estimate | None) -> str:
+    """The change in standard errors of the difference, as if the two were independent."""
+    if one is None or other is None or one.std_error is None or other.std_error is None:
+        return "–"
+    both = math.hypot(one.std_error, other.std_error)
+    return numbers.plain(abs(other.value - one.value) / both, 3) if both else "–"
+
+
+def _runs(a: FitResult, b: FitResult) -> Iterator[ComparedRun]:
+    first, second = ({run.id: run for run in fit.runs} for fit in (a, b))
+    for name in dict.fromkeys((*first, *second)):
+        one, other = first.get(name), second.get(name)
+        use = (one or other).use  # type: ignore[union-attr]  # it is in one of the two
+        change = other.error / one.error - 1 if one and other and one.error else None
+        yield ComparedRun(name, use, one.error if one else None, other.error if other else None, change)
