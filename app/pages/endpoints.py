@@ -38,6 +38,12 @@ def matrix(request: Request, here: Here, matrix: str, cursor: str | None = None)
     return page(request, "matrix.html", **service.matrix(here, matrix, cursor))
 
 
+@router.get("/matrices/{matrix}/thumbnails/{place}.svg")
+def thumbnail(here: Here, matrix: str, place: int) -> Response:
+    """A run at a glance; the samples of a matrix never change, so that a browser may keep it."""
+    return Response(service.thumbnail(here, matrix, place), media_type="image/svg+xml", headers=assets.OWN)
+
+
 @router.get("/jobs")
 def jobs(request: Request, here: Here, cursor: str | None = None) -> HTMLResponse:
     """Jobs, newest first."""

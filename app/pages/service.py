@@ -18,14 +18,14 @@ from app.pages.fit_view import parameter_rows
 from app.pages.job_view import JobPageView, job_page
 from app.pages.matrix_view import counted, matrix_view
 from app.pages.numbers import quantity
+from app.pages.start_view import start_view
+from app.pages.thumbnails import thumbnail
 from app.parameters import service as parameters
 from app.parameters.repository import Wanted
-from ident.effects import EFFECTS
 from ident.fit.result import FitResult
-from ident.fit.settings import METHODS
-from ident.presets import PRESETS
-from ident.stages import PLACES
 from schemas.parameters import ActuatorView
+
+__all__ = ["actuator", "actuator_list", "fit", "job_list", "matrix", "thumbnail"]
 
 Shown = dict[str, Any]
 _ROWS = 50  # of a table before its next page
@@ -76,11 +76,10 @@ def _approved(context: Context, found: ActuatorView) -> Any:
 
 def matrix(context: Context, matrix_id: str, cursor: str | None) -> Shown:
     """Findings, runs, what a fit may choose, and the fits of this matrix; raises Failure 404."""
+    stored = matrices.get(context, matrix_id)
     return {
-        "matrix": matrix_view(matrices.get(context, matrix_id)),
-        "models": [(preset.name, preset.title) for preset in PRESETS.values()],
-        "methods": METHODS,
-        "effects": [(place, [e for e in EFFECTS if e.place == place]) for place in PLACES],
+        "matrix": matrix_view(stored),
+        "start": start_view(stored),
         **_fits(context, cursor, matrix=matrix_id),
     }
 
