@@ -15,9 +15,11 @@ router = APIRouter(include_in_schema=False, route_class=PageRoute)
 
 
 @router.get("/")
-def actuators(request: Request, here: Here, q: str = "", cursor: str | None = None) -> HTMLResponse:
-    """Actuators, searched by serial number, name or batch."""
-    return page(request, "actuators.html", **service.actuator_list(here, q.strip(), cursor))
+def actuators(
+    request: Request, here: Here, q: str = "", drift: str = "error", cursor: str | None = None
+) -> HTMLResponse:
+    """Actuators, searched by serial number, name or batch, with the drift of the error or of a parameter."""
+    return page(request, "actuators.html", **service.actuator_list(here, q.strip(), drift, cursor))
 
 
 @router.get("/actuators/{serial:path}")
