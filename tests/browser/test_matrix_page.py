@@ -57,6 +57,23 @@ def test_a_wrong_unit_is_mended_in_place_for_all_runs(page, watch, site, tmp_pat
     expect(page.get_by_text("No fault, no doubt")).to_be_visible()
 
 
+def test_a_sign_is_turned_round_and_back(page, site, tmp_path):
+    archive = tmp_path / "matrix.zip"
+    archive.write_bytes(archived(files("SW-SIGN")))
+    story.upload(page, site, archive)
+    for turned in (True, False):
+        before = page.url
+        page.locator("#run-2").get_by_role("button", name="Mend").click()
+        sign = page.get_by_role("dialog").locator("tr[data-channel=displacement]").get_by_role("checkbox")
+        expect(sign).to_be_checked(checked=not turned)
+        sign.set_checked(turned)
+        page.get_by_role("button", name="Make the revision").click()
+        expect(page).not_to_have_url(before)
+        expect(page.locator("h1")).to_have_text("Test matrix of SW-SIGN")
+        stored = site.client.get(f"/matrices/{page.url.rpartition('/')[2]}/description").json()["runs"][2]
+        assert stored["channels"]["displacement"]["invert"] == str(turned).lower()
+
+
 @pytest.mark.usefixtures("running")
 def test_a_fit_takes_what_is_chosen(page, site, matrix):
     page.goto(f"{site.address}/matrices/{matrix}")

@@ -176,6 +176,26 @@ def test_the_whole_way_from_upload_to_approval(page, site, tmp_path):
     page.goto(f"{site.address}/?q=SW-NEW")
     expect(page.locator("tbody tr")).to_contain_text("approved")
     expect(page.locator("tbody tr")).to_contain_text("Z₀")
+    expect(page.locator("tbody tr")).to_contain_text("one set or none")
+
+
+def test_drift_is_seen_once_a_second_set_is_approved(page, site, screenshots):
+    stored = site.client.post("/matrices", files={"files": ("matrix.zip", zipped("SW-DRIFT"))}).json()
+    for seed, bounds in enumerate(({}, {"tau": ["3.7 ms", "4 ms"]}, {"tau": ["3.65 ms", "4 ms"]})):
+        fit = site.fit(stored["id"], seed=seed, bounds=bounds)
+        assert site.ended(fit)["state"] == "succeeded"
+        assert site.client.post(f"/fits/{fit}/approve").status_code == 200
+    page.goto(f"{site.address}/?q=SW-DRIFT")
+    page.get_by_label("Drift of").select_option("tau")
+    page.get_by_role("button", name="Search").click()
+    expect(page.locator("svg.spark")).to_have_accessible_name(
+        re.compile("^τ over 3 approved sets, from .* ms to .* ms, ")
+    )
+    everywhere(page, screenshots, "drift")
+    page.get_by_role("link", name="SW-DRIFT").click()
+    expect(page.get_by_role("heading", name="Drift over the approved sets")).to_be_visible()
+    expect(page.locator("svg.spark")).to_have_count(7)
+    everywhere(page, screenshots, "drifts")
 
 
 def test_a_waiting_fit_can_be_cancelled(page, site, matrix):

@@ -12,6 +12,8 @@ let description, run;
 const inside = (data, path) => path.split(".").reduce((found, name) => found?.[name], data);
 const text = (value) => (value === undefined || value === null ? "" : String(value));
 
+const inverted = (channel) => ["true", "yes"].includes(text(channel.invert).toLowerCase()); // a description holds words, but for whole numbers
+
 function fill(entry) {
   run = entry;
   form.querySelector("[data-id]").textContent = entry.id;
@@ -28,7 +30,7 @@ function row(name, channel) {
   made.querySelector("th").textContent = name.replaceAll("_", " ");
   unit.setAttribute("aria-label", `Unit of ${name}`);
   unit.value = text(channel.unit);
-  invert.checked = channel.invert === true;
+  invert.checked = inverted(channel);
   return made;
 }
 
@@ -43,7 +45,7 @@ function changes() {
     const [unit, invert] = each.querySelectorAll("input");
     const name = each.dataset.channel, before = run.channels[name];
     if (unit.value.trim() !== text(before.unit)) put(found, `channels.${name}.unit`, unit.value.trim() || null);
-    if (invert.checked !== (before.invert === true)) put(found, `channels.${name}.invert`, invert.checked);
+    if (invert.checked !== inverted(before)) put(found, `channels.${name}.invert`, invert.checked);
   }
   return found;
 }
