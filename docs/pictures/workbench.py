@@ -60,7 +60,8 @@ def photograph(page: Page, service: Service, archive: Path) -> None:
 
 def first_cards(page: Page) -> bytes:
     """The verdict and the first row of cards: the rest is more of the same."""
-    whole, card = page.locator("#missing").bounding_box(), page.locator(".card").first.bounding_box()
+    page.evaluate("scrollTo(0, 0)")
+    whole, card = page.locator("#missing").bounding_box(), page.locator(".cards > .card").first.bounding_box()
     assert whole is not None
     assert card is not None
     return page.screenshot(full_page=True, clip={**whole, "height": card["y"] + card["height"] + 8 - whole["y"]})

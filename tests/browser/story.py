@@ -35,7 +35,7 @@ def search(page: Page, searching: Path | None = None, patience: float = LONG) ->
     expect(page.locator("#missing [data-stage]")).to_have_text(re.compile("trying|confirming"), timeout=patience)
     if searching is not None:
         page.locator("#missing").screenshot(path=searching)
-    card = page.locator(".card").first
+    card = page.locator(".card").filter(has=page.get_by_role("button", name="Add it")).first
     expect(card).to_be_visible(timeout=patience)
     expect(page.locator("#missing-title")).to_be_focused()
     return card
