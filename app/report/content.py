@@ -64,9 +64,9 @@ def _error(fit: FitResult, budget: Budget | None) -> Iterator[Block]:
 def _parameters(fit: FitResult) -> Iterator[Block]:
     yield Heading("Parameters")
     header = ("Symbol", "Meaning", "Value", "Std error", "Unit", "Relative", "Lower", "Upper", "Remark")
+    known = parameter_rows(fit)
     rows = tuple(
-        (p.symbol, p.meaning, p.value, p.std_error, p.unit, p.relative, p.lower, p.upper, p.remark)
-        for p in parameter_rows(fit)
+        (p.symbol, p.meaning, p.value, p.std_error, p.unit, p.relative, p.lower, p.upper, p.remark) for p in known
     )
     yield Table(header, rows, (2, 3, 5, 6, 7))
     if fit.determined:
@@ -78,7 +78,8 @@ def _parameters(fit: FitResult) -> Iterator[Block]:
         yield Table(("Combination", "Value", "Relative std error"), combined, (1, 2))
     if fit.undetermined:
         yield Heading("Not determined", 3)
-        yield Facts(tuple((entry.name, entry.reason) for entry in fit.undetermined))
+        symbols = {p.name: p.symbol for p in known}
+        yield Facts(tuple((symbols.get(entry.name, entry.name), entry.reason) for entry in fit.undetermined))
     if fit.notes:
         yield Heading("Notes", 3)
         yield from map(Text, fit.notes)
