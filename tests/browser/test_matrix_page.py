@@ -101,3 +101,19 @@ def test_a_dropped_folder_is_uploaded_with_its_paths(page, site):
     expect(page.locator("[data-chosen]")).to_contain_text("13 files")
     page.get_by_role("button", name="Upload").click()
     expect(page.locator("h1")).to_have_text("Test matrix of SW-DROP")
+
+
+def test_an_upload_shows_how_far_it_is(page, site, tmp_path):
+    archive = tmp_path / "matrix.zip"
+    archive.write_bytes(archived(files("SW-SLOW")))
+    held = []
+    page.route("**/api/v1/matrices", lambda route: held.append(route))  # noqa: PLW0108  playwright wants a function
+    page.goto(f"{site.address}/upload")
+    bar = page.get_by_role("progressbar", name="Progress of the upload")
+    expect(bar).to_be_hidden()
+    page.get_by_label("A zip, or matrix.yaml and files").set_input_files(archive)
+    page.get_by_role("button", name="Upload").click()
+    expect(bar).to_be_visible()
+    expect(page.locator("[data-stage]")).to_contain_text("sent")
+    held[0].continue_()
+    expect(page.locator("h1")).to_have_text("Test matrix of SW-SLOW")
