@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import io
-import zipfile
 from functools import lru_cache
 from pathlib import Path
 
-from tests.app.conftest import packed
+from tests.app.conftest import archived, packed
 from tests.reference import nonlinear_reference as reference
 from tests.reference import qian_reference as linear
 
@@ -27,11 +25,7 @@ def files(serial: str = "DZ-1") -> dict[str, bytes]:
 @lru_cache
 def zipped(serial: str = "DZ-1") -> bytes:
     """The same as one archive."""
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w") as archive:
-        for name, content in files(serial).items():
-            archive.writestr(name, content)
-    return buffer.getvalue()
+    return archived(files(serial))
 
 
 def write(folder: Path, serial: str = "DZ-1") -> Path:

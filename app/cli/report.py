@@ -14,15 +14,17 @@ from ident.errors import Unusable
 
 def report(
     matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")],
-    out: Annotated[Path, typer.Option(metavar="FILE", help="The report, an .html file.")],
+    out: Annotated[Path, typer.Option(metavar="FILE", help="The report, an .html or .pdf file.")],
     fit: Annotated[Path | None, typer.Option(metavar="FIT.json", help="Without it the default fit is made.")] = None,
     diagnosis: Annotated[
         Path | None, typer.Option(metavar="D.json", help="What `servoident diagnose --json` wrote.")
     ] = None,
 ) -> None:
-    """Write one HTML file with data, error, parameters, figures and diagnosis; it opens without a network."""
-    if out.suffix.lower() not in (".html", ".htm"):
-        raise Unusable("unknown-format", f"no report as {out.suffix or out.name!r}", "--out", "name a file in .html")
+    """Write one HTML or PDF file with data, error, parameters, figures and diagnosis; it opens without a network."""
+    if out.suffix.lower() not in (".html", ".htm", ".pdf"):
+        raise Unusable(
+            "unknown-format", f"no report as {out.suffix or out.name!r}", "--out", "name a file in .html or .pdf"
+        )
     check_target(out)
     result = None if fit is None else read_fit(fit)
     from app.cli.progress import shown
@@ -37,5 +39,10 @@ def report(
     if result is None:
         with shown() as progress:
             result = identify(read, Settings(), progress)
-    write_bytes(document(read, result, found).encode(), out)
+    if out.suffix.lower() == ".pdf":
+        from app.report.paper import paper
+
+        write_bytes(paper(read, result, found), out)
+    else:
+        write_bytes(document(read, result, found).encode(), out)
     print(f"wrote {out}")

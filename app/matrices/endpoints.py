@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 from fastapi.concurrency import run_in_threadpool
@@ -80,6 +80,12 @@ def listed(
 def one(here: Here, matrix: str) -> MatrixView:
     """A matrix, its runs and what the check found."""
     return service.get(here, matrix)
+
+
+@router.get("/{matrix}/description")
+def description(here: Here, matrix: str) -> dict[str, Any]:
+    """What a revision changes: matrix.yaml as it stands, as JSON."""
+    return service.description(here, matrix)
 
 
 @router.post("/{matrix}/revisions", status_code=201, response_model=MatrixView,

@@ -82,8 +82,7 @@ def _record(context: Context, staged: Storage, source: dict[str, Any], parent: s
 def revise(context: Context, matrix: str, revision: Revision) -> tuple[MatrixView, bool]:
     """A new matrix with other labels, units or signs and the same raw bytes."""
     row = find(context, matrix)
-    with opened(context.storage, row.source) as files:
-        description = read_yaml(files.read(DESCRIPTION, LIMITS.description), DESCRIPTION)
+    description = _described(context, row)
     _merge(description["actuator"], revision.actuator)
     runs = {str(run["id"]): run for run in description["runs"]}
     for name, changes in revision.runs.items():
@@ -95,6 +94,18 @@ def revise(context: Context, matrix: str, revision: Revision) -> tuple[MatrixVie
     with context.storage.staged() as staged:
         sha256 = staged.put(io.BytesIO(_yaml(description)))
         return _record(context, staged, {**row.source, "description": sha256}, matrix)
+
+
+def description(context: Context, matrix: str) -> dict[str, Any]:
+    """What a revision changes: matrix.yaml as it stands; raises Failure 404."""
+    return _described(context, find(context, matrix))
+
+
+def _described(context: Context, row: MatrixRow) -> dict[str, Any]:
+    """The description of a recorded matrix."""
+    with opened(context.storage, row.source) as files:
+        found: dict[str, Any] = read_yaml(files.read(DESCRIPTION, LIMITS.description), DESCRIPTION)
+    return found
 
 
 def _yaml(description: dict[str, Any]) -> bytes:

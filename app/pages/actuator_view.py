@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from app.pages import numbers
+from app.pages.sparkline import ERROR, Drift, drift
 from ident.errors import Unusable
 from ident.presets import preset
 from schemas.fit import JobView
@@ -25,6 +26,7 @@ class ActuatorRow:
     error_fit: float | None
     error_verify: float | None
     parameters: tuple[tuple[str, str], ...]
+    drift: Drift | None
     made: str | None
 
 
@@ -43,8 +45,11 @@ class FitRow:
     made: str
 
 
-def actuator_row(actuator: ActuatorView, newest: ParameterSetView | None, job: JobView | None) -> ActuatorRow:
-    """The row of an actuator; `job` is one that waits or runs for it."""
+def actuator_row(
+    actuator: ActuatorView, newest: ParameterSetView | None, job: JobView | None,
+    approved: Sequence[ParameterSetView] = (), drifting: str = ERROR,
+) -> ActuatorRow:  # fmt: skip
+    """The row of an actuator; `job` is one that waits or runs for it, `drifting` what is followed over `approved`."""
     shown = actuator.current or newest
     state, text = _state(actuator, newest, job)
     return ActuatorRow(
@@ -57,6 +62,7 @@ def actuator_row(actuator: ActuatorView, newest: ParameterSetView | None, job: J
         error_fit=shown.error_fit if shown else None,
         error_verify=shown.error_verify if shown else None,
         parameters=_parameters(shown) if shown else (),
+        drift=drift(approved, drifting, drifting if shown is None else _symbol(shown.model, drifting)),
         made=newest.created_at if newest else None,
     )
 
@@ -69,6 +75,22 @@ def _state(actuator: ActuatorView, newest: ParameterSetView | None, job: JobView
     if actuator.current is not None:
         return "approved", "approved"
     return ("succeeded", "fitted, not approved") if newest is not None else ("queued", "no fit yet")
+
+
+def followed(approved: Mapping[str, Sequence[ParameterSetView]]) -> tuple[tuple[str, str], ...]:
+    """What can be followed over these sets, as query and as words: the error first."""
+    sets = [entry for each in approved.values() for entry in each]
+    symbols = {name: _symbol(entry.model, name) for entry in sets for name in entry.parameters}
+    return ((ERROR, "error, verify runs"), *symbols.items())
+
+
+def drifts(sets: Sequence[ParameterSetView], model: str) -> tuple[tuple[str, Drift], ...]:
+    """The error and each parameter that the approved sets of one model have had at least twice."""
+    alike = [entry for entry in sets if entry.model == model]
+    names = dict.fromkeys(name for entry in alike for name in entry.parameters)
+    symbols = {ERROR: "error", **{name: _symbol(model, name) for name in names}}
+    found = ((symbol, drift(alike, name, symbol)) for name, symbol in symbols.items())
+    return tuple((symbol, each) for symbol, each in found if each is not None)
 
 
 def _parameters(shown: ParameterSetView) -> tuple[tuple[str, str], ...]:

@@ -12,6 +12,8 @@ from app.pages.rendering import EDITION, STATIC
 router = APIRouter(include_in_schema=False)
 
 _KEEP = {"Cache-Control": "public, max-age=31536000, immutable", "X-Content-Type-Options": "nosniff"}
+OWN = {"Cache-Control": "private, max-age=31536000, immutable"}
+"""Headers of a picture that never changes, for the browser of one reader only."""
 _TYPES = {".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
 _FILES = {path.name: path for path in STATIC.iterdir() if path.suffix in _TYPES}
 VEGA = f"/static/vega-{vega.version()}.js"

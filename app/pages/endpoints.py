@@ -15,9 +15,11 @@ router = APIRouter(include_in_schema=False, route_class=PageRoute)
 
 
 @router.get("/")
-def actuators(request: Request, here: Here, q: str = "", cursor: str | None = None) -> HTMLResponse:
-    """Actuators, searched by serial number, name or batch."""
-    return page(request, "actuators.html", **service.actuator_list(here, q.strip(), cursor))
+def actuators(
+    request: Request, here: Here, q: str = "", drift: str = "error", cursor: str | None = None
+) -> HTMLResponse:
+    """Actuators, searched by serial number, name or batch, with the drift of the error or of a parameter."""
+    return page(request, "actuators.html", **service.actuator_list(here, q.strip(), drift, cursor))
 
 
 @router.get("/actuators/{serial:path}")
@@ -36,6 +38,12 @@ def upload(request: Request) -> HTMLResponse:
 def matrix(request: Request, here: Here, matrix: str, cursor: str | None = None) -> HTMLResponse:
     """A matrix: findings, runs, and the form that starts a fit."""
     return page(request, "matrix.html", **service.matrix(here, matrix, cursor))
+
+
+@router.get("/matrices/{matrix}/thumbnails/{place}.svg")
+def thumbnail(here: Here, matrix: str, place: int) -> Response:
+    """A run at a glance; the samples of a matrix never change, so that a browser may keep it."""
+    return Response(service.thumbnail(here, matrix, place), media_type="image/svg+xml", headers=assets.OWN)
 
 
 @router.get("/jobs")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 from app.pages import numbers
@@ -15,23 +14,35 @@ _WORST = ("fault", "doubt", "note")
 
 @dataclass(frozen=True)
 class RunRow:
-    """A run with the worst severity among its findings ("" for none) and their count in words."""
+    """A run with its findings, the worst first, and the worst severity among them ("" for none)."""
 
     run: Conditions
     worst: str
-    findings: str
+    findings: tuple[FindingView, ...]
+
+
+@dataclass(frozen=True)
+class Flag:
+    """One kind of fault or doubt: its words of the first run that has it, where that run stands, and how many more."""
+
+    severity: str
+    text: str
+    run: str
+    place: int
+    others: int
 
 
 @dataclass(frozen=True)
 class MatrixPageView:
-    """What the matrix page shows."""
+    """What the matrix page shows: `general` findings and `remarks` are of no single run, `flags` of some."""
 
     id: str
     serial: str
+    parent: str | None
     summary: str
     facts: tuple[tuple[str, str], ...]
     general: tuple[FindingView, ...]
-    flagged: tuple[tuple[str, tuple[FindingView, ...]], ...]
+    flags: tuple[Flag, ...]
     remarks: tuple[FindingView, ...]
     notices: tuple[str, ...]
     runs: tuple[RunRow, ...]
@@ -39,17 +50,20 @@ class MatrixPageView:
 
 def matrix_view(matrix: MatrixView) -> MatrixPageView:
     """The page of a matrix."""
-    flagged = {run.id: tuple(entry for entry in matrix.findings if entry.run == run.id) for run in matrix.runs}
+    found = {run.id: [entry for entry in matrix.findings if entry.run == run.id] for run in matrix.runs}
+    runs = tuple(_row(conditions(run), found[run.id]) for run in matrix.runs)
+    general = [entry for entry in matrix.findings if entry.run not in found]
     return MatrixPageView(
         id=matrix.id,
         serial=matrix.serial,
+        parent=matrix.parent,
         summary=_summary(matrix),
         facts=_facts(matrix),
-        general=tuple(entry for entry in matrix.findings if entry.run not in flagged and entry.severity != "note"),
-        flagged=_by_weight(flagged),
-        remarks=tuple(entry for entry in matrix.findings if entry.severity == "note"),
+        general=tuple(entry for entry in general if entry.severity != "note"),
+        flags=_flags(runs),
+        remarks=tuple(entry for entry in general if entry.severity == "note"),
         notices=tuple(matrix.notices),
-        runs=tuple(_row(conditions(run), flagged[run.id]) for run in matrix.runs),
+        runs=runs,
     )
 
 
@@ -59,16 +73,30 @@ def counted(findings: list[FindingView] | tuple[FindingView, ...]) -> str:
     return ", ".join(f"{counts[name]} {name}{'s' if counts[name] > 1 else ''}" for name in _WORST if counts[name])
 
 
-def _by_weight(found: Mapping[str, tuple[FindingView, ...]]) -> tuple[tuple[str, tuple[FindingView, ...]], ...]:
-    """Faults and doubts by run, the runs with the worst first; notes stand apart."""
-    serious = {run: tuple(entry for entry in entries if entry.severity != "note") for run, entries in found.items()}
-    listed = [(run, entries) for run, entries in serious.items() if entries]
-    return tuple(sorted(listed, key=lambda pair: min(_WORST.index(entry.severity) for entry in pair[1])))
+def _flags(runs: tuple[RunRow, ...]) -> tuple[Flag, ...]:
+    """Each kind of fault or doubt once, the worst first."""
+    kinds: dict[tuple[str, str], list[tuple[int, str, str]]] = {}
+    for place, row in enumerate(runs):
+        for entry in row.findings:
+            if entry.severity != "note":
+                kinds.setdefault((entry.severity, entry.code), []).append((place, row.run.id, entry.text))
+    flags = [
+        Flag(severity, text, run, place, len({each[0] for each in found}) - 1)
+        for (severity, _), found in kinds.items()
+        for place, run, text in found[:1]
+    ]
+    return tuple(sorted(flags, key=lambda flag: _WORST.index(flag.severity)))
 
 
-def _row(run: Conditions, findings: tuple[FindingView, ...]) -> RunRow:
-    worst = next((name for name in _WORST if any(entry.severity == name for entry in findings)), "")
-    return RunRow(run, worst, counted(findings))
+def _row(run: Conditions, findings: list[FindingView]) -> RunRow:
+    """The words of a finding stand beside the run, which they need not name again."""
+    ordered = sorted(findings, key=lambda entry: _WORST.index(entry.severity))
+    beside = tuple(entry.model_copy(update={"text": _beside(entry.text, run.id)}) for entry in ordered)
+    return RunRow(run, ordered[0].severity if ordered else "", beside)
+
+
+def _beside(text: str, run: str) -> str:
+    return text.replace(f" of run {run}", "").removeprefix(f"run {run} ")
 
 
 def _summary(matrix: MatrixView) -> str:
@@ -83,7 +111,7 @@ def _summary(matrix: MatrixView) -> str:
 
 def _facts(matrix: MatrixView) -> tuple[tuple[str, str], ...]:
     channels = dict.fromkeys(name for run in matrix.runs for name in run.channels)
-    facts = [("Channels", ", ".join(name.replace("_", " ") for name in channels))]
-    if matrix.parent:
-        facts.append(("Revision of", matrix.parent))
-    return (*facts, ("SHA-256", matrix.data_hash))
+    return (
+        ("Channels", ", ".join(name.replace("_", " ") for name in channels)),
+        ("SHA-256", matrix.data_hash),
+    )

@@ -11,7 +11,7 @@ from app.errors import Failure
 from app.fits import lineage
 from app.fits import service as fits
 from app.matrices import service as matrices
-from app.pages.actuator_view import actuator_row, fit_rows
+from app.pages.actuator_view import actuator_row, drifts, fit_rows, followed
 from app.pages.compare_view import CompareView, compare_view
 from app.pages.diagnosis_view import missing
 from app.pages.fit_page import FitPageView, fit_page
@@ -19,26 +19,30 @@ from app.pages.fit_view import parameter_rows
 from app.pages.job_view import JobPageView, job_page
 from app.pages.matrix_view import counted, matrix_view
 from app.pages.numbers import quantity
+from app.pages.start_view import start_view
+from app.pages.thumbnails import thumbnail
 from app.parameters import service as parameters
 from app.parameters.repository import Wanted
-from ident.effects import EFFECTS
 from ident.fit.result import FitResult
-from ident.fit.settings import METHODS
-from ident.presets import PRESETS
-from ident.stages import PLACES
 from schemas.parameters import ActuatorView
+
+__all__ = ["actuator", "actuator_list", "fit", "job_list", "matrix", "thumbnail"]
 
 Shown = dict[str, Any]
 _ROWS = 50  # of a table before its next page
 
 
-def actuator_list(context: Context, query: str, cursor: str | None) -> Shown:
-    """Actuators whose serial number, name or batch holds the query."""
+def actuator_list(context: Context, query: str, drifting: str, cursor: str | None) -> Shown:
+    """Actuators whose serial number, name or batch holds the query; `drifting` is followed over their approved sets."""
     found = actuators.listed(context, query or None, None, cursor, _ROWS)
     serials = [actuator.serial for actuator in found.items]
     newest, waiting = parameters.newest(context, serials), fits.open_jobs(context, serials)
-    rows = [actuator_row(each, newest.get(each.serial), waiting.get(each.serial)) for each in found.items]
-    return {"rows": rows, "query": query, "more": found.next}
+    approved = parameters.approved(context, serials)
+    rows = [
+        actuator_row(each, newest.get(each.serial), waiting.get(each.serial), approved.get(each.serial, ()), drifting)
+        for each in found.items
+    ]
+    return {"rows": rows, "query": query, "drifting": drifting, "followed": followed(approved), "more": found.next}
 
 
 def actuator(context: Context, serial: str, cursor: str | None) -> Shown:
@@ -49,6 +53,7 @@ def actuator(context: Context, serial: str, cursor: str | None) -> Shown:
         "actuator": found,
         "facts": _facts(found),
         "approved": _approved(context, found),
+        "drifts": _drifts(context, found),
         **_fits(context, cursor, serial=serial),
         "matrices": [(entry, counted(entry.findings) or "none") for entry in stored],
     }
@@ -75,13 +80,18 @@ def _approved(context: Context, found: ActuatorView) -> Any:
     return parameter_rows(FitResult.from_json(fits.get(context, found.current.id).result))
 
 
+def _drifts(context: Context, found: ActuatorView) -> Any:
+    if found.current is None:
+        return ()
+    return drifts(parameters.approved(context, [found.serial])[found.serial], found.current.model)
+
+
 def matrix(context: Context, matrix_id: str, cursor: str | None) -> Shown:
     """Findings, runs, what a fit may choose, and the fits of this matrix; raises Failure 404."""
+    stored = matrices.get(context, matrix_id)
     return {
-        "matrix": matrix_view(matrices.get(context, matrix_id)),
-        "models": [(preset.name, preset.title) for preset in PRESETS.values()],
-        "methods": METHODS,
-        "effects": [(place, [e for e in EFFECTS if e.place == place]) for place in PLACES],
+        "matrix": matrix_view(stored),
+        "start": start_view(stored),
         **_fits(context, cursor, matrix=matrix_id),
     }
 

@@ -48,6 +48,12 @@ def newest(session: Session, serials: Sequence[str]) -> Sequence[SetOf]:
     return [(fit, actuator) for fit, actuator in session.execute(query)]
 
 
+def approved(session: Session, serials: Sequence[str]) -> Sequence[SetOf]:
+    """Every approved set of these actuators, in the order of their approval."""
+    query = _sets().where(FitRow.serial.in_(serials), FitRow.approved_at.is_not(None))
+    return [(fit, actuator) for fit, actuator in session.execute(query.order_by(FitRow.approved_at, FitRow.id))]
+
+
 def _sets() -> Query:
     """Sets without the fits' results, which are long."""
     query = select(FitRow, ActuatorRow).join(ActuatorRow, ActuatorRow.serial == FitRow.serial)

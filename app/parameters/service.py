@@ -75,6 +75,15 @@ def newest(context: Context, serials: Sequence[str]) -> dict[str, ParameterSetVi
         return {fit.serial: view(fit, actuator) for fit, actuator in repository.newest(session, serials)}
 
 
+def approved(context: Context, serials: Sequence[str]) -> dict[str, list[ParameterSetView]]:
+    """The approved sets of each of these actuators that has some, oldest first."""
+    found: dict[str, list[ParameterSetView]] = {}
+    with context.sessions() as session:
+        for fit, actuator in repository.approved(session, serials):
+            found.setdefault(fit.serial, []).append(view(fit, actuator))
+    return found
+
+
 def csv_text(context: Context, wanted: Wanted) -> str:
     """All sets as CSV, a parameter a column with its unit in the header; text cells never begin a formula."""
     rows, names = _table(context, wanted)

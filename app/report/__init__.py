@@ -1,1 +1,1 @@
-"""One HTML file that tells everything about a fit, and opens without a network."""
+"""Everything about a fit in one file: HTML that opens without a network, or PDF."""

@@ -1,8 +1,8 @@
-"""/fits/{fit}/report.html: everything about a fit in one file."""
+"""/fits/{fit}/report.html and report.pdf: everything about a fit in one file."""
 
 from __future__ import annotations
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Response
 from fastapi.responses import HTMLResponse
 
 from app.context import Here
@@ -15,4 +15,10 @@ router = APIRouter(prefix="/fits", tags=["fits"], responses=COMMON)
 @router.get("/{fit}/report.html", response_class=HTMLResponse)
 def report(here: Here, fit: str) -> HTMLResponse:
     """The report: one HTML file without script, which opens without a network."""
-    return HTMLResponse(service.report(here, fit), headers={"Content-Security-Policy": service.POLICY})
+    return HTMLResponse(service.as_html(here, fit), headers={"Content-Security-Policy": service.POLICY})
+
+
+@router.get("/{fit}/report.pdf", response_class=Response, responses={200: {"content": {"application/pdf": {}}}})
+def paper(here: Here, fit: str) -> Response:
+    """The same report for printing, as PDF."""
+    return Response(service.as_pdf(here, fit), media_type="application/pdf")

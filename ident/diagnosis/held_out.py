@@ -115,7 +115,7 @@ def _without(
 
     end, _ = polish(of_used, point, lambda _count, _error: None, lambda _local: None, _ENOUGH, _STEPS)
     there = evaluate(end)
-    if not np.isfinite(there.error):
+    if not np.isfinite(there.error):  # the point lies at the edge of what is stable: judged by its linearisation
         return here, step, parts
     return there, np.zeros(len(point)), [_projected(run, of) for run, of in zip(there.runs, used, strict=True)]
 

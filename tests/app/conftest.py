@@ -59,9 +59,14 @@ def packed(records: list[reference.Record], serial: str) -> dict[str, bytes]:
 @lru_cache
 def zipped(serial: str = "SW-1") -> bytes:
     """The same as one archive."""
+    return archived(files(serial))
+
+
+def archived(contents: dict[str, bytes]) -> bytes:
+    """Files by name as one archive."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
-        for name, content in files(serial).items():
+        for name, content in contents.items():
             archive.writestr(name, content)
     return buffer.getvalue()
 

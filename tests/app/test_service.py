@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import io
+from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
 from fastapi.testclient import TestClient
 
+from ident.synthesis import simulate_matrix
 from tests.app.conftest import files, zipped
 
 
@@ -99,6 +101,43 @@ def test_a_revision_changes_a_label_and_keeps_the_bytes(service: TestClient, mat
     assert revised.json()["runs"][0]["gain"] == 6.5
     bad = service.post(f"/api/v1/matrices/{matrix}/revisions", json={"runs": {run: {"gain": 0}}})
     assert bad.status_code == 422
+
+
+def test_a_matrix_tells_what_a_revision_changes(service: TestClient, matrix: str) -> None:
+    run = service.get(f"/api/v1/matrices/{matrix}/description").json()["runs"][1]
+    change = {"runs": {run["id"]: {"channels": {"displacement": {"invert": True}}}}}
+    revised = service.post(f"/api/v1/matrices/{matrix}/revisions", json=change).json()
+    now = service.get(f"/api/v1/matrices/{revised['id']}/description").json()["runs"][1]
+    assert now["channels"]["displacement"] == {**run["channels"]["displacement"], "invert": "true"}
+    assert service.get("/api/v1/matrices/none/description").status_code == 404
+
+
+def test_the_report_comes_as_page_and_as_pdf(service: TestClient, fitted: str) -> None:
+    page, paper = (service.get(f"/api/v1/fits/{fitted}/report.{kind}") for kind in ("html", "pdf"))
+    assert page.text.startswith("<!doctype html>")
+    assert paper.headers["content-type"] == "application/pdf"
+    assert paper.content.startswith(b"%PDF-")
+    assert service.get("/api/v1/fits/none/report.pdf").status_code == 404
+
+
+def test_each_run_has_a_small_picture(service: TestClient, matrix: str) -> None:
+    runs = service.get(f"/api/v1/matrices/{matrix}").json()["runs"]
+    answers = [service.get(f"/matrices/{matrix}/thumbnails/{place}.svg") for place in range(len(runs) + 1)]
+    assert [answer.status_code for answer in answers] == [200] * len(runs) + [404]
+    assert {answer.headers["content-type"] for answer in answers[:-1]} == {"image/svg+xml"}
+    assert max(len(answer.content) for answer in answers[:-1]) < 3000
+    assert len({answer.text for answer in answers[:-1]}) == len(runs)
+
+
+def test_the_page_of_a_whole_matrix_is_small(service: TestClient, tmp_path: Path) -> None:
+    simulate_matrix(tmp_path / "matrix", seconds=0.25, seed=1)
+    stored = service.post("/api/v1/matrices", files=[
+        ("files", (str(path.relative_to(tmp_path / "matrix")), path.read_bytes()))
+        for path in sorted((tmp_path / "matrix").rglob("*")) if path.is_file()
+    ]).json()  # fmt: skip
+    page = service.get(f"/matrices/{stored['id']}")
+    assert page.text.count('id="run-') == 84
+    assert len(page.content) < 200_000
 
 
 def test_a_running_job_is_cancelled_and_leaves_no_fit(service: TestClient, matrix: str) -> None:

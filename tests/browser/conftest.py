@@ -56,6 +56,15 @@ def fitted(site: Service, matrix: str) -> str:
     return job
 
 
+@pytest.fixture
+def running(site: Service, matrix: str) -> Iterator[str]:
+    """A fit that searches for longer than any test takes; it is cancelled afterwards."""
+    job = site.fit(matrix, seed=5, options={"generations": 10_000})
+    yield job
+    site.client.delete(f"/jobs/{job}")
+    assert site.ended(job)["state"] == "cancelled"
+
+
 @dataclass
 class Watch:
     """What the browser said and asked while a page was open."""
@@ -64,9 +73,9 @@ class Watch:
     requests: list[str]
 
 
-@pytest.fixture
+@pytest.fixture(autouse=True)
 def watch(page, site) -> Iterator[Watch]:
-    """Listens to the page, signed in; at the end nothing was complained of and nothing left the origin."""
+    """Listens to every test's page, signed in; at the end nothing was complained of and nothing left the origin."""
     seen = Watch([], [])
     page.on("console", lambda message: seen.complaints.append(message.text) if message.type != "log" else None)
     page.on("pageerror", lambda error: seen.complaints.append(str(error)))

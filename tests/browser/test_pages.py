@@ -5,12 +5,11 @@ from __future__ import annotations
 import re
 
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Error, expect
 
 from app.pages import numbers
 from tests.app.conftest import zipped
-
-pytestmark = pytest.mark.usefixtures("watch")
+from tests.browser.looks import barriers, everywhere
 
 FIGURE = "#figure-residual-map"
 
@@ -27,22 +26,46 @@ def addresses(matrix: str, fitted: str) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("name", ["actuators", "actuator", "upload", "matrix", "jobs", "fit"])
-def test_a_page_fits_desk_and_tablet_in_both_themes(name, page, site, matrix, fitted, screenshots):
+def test_a_page_fits_desk_and_tablet_in_both_themes_and_shuts_nobody_out(name, page, site, matrix, fitted, screenshots):
     page.goto(site.address + addresses(matrix, fitted)[name])
     expect(page.locator("h1")).to_have_count(1)
+    everywhere(page, screenshots, name)
+
+
+def test_a_figure_and_the_ground_follow_the_system_theme(page, site, fitted):
+    page.goto(f"{site.address}/fits/{fitted}")
     for theme in ("light", "dark"):
         page.emulate_media(color_scheme=theme)
-        if name == "fit":
-            link = page.locator(f"{FIGURE} a[data-format=svg]")
-            expect(link).to_have_attribute("href", re.compile(f"theme={theme}"))
-            expect(page.locator(f"{FIGURE} .plot")).to_have_attribute("aria-busy", "false", timeout=60_000)
-            expect(page.locator(f"{FIGURE} canvas")).to_be_visible()
+        link = page.locator(f"{FIGURE} a[data-format=svg]")
+        expect(link).to_have_attribute("href", re.compile(f"theme={theme}"))
+        expect(page.locator(f"{FIGURE} .plot")).to_have_attribute("aria-busy", "false", timeout=60_000)
+        expect(page.locator(f"{FIGURE} canvas")).to_be_visible()
         ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
         assert (sum(map(int, re.findall(r"\d+", ground))) < 200) == (theme == "dark")
-        for width in (1280, 820):
-            page.set_viewport_size({"width": width, "height": 900})
-            assert page.evaluate("document.documentElement.scrollWidth") <= width
-            page.screenshot(path=screenshots / f"{name}-{width}-{theme}.png", full_page=True)
+
+
+def test_a_running_fit_is_told_to_everybody(page, site, running, screenshots):
+    page.goto(f"{site.address}/fits/{running}")
+    expect(page.locator("[data-step]")).to_contain_text("of 10000", timeout=60_000)
+    expect(page.get_by_role("progressbar", name="Progress of the fit")).to_be_visible()
+    everywhere(page, screenshots, "running")
+
+
+def test_the_policy_allows_no_inline_and_no_evaluated_script(page, watch, site):
+    policy = page.goto(site.address).headers["content-security-policy"]
+    assert "default-src 'none'; script-src 'self'; style-src 'self';" in policy
+    assert "unsafe" not in policy
+    with pytest.raises(Error, match="Content Security Policy"):
+        page.add_script_tag(content="document.title = 'ran'")
+    assert page.evaluate("document.title") != "ran"
+    watch.complaints.clear()  # the browser notes what it refused
+
+
+def test_what_shuts_somebody_out_is_found(page, site):
+    page.goto(f"{site.address}/upload")
+    assert barriers(page) == []
+    page.evaluate("document.querySelector('label[for=files]').remove()")
+    assert [barrier.split(":")[0] for barrier in barriers(page)] == ["label"]
 
 
 @pytest.mark.parametrize("name", ["actuators", "actuator", "upload", "matrix", "jobs", "fit"])
@@ -50,7 +73,7 @@ def test_every_field_has_a_label_and_every_table_column_a_heading(name, page, si
     page.goto(site.address + addresses(matrix, fitted)[name])
     unlabelled = page.evaluate(
         """[...document.querySelectorAll("input:not([type=hidden]), select")]
-             .filter((field) => field.labels.length === 0).map((field) => field.outerHTML)"""
+             .filter((field) => field.labels.length === 0 && !field.ariaLabel).map((field) => field.outerHTML)"""
     )
     assert unlabelled == []
     ragged = page.evaluate(
@@ -128,11 +151,12 @@ def test_a_search_without_a_hit_says_so(page, site):
 
 
 @pytest.mark.parametrize("path", ["/nothing/here", "/fits/none", "/matrices/none", "/actuators/none"])
-def test_what_is_not_there_is_said_on_a_page_with_a_way_on(path, page, watch, site):
+def test_what_is_not_there_is_said_on_a_page_with_a_way_on(path, page, watch, site, screenshots):
     answer = page.goto(site.address + path)
     assert answer.status == 404
     expect(page.locator("h1")).to_have_text("Not found")
     expect(page.get_by_role("link", name="All actuators")).to_be_visible()
+    everywhere(page, screenshots, f"problem-{path.split('/')[1]}")
     watch.complaints.clear()  # the browser notes the status itself
 
 
@@ -143,14 +167,35 @@ def test_the_whole_way_from_upload_to_approval(page, site, tmp_path):
     page.get_by_label("A zip, or matrix.yaml and files").set_input_files(archive)
     page.get_by_role("button", name="Upload").click()
     expect(page.locator("h1")).to_have_text("Test matrix of SW-NEW")
+    page.get_by_text("Model, method, bounds").click()
     page.get_by_label("Seed").fill("3")
-    page.get_by_role("button", name="Start").click()
+    page.get_by_role("button", name="Start the fit").click()
     page.get_by_role("button", name="Approve as the parameters of SW-NEW").click(timeout=120_000)
     expect(page.locator(".head .state.approved")).to_contain_text("current parameter set")
     assert site.client.get("/actuators/SW-NEW").json()["current"] is not None
     page.goto(f"{site.address}/?q=SW-NEW")
     expect(page.locator("tbody tr")).to_contain_text("approved")
     expect(page.locator("tbody tr")).to_contain_text("Z₀")
+    expect(page.locator("svg.spark")).to_have_count(0)
+
+
+def test_drift_is_seen_once_a_second_set_is_approved(page, site, screenshots):
+    stored = site.client.post("/matrices", files={"files": ("matrix.zip", zipped("SW-DRIFT"))}).json()
+    for seed, bounds in enumerate(({}, {"tau": ["3.7 ms", "4 ms"]}, {"tau": ["3.65 ms", "4 ms"]})):
+        fit = site.fit(stored["id"], seed=seed, bounds=bounds)
+        assert site.ended(fit)["state"] == "succeeded"
+        assert site.client.post(f"/fits/{fit}/approve").status_code == 200
+    page.goto(f"{site.address}/?q=SW-DRIFT")
+    page.get_by_label("Drift of").select_option("tau")
+    page.get_by_role("button", name="Search").click()
+    expect(page.locator("svg.spark")).to_have_accessible_name(
+        re.compile("^τ over 3 approved sets, from .* ms to .* ms, ")
+    )
+    everywhere(page, screenshots, "drift")
+    page.get_by_role("link", name="SW-DRIFT").click()
+    expect(page.get_by_role("heading", name="Drift over the approved sets")).to_be_visible()
+    expect(page.locator("svg.spark")).to_have_count(7)
+    everywhere(page, screenshots, "drifts")
 
 
 def test_a_waiting_fit_can_be_cancelled(page, site, matrix):

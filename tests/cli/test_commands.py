@@ -103,6 +103,13 @@ def test_report_is_one_html_file(servoident, matrix, fit_file, tmp_path):
     assert page.rstrip().endswith("</html>")
 
 
+def test_report_is_one_pdf_file(servoident, matrix, fit_file, tmp_path):
+    """The ending of its name chooses the form."""
+    done = servoident("report", matrix, "--fit", fit_file, "--out", tmp_path / "report.pdf")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF-")
+
+
 def test_compare_finds_the_errors_of_the_fit_again(servoident, matrix, fit_file):
     """What `fit` reported and what `compare` computes are the same numbers."""
     compared = json.loads(servoident("compare", matrix, "--fit", fit_file, "--json", "-").stdout)

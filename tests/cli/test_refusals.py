@@ -22,7 +22,7 @@ ONE_LINE = [
     (["fit", "MATRIX", "--json", "/nowhere/fit.json"], "/nowhere"),
     (["compare", "MATRIX", "--fit", "nowhere.json"], "nowhere.json"),
     (["compare", "MATRIX", "--fit", __file__], "not the JSON of a fit"),
-    (["report", "MATRIX", "--out", "report.pdf"], ".html"),
+    (["report", "MATRIX", "--out", "report.docx"], ".html"),
     (["report", "MATRIX", "--out", "r.html", "--diagnosis", __file__], "not the JSON of a diagnosis"),
     (["diagnose", "MATRIX", "--fit", "nowhere.json"], "nowhere.json"),
     (["diagnose", "MATRIX", "--fit", "nowhere.json", "--model", "first_order"], "not both"),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -64,6 +66,17 @@ def test_held_out_errors_of_a_line_are_those_of_fits_without_each_fold():
             left = run.measured - run.measured.mean() - (J - J.mean(axis=0)) @ best
             expected = [np.sum(left[chunk == c] ** 2) for c in range(8) if c % 4 == fold]
             assert found.squares[i, fold::4] == pytest.approx(expected, rel=1e-6)
+
+
+def test_at_the_edge_of_what_is_stable_the_linearisation_judges():
+    """Where the model itself cannot be run again, the held-out errors are those of one step."""
+    data, point = records(9), np.array([0.7, 0.4])
+    here = objective(data, point)
+    empty = tuple(replace(run, gram=np.zeros((1, 1)), blocks=np.zeros((0, 0, 0))) for run in here.runs)
+    unstable = replace(here, error=np.inf, gradient=np.zeros(2), curvature=np.zeros((2, 2)), runs=empty)
+    stepped = held_out(point, here, lambda _: unstable, 1.0)
+    refitted = held_out(point, here, lambda p: objective(data, p), 1.0)
+    assert stepped.squares == pytest.approx(refitted.squares, rel=1e-3)
 
 
 def test_a_useless_parameter_makes_held_out_data_worse():

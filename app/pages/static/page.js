@@ -1,4 +1,4 @@
-// What every page needs: the theme switch, times in the reader's zone, sortable tables.
+// What every page needs: the theme switch, times in the reader's zone, sortable tables, scrolling by keyboard.
 
 import { currentTheme } from "./theme-now.js";
 
@@ -24,6 +24,16 @@ for (const time of document.querySelectorAll("time[datetime]")) {
     time.textContent = moment.toLocaleString("sv-SE", { dateStyle: "short", timeStyle: "short" });
   }
 }
+
+// Whatever scrolls within the page can be reached, and then moved with the arrow keys.
+const scrolling = new ResizeObserver((entries) => {
+  for (const { target } of entries) {
+    const hides = target.scrollWidth > target.clientWidth || target.scrollHeight > target.clientHeight;
+    if (hides) target.tabIndex = 0;
+    else target.removeAttribute("tabindex");
+  }
+});
+for (const each of document.querySelectorAll(".scroll, .formula, .equation, .own .at")) scrolling.observe(each);
 
 for (const header of document.querySelectorAll("table[data-sortable] thead th")) {
   const button = document.createElement("button");

@@ -1,12 +1,14 @@
 // Upload of a matrix: one zip, or matrix.yaml with its files (a folder keeps its paths).
 
-import { guarded, send } from "./api.js";
+import { guarded, upload } from "./api.js";
 
 const form = document.querySelector("#upload");
 const drop = form.querySelector(".drop");
 const button = form.querySelector("button[type=submit]");
 const chosen = form.querySelector("[data-chosen]");
 const problem = form.querySelector("[role=alert]");
+const bar = form.querySelector("progress");
+const stage = form.querySelector("[data-stage]");
 const inputs = [...form.querySelectorAll("input[type=file]")];
 let files = [];
 
@@ -64,13 +66,21 @@ form.addEventListener("submit", (event) => {
   guarded(button, problem, async () => {
     const body = new FormData();
     for (const { file, path } of files) body.append("files", file, path);
-    button.textContent = "Reading…";
+    bar.closest("p").hidden = false;
+    tell(0);
     try {
-      const { data } = await send("POST", form.action, body);
-      location.assign(`/matrices/${data.id}`);
+      const { id } = await upload(form.action, body, tell);
+      location.assign(`/matrices/${id}`);
     } finally {
-      button.textContent = "Upload";
+      bar.closest("p").hidden = true;
     }
   });
 });
+
+// All sent is not the end: the service then reads and checks every run.
+function tell(share) {
+  if (share < 1) bar.value = share;
+  else bar.removeAttribute("value");
+  stage.textContent = share < 1 ? `${Math.round(100 * share)} % sent` : "All sent. The runs are being read and checked…";
+}
 choose([]);

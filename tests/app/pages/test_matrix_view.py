@@ -22,12 +22,24 @@ def stored(*findings: tuple[str | None, str]) -> MatrixView:
 
 
 def test_faults_come_before_doubts_and_notes_stand_apart():
-    page = matrix_view(stored(("a", "note"), ("a", "doubt"), ("b", "fault"), (None, "doubt")))
-    assert [run for run, _ in page.flagged] == ["b", "a"]
+    page = matrix_view(stored(("a", "note"), ("a", "doubt"), ("b", "fault"), (None, "doubt"), (None, "note")))
+    assert [(flag.place, flag.run, flag.severity) for flag in page.flags] == [(1, "b", "fault"), (0, "a", "doubt")]
     assert [entry.severity for entry in page.general] == ["doubt"]
     assert len(page.remarks) == 1
     assert page.runs[0].worst == "doubt"
-    assert page.runs[1].findings == "1 fault"
+    assert [entry.severity for entry in page.runs[0].findings] == ["doubt", "note"]
+
+
+def test_a_doubt_that_many_runs_share_is_said_once():
+    page = matrix_view(stored(("a", "doubt"), ("b", "doubt")))
+    (flag,) = page.flags
+    assert (flag.run, flag.others) == ("a", 1)
+
+
+def test_beside_its_run_a_finding_does_not_name_it_again():
+    view = stored(("a", "doubt"))
+    view.findings[0].text = "force of run a is clipped"
+    assert matrix_view(view).runs[0].findings[0].text == "force is clipped"
 
 
 def test_what_a_run_does_not_state_is_a_dash():

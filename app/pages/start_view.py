@@ -1,0 +1,86 @@
+"""What the form that starts a fit offers, with the choice that suits the matrix on top."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+from app.pages import numbers
+from ident.effect import Effect
+from ident.effects import EFFECTS
+from ident.fit.settings import METHODS
+from ident.matrix import BENCH
+from ident.presets import PRESETS, Preset
+from ident.stages import PLACES
+from schemas.matrix import MatrixView
+
+
+@dataclass(frozen=True)
+class ModelChoice:
+    """A model, and of each of its parameters: name, symbol, meaning, and the bounds of the literature in words."""
+
+    name: str
+    title: str
+    parameters: tuple[tuple[str, str, str, str], ...]
+
+
+@dataclass(frozen=True)
+class StartView:
+    """The form; the first model is the one proposed, `says` what one button does."""
+
+    matrix: str
+    says: str
+    models: tuple[ModelChoice, ...]
+    methods: tuple[str, ...]
+    effects: tuple[tuple[str, tuple[Effect, ...]], ...]
+    force: bool
+    runs: tuple[tuple[str, str], ...]
+
+
+def start_view(matrix: MatrixView) -> StartView:
+    """The form for this matrix."""
+    proposed = _proposed(matrix)
+    uses = Counter(run.use for run in matrix.runs)
+    others = f"{uses['verify']} verify it" if uses["verify"] else "none is left to verify it"
+    return StartView(
+        matrix=matrix.id,
+        says=f"{PRESETS[proposed].title}, by genetic search: {_counted(uses['fit'])} fit it, {others}.",
+        models=tuple(sorted(map(_model, PRESETS.values()), key=lambda model: model.name != proposed)),
+        methods=METHODS,
+        effects=tuple((place, found) for place in PLACES if (found := tuple(e for e in EFFECTS if e.place == place))),
+        force=any("force" in run.channels for run in matrix.runs),
+        runs=tuple((run.id, run.use) for run in matrix.runs),
+    )
+
+
+def _counted(runs: int) -> str:
+    return "1 run" if runs == 1 else f"{runs} runs"
+
+
+def _proposed(matrix: MatrixView) -> str:
+    """A bench's records want the bench's model, a measured drive force the drive's."""
+    if any(run.kind in BENCH for run in matrix.runs):
+        return "kononykhin"
+    return "drive" if all("drive_force" in run.channels for run in matrix.runs) else "qian2014"
+
+
+def _model(preset: Preset) -> ModelChoice:
+    return ModelChoice(
+        preset.name,
+        preset.title,
+        tuple(
+            (
+                p.name,
+                numbers.symbol(p.name, p.symbol),
+                p.meaning,
+                f"{_bound(p.lower, p.unit)} to {_bound(p.upper, p.unit)}",
+            )
+            for p in preset.parameters
+        ),
+    )
+
+
+def _bound(value: float, unit: str) -> str:
+    power = numbers.power_of(value)
+    number, printed = numbers.trimmed(value / 10.0**power), numbers.scaled_unit(unit, power)
+    return number if printed == "–" else f"{number}{'·' if printed.startswith('10') else ' '}{printed}"

@@ -1,0 +1,160 @@
+"""What the report says of one fit: error, parameters, figures, where it fails, what is missing, data, provenance."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from app.pages import numbers
+from app.pages.fit_view import combination_rows, error_rows, parameter_rows
+from app.report.blocks import Block, Facts, Figure, Formula, Heading, Report, Table, Tables, Text
+from app.report.diagnosis import Diagnosis
+from app.report.rows import budget_rows, candidate_rows, curve_rows, group_tables, trend_rows
+from ident.check import check
+from ident.compare import compare
+from ident.custom import preset_with
+from ident.errors import Unusable
+from ident.figures import figure, ladder, look
+from ident.fit.result import FitResult
+from ident.matrix import Matrix
+from ident.residuals.budget import Budget
+from ident.residuals.survey import Survey, survey
+
+CAPTIONS = {
+    "bode": "Frequency response, measured and model",
+    "residual-map": "Where the error is: runs over frequency",
+    "residual-curve": "What the model lacks, against its own signals",
+    "time": "A stretch of one run",
+}
+
+
+def content(matrix: Matrix, fit: FitResult, diagnosis: Diagnosis | None = None) -> Report:
+    """The report of a fit. Raises Unusable where the fit is of another model's data."""
+    found = survey(compare(matrix, fit))
+    model = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
+    title = " + ".join((model.title, *(name.replace("_", " ") for name in fit.effects)))
+    blocks = [
+        *([Text(_verdict(diagnosis), "verdict")] if diagnosis else ()),
+        *_error(fit, found.budget),
+        *_parameters(fit),
+        Heading("Model and measurement"),
+        _drawn("bode", matrix, fit),
+        _drawn("time", matrix, fit),
+        *_failing(matrix, fit, found),
+        *(_missing(diagnosis, matrix) if diagnosis else ()),
+        *_data(matrix),
+        Heading("Provenance"),
+        Facts(_provenance(fit, model.citation)),
+    ]
+    lead = f"{fit.method}, seed {fit.seed} · {len(fit.runs)} runs · servoident {fit.version}"
+    return Report(f"{matrix.actuator.serial}: {title}", lead, blocks)
+
+
+def _error(fit: FitResult, budget: Budget | None) -> Iterator[Block]:
+    yield Heading("Error")
+    yield Text("Mean over runs of std(measured − model) / std(measured), eq. (17).")
+    rows = tuple((f"{row.runs} {row.use}", row.error, row.floor, row.ratio, row.offset) for row in error_rows(fit))
+    yield Table(("Runs", "Error", "Noise floor", "Ratio", "Offset"), rows, (1, 2, 3, 4))
+    if budget:
+        yield Heading("What it is made of", 3)
+        yield Table(("Part", "Meaning", "Size", "At least", "At most"), budget_rows(budget), (2, 3, 4))
+        square = "The squares of the sizes add up to the square of the error of the runs to fit."
+        yield Text(" ".join((square, *budget.notes)), "faint")
+
+
+def _parameters(fit: FitResult) -> Iterator[Block]:
+    yield Heading("Parameters")
+    header = ("Symbol", "Meaning", "Value", "Std error", "Unit", "Relative", "Lower", "Upper", "Remark")
+    known = parameter_rows(fit)
+    rows = tuple(
+        (p.symbol, p.meaning, p.value, p.std_error, p.unit, p.relative, p.lower, p.upper, p.remark) for p in known
+    )
+    yield Table(header, rows, (2, 3, 5, 6, 7))
+    if fit.determined:
+        yield Heading("What these data determine", 3)
+        combined = tuple(
+            (Formula(row.expression, numbers.unit(entry.expression)), row.value, row.relative)
+            for row, entry in zip(combination_rows(fit), fit.determined, strict=True)
+        )
+        yield Table(("Combination", "Value", "Relative std error"), combined, (1, 2))
+    if fit.undetermined:
+        yield Heading("Not determined", 3)
+        symbols = {p.name: p.symbol for p in known}
+        yield Facts(tuple((symbols.get(entry.name, entry.name), entry.reason) for entry in fit.undetermined))
+    if fit.notes:
+        yield Heading("Notes", 3)
+        yield from map(Text, fit.notes)
+
+
+def _failing(matrix: Matrix, fit: FitResult, found: Survey) -> Iterator[Block]:
+    yield Heading("Where the model fails")
+    yield _drawn("residual-curve", matrix, fit)
+    header = ("Curve", "Shows", "Against", "Explained of the residual's power")
+    yield Table(header, curve_rows(found.curves), (3,))
+    yield _drawn("residual-map", matrix, fit)
+    yield Tables(
+        tuple(
+            Table(
+                (by.capitalize(), "Runs", "Error", "Mean"),
+                tuple((g.label, str(g.runs), numbers.percent(g.error), numbers.percent(g.mean)) for g in groups),
+                (1, 2, 3),
+            )
+            for by, groups in group_tables(found.where).items()
+        )
+    )
+    yield Heading("Parameters that follow a condition", 3)
+    trends = trend_rows(found.trends)
+    if trends:
+        alone = "What the runs of each condition would have alone, every other parameter held"
+        yield Text(f"{alone}: a constant of physics would not move.")
+        yield Table(("Parameter", "Against", "Values", "p"), trends, (3,))
+    else:
+        yield Text("None beyond chance.")
+
+
+def _missing(diagnosis: Diagnosis, matrix: Matrix) -> Iterator[Block]:
+    verdict = diagnosis.verdict
+    yield Heading("What is missing")
+    yield Text(_verdict(diagnosis), "verdict")
+    if verdict.unexplained:
+        yield Text("No listed effect brings the error near the noise floor.")
+    for group in verdict.indistinguishable:
+        yield Text(f"These data cannot tell apart: {', '.join(group).replace('_', ' ')}.")
+    for suspect in verdict.suspects:
+        run = f"run {suspect['run']}: " if suspect.get("run") else ""
+        yield Text(f"Doubtful: {run}{suspect.get('what', '')}")
+    if diagnosis.steps:
+        chart = ladder(diagnosis.steps, diagnosis.floor, matrix.actuator, look("light"))
+        yield Figure("ladder", chart, "The error with each effect added")
+    header = ("Effect", "Predicted error", "Fit", "Held out", "Verify", "Why")
+    yield Table(header, candidate_rows(diagnosis), (1, 2, 3, 4))
+
+
+def _verdict(diagnosis: Diagnosis) -> str:
+    return diagnosis.verdict.text or "The diagnosis gives no verdict in words."
+
+
+def _data(matrix: Matrix) -> Iterator[Block]:
+    yield Heading("Data")
+    found = check(matrix)
+    if found:
+        rows = tuple((entry.severity, entry.run or "all", entry.text) for entry in found)
+        yield Table(("Severity", "Run", "Finding"), rows, marked=0)
+    else:
+        yield Text("Nothing doubtful was found.")
+
+
+def _provenance(fit: FitResult, citation: str) -> tuple[tuple[str, str], ...]:
+    taken = numbers.quantity(fit.seconds, "s")
+    return (
+        ("Model", f"{fit.model}: {citation}"),
+        ("Method", f"{fit.method}, seed {fit.seed}, {fit.evaluations} evaluations in {taken}"),
+        ("Data, SHA-256", fit.data_hash),
+    )
+
+
+def _drawn(name: str, matrix: Matrix, fit: FitResult) -> Figure:
+    """A figure; where the model or the data do not allow it, what that is."""
+    try:
+        return Figure(name, figure(name, matrix, fit), CAPTIONS[name])
+    except Unusable as error:
+        return Figure(name, str(error), CAPTIONS[name])

@@ -1,0 +1,76 @@
+"""Remake the pictures of the workbench in README: `python -m docs.pictures.workbench` (some minutes; needs chromium).
+
+A matrix is simulated with a dead zone and dry friction that the model does not know, and led through the pages of a
+service of its own, as the tests do it: uploaded, fitted, asked what is missing, mended.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from pathlib import Path
+
+from playwright.sync_api import Page, expect, sync_playwright
+
+from docs.pictures.remake import packed
+from ident.synthesis import simulate_matrix
+from tests.browser import story
+from tests.browser.conftest import CHROMIUM
+from tests.running import Service, process
+
+HERE = Path(__file__).parent
+HIDDEN = {"dead_zone.half_width": 6e-5, "coulomb_friction.force": 150.0}
+FIGURE = "#figure-residual-curve"
+
+
+def main() -> None:
+    """Simulate, serve, photograph."""
+    with tempfile.TemporaryDirectory() as name, sync_playwright() as playwright:
+        folder = Path(name)
+        simulate_matrix(folder / "matrix", seconds=1, seed=1, effects=HIDDEN)
+        archive = Path(shutil.make_archive(str(folder / "matrix"), "zip", folder / "matrix"))
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"])
+        with process(folder / "data") as service:
+            page = browser.new_page(viewport={"width": 1280, "height": 900}, color_scheme="light")
+            page.set_default_timeout(story.LONG)
+            page.goto(f"{service.address}/?token={service.token}")
+            photograph(page, service, archive)
+        browser.close()
+
+
+def photograph(page: Page, service: Service, archive: Path) -> None:
+    """The way of a matrix through the pages, a picture at each station."""
+    story.upload(page, service, archive)
+    expect(page.locator("#run-8 img")).to_have_js_property("naturalWidth", 160)
+    keep("matrix", page.screenshot(clip={"x": 0, "y": 0, "width": 1280, "height": 720}))
+    story.fit(page)
+    page.locator("#tab-residual-curve").click()
+    page.locator(f"{FIGURE} canvas").wait_for()
+    keep("fails", page.locator("section[aria-labelledby=fails]").screenshot())
+    card = story.search(page, patience=10 * story.LONG)
+    keep("missing", first_cards(page))
+    page.emulate_media(color_scheme="dark")
+    keep("missing-dark", first_cards(page))
+    page.emulate_media(color_scheme="light")
+    story.add(page, card)
+    page.locator("#figure-ladder").scroll_into_view_if_needed()
+    page.locator("#figure-ladder canvas").wait_for()
+    keep("ladder", page.locator("section[aria-labelledby=ladder-title]").screenshot())
+
+
+def first_cards(page: Page) -> bytes:
+    """The verdict and the first row of cards: the rest is more of the same."""
+    page.evaluate("scrollTo(0, 0)")
+    whole, card = page.locator("#missing").bounding_box(), page.locator(".cards > .card").first.bounding_box()
+    assert whole is not None
+    assert card is not None
+    return page.screenshot(full_page=True, clip={**whole, "height": card["y"] + card["height"] + 8 - whole["y"]})
+
+
+def keep(name: str, png: bytes) -> None:
+    """Store a picture, as small as it gets."""
+    (HERE / f"workbench-{name}.png").write_bytes(packed(png))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,35 @@
+"""How a page looks: in both themes and two widths nothing sticks out, and axe-core finds no barrier."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Page
+
+WIDTHS = (1280, 820)
+SERIOUS = {"serious", "critical"}
+
+
+def everywhere(page: Page, folder: Path, name: str) -> None:
+    """Check the page as it is now, and leave screenshots of all of it."""
+    for theme in ("light", "dark"):
+        page.emulate_media(color_scheme=theme)
+        for width in WIDTHS:
+            page.set_viewport_size({"width": width, "height": 900})
+            assert page.evaluate("document.documentElement.scrollWidth") <= width
+            page.screenshot(path=folder / f"{name}-{width}-{theme}.png", full_page=True)
+        found = barriers(page)
+        assert not found, "\n".join([f"{name}, {theme}", *found])
+
+
+def barriers(page: Page) -> list[str]:
+    """Rule, element and reason of each serious or critical violation; the debugger puts axe in, past the policy."""
+    found: list[dict[str, Any]] = Axe().run(page).response["violations"]
+    return [
+        f"{rule['id']}: {node['html'][:200]}: {node['failureSummary']}"
+        for rule in found
+        if rule["impact"] in SERIOUS
+        for node in rule["nodes"]
+    ]
