@@ -72,7 +72,8 @@ def in_proportion(settings: Array, seen: float, first: float, memory: Array) -> 
     return float(offset + sign * (lowest + (highest - lowest) * 2.0 * min(share, max(1.0 - share, 0.0))))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+# Not kept on disk: a cache would not notice a change of `respond`, which is in another file.
+@njit(nogil=True, error_model="numpy")
 def driven(
     law: int, settings: Array, step: float, steps: int, slope: float, last_bit: float, constants: Array, nodes: Array,
     pieces: Array, position: float, current: Array, out: Array,

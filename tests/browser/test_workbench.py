@@ -49,7 +49,7 @@ def test_from_upload_to_a_mended_model_in_force(page, site, watch, tmp_path, scr
     expect(card).to_contain_text("dead zone")
     expect(page.locator(".verdict")).to_contain_text("The model lacks dead zone")
     assert card.locator("math").count() == 1
-    expect(card.locator(".evidence canvas")).to_be_visible(timeout=LONG)
+    expect(card.locator(".evidence canvas")).to_be_visible(timeout=story.LONG)
     assert re.search(r"80\.\d+ ± 0\.\d+ µm", card.inner_text())
     page.get_by_text("others that do not help beyond chance").click()
     everywhere(page, screenshots, "missing")
