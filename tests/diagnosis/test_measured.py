@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from ident.compare import compare
 from ident.diagnose import diagnose
 from ident.fit.identify import identify
 from ident.fit.settings import Settings
@@ -40,3 +42,25 @@ def test_the_ladder_of_a_measured_actuator_helps_on_the_run_held_back(data, full
     errors = [rung.error["verify"] for rung in found.ladder]
     assert errors == sorted(errors, reverse=True)
     assert errors[-1] <= 0.026
+
+
+ONE_SIDED = {
+    "name": "one_sided_limit", "place": "spool", "equation": "w = max(w, -1 / max(lim, 1e-9))",
+    "strength": {"symbol": "lim", "unit": "1/m", "lower": 0, "upper": 5},
+    "meaning": "the opening is limited on one side",
+}  # fmt: skip
+
+
+def test_each_effect_of_a_measured_crane_helps_on_its_second_half(data):
+    """Free run, RMSE in the record's unit: the linear chain, the effect that a diagnosis adds, two more of choice."""
+    matrix = read_matrix(data / "crane_actuator")
+    chains = ((), ("gain_asymmetry",), ("gain_asymmetry", "dead_zone", "one_sided_limit"))
+    found = []
+    for effects in chains:
+        custom = (ONE_SIDED,) if "one_sided_limit" in effects else ()
+        fit = identify(matrix, Settings(model="open_valve", effects=effects, custom=custom))
+        (second,) = (run for run in compare(matrix, fit).runs if run.run.use == "verify")
+        found.append(float(np.sqrt(np.mean((second.run.measured - second.modelled) ** 2))))
+    assert found[0] == pytest.approx(1.01, abs=0.05)
+    assert found[1] < 0.85
+    assert found[2] < 0.7
