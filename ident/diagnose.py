@@ -57,7 +57,7 @@ def diagnose(
     models = Models.of(matrix, given, excited_band(matrix.of_use("fit")), custom)
     found = Work(models, fit, most, report).diagnosis()
     report(Progress("next run", 0, 1))
-    advised = replace(found, budget=error_budget(matrix, fit), next_experiment=next_run(matrix, found))
+    advised = replace(found, budget=error_budget(matrix, fit), next_experiment=next_run(matrix, found, custom))
     return replace(advised, seconds=time.monotonic() - begun)
 
 

@@ -7,11 +7,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from ident.custom import preset_with
+from ident.custom import read_effect
+from ident.effect import Effect
 from ident.effects import EFFECTS
 from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.presets import Preset
+from ident.presets import preset as preset_called
 
 Model = tuple[Preset, dict[str, float]]
 MOST = 3
@@ -19,18 +21,18 @@ NOISE = 0.005
 """The relative noise floor that stands where a diagnosis could not tell it."""
 
 
-def in_question(diagnosis: Mapping[str, Any]) -> list[Model]:
+def in_question(diagnosis: Mapping[str, Any], custom: Sequence[Effect] = ()) -> list[Model]:
     """Presets and their values by the equations' names: what the verdict cannot tell apart, else what it settled on.
 
-    Where it settled on nothing, and something is left, it is the best candidates. Raises Unusable for JSON of another
-    form.
+    Where it settled on nothing, and something is left, it is the best candidates. `custom` are effects of one's own
+    that its settings do not define. Raises Unusable for JSON of another form.
     """
     if diagnosis.get("model") == "kononykhin":
         raise Unusable("no-experiment", "no run is proposed for the records of a bench", "model kononykhin",
                        "repeat the records on which the effects differ")  # fmt: skip
     try:
         found = _chosen(diagnosis)
-        return [_model(diagnosis, parameters) for parameters in found]
+        return [_model(diagnosis, parameters, custom) for parameters in found]
     except (AttributeError, KeyError, TypeError, IndexError) as error:
         raise _bad(f"its {error} cannot be read") from None
 
@@ -66,13 +68,14 @@ def _chosen(diagnosis: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     return list(refitted.values())[:MOST] or ladder[-1:]
 
 
-def _model(diagnosis: Mapping[str, Any], parameters: Mapping[str, Any]) -> Model:
+def _model(diagnosis: Mapping[str, Any], parameters: Mapping[str, Any], custom: Sequence[Effect]) -> Model:
     settings = diagnosis.get("settings") or {}
     name = str(diagnosis.get("model") or settings.get("model") or "qian2014")
-    custom = [*(settings.get("custom") or ()), *(diagnosis.get("custom") or ())]
-    known = [*(effect.name for effect in EFFECTS), *(str(definition.get("name")) for definition in custom)]
+    definitions = [*(settings.get("custom") or ()), *(diagnosis.get("custom") or ())]
+    own = {effect.name: effect for effect in (*custom, *(read_effect(entry, model=name) for entry in definitions))}
+    known = [*(effect.name for effect in EFFECTS), *own]
     effects = tuple(e for e in known if any(parameter.startswith(f"{e}.") for parameter in parameters))
-    preset = preset_with(name, effects, custom)
+    preset = preset_called(name, effects, tuple(effect for effect in own.values() if effect.name in effects))
     values = {preset.parameter(key).name: float(entry["value"]) for key, entry in parameters.items()}
     missing = [parameter.name for parameter in preset.parameters if parameter.name not in values]
     if missing or not all(map(math.isfinite, values.values())):

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from ident.compare import compare
 from ident.diagnosis.result import Diagnosis
+from ident.effect import Effect
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.in_question import floor_of, in_question, trusted
@@ -24,11 +26,11 @@ def error_budget(matrix: Matrix, fit: FitResult) -> dict[str, Any]:
         return {}
 
 
-def next_run(matrix: Matrix, found: Diagnosis) -> dict[str, Any]:
+def next_run(matrix: Matrix, found: Diagnosis, custom: Sequence[Effect] = ()) -> dict[str, Any]:
     """The run that tells most of what a diagnosis leaves in question; empty where no run can be proposed."""
     data = found.to_json()
     try:
-        proposal = propose(in_question(data), trusted(data, matrix), floor_of(data), found.seed)
+        proposal = propose(in_question(data, custom), trusted(data, matrix), floor_of(data), found.seed)
     except Unusable as error:
         if error.code not in ("no-experiment", "bad-diagnosis"):
             raise

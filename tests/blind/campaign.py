@@ -1,7 +1,7 @@
 """The campaign of blind trials: resumable, in parts, its rows kept in docs/blind-trials.jsonl.
 
 python -m tests.blind.campaign one --noise 0.01 --level 3 --seeds 1 2   [--small] [--effects NAME …]
-python -m tests.blind.campaign none|two|three --seeds 1 2 3
+python -m tests.blind.campaign none|two|three|outside|own|label --seeds 1 2 3
 options: --minutes N (stop after), --out FILE
 """
 
@@ -13,10 +13,11 @@ import time
 from pathlib import Path
 from typing import Any
 
-from tests.blind.trial import NAMES, label, outside, several, single
+from tests.blind.trial import NAMES, label, outside, own, several, single
+from tests.blind.written import WRITTEN
 from tests.reference.outside_reference import Outside
 
-NAMED = {"one": NAMES, "outside": Outside._fields, "label": ("mass", "stiffness", "gain")}
+NAMED = {"one": NAMES, "outside": Outside._fields, "own": WRITTEN, "label": ("mass", "stiffness", "gain")}
 """What is hidden in the trials of a kind, by name; the other kinds draw it."""
 OUT = Path(__file__).parents[2] / "docs" / "blind-trials.jsonl"
 
@@ -56,7 +57,7 @@ def show(row: dict[str, Any]) -> None:
 def main() -> None:
     """Run what is asked for and is not there yet."""
     parser = argparse.ArgumentParser()
-    parser.add_argument("kind", choices=("one", "none", "two", "three", "outside", "label"))
+    parser.add_argument("kind", choices=("one", "none", "two", "three", "outside", "own", "label"))
     parser.add_argument("--noise", type=float, default=0.01)
     parser.add_argument("--level", type=float, default=3.0)
     parser.add_argument("--seeds", type=int, nargs="+", default=[1])
@@ -76,7 +77,7 @@ def main() -> None:
             if asked.kind == "one":
                 row = single(name, asked.level, asked.noise, asked.small, seed)
             elif asked.kind in NAMED:
-                row = (outside if asked.kind == "outside" else label)(name, seed, asked.noise)
+                row = {"outside": outside, "own": own, "label": label}[asked.kind](name, seed, asked.noise)
             else:
                 row = several({"none": 0, "two": 2, "three": 3}[asked.kind], seed, asked.noise)
             add(row, asked.out)

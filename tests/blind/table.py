@@ -15,10 +15,11 @@ from tests.blind.campaign import OUT, rows
 PAGE = OUT.with_suffix(".md")
 Row = dict[str, Any]
 GOALS = {"one full": 97, "one small": 90, "none full": 98, "two full": 92, "three full": 80,
-         "outside full": 90, "label full": 95}  # fmt: skip
+         "outside full": 90, "own full": 100, "label full": 95}  # fmt: skip
 _WORDS = {
     "one": "one effect hidden", "none": "nothing hidden", "two": "two effects", "three": "three effects",
-    "outside": "an effect that is not listed", "label": "a wrong label on one run",
+    "outside": "an effect that is not listed", "own": "the same, written as an equation",
+    "label": "a wrong label on one run",
 }  # fmt: skip
 
 
@@ -95,7 +96,8 @@ def page(everything: Sequence[Row]) -> str:
         "# Blind trials\n\nWritten by `python -m tests.blind.table` from blind-trials.jsonl. Data come from the "
         "independent reference with parameters drawn anew for each trial; the seed of each stands in its row. `named`: "
         "the verdict is the hidden set, each effect itself or in a group of at most three. For an effect that is not "
-        "listed: not a confident wrong name, unless the error is at the floor.\n"
+        "listed: not a confident wrong name, unless the error is at the floor; written as an equation: it is named and "
+        "the error falls to 1.1 times the floor.\n"
     )
     return head + "\n".join(f"\n## {title}\n\n" + "\n".join(make(of)) + "\n" for title, make, of in parts)
 

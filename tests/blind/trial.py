@@ -10,11 +10,13 @@ import numpy as np
 
 from ident.diagnose import diagnose
 from ident.diagnosis.result import Diagnosis
+from ident.effect import Effect
 from ident.effects import EFFECTS
 from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.matrix import Matrix, Run, Specimen
 from tests.blind.machines import OFFSET, Machine, as_fit, drawn_plant, matrix_of, offset_strength, strength_for
+from tests.blind.written import written
 from tests.reference import qian_reference as linear
 from tests.reference.outside_reference import Outside, measure_all
 
@@ -59,7 +61,22 @@ def several(count: int, seed: int, noise: float = 0.01) -> dict[str, Any]:
 
 def outside(kind: str, seed: int, noise: float = 0.01) -> dict[str, Any]:
     """An effect that the catalogue does not hold, at 2.5 to 5 times the floor."""
-    rng = np.random.default_rng([seed, 2000 + Outside._fields.index(kind)])
+    matrix, strength = _unlisted(kind, np.random.default_rng([seed, 2000 + Outside._fields.index(kind)]), noise)
+    row = {"kind": "outside", "matrix": "full", "noise": noise, "seed": seed, "hidden": {kind: strength}}
+    found = judged(matrix, {kind: strength})
+    at_floor = found["after"] < 1.02 * found["floor"]
+    return row | found | {"named": bool(found["unexplained"] or not found["found"] or at_floor)}
+
+
+def own(kind: str, seed: int, noise: float = 0.01) -> dict[str, Any]:
+    """The same with its equation written down: whether the error then falls to 1.1 times the floor."""
+    matrix, strength = _unlisted(kind, np.random.default_rng([seed, 4000 + Outside._fields.index(kind)]), noise)
+    row = {"kind": "own", "matrix": "full", "noise": noise, "seed": seed, "hidden": {kind: strength}}
+    found = judged(matrix, {kind: strength}, (written(kind),))
+    return row | found | {"named": bool(found["named"] and found["after"] <= 1.1 * found["floor"])}
+
+
+def _unlisted(kind: str, rng: np.random.Generator, noise: float) -> tuple[Matrix, float]:
     plant, start = drawn_plant(rng), int(rng.integers(1 << 30))
     goal = noise * float(np.sqrt(np.exp(rng.uniform(np.log(2.5), np.log(5.0))) ** 2 - 1))
     strength, trials = 0.1, linear.trials()
@@ -71,10 +88,7 @@ def outside(kind: str, seed: int, noise: float = 0.01) -> dict[str, Any]:
             break
         strength *= float(np.clip(goal / excess, 0.2, 5.0))
     records = measure_all(Outside(**{kind: strength}), trials, plant, seconds=2.0, noise=noise, seed=start)
-    row = {"kind": "outside", "matrix": "full", "noise": noise, "seed": seed, "hidden": {kind: strength}}
-    found = judged(matrix_of(records, plant), {kind: strength})
-    at_floor = found["after"] < 1.02 * found["floor"]
-    return row | found | {"named": bool(found["unexplained"] or not found["found"] or at_floor)}
+    return matrix_of(records, plant), strength
 
 
 def label(what: str, seed: int, noise: float = 0.01) -> dict[str, Any]:
@@ -111,11 +125,11 @@ def outcome(machine: Machine) -> dict[str, Any]:
     return judged(machine.measured(), machine.hidden)
 
 
-def judged(matrix: Matrix, hidden: dict[str, float] | Any) -> dict[str, Any]:
-    """Fit, diagnose, and compare with the truth."""
+def judged(matrix: Matrix, hidden: dict[str, float] | Any, custom: tuple[Effect, ...] = ()) -> dict[str, Any]:
+    """Fit, diagnose with the catalogue and effects of one's own, and compare with the truth."""
     fit = identify(matrix, Settings())
     begun = time.perf_counter()
-    found = diagnose(matrix, fit)
+    found = diagnose(matrix, fit, custom=custom)
     last = found.ladder[-1]
     floor = found.noise_floor
     return {
@@ -130,8 +144,8 @@ def judged(matrix: Matrix, hidden: dict[str, float] | Any) -> dict[str, Any]:
 
 
 def _strength(found: Diagnosis, name: str) -> float:
-    effect = EFFECTS[NAMES.index(name)]
-    return found.ladder[-1].parameters[f"{name}.{effect.strength.name}"].value
+    """The effect's first parameter on the last step."""
+    return next(p.value for key, p in found.ladder[-1].parameters.items() if key.startswith(f"{name}."))
 
 
 def named(found: Diagnosis, hidden: set[str]) -> bool:
