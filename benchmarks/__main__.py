@@ -8,13 +8,14 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from benchmarks import bench, fitness, identification, kernel, memory, pages, scaling, simulation, start
+from benchmarks import bench, diagnosis, fitness, identification, kernel, memory, pages, scaling, simulation, start
 from benchmarks.table import Table
 
 ALL: dict[str, Callable[[], Table]] = {
     "bench": bench.measure,
     "fitness": fitness.measure,
     "identification": identification.measure,
+    "diagnosis": diagnosis.measure,
     "memory": memory.measure,
     "simulation": simulation.measure,
     "kernel": kernel.measure,
