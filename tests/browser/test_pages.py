@@ -100,8 +100,9 @@ def test_the_fit_page_shows_the_stored_parameters_and_errors(page, site, fitted)
 
 def test_the_run_table_sorts_by_number(page, site, fitted):
     page.goto(f"{site.address}/fits/{fitted}")
+    page.get_by_text("Table of the 12 runs").click()
     page.get_by_role("button", name="Error", exact=True).click()
-    texts = page.locator(".runs tbody td:nth-child(2)").all_inner_texts()
+    texts = page.locator("table:has([data-pick]) tbody td:nth-child(2)").all_inner_texts()
     errors = [float(text.split()[0]) for text in texts]
     assert errors == sorted(errors)
     assert len(errors) == 12
@@ -111,13 +112,13 @@ def test_a_figure_follows_its_options_and_the_theme(page, site, fitted):
     page.emulate_media(color_scheme="light")
     page.goto(f"{site.address}/fits/{fitted}")
     page.locator("#tab-bode").click()
-    link = page.locator(f"{FIGURE} a[data-format=svg]")
+    link = page.locator(f"#figure-bode a[data-format=svg]")
     expect(link).to_have_attribute("href", re.compile("theme=light"))
     page.locator("#bode-axis").select_option("linear")
     expect(link).to_have_attribute("href", re.compile("axis=linear"))
     page.locator("#theme").select_option("dark")
     expect(link).to_have_attribute("href", re.compile("theme=dark"))
-    expect(page.locator(f"{FIGURE} .plot")).to_have_attribute("aria-busy", "false", timeout=60_000)
+    expect(page.locator(f"#figure-bode .plot")).to_have_attribute("aria-busy", "false", timeout=60_000)
     answer = page.request.get(site.address + link.get_attribute("href"))
     assert answer.headers["content-type"].startswith("image/svg+xml")
     page.reload()
