@@ -23,10 +23,10 @@ from ident.fit.output_error import OutputError
 from ident.parallel import each
 
 Array = NDArray[np.float64]
-SAMPLES = 65_536
+SAMPLES = 57_344
 _LADDER = (0.01, 0.03, 0.1, 0.3, 1.0)  # of the way from off to each bound
 _FINER = (1e-4, 3e-4, 1e-3, 3e-3)  # besides, for a machine of unknown size, whose bounds are wide
-_TOGETHER = 5  # effects simulated in one go
+_TOGETHER = 6  # effects simulated in one go
 _REACH = 2.0  # by which factor a response may be scaled: beyond, it would be another strength's
 _FAR = 0.1  # of an axis: a parameter that hardly matters where it is may be sent anywhere by a linearisation
 _PARTS = (1.0, 0.5, 0.2)  # of the way to a prediction: it may be too bold

@@ -9,6 +9,7 @@ from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page
 
 WIDTHS = (1280, 820)
+DRAWN = "[...document.querySelectorAll('.plot[aria-busy=true]')].every((plot) => !plot.offsetParent)"
 SERIOUS = {"serious", "critical"}
 
 
@@ -19,6 +20,7 @@ def everywhere(page: Page, folder: Path, name: str) -> None:
         for width in WIDTHS:
             page.set_viewport_size({"width": width, "height": 900})
             assert page.evaluate("document.documentElement.scrollWidth") <= width
+            page.wait_for_function(DRAWN, timeout=120_000)
             page.screenshot(path=folder / f"{name}-{width}-{theme}.png", full_page=True)
         found = barriers(page)
         assert not found, "\n".join([f"{name}, {theme}", *found])
