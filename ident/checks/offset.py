@@ -21,7 +21,7 @@ def offset(run: Run) -> Iterator[Finding]:
         return
     remedy = "zero the sensor or state offset" if share > LARGE else "a null bias, a static load or a sensor's zero"
     text = (
-        f"displacement of run {run.id} lies {1e3 * difference:.3g} mm beside the command, {share:.2g} times its standard "
-        f"deviation; the error of eq. (17) does not see it: {remedy}"
+        f"displacement of run {run.id} lies {1e3 * difference:.3g} mm beside the command, {share:.2g} times its "
+        f"standard deviation; the error of eq. (17) does not see it: {remedy}"
     )
     yield Finding(run.id, "doubt" if share > LARGE else "note", "offset", text)
