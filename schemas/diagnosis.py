@@ -64,6 +64,7 @@ class DiagnosisView(BaseModel):
     serial: str
     fit: str
     created_at: str
+    model: str
     baseline: dict[str, Any]
     noise_floor: dict[str, float | None]
     budget: dict[str, Any]

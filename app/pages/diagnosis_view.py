@@ -180,7 +180,7 @@ def _evidence(best: CandidateView, found: DiagnosisView, own: Mapping[str, Any] 
     effect = read_effect(own) if own is not None else _CATALOGUE.get(best.effect)
     if effect is None or not best.parameters:
         return None
-    view = view_of(effect, preset(str((found.model_extra or {}).get("model", ""))))
+    view = view_of(effect, preset(found.model))
     query = {"candidate": f"{found.id}:{best.effect}", **({"view": view.name} if view else {})}
     return "residual-curve" if view else "bode", urlencode(query)
 

@@ -101,10 +101,10 @@ def test_an_actuator_with_many_fits_shows_them_page_by_page(context: Context) ->
 
 def test_the_list_of_actuators_costs_the_same_for_one_and_for_many(context: Context) -> None:
     """And a job that waits is shown with its own actuator only."""
-    many = sent(context, lambda: pages.actuator_list(context, "", None))
-    one = sent(context, lambda: pages.actuator_list(context, "QUIET", None))
+    many = sent(context, lambda: pages.actuator_list(context, "", "error", None))
+    one = sent(context, lambda: pages.actuator_list(context, "QUIET", "error", None))
     assert len(many) == len(one)
-    states = {row.serial: row.state for row in pages.actuator_list(context, "", None)["rows"]}
+    states = {row.serial: row.state for row in pages.actuator_list(context, "", "error", None)["rows"]}
     assert states == {"BUSY": "queued", "QUIET": "succeeded"}
 
 

@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import Page
+from playwright.sync_api import Page, expect
 
 WIDTHS = (1280, 820)
-DRAWN = "[...document.querySelectorAll('.plot[aria-busy=true]')].every((plot) => !plot.offsetParent)"
+DRAWING = ".plot[aria-busy=true]:visible"
 SERIOUS = {"serious", "critical"}
 
 
@@ -20,7 +20,7 @@ def everywhere(page: Page, folder: Path, name: str) -> None:
         for width in WIDTHS:
             page.set_viewport_size({"width": width, "height": 900})
             assert page.evaluate("document.documentElement.scrollWidth") <= width
-            page.wait_for_function(DRAWN, timeout=120_000)
+            expect(page.locator(DRAWING)).to_have_count(0, timeout=120_000)
             page.screenshot(path=folder / f"{name}-{width}-{theme}.png", full_page=True)
         found = barriers(page)
         assert not found, "\n".join([f"{name}, {theme}", *found])

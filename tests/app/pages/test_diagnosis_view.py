@@ -29,7 +29,8 @@ def found() -> DiagnosisView:
         "evidence": "the error is 9 %",
     }
     return DiagnosisView(
-        id="d", matrix="m", serial="S", fit="f", created_at="2026-11-21T08:00:00", budget={}, next_experiment={},
+        id="d", matrix="m", serial="S", fit="f", created_at="2026-11-21T08:00:00", model="qian2014",
+        budget={}, next_experiment={},
         baseline={"error": {"fit": 0.02, "held_out": 0.02, "verify": None}, "offset": 0.0},
         noise_floor={"fit": 0.005, "verify": None}, seconds=3.2,
         candidates=[candidate("coulomb_friction", 0.01, group), candidate("stribeck_friction", 0.0101, group),
@@ -61,7 +62,7 @@ def test_what_does_not_help_stands_apart_and_what_is_left_is_said():
 
 def test_the_section_is_markup_with_everything_escaped():
     page = {"id": "f", "serial": "S", "matrix": "m", "again": "{}", "missing": missing(found(), None)}
-    text = _TEMPLATES.get_template("missing.html").render(fit=page)
+    text = _TEMPLATES.get_template("missing.html").render(fit=page, vega="")
     assert "r &lt;1&gt;" in text
     assert "cannot tell these 2 apart" in text
     assert "{&#34;runs&#34;: {&#34;r &lt;1&gt;&#34;: {&#34;specimen&#34;: {&#34;mass&#34;: &#34;0.9 kg&#34;}}}}" in text
