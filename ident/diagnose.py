@@ -16,7 +16,7 @@ from ident.bench.diagnosis import diagnose_bench
 from ident.diagnosis.addition import MOST, USUAL, Addition
 from ident.diagnosis.advice import error_budget, next_run
 from ident.diagnosis.chance import gain
-from ident.diagnosis.models import Models, Refit
+from ident.diagnosis.models import AT_FLOOR, Models, Refit
 from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.result import Diagnosis, Found, Ranked, Rung, Verdict
 from ident.diagnosis.suspects import Suspect, suspects
@@ -33,7 +33,6 @@ from ident.noise import averaged
 from ident.progress import Progress, Report, silent
 from ident.spectra import excited_band
 
-_AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be called noise
 _NOISE_LIKE = 0.5  # correlation of neighbouring residuals that noise may have, where there is no floor
 
 
@@ -66,7 +65,6 @@ class Work:
 
     def __init__(self, models: Models, fit: FitResult, most: int, report: Report) -> None:
         self.models, self.fit, self.most, self.report = models, fit, most, report
-        self.floors = models.floors
 
     def diagnosis(self) -> Diagnosis:
         """The whole of it."""
@@ -76,7 +74,7 @@ class Work:
             addition = self._added(self.models.without(suspect.run for suspect in doubted))
             doubted = self._doubted(addition)
         ladder = self._ladder(addition)
-        floor = averaged(self.models.matrix, self.floors)
+        floor = averaged(self.models.matrix, self.models.floors)
         unexplained = self._unexplained(addition)
         groups = tuple(tuple(c.effect for c in group) for group in addition.groups.values() if len(group) > 1)
         base = addition.base
@@ -108,7 +106,7 @@ class Work:
 
     def _doubted(self, addition: Addition) -> list[Suspect]:
         self.report(Progress("labels", 0, 1))
-        return suspects(addition.models, addition.found, self.floors)
+        return suspects(addition.models, addition.found, self.models.floors)
 
     # What is said ----------------------------------------------------------------------------------------------
 
@@ -168,11 +166,9 @@ class Work:
     def _unexplained(self, addition: Addition) -> bool:
         """Whether the error is still above the noise: its floor, or where that is not known, its lack of memory."""
         found, models = addition.found, addition.models
-        floors = [self.floors[run.id] for run in models.runs]
-        if all(floor is not None for floor in floors):
-            lowest = float(np.mean([floor for floor in floors if floor is not None]))
+        if models.floor is not None:
             samples = sum(run.length for run in models.runs)
-            return bool(found.error > lowest * (1.0 + _AT_FLOOR + 3.0 / np.sqrt(samples / 2)))
+            return bool(found.error > models.floor * (1.0 + AT_FLOOR + 3.0 / np.sqrt(samples / 2)))
         outputs = models.fitness(found.effects).outputs(found.point)
         residuals = [run.measured - outputs[run.id] for run in models.runs]
         memory = [float(np.corrcoef(r[1:], r[:-1])[0, 1]) for r in residuals]

@@ -29,7 +29,7 @@ _FITTING = 1e-7, 20  # relative promise of a further step below which a refit st
 _TRYING = 1e-5, 10
 _SEARCHING = 1e-5, 30
 _BETTER = 0.99  # times the error: a new optimum, not the same one
-_AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be noise
+AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be noise
 
 
 @dataclass(frozen=True)
@@ -142,10 +142,15 @@ class Models:
         """The noise floor of each run of the matrix by its id."""
         return floors_by_run(self.matrix, self.band)
 
+    @property
+    def floor(self) -> float | None:
+        """The noise floor averaged over the runs that are fitted; None where it cannot be told of every run."""
+        floors = [floor for run in self.runs if (floor := self.floors[run.id]) is not None]
+        return float(np.mean(floors)) if len(floors) == len(self.runs) else None
+
     def at_floor(self, refit: Refit) -> bool:
         """Whether the error of a refit is noise alone; never where the floor cannot be told."""
-        floors = [floor for run in self.runs if (floor := self.floors[run.id]) is not None]
-        return len(floors) == len(self.runs) and refit.error < (1.0 + _AT_FLOOR) * float(np.mean(floors))
+        return self.floor is not None and refit.error < (1.0 + AT_FLOOR) * self.floor
 
     def best_of(self, refit: Refit, starts: Sequence[Mapping[str, float]]) -> Refit | None:
         """The best refit of the same model from other starts, where one is better than `refit`."""
