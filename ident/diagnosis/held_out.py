@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from ident.fit.objective import Local, local, weight_of
 from ident.fit.polish import polish
-from ident.fit.products import project
+from ident.fit.products import without
 from ident.fit.record import Moments
 
 Array = NDArray[np.float64]
@@ -88,27 +88,20 @@ def held_out(point: Array, here: Local, evaluate: Callable[[Array], Local], inde
     squares = np.zeros((len(here.runs), count))
     for fold in range(FOLDS):
         used = [of % FOLDS != fold for of in chunks]
-        there, step, parts = _without(point, here, used, evaluate)
+        there, step = _without(point, here, used, evaluate)
         inside = np.arange(count) % FOLDS == fold
-        for i, (run, of, (_, remove)) in enumerate(zip(there.runs, chunks, parts, strict=True)):
-            squares[i, inside] = _by_chunk(run, of, count, step, remove)[inside]
+        for i, (run, of) in enumerate(zip(there.runs, chunks, strict=True)):
+            squares[i, inside] = _by_chunk(run, of, count, step)[inside]
     means = np.array([run.offset for run in here.runs])
     totals = np.array([run.total for run in here.runs])
     return HeldOut(squares, totals, means - means.mean(), sum(run.length for run in here.runs), independent)
 
 
-Parts = list[tuple[Array, Array]]
-"""Of each run, the products of the used blocks and what takes off its nuisances."""
-
-
-def _without(
-    point: Array, here: Local, used: list[Mask], evaluate: Callable[[Array], Local]
-) -> tuple[Local, Array, Parts]:  # fmt: skip
-    """Where the fit of the used blocks ends: a linearisation, the step from there, and the runs' parts."""
-    parts = [_projected(run, of) for run, of in zip(here.runs, used, strict=True)]
-    step = _step(point, here, parts)
+def _without(point: Array, here: Local, used: list[Mask], evaluate: Callable[[Array], Local]) -> tuple[Local, Array]:
+    """Where the fit of the used blocks ends: a linearisation, and the step from there."""
+    step = _step(point, here, [_projected(run, of) for run, of in zip(here.runs, used, strict=True)])
     if not len(step) or np.abs(step).max() <= _FAR:
-        return here, step, parts
+        return here, step
 
     def of_used(trial: Array) -> Local:
         return _partly(evaluate(trial), used)
@@ -116,8 +109,8 @@ def _without(
     end, _ = polish(of_used, point, lambda _count, _error: None, lambda _local: None, _ENOUGH, _STEPS)
     there = evaluate(end)
     if not np.isfinite(there.error):  # the point lies at the edge of what is stable: judged by its linearisation
-        return here, step, parts
-    return there, np.zeros(len(point)), [_projected(run, of) for run, of in zip(there.runs, used, strict=True)]
+        return here, step
+    return there, np.zeros(len(point))
 
 
 def _partly(here: Local, used: list[Mask]) -> Local:
@@ -125,7 +118,7 @@ def _partly(here: Local, used: list[Mask]) -> Local:
     if not np.isfinite(here.error):
         return here
     return local([
-        Moments(_projected(run, of)[0], run.scores[:0], run.total, run.offset, run.release, run.means, run.length)
+        Moments(_projected(run, of), run.scores[:0], run.total, run.offset, run.release, run.means, run.length)
         for run, of in zip(here.runs, used, strict=True)
     ])  # fmt: skip
 
@@ -135,29 +128,26 @@ def _chunk_of(run: Moments, count: int) -> Indices:
     return np.asarray(np.arange(len(run.blocks)) * count // len(run.blocks), dtype=np.intp)
 
 
-def _projected(run: Moments, used: Mask) -> tuple[Array, Array]:
-    """[J, r] products of the used blocks less what is free in a record, (p+1, p+1), and what takes that off, (q, p+1).
+def _projected(run: Moments, used: Mask) -> Array:
+    """[J, r] products of the used blocks less what is free in a record, (p+1, p+1).
 
     The record's mean and first state are taken from all of it: a first state shows in its first block alone.
     """
-    p = len(run.gram) - 1
-    _, shares = project(run.blocks.sum(axis=0)[None], p)
-    remove = np.concatenate([np.eye(p + 1)[:p], -shares[0], np.eye(p + 1)[p:]])
-    return remove.T @ run.blocks[used].sum(axis=0) @ remove, remove
+    return without(run.remove, run.blocks[used].sum(axis=0))
 
 
-def _by_chunk(run: Moments, chunks: Indices, count: int, step: Array, remove: Array) -> Array:
+def _by_chunk(run: Moments, chunks: Indices, count: int, step: Array) -> Array:
     """Σ of squares of r − Jδ − Nν over each chunk, (count,)."""
-    direction = remove @ np.append(-step, 1.0)
+    direction = run.remove @ np.append(-step, 1.0)
     by_block = np.einsum("i,bij,j->b", direction, run.blocks, direction)
     return np.asarray(np.bincount(chunks, np.maximum(by_block, 0.0), count), dtype=np.float64)
 
 
-def _step(point: Array, here: Local, parts: Parts) -> Array:
+def _step(point: Array, here: Local, parts: list[Array]) -> Array:
     """The Gauss-Newton step of the parts of all runs that stays in the unit cube."""
     p = len(point)
     H, g = np.zeros((p, p)), np.zeros(p)
-    terms = [(weight_of(run), gram) for run, (gram, _) in zip(here.runs, parts, strict=True)]
+    terms = [(weight_of(run), gram) for run, gram in zip(here.runs, parts, strict=True)]
     if here.means is not None:
         terms.append((weight_of(here.means), here.means.gram))
     for weight, gram in terms:

@@ -154,10 +154,9 @@ class Models:
 
     def best_of(self, refit: Refit, starts: Sequence[Mapping[str, float]]) -> Refit | None:
         """The best refit of the same model from other starts, where one is better than `refit`."""
-        fitness = self.fitness(refit.effects, _TRIAL)
         others = [self.refit(refit.effects, start, _TRIAL, _SEARCHING) for start in starts]
         best = min(others, key=lambda other: other.here.error)
-        if best.here.error > _BETTER * fitness.exact(refit.point, sensitivities=False).error:
+        if best.here.error > _BETTER * self.tried(refit):
             return None
         found = self.refit(refit.effects, best.values)
         return found if found.here.error < refit.here.error else None
@@ -178,6 +177,10 @@ class Models:
         off = {symbol for name, e in self.effects.items() if name not in effects for symbol in map(e.symbol, _names(e))}
         values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}
         return Refit(effects, values, fitness.space, point, here, fitness)
+
+    def tried(self, refit: Refit) -> float:
+        """What a first refit has to beat: the error of a refit on the beginnings of the records."""
+        return self.fitness(refit.effects, _TRIAL).exact(refit.point, sensitivities=False).error
 
     def trial(self, effects: tuple[str, ...], starts: Sequence[Mapping[str, float]]) -> Refit:
         """A first refit on the beginnings of the records, from the one of the starts where the error is least."""

@@ -15,7 +15,7 @@ _CONTENDERS, _FEW = 12, 10  # refitted; fewer, the more effects there are alread
 _QUICK = 200_000  # samples of a matrix so small that every promise can be tried
 _NEAR = 1.3  # times the best predicted error: the contenders for a further effect
 _FINALISTS = 5
-_CLOSE = 1.05  # times the best trial's error: also a finalist
+_CLOSE = 1.05  # times the best trial's error: also a finalist, where it promises anything
 _DEEPER = 2  # of the finalists are looked for elsewhere, too
 _STRONG = (1.0, 0.3)  # of the largest strength, from where
 _PROMISING = 0.3 * WORTHWHILE  # relative fall of the score that is worth a refit
@@ -72,7 +72,8 @@ def rank(models: Models, base: Refit, names: Iterable[str], report: Report, thor
     tried = sorted(each(trial, contenders), key=lambda candidate: candidate.score)
     best = tried[0].score[1] if tried else 0.0
     sure = _FINALISTS if thorough else 2
-    finalists = [c for i, c in enumerate(tried) if c.trial and (i < sure or c.score[1] < _CLOSE * best)]
+    good = min(_CLOSE * best, (1.0 - _PROMISING) * models.tried(base))
+    finalists = [c for i, c in enumerate(tried) if c.trial and (i < sure or c.score[1] < good)]
 
     def final(candidate: Candidate) -> Candidate:
         nonlocal done

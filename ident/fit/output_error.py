@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ident.chain import Chain, conditions, linear_model
 from ident.effect import Effect
 from ident.fit.objective import STEP, UNSTABLE, Local, local
-from ident.fit.products import add_products, project
+from ident.fit.products import add_products, removal, without
 from ident.fit.record import Moments, first_state, moments_of
 from ident.fit.space import Space
 from ident.matrix import Matrix, Run
@@ -99,25 +99,24 @@ class OutputError:
     def exact(self, point: Array, sensitivities: bool = True) -> Local:
         """The objective at one point, with sensitivities by differences; infinite where a run is unstable."""
         p = len(point) if sensitivities else 0
-        # A step that would leave the cube goes inwards; the sign is taken back below.
-        signs = np.where(point + self._strides > 1.0, -1.0, 1.0)[:p]
-        moved = point + np.diag(self._strides * signs) if p else np.empty((0, len(point)))
+        strides = np.where(point + self._strides > 1.0, -self._strides, self._strides)[:p]  # inwards at a bound
+        moved = point + np.diag(strides) if p else np.empty((0, len(point)))
         cloud = np.concatenate([point[None], moved])
         values = self.space.values(cloud)
         self.evaluations += len(cloud)
         steps = int(self._steps(values).max())
-        flip = np.append(signs, 1.0)
         self.begin({name: float(value[0]) for name, value in values.items()})
         with np.errstate(over="ignore", invalid="ignore"):
-            found = self._found(values, p, steps)
-        return local([_turned(found[run.id], flip) for run in self.runs], with_means=True)
+            found = self._found(values, strides, steps)
+        return local([found[run.id] for run in self.runs], with_means=True)
 
-    def _found(self, values: Mapping[str, Array], p: int, steps: int) -> dict[str, Moments]:
+    def _found(self, values: Mapping[str, Array], strides: Array, steps: int) -> dict[str, Moments]:
         """The moments of every run by its id; without sensitivities the first states are followed to their end."""
         found: dict[str, Moments] = {}
+        p = len(strides)
         for _ in range(1 if p else _SETTLING):
             todo = list(self._together(p + 1 + len(self.chain.states)))
-            parts = each(lambda runs: self._moments(runs, values, p, steps), todo)
+            parts = each(lambda runs: self._moments(runs, values, strides, steps), todo)
             found = {
                 run.id: m for runs, part in zip(todo, parts, strict=True) for run, m in zip(runs, part, strict=True)
             }
@@ -150,10 +149,9 @@ class OutputError:
         found = zip(todo, each(of_runs, todo), strict=True)
         return {run.id: y for runs, outputs in found for run, y in zip(runs, outputs, strict=True)}
 
-    def _moments(self, runs: tuple[Run, ...], values: Mapping[str, Array], p: int, steps: int) -> list[Moments]:
+    def _moments(self, runs: tuple[Run, ...], values: Mapping[str, Array], strides: Array, steps: int) -> list[Moments]:
         """The moments of runs of one length, from one simulation of all of them."""
-        blocks = self._products(runs, values, self._strides[:p], steps)
-        return [moments_of(run, block, p) for run, block in zip(runs, blocks, strict=True)]
+        return moments_of(runs, self._products(runs, values, strides, steps), len(strides))
 
     def _products(
         self, runs: tuple[Run, ...], values: Mapping[str, Array], strides: Array, steps: int, blocks: int = _BLOCKS
@@ -196,9 +194,10 @@ class OutputError:
                 sums = self._products(runs, values, strides, steps, blocks=1)[:, 0]
             power = np.abs(np.diagonal(sums, axis1=1, axis2=2))
             sound = np.where(power < _LARGEST, 1.0, 0.0)
-            gram, shares = project(np.where(sound[:, :, None] * sound[:, None, :] > 0, sums, 0.0), p)
-            means = shares[:, -1] + np.append(np.zeros(p), 1.0) * np.array([[run.measured.mean()] for run in runs])
-            return gram, means
+            sums = np.where(sound[:, :, None] * sound[:, None, :] > 0, sums, 0.0)
+            remove = removal(sums, p)
+            means = -remove[:, -2] + np.append(np.zeros(p), 1.0) * np.array([[run.measured.mean()] for run in runs])
+            return without(remove, sums), means
 
         todo = list(self._together(p + 1 + len(self.chain.states)))
         parts = each(of_share, todo)
@@ -289,17 +288,6 @@ class OutputError:
             if key not in chosen or run.Kp > chosen[key].Kp:
                 chosen[key] = run
         return tuple(chosen.values())
-
-
-def _turned(found: Moments, flip: Array) -> Moments:
-    """The moments with the signs of the steps taken back."""
-    if not np.isfinite(found.error):
-        return found
-    p = len(flip) - 1
-    gram, scores = found.gram * flip[:, None] * flip, found.scores * flip[:-1]
-    wide = np.concatenate([flip[:p], np.ones(found.blocks.shape[-1] - p)])
-    blocks = found.blocks * wide[:, None] * wide
-    return replace(found, gram=gram, scores=scores, means=found.means * flip, blocks=blocks)
 
 
 def shortened(runs: Sequence[Run], samples: int) -> tuple[Run, ...]:

@@ -39,16 +39,24 @@ def add_products(rows: Array, measured: Array, sums: Array) -> None:
                     sums[run, i, j] += total
 
 
-def project(gram: Array, p: int) -> tuple[Array, Array]:
-    """Products of [J, r] with [N, 1] projected out, (runs, p+1, p+1), and how much of [N, 1] they hold.
+def removal(gram: Array, p: int) -> Array:
+    """What takes the nuisances N and 1 off J and r, (runs, q, p+1): Rᵀ G R are the products of what is left.
 
-    `gram` holds Σ of products of [J, N, 1, r], (runs, q, q); the second result, (runs, q−p−1, p+1), is the
-    least-squares share of each nuisance in each of [J, r].
+    `gram` (runs, q, q) holds G, Σ of products of [J, N, 1, r]. Each column is one of [J, r] less its least-squares
+    share of the nuisances; the share of the constant stands in the last row but one.
     """
-    kept, free = [*range(p), gram.shape[-1] - 1], np.arange(p, gram.shape[-1] - 1)
+    last = gram.shape[-1] - 1
+    kept, free = np.array([*range(p), last]), np.arange(p, last)
     inner = gram[:, free[:, None], free]
     size = np.sqrt(np.maximum(np.diagonal(inner, axis1=1, axis2=2), 1e-300))
     outer = size[:, :, None] * size[:, None, :]
-    mixed = gram[:, free[:, None], kept]
-    shares = (np.linalg.pinv(inner / outer, rcond=_BLIND, hermitian=True) / outer) @ mixed
-    return gram[:, np.array(kept)[:, None], kept] - mixed.transpose(0, 2, 1) @ shares, shares
+    shares = (np.linalg.pinv(inner / outer, rcond=_BLIND, hermitian=True) / outer) @ gram[:, free[:, None], kept]
+    remove = np.zeros((len(gram), last + 1, p + 1))
+    remove[:, kept, range(p + 1)] = 1.0
+    remove[:, free] = -shares
+    return remove
+
+
+def without(remove: Array, gram: Array) -> Array:
+    """Rᵀ G R, the products of [J, r] with the nuisances taken off, (…, p+1, p+1)."""
+    return np.asarray(np.swapaxes(remove, -1, -2) @ gram @ remove)

@@ -7,12 +7,13 @@ and, where it starts moving, the decay of its unknown first state).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.fit.products import removal, without
 from ident.linear import LinearModel
 from ident.matrix import Run
 from ident.recursion import LANES, Recursion, advance, discretise
@@ -29,7 +30,8 @@ class Moments:
 
     `total` is Σ (x_m − mean)²; `offset` the difference of means over the standard deviation; `release` how much of
     each nuisance but the mean the record holds; `means` the means of [J, r], `length` the number of samples; `blocks`
-    the sums of products of [J, N, 1, r] of each block, before anything is projected out, (b, q, q).
+    the sums of products of [J, N, 1, r] of each block, before anything is projected out, (b, q, q), and `remove` what
+    does so, (q, p+1), see :func:`ident.fit.products.removal`.
     """
 
     gram: Array
@@ -40,6 +42,7 @@ class Moments:
     means: Array = field(default_factory=lambda: np.empty(0))
     length: int = 0
     blocks: Array = field(default_factory=lambda: np.empty((0, 0, 0)), repr=False)
+    remove: Array = field(default_factory=lambda: np.empty((0, 0)), repr=False)
 
     @property
     def error(self) -> float:
@@ -48,36 +51,40 @@ class Moments:
         return value if np.isfinite(value) else np.inf
 
 
-def moments(run: Run, model: LinearModel, step: float = 1.0) -> Moments:
-    """The moments of a run for a batch of models (1 + p,): the model, and p neighbours one `step` away."""
+def moments(run: Run, model: LinearModel, strides: Array) -> Moments:
+    """The moments of a run for a batch of models (1 + p,): the model, and p neighbours, each a stride (p,) away."""
     systems = discretise(model, run.sample_rate, run.hold)
-    p = len(systems.D) - 1
     if not run.starts_at_rest:
         systems = _with_releases(systems)
-    return moments_of(run, _products(run, systems, p, step), p)
+    return moments_of([run], _products(run, systems, strides)[None], len(strides))[0]
 
 
-def moments_of(run: Run, blocks: Array, p: int) -> Moments:
-    """The moments from sums of products of [J, N, r] of each block, (b, q, q), r taken from the mean-free record."""
-    gram = blocks.sum(axis=0)
-    total = float(np.sum((run.measured - run.measured.mean()) ** 2))
-    if not np.all(np.isfinite(gram)) or gram[-1, -1] > _ESCAPED * total:
-        return Moments(np.full((p + 1, p + 1), np.inf), np.zeros((len(blocks), p)), 1.0, np.inf)
-    kept, free = [*range(p), gram.shape[0] - 1], slice(p, gram.shape[0] - 1)
-    size = np.sqrt(np.maximum(np.diag(gram)[free], 1e-300))
-    values, vectors = np.linalg.eigh(gram[free, free] / size[:, None] / size)
-    sound = values > 1e-12 * values[-1]
-    directions = vectors[:, sound] / size[:, None]
-    solution = (directions / values[sound]) @ (directions.T @ gram[free][:, kept])
-    remove = np.zeros((gram.shape[0], p + 1))  # columns: J and r with their share of the nuisances taken off
-    remove[kept, range(p + 1)] = 1.0
-    remove[free] = -solution
-    projected = remove.T @ gram @ remove
-    scores = np.einsum("ai,bac,c->bi", remove[:, :p], blocks, remove[:, -1])
-    constant = solution[-1, -1] + run.measured.mean()
-    offset = float(constant / np.sqrt(total / run.length))
-    means = np.append(solution[-1, :-1], constant)
-    return Moments(projected, scores, total, offset, solution[:-1, -1], means, run.length, blocks)
+def moments_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Moments]:
+    """The moments of runs from sums of products of [J, N, 1, r] of each block, (runs, b, q, q), of mean-free runs."""
+    means = np.array([run.measured.mean() for run in runs])
+    totals = np.array([np.sum((run.measured - mean) ** 2) for run, mean in zip(runs, means, strict=True)])
+    gram = blocks.sum(axis=1)
+    sound = np.all(np.isfinite(gram), axis=(1, 2)) & ~(gram[:, -1, -1] > _ESCAPED * totals)
+    remove = removal(np.where(sound[:, None, None], gram, 0.0), p)
+    with np.errstate(invalid="ignore", over="ignore"):
+        projected = without(remove, gram)
+        scores = np.einsum("rai,rbac,rc->rbi", remove[:, :, :p], blocks, remove[:, :, -1], optimize=True)
+    release = -remove[:, p:-1]  # of each nuisance in each of [J, r], the constant last
+    release[:, -1, -1] += means
+    return [
+        _escaped(p, blocks.shape[1])
+        if not sound[i]
+        else Moments(
+            projected[i], scores[i], float(totals[i]), float(release[i, -1, -1] / np.sqrt(totals[i] / run.length)),
+            release[i, :-1, -1], release[i, -1], run.length, blocks[i], remove[i],
+        )
+        for i, run in enumerate(runs)
+    ]  # fmt: skip
+
+
+def _escaped(p: int, blocks: int) -> Moments:
+    """Of a model that ran away."""
+    return Moments(np.full((p + 1, p + 1), np.inf), np.zeros((blocks, p)), 1.0, np.inf)
 
 
 def first_state(run: Run, model: LinearModel) -> Array:
@@ -85,7 +92,7 @@ def first_state(run: Run, model: LinearModel) -> Array:
     if run.starts_at_rest:
         return np.zeros(len(model.B[0]))
     systems = _with_releases(discretise(model, run.sample_rate, run.hold))
-    released = moments_of(run, _products(run, systems, 0, 1.0), 0).release
+    released = moments_of([run], _products(run, systems, np.empty(0))[None], 0)[0].release
     if not len(released):  # unstable: no state fits
         return np.zeros(len(model.B[0]))
     return np.asarray(np.diag(systems.start[1:]) * released)
@@ -137,13 +144,13 @@ def _responses(run: Run, systems: Recursion, length: int) -> Iterator[tuple[Arra
         yield parts[0] if len(parts) == 1 else np.hstack(parts), first, last
 
 
-def _products(run: Run, systems: Recursion, p: int, step: float) -> Array:
+def _products(run: Run, systems: Recursion, strides: Array) -> Array:
     """Sums of products of [J, releases, 1, r] for each block, (blocks, q, q).
 
     The differences are taken in place, before the products: taken after, they would lose half the digits.
     """
     length = max(16, -(-run.length // _BLOCKS))
-    batch, mean = len(systems.D), run.measured.mean()
+    batch, p, mean = len(systems.D), len(strides), run.measured.mean()
     order = np.array([*range(1, batch + 1), 0])
     out = []
     for rows, first, last in _responses(run, systems, length):
@@ -152,6 +159,6 @@ def _products(run: Run, systems: Recursion, p: int, step: float) -> Array:
         rows[:, batch] = 1.0  # a spare lane
         out.append((rows.T @ rows)[np.ix_(order, order)])
     products = np.array(out)
-    products[:, :p] /= step
-    products[:, :, :p] /= step
+    products[:, :p] /= strides[:, None]
+    products[:, :, :p] /= strides
     return products

@@ -34,7 +34,7 @@ def objective(data, point: np.ndarray) -> Local:
     for run, J in data:
         residual = run.measured - run.measured.mean() - J @ (point - 0.5)
         z = np.column_stack([J, np.ones(N), residual]).reshape(BLOCKS, -1, 4)
-        runs.append(moments_of(run, np.einsum("bni,bnj->bij", z, z), 2))
+        runs += moments_of([run], np.einsum("bni,bnj->bij", z, z)[None], 2)
     return local(runs)
 
 
