@@ -114,7 +114,7 @@ class Work:
         verify = models.matrix.of_use("verify")
         on_verify = None
         if verify:
-            here = models.fitness(refit.effects).fresh(verify).exact(refit.point, sensitivities=False)
+            here = refit.fitness.fresh(verify).exact(refit.point, sensitivities=False)
             errors = [run.error for run in here.runs]
             on_verify = float(np.mean(errors)) if np.all(np.isfinite(errors)) else None
         return {"fit": refit.error, "held_out": refit.held_out.error, "verify": on_verify}
@@ -169,7 +169,7 @@ class Work:
         if models.floor is not None:
             samples = sum(run.length for run in models.runs)
             return bool(found.error > models.floor * (1.0 + AT_FLOOR + 3.0 / np.sqrt(samples / 2)))
-        outputs = models.fitness(found.effects).outputs(found.point)
+        outputs = found.fitness.outputs(found.point)
         residuals = [run.measured - outputs[run.id] for run in models.runs]
         memory = [float(np.corrcoef(r[1:], r[:-1])[0, 1]) for r in residuals]
         return bool(np.median(memory) > _NOISE_LIKE)

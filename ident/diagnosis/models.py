@@ -135,7 +135,8 @@ class Models:
             space = search_space(model, self.matrix, given, self.band)
             runs = shortened(self.runs, samples) if samples else self.runs
             self._known[key] = OutputError(model, self.matrix, runs, space, self.band)
-        return self._known[key]
+        known = self._known[key]
+        return known.fresh(known.runs)  # no search goes on from the first states in which another one ended
 
     @cached_property
     def floors(self) -> Mapping[str, float | None]:
@@ -184,10 +185,13 @@ class Models:
 
     def trial(self, effects: tuple[str, ...], starts: Sequence[Mapping[str, float]]) -> Refit:
         """A first refit on the beginnings of the records, from the one of the starts where the error is least."""
-        fitness = self.fitness(effects, _TRIAL)
-        points = [fitness.space.point({**self.off, **start, **fitness.space.fixed}) for start in starts]
-        errors = [fitness.exact(point, sensitivities=False).error for point in points]
-        return self.refit(effects, starts[int(np.argmin(errors))], _TRIAL)
+
+        def error(start: Mapping[str, float]) -> float:
+            fitness = self.fitness(effects, _TRIAL)
+            point = fitness.space.point({**self.off, **start, **fitness.space.fixed})
+            return fitness.exact(point, sensitivities=False).error
+
+        return self.refit(effects, min(starts, key=error), _TRIAL)
 
 
 def _fits(preset: Preset, *effects: Effect) -> bool:

@@ -160,7 +160,7 @@ def _errors(models: Models, fitted: Refit, run: Run, changed: Mapping[str, Array
 
 def _outputs(models: Models, fitted: Refit, run: Run, changed: Mapping[str, Array]) -> Array:
     """The model's outputs for a run with changed labels, (n, v)."""
-    fitness = models.fitness(fitted.effects)
+    fitness = fitted.fitness
     known = {name: np.array([[value]]) for name, value in conditions(run, models.matrix.actuator).items()}
     known |= {name: np.array([[value]]) for name, value in {**fitness.space.fixed, **fitted.values}.items()}
     known |= {name: np.asarray(values)[None] for name, values in changed.items()}
