@@ -96,7 +96,10 @@ class Addition:
                 break
 
     def _backward(self, latest: str) -> bool:
-        """Take out what the model can do without; True where that leads back to where it was."""
+        """Take out what the model can do without; True where that leads back to where it was.
+
+        What enters and leaves in a circle is of use in one company and of none in another: the best of it stays.
+        """
         for name in self.added:
             if name == latest:
                 continue
@@ -104,9 +107,10 @@ class Addition:
             effects = tuple(e for e in here.effects if e != name)
             less = self.models.refit(effects, _without(here.values, name))
             if less.finite and not gain(less.held_out, here.held_out).beyond_chance:
-                back = any(set(step.effects) == set(effects) for step in self.steps)
+                known = [i for i, step in enumerate(self.steps) if set(step.effects) == set(effects)]
                 self.steps.append(less)
-                if back:
+                if known:
+                    self.steps.append(min(self.steps[known[0] :], key=lambda step: step.held_out.score))
                     return True
         return False
 
