@@ -1,7 +1,8 @@
 """The campaign of blind trials: resumable, in parts, its rows kept in docs/blind-trials.jsonl.
 
 python -m tests.blind.campaign one --noise 0.01 --level 3 --seeds 1 2   [--small] [--effects NAME …]
-python -m tests.blind.campaign none|two|three|outside|own|label --seeds 1 2 3
+python -m tests.blind.campaign none|two|three --seeds 1 2 3   [--small]
+python -m tests.blind.campaign outside|own|label --seeds 1 2 3
 options: --minutes N (stop after), --out FILE
 """
 
@@ -70,7 +71,7 @@ def main() -> None:
     end = time.monotonic() + 60 * asked.minutes
     for seed in asked.seeds:
         for name in asked.effects or NAMED.get(asked.kind, ("",)):
-            matrix = "small" if asked.small else "full"
+            matrix = "small" if asked.small and asked.kind in ("one", "none", "two", "three") else "full"
             level = asked.level if asked.kind == "one" else None
             if (asked.kind, matrix, asked.noise, level, seed, name) in done or time.monotonic() > end:
                 continue
@@ -79,7 +80,7 @@ def main() -> None:
             elif asked.kind in NAMED:
                 row = {"outside": outside, "own": own, "label": label}[asked.kind](name, seed, asked.noise)
             else:
-                row = several({"none": 0, "two": 2, "three": 3}[asked.kind], seed, asked.noise)
+                row = several({"none": 0, "two": 2, "three": 3}[asked.kind], seed, asked.noise, asked.small)
             add(row, asked.out)
             show(row)
 

@@ -14,8 +14,8 @@ from tests.blind.campaign import OUT, rows
 
 PAGE = OUT.with_suffix(".md")
 Row = dict[str, Any]
-GOALS = {"one full": 97, "one small": 90, "none full": 98, "two full": 92, "three full": 80,
-         "outside full": 90, "own full": 100, "label full": 95}  # fmt: skip
+GOALS = {"one full": 97, "one small": 90, "none full": 98, "none small": 98, "two full": 92, "two small": 92,
+         "three full": 80, "three small": 80, "outside full": 90, "own full": 100, "label full": 95}  # fmt: skip
 _WORDS = {
     "one": "one effect hidden", "none": "nothing hidden", "two": "two effects", "three": "three effects",
     "outside": "an effect that is not listed", "own": "the same, written as an equation",

@@ -43,20 +43,22 @@ def single(name: str, level: float, noise: float, small: bool, seed: int) -> dic
     return row | outcome(Machine(machine.plant, {name: strength}, noise, small, machine.seed))
 
 
-def several(count: int, seed: int, noise: float = 0.01) -> dict[str, Any]:
+def several(count: int, seed: int, noise: float = 0.01, small: bool = False) -> dict[str, Any]:
     """`count` effects hidden, each at least 3 times the floor by itself where its bounds allow it; none for 0."""
-    rng = np.random.default_rng([seed, 1000 + count])
+    rng = np.random.default_rng([seed, 1000 + count, *[1] * small])
     plant, start = drawn_plant(rng), int(rng.integers(1 << 30))
     hidden: dict[str, float] = {}
     while len(hidden) < count:
         name = str(rng.choice([n for n in NAMES if n not in hidden and n not in OFFSET]))
         wanted = float(np.exp(rng.uniform(np.log(3.1), np.log(6.0))))
-        strength, reached = strength_for(Machine(plant, {}, noise, False, start), name, wanted)
+        strength, reached = strength_for(Machine(plant, {}, noise, small, start), name, wanted)
         if reached >= 2.8 * noise:
             hidden[name] = strength
     kinds = {0: "none", 1: "one", 2: "two", 3: "three"}
-    row: dict[str, Any] = {"kind": kinds[count], "matrix": "full", "noise": noise, "seed": seed, "hidden": hidden}
-    return row | outcome(Machine(plant, hidden, noise, False, start))
+    row: dict[str, Any] = {
+        "kind": kinds[count], "matrix": "small" if small else "full", "noise": noise, "seed": seed, "hidden": hidden,
+    }  # fmt: skip
+    return row | outcome(Machine(plant, hidden, noise, small, start))
 
 
 def outside(kind: str, seed: int, noise: float = 0.01) -> dict[str, Any]:
