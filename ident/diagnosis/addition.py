@@ -2,13 +2,15 @@
 
 Forward: the best of the ranking is added while it helps beyond chance. Backward: what the model can do without since
 is taken out. In the end each effect that was added is weighed against everything that could stand in its place: a
-better one replaces it, those as good by chance are its group.
+better one replaces it, those as good by chance are its group. Where all of this ends above the noise, two at a time are
+tried in the place of one.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import combinations
 
 from ident.diagnosis.chance import gain
 from ident.diagnosis.models import Models, Refit
@@ -18,6 +20,8 @@ MOST = 6  # effects that are added
 USUAL = 4  # where the user says nothing
 _WEIGHED = 3  # effects that are weighed against others in their place: of more the data tell too little
 _ROUNDS = 3  # of replacing
+_PAIRED = 6  # finalists that are tried two at a time
+_SHARES = (1.0, 0.3, 0.03)  # of the second's strength alone
 
 
 @dataclass
@@ -47,15 +51,21 @@ class Addition:
         return tuple(name for name in self.found.effects if name not in self.base.effects)
 
     def run(self) -> Addition:
-        """Add, take out, replace, until nothing helps."""
+        """Add, take out, replace, until nothing helps; where the noise is not reached, once more from two at a time."""
         self.steps = [self.base]
+        self._rounds()
+        if self._paired():
+            self._rounds()
+        return self
+
+    def _rounds(self) -> None:
+        self.groups = {}
         seen: set[frozenset[str]] = set()
         for _ in range(_ROUNDS):
             self._forward()
             if len(self.added) > _WEIGHED or frozenset(self.added) in seen or not self._replaced():
                 break
             seen.add(frozenset(self.added))
-        return self
 
     def alike(self) -> list[Candidate]:
         """The candidates of the first ranking that help and are no worse than its best but by chance, best first."""
@@ -94,6 +104,37 @@ class Addition:
             self.steps.append(best.refit)
             if self._backward(best.effect):
                 break
+
+    def _paired(self) -> bool:
+        """Go on from two finalists of the first ranking at once, where these do better beyond chance.
+
+        One at a time may lead astray: two lags look like a delay, and from there to whatever mends the difference.
+        """
+        finalists = [c.refit for c in self.ranking if c.refit is not None][:_PAIRED]
+        if self.most < 2 or len(finalists) < 2 or self.models.floor is None or self.models.at_floor(self.found):
+            return False
+        pairs = list(combinations(finalists, 2))
+        tried: list[Refit] = []
+        for i, pair in enumerate(pairs):
+            self.report("trying pairs", i, len(pairs))
+            tried.append(self._both(*pair))
+        best = min(tried, key=lambda trial: trial.here.error)
+        if not best.here.error < self.models.tried(self.found):
+            return False
+        refit = self.models.refit(best.effects, best.values)
+        if not refit.finite or not gain(self.found.held_out, refit.held_out).beyond_chance:
+            return False
+        self.steps.append(refit)
+        return True
+
+    def _both(self, first: Refit, second: Refit) -> Refit:
+        """A first refit with two effects, from where either is alone and from halfway to both."""
+        starts = []
+        for alone, other in ((first, second), (second, first)):
+            here, there = (self.models.strength(refit.effects[-1]) for refit in (alone, other))
+            starts += [{**alone.values, there: share * other.values[there]} for share in _SHARES]
+            starts.append({**alone.values, here: 0.5 * alone.values[here], there: 0.5 * other.values[there]})
+        return self.models.trial((*first.effects, second.effects[-1]), starts)
 
     def _backward(self, latest: str) -> bool:
         """Take out what the model can do without; True where that leads back to where it was.

@@ -13,27 +13,48 @@ from ident.diagnosis.addition import Addition
 class Judged:
     """Models of which only the held-out score of each set of effects is known, and what helps beyond chance."""
 
-    effects = ("a", "b")
+    effects = ("a", "b", "c")
+    floor = 0.1
 
     def __init__(self, scores: dict[str, float], needed: set[str]) -> None:
-        self.scores, self.needed = scores, needed
+        self.scores, self.needed = {"abc": 2.0, "ac": 2.0, "bc": 2.0, "c": 2.0} | scores, needed
 
     def refit(self, effects, _start):
         """A refit that knows its effects and score."""
         score = self.scores["".join(sorted(effects))]
         held_out = SimpleNamespace(score=score, effects=set(effects))
-        return SimpleNamespace(effects=tuple(effects), values={}, finite=True, held_out=held_out)
+        values = dict.fromkeys(effects, 1.0)
+        here = SimpleNamespace(error=score)
+        return SimpleNamespace(effects=tuple(effects), values=values, finite=True, held_out=held_out, here=here)
+
+    trial = refit
+
+    def tried(self, refit):
+        """Its score again."""
+        return refit.held_out.score
+
+    def at_floor(self, refit):
+        """Whether nothing is left."""
+        return refit.held_out.score <= self.floor
+
+    def strength(self, effect):
+        """An effect has one parameter of its own name."""
+        return effect
 
     def rank(self, _models, base, names, _report, _thorough):
         """An effect helps where the score falls."""
-        refits = [self.refit((*base.effects, name), {}) for name in names]
+        refits = sorted((self.refit((*base.effects, name), {}) for name in names), key=lambda r: r.held_out.score)
         before = base.held_out.score
-        return [SimpleNamespace(effect=r.effects[-1], refit=r, helps=r.held_out.score < before) for r in refits]
+        helps = [r.held_out.score < before and not {"b", "c"} <= set(r.effects) for r in refits]
+        return [
+            SimpleNamespace(effect=r.effects[-1], refit=r, helps=help_, score=(0, r.held_out.score))
+            for r, help_ in zip(refits, helps, strict=True)
+        ]
 
     def gain(self, less, more):
-        """Whether the effect that is taken out was needed."""
-        (out,) = more.effects - less.effects
-        return SimpleNamespace(beyond_chance=out in self.needed, within_chance=False)
+        """Whether an effect that only one of them has was needed, or the other does better by far."""
+        needed = bool((more.effects - less.effects) & self.needed) or more.score < 0.3 * less.score
+        return SimpleNamespace(beyond_chance=needed, within_chance=False)
 
 
 @pytest.fixture
@@ -45,9 +66,7 @@ def added(monkeypatch):
         monkeypatch.setattr(addition, "rank", judged.rank)
         monkeypatch.setattr(addition, "gain", judged.gain)
         tried = Addition(judged, judged.refit((), {}), 2, lambda *_: None)  # type: ignore[arg-type]
-        tried.steps = [tried.base]
-        tried._forward()
-        return set(tried.added)
+        return set(tried.run().added)
 
     return of
 
@@ -62,3 +81,15 @@ def test_of_effects_that_enter_and_leave_in_a_circle_the_best_set_stays(added):
     """Each helps when it enters and seems needless once the other is there: both together are best, and stay."""
     scores = {"": 1.0, "a": 0.8, "b": 0.9, "ab": 0.5}
     assert added(scores, needed=set()) == {"a", "b"}
+
+
+def test_two_that_only_together_explain_the_data_are_found_where_a_third_came_first(added):
+    """a alone does best, as a delay does for two lags, and leads nowhere; b and c together leave nothing."""
+    scores = {"": 1.0, "a": 0.5, "b": 0.7, "c": 0.7, "ab": 0.6, "ac": 0.6, "bc": 0.05}
+    assert added(scores, needed={"a", "b", "c"}) == {"b", "c"}
+
+
+def test_nothing_is_tried_two_at_a_time_where_one_leaves_nothing(added):
+    """The noise is reached with one effect: what two would reach is of no interest."""
+    scores = {"": 1.0, "a": 0.1, "b": 0.7, "c": 0.7, "ab": 0.2, "ac": 0.2, "bc": 0.01}
+    assert added(scores, needed={"a"}) == {"a"}
