@@ -148,6 +148,13 @@ def listed(context: Context, serial: str | None, after: str | None, limit: int) 
     return MatrixPage(items=[view(row) for row in rows], next=following)
 
 
+def newer(context: Context, matrix: str) -> str | None:
+    """The newest revision that comes from a matrix; None where it is the newest itself."""
+    with context.sessions() as session:
+        found = repository.newest(session, matrix)
+    return found if found != matrix else None
+
+
 def load(context: Context, matrix: str) -> Matrix:
     """The samples of a matrix, from memory where it was used lately."""
     return load_row(context.storage, find(context, matrix))

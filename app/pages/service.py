@@ -91,6 +91,7 @@ def matrix(context: Context, matrix_id: str, cursor: str | None) -> Shown:
     stored = matrices.get(context, matrix_id)
     return {
         "matrix": matrix_view(stored),
+        "newer": matrices.newer(context, matrix_id),
         "start": start_view(stored),
         **_fits(context, cursor, matrix=matrix_id),
     }
@@ -120,4 +121,5 @@ def fit(context: Context, fit_id: str) -> FitPageView | JobPageView:
     lacks = missing(*diagnoses.of_fit(context, fit_id))
     way = lineage.ladder(context, fit_id)
     others = parameters.page(context, Wanted(serial=found.serial), None, _ROWS).items
-    return fit_page(found, matrices.get(context, found.matrix), lacks, way, others)
+    newer = matrices.newer(context, found.matrix)
+    return fit_page(found, matrices.get(context, found.matrix), lacks, way, others, newer)

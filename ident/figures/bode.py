@@ -23,6 +23,7 @@ from ident.fit.result import FitResult
 from ident.matrix import Actuator, Run
 
 FACETS = 4
+_GAP = 22
 _WIDTHS = {1: 640, 2: 400, 3: 300}
 
 
@@ -102,7 +103,7 @@ def _frame(alike: _Alike, look: Look) -> Frame:
     panels = [panel for row in zip(*columns, strict=True) for panel in row]
     title = alt.TitleParams(blank("headline"), subtitle=blank("told"))
     chart = (
-        alt.concat(*panels, columns=alike.columns, spacing={"row": 12, "column": 22}, bounds="flush", title=title)
+        alt.concat(*panels, columns=alike.columns, spacing={"row": 12, "column": _GAP}, bounds="flush", title=title)
         .add_params(*band_params(OPEN), *(alt.param(name=name, value=0) for name in ("lowest", "highest")))
         .add_params(*(alt.param(name=name, value=[]) for name in ("near", "far")))
         .resolve_scale(color="shared", opacity="shared")
@@ -132,7 +133,9 @@ def _data(place: int) -> str:
 
 def _column(alike: _Alike, look: Look, place: int) -> list[Panel]:
     """The three panels of one gain; only the first column names the vertical axes."""
-    width = look.across(_WIDTHS.get(alike.columns, 240))
+    one, others = _WIDTHS[1], alike.columns - 1
+    alone = look.share == 1  # else beside something, where all columns have the room of one
+    width = look.across(_WIDTHS.get(alike.columns, 240) if alone else (one - _GAP * others) / alike.columns)
     data = alt.NamedData(_data(place))
     first = place == 0
     magnitude = _panel(

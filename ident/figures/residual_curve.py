@@ -22,6 +22,7 @@ from ident.residuals.curves import Curve
 SHOWN = 4
 _WIDTH, _HEIGHT = 340, 210
 _SMALL = 0.6  # of the usual width: then it stands beside words that say what it is
+_PERCENTAGE = "percentage: share of the residual's power that the curve takes off, on stretches it was not fitted to"
 _MEASURED, _CANDIDATE = "seen in the residual, 95 % band", "predicted by"
 
 
@@ -47,15 +48,19 @@ def residual_curve(
     names = [_MEASURED, f"{_CANDIDATE} {candidate_name}"] if other else [_MEASURED]
     values = {
         "headline": words.headline(actuator, "what the model lacks, against its own signals"),
-        "told": [
-            words.verdict(fit),
-            f"{runs} · percentage: share of the residual's power that the curve takes off,",
-            "on stretches it was not fitted to",
-        ],
+        "told": [words.verdict(fit), runs, *textwrap.wrap(_PERCENTAGE, look.across(130))],
         "names": names,
     }
-    for place, curve in enumerate(shown):
-        values |= {f"{name}{place}": value for name, value in _words(curve, look, wide=len(shown) == 1).items()}
+    hints = _hints([curve.shows for curve in shown], look)
+    for place, (curve, hint) in enumerate(zip(shown, hints, strict=True)):
+        along, across = _axes(curve)
+        written = {
+            "name": f"{curve.name.capitalize()}: {_share(curve)}",
+            "hint": hint,
+            "along": along,
+            "across": across,
+        }
+        values |= {f"{name}{place}": value for name, value in written.items()}
     tables = {f"curve{i}": _rows(curve, other.get(curve.name), names) for i, curve in enumerate(shown)}
     return Filled(_frame(len(shown), bool(other), look), tables, values)
 
@@ -65,7 +70,7 @@ def _frame(count: int, compared: bool, look: Look) -> Frame:
     panels = [_panel(place, compared, look, wide=count == 1) for place in range(count)]
     title = alt.TitleParams(blank("headline"), subtitle=blank("told"))
     heading = {} if look.share < _SMALL else {"title": title}
-    chart = alt.concat(*panels, columns=2, spacing={"row": 26, "column": 34}, **heading)
+    chart = alt.concat(*panels, columns=2, spacing={"row": 26, "column": 24}, **heading)
     return frame(chart.resolve_scale(color="shared").configure(**look.config()))
 
 
@@ -117,17 +122,11 @@ def _extent(curve: Curve) -> tuple[float, ...]:
     return (*curve.lower[1:-1], *curve.upper[1:-1])
 
 
-def _words(curve: Curve, look: Look, *, wide: bool) -> dict[str, Any]:
-    """What is written at a panel: heading and hint, its axes with their units."""
-    hint = textwrap.wrap(curve.shows, look.across(95 if wide else 54))
-    hint += [""] * (2 - len(hint))  # titles of one height: the panels of a row stand side by side
-    along, across = _axes(curve)
-    return {
-        "name": f"{curve.name.capitalize()}: {_share(curve)}",
-        "hint": hint,
-        "along": along,
-        "across": across,
-    }
+def _hints(texts: Sequence[str], look: Look) -> list[list[str]]:
+    """What each panel may show, in lines of its width; all of one height, since the panels stand side by side."""
+    hints = [textwrap.wrap(text, look.across(105 if len(texts) == 1 else 60)) for text in texts]
+    most = max(map(len, hints))
+    return [hint + [""] * (most - len(hint)) for hint in hints]
 
 
 def _panel(place: int, compared: bool, look: Look, *, wide: bool) -> Panel:

@@ -23,6 +23,7 @@ from ident.matrix import Actuator, Matrix, Run, Specimen
 
 MULTIPLES = tuple(float(value) for value in np.geomspace(0.1, 10, 11))
 POINTS = 90
+_HEADINGS = {"mass": "Mass", "stiffness": "Stiffness", "gain": "Gain Kp"}
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -53,7 +54,7 @@ def sensitivity(run: Run, actuator: Actuator, fit: FitResult, look: Look) -> Fil
     values = {
         "headline": words.headline(actuator, "sensitivity of the frequency response"),
         "told": [words.verdict(fit), f"About {words.describe(run)}, which is drawn dashed"],
-        **{name: text + _without(stable[name]) for name, (text, _) in varied.items()},
+        **{name: [text, _without(stable[name])] for name, (text, _) in varied.items()},
         **_ends(tables),
     }
     return Filled(_frame(tuple(varied), look), tables, values)
@@ -73,15 +74,15 @@ def _frame(names: tuple[str, ...], look: Look) -> Frame:
 
 
 def _variations(run: Run) -> dict[str, tuple[str, Varied]]:
-    """What can be varied on this run: heading with the run's own value, and how."""
+    """What can be varied on this run: the run's own value in words, and how."""
     varied: dict[str, tuple[str, Varied]] = {}
     specimen = run.specimen
     if specimen is not None and specimen.mass > 0:
-        varied["mass"] = (f"Mass, 1 × = {specimen.mass:.4g} kg", _with_mass)
+        varied["mass"] = (f"1 × = {specimen.mass:.4g} kg", _with_mass)
     if specimen is not None and specimen.stiffness > 0:
-        varied["stiffness"] = (f"Stiffness, 1 × = {specimen.stiffness / 1000:.4g} kN/m", _with_stiffness)
+        varied["stiffness"] = (f"1 × = {specimen.stiffness / 1000:.4g} kN/m", _with_stiffness)
     stated = f"{run.Kp:g}" if run.gain is not None else "1 (not stated)"
-    varied["gain"] = (f"Gain Kp, 1 × = {stated}", _with_gain)
+    varied["gain"] = (f"1 × = {stated}", _with_gain)
     return varied
 
 
@@ -109,12 +110,12 @@ def _stable(vary: Varied, run: Run, actuator: Actuator, fit: FitResult) -> list[
 
 
 def _without(stable: Sequence[float]) -> str:
-    """What is left out, for the heading."""
+    """What is left out, for the line under the heading."""
     lost = [x for x in MULTIPLES if x not in stable]
     if not lost:
         return ""
     above = not stable or lost[0] > stable[-1]
-    return f"; unstable from {lost[0]:.2g} ×" if above else f"; unstable at {', '.join(f'{x:.2g}' for x in lost)} ×"
+    return f"unstable from {lost[0]:.2g} ×" if above else f"unstable at {', '.join(f'{x:.2g}' for x in lost)} ×"
 
 
 def _rows(frequency: Real, answers: Mapping[float, Complex]) -> list[dict[str, Any]]:
@@ -138,7 +139,9 @@ def _ends(tables: Mapping[str, list[dict[str, Any]]]) -> dict[str, list[float]]:
 
 
 def _x(named: bool) -> alt.X:
-    axis = alt.Axis(labels=named, title="Frequency (Hz)" if named else None, values=blank("marks"), format="~r")
+    axis = alt.Axis(
+        labels=named, title="Frequency (Hz)" if named else None, values=blank("marks"), format="~r", labelSeparation=4
+    )
     return alt.X("f:Q", scale=alt.Scale(type="log", domain=blank("frequency"), nice=False), axis=axis)
 
 
@@ -149,12 +152,13 @@ def _y(field: str, limits: str, title: str, first: bool) -> alt.Y:
 
 def _column(name: str, look: Look, *, first: bool, width: int) -> list[Panel]:
     data = alt.NamedData(name)
-    magnitude = _panel(data, _x(named=False), _y("a", "magnitude", "Magnitude (dB)", first), look, width)
-    phase = _panel(data, _x(named=True), _y("p", "phase", "Phase (°)", first), look, width)
-    return [magnitude.properties(title=alt.TitleParams(blank(name), fontSize=12, offset=6, frame="group")), phase]
+    heading = {"fontSize": 12, "subtitleFontSize": 11, "subtitlePadding": 2, "offset": 6, "frame": "group"}
+    title = alt.TitleParams(_HEADINGS[name], subtitle=blank(name), **heading)
+    magnitude = _panel(data, _x(named=False), _y("a", "magnitude", "Magnitude (dB)", first), look, width, title=title)
+    return [magnitude, _panel(data, _x(named=True), _y("p", "phase", "Phase (°)", first), look, width)]
 
 
-def _panel(data: alt.NamedData, x: alt.X, y: alt.Y, look: Look, width: int) -> Panel:
+def _panel(data: alt.NamedData, x: alt.X, y: alt.Y, look: Look, width: int, **heading: Any) -> Panel:
     legend = alt.Legend(
         title="× run's value", orient="right", values=[0.1, 0.3, 1, 3, 10], format="~g", gradientLength=180
     )
@@ -170,4 +174,4 @@ def _panel(data: alt.NamedData, x: alt.X, y: alt.Y, look: Look, width: int) -> P
         .mark_line(strokeWidth=2, color=look.ink, strokeDash=[5, 3])
         .encode(x=x, y=y)
     )
-    return alt.layer(lines, own, width=width, height=190)
+    return alt.layer(lines, own, width=width, height=190, **heading)

@@ -187,6 +187,12 @@ def test_a_value_is_copied_with_its_unit_and_a_table_with_tabs(page, site, fitte
     expect(page.locator("[role=status]", has_text="is copied")).to_have_count(1)
     value, unit = page.evaluate("navigator.clipboard.readText()").split()
     assert unit == "s"
+    error = page.get_by_role("button", name="Copy Error, fit runs = ")
+    assert error.evaluate("button => getComputedStyle(button).opacity") == "0"
+    error.focus()
+    page.keyboard.press("Enter")
+    expect(error).to_have_css("opacity", "1")
+    assert re.fullmatch(r"[\d.]+ %", page.evaluate("navigator.clipboard.readText()"))
     assert float(value) == pytest.approx(stored["value"], rel=1e-7)
     page.locator("table", has_text="Mean over runs").get_by_role("button", name=re.compile("Copy the table")).click()
     expect(page.locator("[role=status]", has_text="The table is copied")).to_have_count(1)
