@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -25,7 +24,6 @@ from ident.figures.study import Study
 from ident.figures.time import time, typical
 from ident.fit.result import FitResult
 from ident.matrix import Matrix, Run
-from ident.residuals.curves import curves, curves_of
 
 __all__ = ["BENCH_FIGURES", "FIGURES", "MEDIA", "Chart", "Study", "figure", "figures_of", "ladder", "look", "render"]
 
@@ -106,13 +104,11 @@ def _residual_map(study: Study, of: Look, options: Mapping[str, Any]) -> Chart:
 def _residual_curve(study: Study, of: Look, options: Mapping[str, Any]) -> Chart:
     matrix, filters, view = study.matrix, _only(options, _RUNS), options.get("view") or None
     band, other = band_of(options), _candidate(options)
-    ends = (band.low, band.high) if band else None
     shown = chosen(matrix, wish(**filters)) if any(filters.values()) else matrix.of_use("fit") or matrix.runs
-    predicted = Study(matrix, other).compared(shown) if other else None
     runs = words.describe(shown[0]) if len(shown) == 1 else f"{len(shown)} runs"
     return residual_curve(
-        curves_of(replace(study.traced(shown), band=ends), view), matrix.actuator, study.fit, of,
-        candidate=curves(study.compared(shown), predicted, view=view, band=ends) if predicted else (), view=view,
+        study.curves(shown, view, band), matrix.actuator, study.fit, of,
+        candidate=study.curves(shown, view, band, other) if other else (), view=view,
         runs=f"{runs}, {band.words}" if band else runs,
         candidate_name=_name(other, study.fit),
     )  # fmt: skip

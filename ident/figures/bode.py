@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import altair as alt
 import numpy as np
@@ -60,7 +62,7 @@ def bode(
     lower, upper = responses.band
     values = {
         "headline": words.headline(actuator, "frequency response, measured and model"),
-        "told": _told(responses, fit, candidates, other_name),
+        "told": _briefly(responses, other_name, look) if look.small else _told(responses, fit, candidates, other_name),
         "labels": responses.domain,
         "magnitude": list(responses.limits("a", "A")),
         "phase": list(responses.limits("p", "P")),
@@ -101,9 +103,9 @@ def _frame(alike: _Alike, look: Look) -> Frame:
     columns = [_column(alike, look, place) for place in range(alike.columns)]
     columns[0][0] = columns[0][0].add_params(brush())
     panels = [panel for row in zip(*columns, strict=True) for panel in row]
-    title = alt.TitleParams(blank("headline"), subtitle=blank("told"))
+    heading = {} if look.small else {"title": alt.TitleParams(blank("headline"), subtitle=blank("told"))}
     chart = (
-        alt.concat(*panels, columns=alike.columns, spacing={"row": 12, "column": _GAP}, bounds="flush", title=title)
+        alt.concat(*panels, columns=alike.columns, spacing={"row": 12, "column": _GAP}, bounds="flush", **heading)
         .add_params(*band_params(OPEN), *(alt.param(name=name, value=0) for name in ("lowest", "highest")))
         .add_params(*(alt.param(name=name, value=[]) for name in ("near", "far")))
         .resolve_scale(color="shared", opacity="shared")
@@ -127,6 +129,13 @@ def _told(responses: Responses, fit: FitResult, candidates: int | None, other_na
     return [words.verdict(fit), shown, f"points: measured, fading with lost coherence · lines: model{dashed}"]
 
 
+def _briefly(responses: Responses, other_name: str, look: Look) -> list[str]:
+    """The runs and what is what, in lines of a small figure's width."""
+    runs = [words.describe(entry.run) for entry in responses.compared]
+    said = ("; ".join(runs), "points: measured · line: model", *([f"dashed: with {other_name}"] if other_name else []))
+    return [line for text in said for line in textwrap.wrap(text, look.across(120))]
+
+
 def _data(place: int) -> str:
     return f"gain{place}"
 
@@ -138,19 +147,16 @@ def _column(alike: _Alike, look: Look, place: int) -> list[Panel]:
     width = look.across(_WIDTHS.get(alike.columns, 240) if alone else (one - _GAP * others) / alike.columns)
     data = alt.NamedData(_data(place))
     first = place == 0
-    magnitude = _panel(
-        alike, look, data, ("a", "A", "B"), "magnitude", title=f"Magnitude ({alike.decibel})", height=200, first=first
-    )
-    if alike.headed:
-        magnitude = magnitude.properties(
-            title=alt.TitleParams(blank(f"gain{place}"), fontSize=12, offset=6, frame="group")
-        )
+    of_size: dict[str, Any] = {"fontSize": 12, "offset": 6, "frame": "group"}
+    if look.small:  # the figure has no title: what it shows stands here
+        of_size |= {"subtitle": blank("told"), "subtitleFontSize": 11, "subtitleLineHeight": 13}
+    heading = {"title": alt.TitleParams(blank(f"gain{place}"), **of_size)} if alike.headed or look.small else {}
     panels = [
-        magnitude,
-        _panel(alike, look, data, ("p", "P", "Q"), "phase", title="Phase (°)", height=170, first=first),
+        _panel(alike, look, data, ("a", "A", "B"), f"Magnitude ({alike.decibel})", first=first, **heading),
+        _panel(alike, look, data, ("p", "P", "Q"), "Phase (°)", first=first),
         _coherence(alike, look, data, first),
     ]
-    return [panel.properties(width=width) for panel in panels]
+    return [panel.properties(width=width) for panel in (panels[:2] if look.small else panels)]
 
 
 def _panel(
@@ -158,31 +164,32 @@ def _panel(
     look: Look,
     data: alt.NamedData,
     fields: tuple[str, str, str],
-    limits: str,
+    what: str,
     *,
-    title: str,
-    height: int,
     first: bool,
+    **heading: Any,
 ) -> Panel:
     """One quantity: measured as points, model as lines."""
     measured, model, other = fields
+    limits, height = ("magnitude", 200) if measured == "a" else ("phase", 170)
+    lowest = look.small and measured == "p"
     scale = alt.Scale(domain=blank(limits), nice=True, zero=False)
-    ticks = alt.Axis(title=title if first else None, labels=first, tickCount=6)
-    base = alt.Chart(data, height=height).encode(x=_frequency(alike, named=False), color=_colour(alike, look))
+    ticks = alt.Axis(title=what if first else None, labels=first, tickCount=6)
+    base = alt.Chart(data).encode(x=_frequency(alike, named=lowest), color=_colour(alike, look))
     points = base.mark_circle(size=14, clip=True).encode(
         y=alt.Y(f"{measured}:Q", scale=scale, axis=ticks),
         opacity=alt.Opacity("c:Q", scale=alt.Scale(domain=[0.3, 0.95], range=[0.06, 0.8], clamp=True), legend=None),
-        tooltip=_tooltip(alike, fields, title),
+        tooltip=_tooltip(alike, fields, what),
     )
     lines = base.mark_line(strokeWidth=1.6, clip=True, interpolate="monotone").encode(y=f"{model}:Q", detail="r:N")
-    layers = [_shade(alike, look, named=False), points, lines]
+    layers = [_shade(alike, look, named=lowest), points, lines]
     if alike.compared:
         layers.append(
             base.mark_line(strokeWidth=1.6, strokeDash=[6, 4], clip=True, interpolate="monotone").encode(
                 y=f"{other}:Q", detail="r:N", color=alt.value(look.ink if alike.single else look.faint)
             )
         )
-    return alt.layer(*layers)
+    return alt.layer(*layers, height=0.6 * height if look.small else height, **heading)
 
 
 def _coherence(alike: _Alike, look: Look, data: alt.NamedData, first: bool) -> Panel:

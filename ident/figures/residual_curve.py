@@ -21,7 +21,6 @@ from ident.residuals.curves import Curve
 
 SHOWN = 4
 _WIDTH, _HEIGHT = 340, 210
-_SMALL = 0.6  # of the usual width: then it stands beside words that say what it is
 _PERCENTAGE = "percentage: share of the residual's power that the curve takes off, on stretches it was not fitted to"
 _MEASURED, _CANDIDATE = "seen in the residual, 95 % band", "predicted by"
 
@@ -69,7 +68,7 @@ def residual_curve(
 def _frame(count: int, compared: bool, look: Look) -> Frame:
     panels = [_panel(place, compared, look, wide=count == 1) for place in range(count)]
     title = alt.TitleParams(blank("headline"), subtitle=blank("told"))
-    heading = {} if look.share < _SMALL else {"title": title}
+    heading = {} if look.small else {"title": title}
     chart = alt.concat(*panels, columns=2, spacing={"row": 26, "column": 24}, **heading)
     return frame(chart.resolve_scale(color="shared").configure(**look.config()))
 
@@ -140,7 +139,7 @@ def _panel(place: int, compared: bool, look: Look, *, wide: bool) -> Panel:
         symbolStrokeWidth=2,
         symbolOpacity=1,
         labelLimit=500,
-        columns=1 if look.share < _SMALL else 2,
+        columns=1 if look.small else 2,
     )
     scale = alt.Scale(domain=blank("names"), range=list(look.series[: 1 + compared]))
     colour = alt.Color("s:N", scale=scale, legend=legend)
@@ -154,7 +153,7 @@ def _panel(place: int, compared: bool, look: Look, *, wide: bool) -> Panel:
     if compared:
         predicted = base.transform_filter(f"datum.s != '{_MEASURED}'")
         layers.append(predicted.mark_line(strokeWidth=2, strokeDash=[6, 4]).encode(y=y, color=colour))
-    width, height = (640, 340 if look.share >= _SMALL else 200) if wide else (_WIDTH, _HEIGHT)
+    width, height = (640, 200 if look.small else 340) if wide else (_WIDTH, _HEIGHT)
     title = alt.TitleParams(
         blank(f"name{place}"),
         subtitle=blank(f"hint{place}"),

@@ -152,7 +152,13 @@ def _y(field: str, limits: str, title: str, first: bool) -> alt.Y:
 
 def _column(name: str, look: Look, *, first: bool, width: int) -> list[Panel]:
     data = alt.NamedData(name)
-    heading = {"fontSize": 12, "subtitleFontSize": 11, "subtitlePadding": 2, "offset": 6, "frame": "group"}
+    heading: dict[str, Any] = {
+        "fontSize": 12,
+        "subtitleFontSize": 11,
+        "subtitlePadding": 2,
+        "offset": 6,
+        "frame": "group",
+    }
     title = alt.TitleParams(_HEADINGS[name], subtitle=blank(name), **heading)
     magnitude = _panel(data, _x(named=False), _y("a", "magnitude", "Magnitude (dB)", first), look, width, title=title)
     return [magnitude, _panel(data, _x(named=True), _y("p", "phase", "Phase (°)", first), look, width)]

@@ -67,7 +67,9 @@ async function draw(figure) {
       return;
     }
     const address = `${figure.dataset.url}.json?${wanted}&share=${figure.dataset.share}&live=1`;
-    const answer = await fetch(address, { credentials: "same-origin" });
+    figure.asked?.abort(); // nobody waits for the answer before
+    figure.asked = new AbortController();
+    const answer = await fetch(address, { credentials: "same-origin", signal: figure.asked.signal });
     const spec = await answer.json();
     if (!answer.ok) throw new Error([spec.what ?? spec.detail ?? spec.title, spec.remedy].filter(Boolean).join("; "));
     if (turn !== figure.turn) return;
