@@ -65,7 +65,8 @@ def test_what_shuts_somebody_out_is_found(page, site):
     page.goto(f"{site.address}/upload")
     assert barriers(page) == []
     page.evaluate("document.querySelector('label[for=files]').remove()")
-    assert [barrier.split(":")[0] for barrier in barriers(page)] == ["label"]
+    page.evaluate("document.querySelector('h1').remove()")  # only of moderate impact
+    assert [barrier.split(":")[0] for barrier in barriers(page)] == ["label", "page-has-heading-one"]
 
 
 @pytest.mark.parametrize("name", ["actuators", "actuator", "upload", "matrix", "jobs", "fit"])
