@@ -28,8 +28,4 @@ def everywhere(page: Page, folder: Path, name: str) -> None:
 def barriers(page: Page) -> list[str]:
     """Rule, element and reason of each violation; the debugger puts axe in, past the policy."""
     found: list[dict[str, Any]] = Axe().run(page).response["violations"]
-    return [
-        f"{rule['id']}: {node['html'][:200]}: {node['failureSummary']}"
-        for rule in found
-        for node in rule["nodes"]
-    ]
+    return [f"{rule['id']}: {node['html'][:200]}: {node['failureSummary']}" for rule in found for node in rule["nodes"]]
