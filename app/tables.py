@@ -37,7 +37,7 @@ class MatrixRow(Base):
     __tablename__ = "matrices"
     id: Mapped[str] = mapped_column(String(64), primary_key=True)
     serial: Mapped[str] = mapped_column(ForeignKey("actuators.serial"), index=True)
-    parent: Mapped[str | None] = mapped_column(ForeignKey("matrices.id"))
+    parent: Mapped[str | None] = mapped_column(ForeignKey("matrices.id"), index=True)
     created_at: Mapped[str] = mapped_column(String(40), default=now, index=True)
     source: Mapped[dict[str, Any]]
     summary: Mapped[dict[str, Any]]

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy.fft
 import scipy.signal
 from numba import njit
 from numpy.typing import NDArray
@@ -224,7 +225,7 @@ def _decays(filters: Recursion) -> Recursion:
 
 def within(signal: Array, sample_rate: float, low: float | None, high: float | None) -> Array:
     """What a signal (n, ...) has between two frequencies in Hz, along its first axis, without any lag."""
-    spectrum = np.fft.rfft(signal, axis=0)
+    spectrum = scipy.fft.rfft(signal, axis=0)
     frequency = np.fft.rfftfreq(len(signal), 1 / sample_rate)
     spectrum[(frequency < (low or 0.0)) | (frequency > (np.inf if high is None else high))] = 0.0
-    return np.asarray(np.fft.irfft(spectrum, len(signal), axis=0))
+    return np.asarray(scipy.fft.irfft(spectrum, len(signal), axis=0))

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections import OrderedDict
 from collections.abc import Iterator
-from threading import Lock
 from typing import Any
 
 from app.context import Context
 from app.diagnoses import service as diagnoses
 from app.errors import Failure
 from app.fits import lineage, service
+from app.kept import Kept
 from app.matrices import service as matrices
 from ident.errors import Unusable
-from ident.figures import MEDIA, figure, ladder, look, render
+from ident.figures import MEDIA, Study, figure, ladder, look, render
 from ident.figures.ladder import Step
 from ident.figures.selection import number
 from ident.fit.result import FitResult
@@ -22,8 +21,9 @@ from ident.presets import preset
 from schemas.fit import LadderRung
 
 _KEPT = 96  # figures in memory, about 100 kB each: fits and their data never change
-_cache: OrderedDict[str, bytes] = OrderedDict()
-_lock = Lock()
+_STUDIED = 2  # fits in memory with what their figures computed
+_figures: Kept[bytes] = Kept(_KEPT)
+_studies: Kept[Study] = Kept(_STUDIED)
 
 
 def drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str, Any]) -> tuple[bytes, str]:
@@ -31,25 +31,17 @@ def drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str
     if kind not in MEDIA:
         raise Failure(404, "no-such-format", f"no figures as {kind!r}", "figure", f"use {', '.join(MEDIA)}")
     key = json.dumps([str(context.storage.folder), fit_id, name, kind, options], sort_keys=True)
-    with _lock:
-        if key in _cache:
-            _cache.move_to_end(key)
-            return _cache[key], MEDIA[kind]
-    content = _drawn(context, fit_id, name, kind, options)
-    with _lock:
-        _cache[key] = content
-        while len(_cache) > _KEPT:
-            _cache.popitem(last=False)
-    return content, MEDIA[kind]
+    return _figures.get(key, lambda: _drawn(context, fit_id, name, kind, dict(options))), MEDIA[kind]
 
 
 def _drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str, Any]) -> bytes:
-    row = service.find(context, fit_id)
+    study = _study(context, fit_id)
+    fit, matrix = study.fit, study.matrix
     theme, share = options.pop("theme", "light"), number(options, "share") or 1.0
+    live = bool(options.pop("live", ""))
     options.pop("share", None)
     if not 0.2 <= share <= 4:
         raise Unusable("out-of-range", f"share is {share:g}", "figure option share", "give 0.2 to 4")
-    fit, matrix = FitResult.from_json(row.result), matrices.load(context, row.matrix)
     if name == "ladder":
         if options:
             raise Unusable("unknown-option", f"no option {next(iter(options))!r}", "figure ladder", "use theme")
@@ -59,7 +51,17 @@ def _drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[st
         options["candidate"] = _candidate(context, fit, str(options["candidate"]))
     else:
         options.pop("candidate", None)
-    return render(figure(name, matrix, fit, theme, share, **options), kind)
+    return render(figure(name, matrix, fit, theme, share, study=study, **options), kind, live=live)
+
+
+def _study(context: Context, fit_id: str) -> Study:
+    """A fit beside its data, from memory where it was drawn lately; raises Failure 404."""
+
+    def made() -> Study:
+        row = service.find(context, fit_id)
+        return Study(matrices.load(context, row.matrix), FitResult.from_json(row.result))
+
+    return _studies.get((str(context.storage.folder), fit_id), made)
 
 
 def _candidate(context: Context, fit: FitResult, wanted: str) -> FitResult:

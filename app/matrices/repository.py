@@ -17,6 +17,14 @@ def find(session: Session, matrix: str) -> MatrixRow | None:
     return session.get(MatrixRow, matrix)
 
 
+def newest(session: Session, matrix: str) -> str:
+    """The last of the revisions that come from a matrix; itself where it has none."""
+    later = select(MatrixRow.id).order_by(MatrixRow.created_at.desc(), MatrixRow.id.desc()).limit(1)
+    while found := session.scalar(later.where(MatrixRow.parent == matrix)):
+        matrix = found
+    return matrix
+
+
 def page(session: Session, serial: str | None, after: tuple[str, ...] | None, limit: int) -> Sequence[MatrixRow]:
     """Matrices, newest first."""
     query = select(MatrixRow).order_by(MatrixRow.created_at.desc(), MatrixRow.id.desc()).limit(limit)

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import io
-from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import asdict
-from threading import Lock
 from typing import Any, BinaryIO
 
 import yaml
@@ -15,6 +13,7 @@ from sqlalchemy.exc import IntegrityError
 
 from app.context import Context
 from app.errors import missing
+from app.kept import Kept
 from app.matrices import repository
 from app.matrices.stored import opened, read_stored
 from app.paging import cursor, keys_of
@@ -30,8 +29,7 @@ from schemas.matrix import FindingView, MatrixPage, MatrixView, Revision, RunVie
 
 LONGEST = 200  # characters of a serial number or batch
 _KEPT = 2  # matrices in memory: one may take 130 MB
-_cache: OrderedDict[tuple[str, str], Matrix] = OrderedDict()
-_lock = Lock()
+_kept: Kept[Matrix] = Kept(_KEPT)
 
 
 def upload(context: Context, files: Mapping[str, BinaryIO]) -> tuple[MatrixView, bool]:
@@ -75,7 +73,7 @@ def _record(context: Context, staged: Storage, source: dict[str, Any], parent: s
         except IntegrityError:  # the same upload twice at the same moment
             session.rollback()
             return get(context, identity), False
-    _keep((str(context.storage.folder), identity), matrix)
+    _kept.put((str(context.storage.folder), identity), matrix)
     return view(row), True
 
 
@@ -150,6 +148,13 @@ def listed(context: Context, serial: str | None, after: str | None, limit: int) 
     return MatrixPage(items=[view(row) for row in rows], next=following)
 
 
+def newer(context: Context, matrix: str) -> str | None:
+    """The newest revision that comes from a matrix; None where it is the newest itself."""
+    with context.sessions() as session:
+        found = repository.newest(session, matrix)
+    return found if found != matrix else None
+
+
 def load(context: Context, matrix: str) -> Matrix:
     """The samples of a matrix, from memory where it was used lately."""
     return load_row(context.storage, find(context, matrix))
@@ -157,21 +162,7 @@ def load(context: Context, matrix: str) -> Matrix:
 
 def load_row(storage: Storage, row: MatrixRow) -> Matrix:
     """The samples of a recorded matrix."""
-    key = (str(storage.folder), row.id)
-    with _lock:
-        if key in _cache:
-            _cache.move_to_end(key)
-            return _cache[key]
-    matrix = read_stored(storage, row.source)
-    _keep(key, matrix)
-    return matrix
-
-
-def _keep(key: tuple[str, str], matrix: Matrix) -> None:
-    with _lock:
-        _cache[key] = matrix
-        while len(_cache) > _KEPT:
-            _cache.popitem(last=False)
+    return _kept.get((str(storage.folder), row.id), lambda: read_stored(storage, row.source))
 
 
 def summary(matrix: Matrix) -> dict[str, Any]:

@@ -6,18 +6,16 @@ import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
-from urllib.parse import urlencode
 
 from markupsafe import Markup
 
 from app.pages import numbers
+from app.pages.evidence_view import evidence
 from app.pages.job_view import JobPageView, job_page
 from ident.custom import read_effect
 from ident.effect import Effect
 from ident.effects import EFFECTS
 from ident.mathml import mathml
-from ident.presets import preset
-from ident.residuals.views import view_of
 from schemas.diagnosis import CandidateView, DiagnosisView
 from schemas.fit import JobView
 
@@ -112,12 +110,15 @@ class MissingView:
     left: str = ""
 
 
-def missing(found: DiagnosisView | None, job: JobView | None) -> MissingView:
-    """The section for the newest diagnosis of a fit and the newest job that was to make one."""
+def missing(found: DiagnosisView | None, job: JobView | None, run: str = "") -> MissingView:
+    """The section for the newest diagnosis of a fit and the newest job that was to make one.
+
+    `run` is the one that shows what no curve does.
+    """
     shown = job_page(job) if job is not None and job.state != "succeeded" else None
     if found is None:
         return MissingView(shown, None)
-    cards = tuple(_cards(found))
+    cards = tuple(_cards(found, run))
     return MissingView(
         job=shown,
         found=found,
@@ -142,7 +143,7 @@ def title(name: str) -> str:
     return name.replace("_", " ")
 
 
-def _cards(found: DiagnosisView) -> Iterator[Card]:
+def _cards(found: DiagnosisView, run: str) -> Iterator[Card]:
     """A card for each candidate; those of a group share the card of the best."""
     by_name = {candidate.effect: candidate for candidate in found.candidates}
     shown: set[str] = set()
@@ -154,10 +155,10 @@ def _cards(found: DiagnosisView) -> Iterator[Card]:
         together = [candidate, *(by_name[name] for name in others)]
         shown |= {member.effect for member in together}
         rank += 1
-        yield _card(rank, together, found)
+        yield _card(rank, together, found, run)
 
 
-def _card(rank: int, together: list[CandidateView], found: DiagnosisView) -> Card:
+def _card(rank: int, together: list[CandidateView], found: DiagnosisView, run: str) -> Card:
     best, own = together[0], definitions(found)
     looks = str(best.evidence.get("looks", ""))
     return Card(
@@ -171,18 +172,8 @@ def _card(rank: int, together: list[CandidateView], found: DiagnosisView) -> Car
         confirmed=bool(best.evidence.get("beyond_chance")),
         chosen=any(candidate.effect in found.verdict.effects for candidate in together),
         gauge=_gauge(best, found),
-        evidence=_evidence(best, found, own.get(best.effect)),
+        evidence=evidence(best, found, own.get(best.effect), run),
     )
-
-
-def _evidence(best: CandidateView, found: DiagnosisView, own: Mapping[str, Any] | None) -> tuple[str, str] | None:
-    """The figure in which the effect shows, with what it predicts; None where it was not refitted."""
-    effect = read_effect(own) if own is not None else _CATALOGUE.get(best.effect)
-    if effect is None or not best.parameters:
-        return None
-    view = view_of(effect, preset(found.model))
-    query = {"candidate": f"{found.id}:{best.effect}", **({"view": view.name} if view else {})}
-    return "residual-curve" if view else "bode", urlencode(query)
 
 
 def _gauge(best: CandidateView, found: DiagnosisView) -> tuple[float, float, float]:

@@ -41,30 +41,35 @@ _OF_BENCH = (
 
 @dataclass(frozen=True)
 class FigureForm:
-    """One figure with its options; `picked` are those that it takes from what is picked out for all figures."""
+    """One figure with its options; `picked` are those that it takes from what is picked out for all figures.
+
+    `share` of its usual width is as wide as its place beside the map.
+    """
 
     name: str
     title: str
     fields: tuple[Field, ...]
     picked: tuple[str, ...] = ()
+    share: float = 0.76
 
 
 def forms(runs: Sequence[RunView], fit: FitResult) -> tuple[FigureForm, ...]:
     """The figures that this fit has: the map of where it fails, then those that follow it in the order of the tabs."""
     pictures = [
-        FigureForm(MAP, "By run and frequency", _conditions(runs), PICKED),
-        FigureForm("bode", "Bode plot", _bode(runs), PICKED),
-        FigureForm("time", "Time record", (Field("start", "Start (s)"), Field("seconds", "Length (s)")), PICKED),
+        FigureForm(MAP, "By run and frequency", _conditions(runs), PICKED, 0.66),
+        FigureForm("bode", "Bode plot", _bode(runs), PICKED, 0.79),
+        FigureForm("time", "Time record", (Field("start", "Start (s)"), Field("seconds", "Length (s)")), PICKED, 0.69),
         FigureForm(
             "residual-curve",
             "Missing characteristic",
             (Field("view", "Curve", _views(fit)), *_conditions(runs)),
             PICKED,
+            0.63,
         ),
-        FigureForm("sensitivity", "Sensitivity", (), PICKED[:1]),
+        FigureForm("sensitivity", "Sensitivity", (), PICKED[:1], 0.62),
     ]
     if fit.evolution:
-        pictures.insert(5, FigureForm("evolution", "Evolution", _evolution(fit)))
+        pictures.insert(5, FigureForm("evolution", "Evolution", _evolution(fit), share=0.63))
     pictures += [FigureForm(name, title, fields) for name, title, fields in _OF_BENCH]
     shown = figures_of(fit)
     return tuple(picture for picture in pictures if picture.name in shown)

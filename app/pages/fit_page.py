@@ -47,6 +47,7 @@ class FitPageView:
     id: str
     serial: str
     matrix: str
+    newer: str | None
     parent: str | None
     title: str
     citation: str
@@ -77,9 +78,17 @@ class FitPageView:
 
 
 def fit_page(
-    stored: FitView, matrix: MatrixView, lacks: MissingView, ladder: LadderView, others: Iterable[ParameterSetView] = ()
+    stored: FitView,
+    matrix: MatrixView,
+    lacks: MissingView,
+    ladder: LadderView,
+    others: Iterable[ParameterSetView] = (),
+    newer: str | None = None,
 ) -> FitPageView:
-    """The page of a fit of this matrix; `others` are fits of the same actuator, to compare it with."""
+    """The page of a fit of this matrix; `others` are fits of the same actuator, to compare it with.
+
+    `newer` is the newest revision of the matrix, None where that is the matrix itself.
+    """
     fit = FitResult.from_json(stored.result)
     model = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
     known = {run.id: run for run in matrix.runs}
@@ -88,6 +97,7 @@ def fit_page(
         id=stored.id,
         serial=stored.serial,
         matrix=stored.matrix,
+        newer=newer,
         parent=stored.parent,
         title=" + ".join((model.title, *(name.replace("_", " ") for name in fit.effects))),
         citation=model.citation,

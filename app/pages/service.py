@@ -14,6 +14,7 @@ from app.matrices import service as matrices
 from app.pages.actuator_view import actuator_row, drifts, fit_rows, followed
 from app.pages.compare_view import CompareView, compare_view
 from app.pages.diagnosis_view import missing
+from app.pages.evidence_view import telling_run
 from app.pages.fit_page import FitPageView, fit_page
 from app.pages.fit_view import parameter_rows
 from app.pages.job_view import JobPageView, job_page
@@ -91,6 +92,7 @@ def matrix(context: Context, matrix_id: str, cursor: str | None) -> Shown:
     stored = matrices.get(context, matrix_id)
     return {
         "matrix": matrix_view(stored),
+        "newer": matrices.newer(context, matrix_id),
         "start": start_view(stored),
         **_fits(context, cursor, matrix=matrix_id),
     }
@@ -117,7 +119,10 @@ def fit(context: Context, fit_id: str) -> FitPageView | JobPageView:
         found = fits.get(context, fit_id)
     except Failure:
         return job_page(fits.job(context, fit_id))
-    lacks = missing(*diagnoses.of_fit(context, fit_id))
+    stored = matrices.get(context, found.matrix)
+    run = telling_run(stored.runs, {run["id"]: run["error"] for run in found.result["runs"]})
+    lacks = missing(*diagnoses.of_fit(context, fit_id), run)
     way = lineage.ladder(context, fit_id)
     others = parameters.page(context, Wanted(serial=found.serial), None, _ROWS).items
-    return fit_page(found, matrices.get(context, found.matrix), lacks, way, others)
+    newer = matrices.newer(context, found.matrix)
+    return fit_page(found, stored, lacks, way, others, newer)

@@ -5,10 +5,11 @@ A test matrix is simulated with 0.5 % noise and identified; each figure is drawn
 
 from __future__ import annotations
 
-import struct
 import tempfile
-import zlib
+from io import BytesIO
 from pathlib import Path
+
+from PIL import Image
 
 from ident.figures import figure, render
 from ident.fit.identify import identify
@@ -36,21 +37,10 @@ def main() -> None:
 
 
 def packed(png: bytes) -> bytes:
-    """The same picture at zlib's best compression, less than half the size."""
-    kept, pixels, place = [], b"", 8
-    while place < len(png):
-        (length,) = struct.unpack(">I", png[place : place + 4])
-        kind, body = png[place + 4 : place + 8], png[place + 8 : place + 8 + length]
-        place += 12 + length
-        if kind == b"IDAT":
-            pixels += body
-        else:
-            kept.append((kind, body))
-    kept.insert(-1, (b"IDAT", zlib.compress(zlib.decompress(pixels), 9)))
-    chunks = (
-        struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body)) for kind, body in kept
-    )
-    return png[:8] + b"".join(chunks)
+    """The same picture in 256 colours, a third of the size."""
+    small = BytesIO()
+    Image.open(BytesIO(png)).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(small, "png", optimize=True)
+    return small.getvalue()
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ from docs.pictures.remake import packed
 from ident.synthesis import simulate_matrix
 from tests.browser import story
 from tests.browser.conftest import CHROMIUM
+from tests.browser.looks import DRAWING
 from tests.running import Service, process
 
 HERE = Path(__file__).parent
@@ -46,16 +47,28 @@ def photograph(page: Page, service: Service, archive: Path) -> None:
     story.fit(page)
     page.locator("#tab-residual-curve").click()
     page.locator(f"{FIGURE} canvas").wait_for()
+    drawn(page, "light")
     keep("fails", page.locator("section[aria-labelledby=fails]").screenshot())
     card = story.search(page, patience=10 * story.LONG)
-    keep("missing", first_cards(page))
-    page.emulate_media(color_scheme="dark")
-    keep("missing-dark", first_cards(page))
+    card.locator(".evidence .plot").scroll_into_view_if_needed()
+    card.locator(".evidence canvas").wait_for()
+    for theme, name in (("light", "missing"), ("dark", "missing-dark")):
+        page.emulate_media(color_scheme=theme)
+        drawn(page, theme)
+        keep(name, first_cards(page))
     page.emulate_media(color_scheme="light")
     story.add(page, card)
     page.locator("#figure-ladder").scroll_into_view_if_needed()
     page.locator("#figure-ladder canvas").wait_for()
+    drawn(page, "light")
     keep("ladder", page.locator("section[aria-labelledby=ladder-title]").screenshot())
+
+
+def drawn(page: Page, theme: str) -> None:
+    """Waits until no figure in sight is old or half done."""
+    old = f".figure:not([data-drawn*='theme={theme}']) .plot[aria-busy]:visible"
+    for waiting in (old, DRAWING):
+        expect(page.locator(waiting)).to_have_count(0, timeout=story.LONG)
 
 
 def first_cards(page: Page) -> bytes:

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from functools import partial
 from typing import Any
 
-from altair.utils.schemapi import debug_mode
-
-from ident.compare import Comparison, compare
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.bench import BENCH_FIGURES
 from ident.figures.bode import bode, readable
 from ident.figures.choose import chosen, wish
 from ident.figures.evolution import evolution
+from ident.figures.frame import unchecked
 from ident.figures.ladder import ladder
 from ident.figures.look import Look, look
 from ident.figures.render import MEDIA, Chart, render
@@ -22,18 +20,27 @@ from ident.figures.residual_curve import residual_curve
 from ident.figures.residual_map import residual_map
 from ident.figures.selection import band_of, number
 from ident.figures.sensitivity import loaded, sensitivity
+from ident.figures.study import Study
 from ident.figures.time import time, typical
 from ident.fit.result import FitResult
 from ident.matrix import Matrix, Run
-from ident.residuals.curves import curves
 
-__all__ = ["BENCH_FIGURES", "FIGURES", "MEDIA", "Chart", "figure", "figures_of", "ladder", "look", "render"]
+__all__ = ["BENCH_FIGURES", "FIGURES", "MEDIA", "Chart", "Study", "figure", "figures_of", "ladder", "look", "render"]
 
 
 def figure(
-    name: str, matrix: Matrix, fit: FitResult, theme: str = "light", share: float = 1.0, **options: Any
+    name: str,
+    matrix: Matrix,
+    fit: FitResult,
+    theme: str = "light",
+    share: float = 1.0,
+    *,
+    study: Study | None = None,
+    **options: Any,
 ) -> Chart:
     """The chart of that name, "light" or "dark", `share` as wide as usual; only what it shows is computed.
+
+    `study` is what earlier figures of this fit have computed.
 
     Options, all optional: bode takes run, kp, amplitude, specimen, use, low, high, axis, candidate; time takes run,
     start, seconds, low, high; evolution takes x, y, generations; sensitivity takes run; residual-map takes what bode
@@ -44,58 +51,66 @@ def figure(
     """
     if name not in figures_of(fit):
         raise Unusable("unknown-figure", f"no figure {name!r}", "figure", f"use one of {', '.join(figures_of(fit))}")
-    draw, known = FIGURES[name] if name in FIGURES else BENCH_FIGURES[name]
+    draw, known = _drawing(name, study or Study(matrix, fit))
     for option in options:
         if option not in known:
             raise Unusable("unknown-option", f"no option {option!r}", f"figure {name}", f"use {', '.join(known)}")
-    with debug_mode(False):  # Altair would check each part against its schema, which takes longer than all the rest
-        return draw(matrix, fit, look(theme, share), options)
+    with unchecked():
+        return draw(look(theme, share), options)
 
 
-def _bode(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) -> Chart:
-    candidates = chosen(matrix, wish(**_only(options, _RUNS)))
+def _drawing(name: str, study: Study) -> tuple[Callable[[Look, Mapping[str, Any]], Chart], tuple[str, ...]]:
+    """What draws a figure, with the options that it takes."""
+    if name in FIGURES:
+        draw, known = FIGURES[name]
+        return partial(draw, study), known
+    of_bench, known = BENCH_FIGURES[name]
+    return partial(of_bench, study.matrix, study.fit), known
+
+
+def _bode(study: Study, of: Look, options: Mapping[str, Any]) -> Chart:
+    candidates = chosen(study.matrix, wish(**_only(options, _RUNS)))
     runs, other = readable(candidates), _candidate(options)
     return bode(
-        _compared(matrix, fit, runs).runs, matrix.actuator, fit, of,
+        study.compared(runs).runs, study.matrix.actuator, study.fit, of,
         axis=options.get("axis") or "log", candidates=len(candidates), band=band_of(options),
-        others=_compared(matrix, other, runs).runs if other else (), other_name=_name(other, fit),
+        others=Study(study.matrix, other).compared(runs).runs if other else (), other_name=_name(other, study.fit),
     )  # fmt: skip
 
 
-def _time(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) -> Chart:
-    run = _one(matrix, options) or typical(matrix, fit)
-    (shown,) = _compared(matrix, fit, (run,)).runs
+def _time(study: Study, of: Look, options: Mapping[str, Any]) -> Chart:
+    run = _one(study.matrix, options) or typical(study.matrix, study.fit)
+    (shown,) = study.compared((run,)).runs
     start, seconds = number(options, "start"), number(options, "seconds")
-    return time(shown, matrix.actuator, fit, of, start=start, seconds=seconds, band=band_of(options))
+    return time(shown, study.matrix.actuator, study.fit, of, start=start, seconds=seconds, band=band_of(options))
 
 
-def _evolution(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) -> Chart:
-    return evolution(matrix.actuator, fit, of, **options)
+def _evolution(study: Study, of: Look, options: Mapping[str, Any]) -> Chart:
+    return evolution(study.matrix.actuator, study.fit, of, **options)
 
 
-def _sensitivity(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) -> Chart:
-    run = _one(matrix, options) or loaded(matrix.of_use("verify") or matrix.runs)
-    return sensitivity(run, matrix.actuator, fit, of)
+def _sensitivity(study: Study, of: Look, options: Mapping[str, Any]) -> Chart:
+    run = _one(study.matrix, options) or loaded(study.matrix.of_use("verify") or study.matrix.runs)
+    return sensitivity(run, study.matrix.actuator, study.fit, of)
 
 
-def _residual_map(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) -> Chart:
+def _residual_map(study: Study, of: Look, options: Mapping[str, Any]) -> Chart:
     filters = _only(options, _CONDITIONS)
-    shown = chosen(matrix, wish(**filters)) if any(filters.values()) else matrix.runs
+    shown = chosen(study.matrix, wish(**filters)) if any(filters.values()) else study.matrix.runs
     run = str(options.get("run") or "")
-    return residual_map(_compared(matrix, fit, shown), matrix.actuator, fit, of, run=run, band=band_of(options))
+    return residual_map(study.compared(shown), study.matrix.actuator, study.fit, of, run=run, band=band_of(options))
 
 
-def _residual_curve(matrix: Matrix, fit: FitResult, of: Look, options: Mapping[str, Any]) -> Chart:
-    filters, band, view = _only(options, _RUNS), band_of(options), options.get("view") or None
+def _residual_curve(study: Study, of: Look, options: Mapping[str, Any]) -> Chart:
+    matrix, filters, view = study.matrix, _only(options, _RUNS), options.get("view") or None
+    band, other = band_of(options), _candidate(options)
     shown = chosen(matrix, wish(**filters)) if any(filters.values()) else matrix.of_use("fit") or matrix.runs
-    own, ends = _compared(matrix, fit, shown), ((band.low, band.high) if band else None)
-    other = _candidate(options)
-    predicted = curves(own, _compared(matrix, other, shown), view=view, band=ends) if other else ()
     runs = words.describe(shown[0]) if len(shown) == 1 else f"{len(shown)} runs"
     return residual_curve(
-        curves(own, view=view, band=ends), matrix.actuator, fit, of, candidate=predicted, view=view,
+        study.curves(shown, view, band), matrix.actuator, study.fit, of,
+        candidate=study.curves(shown, view, band, other) if other else (), view=view,
         runs=f"{runs}, {band.words}" if band else runs,
-        candidate_name=_name(other, fit),
+        candidate_name=_name(other, study.fit),
     )  # fmt: skip
 
 
@@ -119,7 +134,7 @@ def _name(other: FitResult | None, fit: FitResult) -> str:
 _CONDITIONS = ("kp", "amplitude", "specimen", "use")
 _RUNS = ("run", *_CONDITIONS)
 _BAND = ("low", "high")
-FIGURES: Mapping[str, tuple[Callable[[Matrix, FitResult, Look, Mapping[str, Any]], Chart], tuple[str, ...]]] = {
+FIGURES: Mapping[str, tuple[Callable[[Study, Look, Mapping[str, Any]], Chart], tuple[str, ...]]] = {
     "bode": (_bode, (*_RUNS, *_BAND, "axis", "candidate")),
     "time": (_time, ("run", *_BAND, "start", "seconds")),
     "evolution": (_evolution, ("x", "y", "generations")),
@@ -135,10 +150,6 @@ def figures_of(fit: FitResult) -> tuple[str, ...]:
     if fit.model != "kononykhin":
         return tuple(FIGURES)
     return ("time", *(("evolution",) if fit.evolution else ()), *BENCH_FIGURES)
-
-
-def _compared(matrix: Matrix, fit: FitResult, runs: tuple[Run, ...]) -> Comparison:
-    return compare(replace(matrix, runs=runs), fit)
 
 
 def _one(matrix: Matrix, options: Mapping[str, Any]) -> Run | None:

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
 import altair as alt
 import numpy as np
@@ -11,15 +15,17 @@ from ident.compare import RunComparison
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.choose import by_gain, representative
+from ident.figures.frame import Filled, Frame, blank, frame
 from ident.figures.look import Look
-from ident.figures.render import Chart, Panel, datasets
+from ident.figures.render import Panel
 from ident.figures.responses import Responses
-from ident.figures.selection import HIGH, LOW, OPEN, Band, band_params, brush, zoomed
+from ident.figures.selection import HIGH, LOW, OPEN, Band, band_params, band_values, brush, zoomed
 from ident.figures.thin import decade_ticks, fine_ticks
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Run
 
 FACETS = 4
+_GAP = 22
 _WIDTHS = {1: 640, 2: 400, 3: 300}
 
 
@@ -42,7 +48,7 @@ def bode(
     band: Band = OPEN,
     others: Sequence[RunComparison] = (),
     other_name: str = "",
-) -> Chart:
+) -> Filled:
     """Magnitude (dB), phase (degrees, unwrapped) and coherence over frequency; one column a gain Kp.
 
     Measured points fade with their coherence; lines are the model. `axis` is "log" or "linear"; `candidates` is
@@ -53,29 +59,63 @@ def bode(
         raise Unusable("unknown-axis", f"no frequency axis {axis!r}", "figure option axis", "use log or linear")
     responses = Responses(compared, axis == "log", others)
     gains = list(by_gain([entry.run for entry in compared]))
-    columns = [_column(responses, look, place, gains) for place in range(len(gains))]
+    lower, upper = responses.band
+    values = {
+        "headline": words.headline(actuator, "frequency response, measured and model"),
+        "told": _briefly(responses, other_name, look) if look.small else _told(responses, fit, candidates, other_name),
+        "labels": responses.domain,
+        "magnitude": list(responses.limits("a", "A")),
+        "phase": list(responses.limits("p", "P")),
+        "lowest": lower, "highest": upper, "near": fine_ticks(lower, upper), "far": decade_ticks(lower, upper),
+        **{f"gain{place}": words.gain(gain) for place, gain in enumerate(gains)},
+        **band_values(band),
+    }  # fmt: skip
+    tables = {_data(place): responses.rows[gain] for place, gain in enumerate(gains)}
+    alike = _Alike(
+        columns=len(gains),
+        headed=len(gains) > 1 or gains[0] is not None,
+        single=len(compared) == 1,
+        legend=len(responses.domain) > 1,
+        logarithmic=responses.logarithmic,
+        compared=bool(others),
+        decibel=responses.magnitude_unit,
+        frequency="Hz" if compared[0].run.time_unit == "s" else "cycles/sample",
+    )
+    return Filled(_frame(alike, look), tables, values)
+
+
+@dataclass(frozen=True)
+class _Alike:
+    """What Bode plots must share to be drawn in one frame; `single` is True for one run."""
+
+    columns: int
+    headed: bool
+    single: bool
+    legend: bool
+    logarithmic: bool
+    compared: bool
+    decibel: str
+    frequency: str
+
+
+@lru_cache(maxsize=32)
+def _frame(alike: _Alike, look: Look) -> Frame:
+    columns = [_column(alike, look, place) for place in range(alike.columns)]
     columns[0][0] = columns[0][0].add_params(brush())
     panels = [panel for row in zip(*columns, strict=True) for panel in row]
-    data = {_data(place): responses.rows[gain] for place, gain in enumerate(gains)}
-    chart: Chart = (
-        alt.concat(
-            *panels,
-            columns=len(gains),
-            spacing={"row": 12, "column": 22},
-            bounds="flush",
-            datasets=datasets(data),
-            title=_title(responses, actuator, fit, candidates, other_name),
-        )
-        .add_params(*band_params(band))
+    heading = {} if look.small else {"title": alt.TitleParams(blank("headline"), subtitle=blank("told"))}
+    chart = (
+        alt.concat(*panels, columns=alike.columns, spacing={"row": 12, "column": _GAP}, bounds="flush", **heading)
+        .add_params(*band_params(OPEN), *(alt.param(name=name, value=0) for name in ("lowest", "highest")))
+        .add_params(*(alt.param(name=name, value=[]) for name in ("near", "far")))
         .resolve_scale(color="shared", opacity="shared")
         .configure(**look.config())
     )
-    return chart
+    return frame(chart)
 
 
-def _title(
-    responses: Responses, actuator: Actuator, fit: FitResult, candidates: int | None, other_name: str
-) -> alt.TitleParams:
+def _told(responses: Responses, fit: FitResult, candidates: int | None, other_name: str) -> list[str]:
+    """The lines under the title."""
     compared = responses.compared
     if len(compared) == 1:
         shown = f"{words.describe(compared[0].run)}: error {words.percent(compared[0].error)}"
@@ -85,130 +125,115 @@ def _title(
         shown = f"{len(compared)} runs"
     if len(compared) > 1:
         shown = ", ".join((shown, *responses.common))
-    return alt.TitleParams(
-        words.headline(actuator, "frequency response, measured and model"),
-        subtitle=[
-            words.verdict(fit),
-            shown,
-            "points: measured, fading with lost coherence · lines: model"
-            + (f" · dashed: {other_name}" if other_name else ""),
-        ],
-    )
+    dashed = f" · dashed: {other_name}" if other_name else ""
+    return [words.verdict(fit), shown, f"points: measured, fading with lost coherence · lines: model{dashed}"]
+
+
+def _briefly(responses: Responses, other_name: str, look: Look) -> list[str]:
+    """The runs and what is what, in lines of a small figure's width."""
+    runs = [words.describe(entry.run) for entry in responses.compared]
+    said = ("; ".join(runs), "points: measured · line: model", *([f"dashed: with {other_name}"] if other_name else []))
+    return [line for text in said for line in textwrap.wrap(text, look.across(120))]
 
 
 def _data(place: int) -> str:
     return f"gain{place}"
 
 
-def _column(responses: Responses, look: Look, place: int, gains: Sequence[float | None]) -> list[Panel]:
+def _column(alike: _Alike, look: Look, place: int) -> list[Panel]:
     """The three panels of one gain; only the first column names the vertical axes."""
-    width = look.across(_WIDTHS.get(len(gains), 240))
+    one, others = _WIDTHS[1], alike.columns - 1
+    alone = look.share == 1  # else beside something, where all columns have the room of one
+    width = look.across(_WIDTHS.get(alike.columns, 240) if alone else (one - _GAP * others) / alike.columns)
     data = alt.NamedData(_data(place))
     first = place == 0
-    panels: list[Panel] = [
-        _panel(
-            responses,
-            look,
-            data,
-            ("a", "A", "B"),
-            title=f"Magnitude ({responses.magnitude_unit})",
-            height=200,
-            first=first,
-        ),
-        _panel(responses, look, data, ("p", "P", "Q"), title="Phase (°)", height=170, first=first),
-        _coherence(responses, look, data, first),
+    of_size: dict[str, Any] = {"fontSize": 12, "offset": 6, "frame": "group"}
+    if look.small:  # the figure has no title: what it shows stands here
+        of_size |= {"subtitle": blank("told"), "subtitleFontSize": 11, "subtitleLineHeight": 13}
+    heading = {"title": alt.TitleParams(blank(f"gain{place}"), **of_size)} if alike.headed or look.small else {}
+    panels = [
+        _panel(alike, look, data, ("a", "A", "B"), f"Magnitude ({alike.decibel})", first=first, **heading),
+        _panel(alike, look, data, ("p", "P", "Q"), "Phase (°)", first=first),
+        _coherence(alike, look, data, first),
     ]
-    panels[0] = panels[0].properties(title=_heading(gains[place], len(gains)))
-    return [panel.properties(width=width) for panel in panels]
-
-
-def _heading(gain: float | None, count: int) -> alt.TitleParams:
-    return alt.TitleParams(
-        words.gain(gain) if count > 1 or gain is not None else "", fontSize=12, offset=6, frame="group"
-    )
+    return [panel.properties(width=width) for panel in (panels[:2] if look.small else panels)]
 
 
 def _panel(
-    responses: Responses,
+    alike: _Alike,
     look: Look,
     data: alt.NamedData,
     fields: tuple[str, str, str],
+    what: str,
     *,
-    title: str,
-    height: int,
     first: bool,
+    **heading: Any,
 ) -> Panel:
     """One quantity: measured as points, model as lines."""
     measured, model, other = fields
-    scale = alt.Scale(domain=list(responses.limits(measured, model)), nice=True, zero=False)
-    ticks = alt.Axis(title=title if first else None, labels=first, tickCount=6)
-    base = alt.Chart(data, height=height).encode(x=_frequency(responses, named=False), color=_colour(responses, look))
+    limits, height = ("magnitude", 200) if measured == "a" else ("phase", 170)
+    lowest = look.small and measured == "p"
+    scale = alt.Scale(domain=blank(limits), nice=True, zero=False)
+    ticks = alt.Axis(title=what if first else None, labels=first, tickCount=6)
+    base = alt.Chart(data).encode(x=_frequency(alike, named=lowest), color=_colour(alike, look))
     points = base.mark_circle(size=14, clip=True).encode(
         y=alt.Y(f"{measured}:Q", scale=scale, axis=ticks),
         opacity=alt.Opacity("c:Q", scale=alt.Scale(domain=[0.3, 0.95], range=[0.06, 0.8], clamp=True), legend=None),
-        tooltip=_tooltip(responses, fields, title),
+        tooltip=_tooltip(alike, fields, what),
     )
     lines = base.mark_line(strokeWidth=1.6, clip=True, interpolate="monotone").encode(y=f"{model}:Q", detail="r:N")
-    layers = [_shade(responses, look, named=False), points, lines]
-    if responses.others:
+    layers = [_shade(alike, look, named=lowest), points, lines]
+    if alike.compared:
         layers.append(
             base.mark_line(strokeWidth=1.6, strokeDash=[6, 4], clip=True, interpolate="monotone").encode(
-                y=f"{other}:Q", detail="r:N", color=alt.value(look.ink if len(responses.compared) == 1 else look.faint)
+                y=f"{other}:Q", detail="r:N", color=alt.value(look.ink if alike.single else look.faint)
             )
         )
-    return alt.layer(*layers)
+    return alt.layer(*layers, height=0.6 * height if look.small else height, **heading)
 
 
-def _coherence(responses: Responses, look: Look, data: alt.NamedData, first: bool) -> Panel:
+def _coherence(alike: _Alike, look: Look, data: alt.NamedData, first: bool) -> Panel:
     ticks = alt.Axis(title="Coherence (–)" if first else None, labels=first, values=[0, 0.5, 1])
-    base = alt.Chart(data, height=70).encode(x=_frequency(responses, named=True), color=_colour(responses, look))
+    base = alt.Chart(data, height=70).encode(x=_frequency(alike, named=True), color=_colour(alike, look))
     line = base.mark_line(strokeWidth=1, clip=True).encode(
         y=alt.Y("c:Q", scale=alt.Scale(domain=[0, 1.02], nice=False), axis=ticks), detail="r:N"
     )
-    return alt.layer(_shade(responses, look, named=True), line)
+    return alt.layer(_shade(alike, look, named=True), line)
 
 
-def _shade(responses: Responses, look: Look, named: bool) -> alt.Chart:
+def _shade(alike: _Alike, look: Look, named: bool) -> alt.Chart:
     """The chosen band, as a ground behind the curves."""
-    lower, upper = responses.band
-    ends = {"low": f"{LOW} || {lower:.6g}", "high": f"{HIGH} || {upper:.6g}"}
+    ends = {"low": f"{LOW} || lowest", "high": f"{HIGH} || highest"}
     shown = alt.Chart(alt.sequence(0, 1)).transform_filter(f"{LOW} > 0 || {HIGH} > 0")
     shade: alt.Chart = (
         shown.transform_calculate(**ends)
         .mark_rect(color=look.faint, opacity=0.13, clip=True)
-        .encode(x=_frequency(responses, named, "low"), x2="high:Q")
+        .encode(x=_frequency(alike, named, "low"), x2="high:Q")
     )
     return shade
 
 
-def _frequency(responses: Responses, named: bool, field: str = "f") -> alt.X:
+def _frequency(alike: _Alike, named: bool, field: str = "f") -> alt.X:
     """The common frequency axis; only the lowest panel names it."""
-    unit = "Hz" if responses.compared[0].run.time_unit == "s" else "cycles/sample"
-    lower, upper = responses.band
-    if responses.logarithmic:
-        scale = alt.Scale(type="log", domain=zoomed(lower, upper), nice=False)
+    if alike.logarithmic:
+        scale = alt.Scale(type="log", domain=zoomed("lowest", "highest"), nice=False)
     else:
-        scale = alt.Scale(domain=[0, upper], nice=True)
-    near, far = fine_ticks(lower, upper), decade_ticks(lower, upper)
-    values = alt.ExprRef(f"{LOW} > 0 || {HIGH} > 0 ? {near} : {far}")
-    ticks = {"values": values} if responses.logarithmic else {"tickCount": 8}
-    axis = alt.Axis(labels=named, title=f"Frequency ({unit})" if named else None, format="~r", **ticks)
+        scale = alt.Scale(domain=[0, {"expr": "highest"}], nice=True)
+    ticks = {"values": alt.ExprRef(f"{LOW} > 0 || {HIGH} > 0 ? near : far")} if alike.logarithmic else {"tickCount": 8}
+    axis = alt.Axis(labels=named, title=f"Frequency ({alike.frequency})" if named else None, format="~r", **ticks)
     return alt.X(f"{field}:Q", scale=scale, axis=axis)
 
 
-def _colour(responses: Responses, look: Look) -> alt.Color:
-    entries = responses.domain
-    colours = [look.series[place % len(look.series)] for place in range(len(entries))]
-    legend = alt.Legend(orient="bottom", columns=3, symbolType="circle") if len(entries) > 1 else None
-    return alt.Color("s:N", scale=alt.Scale(domain=entries, range=colours), legend=legend, title=None)
+def _colour(alike: _Alike, look: Look) -> alt.Color:
+    legend = alt.Legend(orient="bottom", columns=3, symbolType="circle") if alike.legend else None
+    return alt.Color("s:N", scale=alt.Scale(domain=blank("labels"), range=list(look.series)), legend=legend, title=None)
 
 
-def _tooltip(responses: Responses, fields: tuple[str, str, str], title: str) -> list[alt.Tooltip]:
+def _tooltip(alike: _Alike, fields: tuple[str, str, str], title: str) -> list[alt.Tooltip]:
     measured, model, _ = fields
-    unit = "Hz" if responses.compared[0].run.time_unit == "s" else "cycles/sample"
     return [
         alt.Tooltip("r:N", title="Run"),
-        alt.Tooltip("f:Q", title=f"Frequency ({unit})", format=".4g"),
+        alt.Tooltip("f:Q", title=f"Frequency ({alike.frequency})", format=".4g"),
         alt.Tooltip(f"{measured}:Q", title=f"{title}, measured", format=".4g"),
         alt.Tooltip(f"{model}:Q", title=f"{title}, model", format=".4g"),
         alt.Tooltip("c:Q", title="Coherence", format=".3f"),

@@ -151,7 +151,7 @@ def _scatter(look: Look, axes: tuple[_Axis, _Axis], pictured: Sequence[Generatio
     ramp = alt.Scale(type="log", domain=_ends(errors), range=list(reversed(look.ramp)), clamp=True)
     legend = alt.Legend(title="Error (%)", orient="right", format=".3~g", tickCount=4)
     colour = alt.Color("e:Q", scale=ramp, legend=legend)
-    width = max(150, look.across(600 / len(pictured)))
+    width = max(95, look.across(600 / len(pictured)))
     panels = [
         _generation(entry, axes, look, colour, first=entry is pictured[0]).properties(width=width) for entry in pictured
     ]

@@ -10,6 +10,8 @@ from ident.errors import Unusable
 
 FONT = "Liberation Sans, Arial, Helvetica, sans-serif"
 
+_SMALL = 0.6  # of the usual width
+
 
 @dataclass(frozen=True)
 class Look:
@@ -23,6 +25,11 @@ class Look:
     series: tuple[str, ...]
     ramp: tuple[str, ...]  # for a quantity on a continuous scale, low to high
     share: float = 1.0  # of the usual width
+
+    @property
+    def small(self) -> bool:
+        """True where a figure stands beside words that say what it is."""
+        return self.share < _SMALL
 
     def across(self, pixels: float) -> int:
         """The width of a panel that usually has so many pixels."""

@@ -10,9 +10,10 @@ import altair as alt
 import vl_convert
 
 from ident.errors import Unusable
+from ident.figures.frame import Filled
 
 Panel = alt.Chart | alt.LayerChart | alt.FacetChart
-Chart = alt.LayerChart | alt.HConcatChart | alt.VConcatChart | alt.ConcatChart
+Chart = alt.LayerChart | alt.HConcatChart | alt.VConcatChart | alt.ConcatChart | Filled
 
 Row = dict[str, Any]
 
@@ -43,11 +44,14 @@ MEDIA: Mapping[str, str] = {
 """Formats by name, with their media types."""
 
 
-def render(chart: Chart, format: str) -> bytes:  # noqa: A002 - the word of the contract
-    """The chart as Vega-Lite JSON, SVG, PNG (two dots a pixel) or PDF; raises Unusable for any other format."""
+def render(chart: Chart, format: str, *, live: bool = False) -> bytes:  # noqa: A002 - the word of the contract
+    """The chart as Vega-Lite JSON, SVG, PNG (two dots a pixel) or PDF; raises Unusable for any other format.
+
+    A `live` JSON keeps what differs between runs and bands in its parameters, for a page that exchanges only these.
+    """
     if format not in MEDIA:
         raise Unusable("unknown-format", f"no format {format!r}", "figure", f"use one of {', '.join(MEDIA)}")
-    text = chart.to_json(indent=None, validate=False)
+    text = chart.to_json(live=live) if isinstance(chart, Filled) else chart.to_json(indent=None, validate=False)
     if format == "json":
         return text.encode()
     drawn = _CONVERT[format](text)

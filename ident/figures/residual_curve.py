@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from typing import Any
 
 import altair as alt
 
 from ident.errors import Unusable
 from ident.figures import words
+from ident.figures.frame import Filled, Frame, blank, frame
 from ident.figures.look import Look
-from ident.figures.render import Chart, Panel, datasets
+from ident.figures.render import Panel
 from ident.figures.thin import significant
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
@@ -19,7 +21,7 @@ from ident.residuals.curves import Curve
 
 SHOWN = 4
 _WIDTH, _HEIGHT = 340, 210
-_SMALL = 0.6  # of the usual width: then it stands beside words that say what it is
+_PERCENTAGE = "percentage: share of the residual's power that the curve takes off, on stretches it was not fitted to"
 _MEASURED, _CANDIDATE = "seen in the residual, 95 % band", "predicted by"
 
 
@@ -33,7 +35,7 @@ def residual_curve(
     candidate_name: str = "the candidate",
     view: str | None = None,
     runs: str = "",
-) -> Chart:
+) -> Filled:
     """The four curves that explain most of the residual, or the one called `view`, each with its 95 % band.
 
     `candidate` are the curves that another model predicts, drawn dashed. Raises Unusable where there is no curve.
@@ -43,25 +45,32 @@ def residual_curve(
         raise _nothing(view, [curve.name for curve in found])
     other = {curve.name: curve for curve in candidate}
     names = [_MEASURED, f"{_CANDIDATE} {candidate_name}"] if other else [_MEASURED]
-    tables = {curve.name: _rows(curve, other.get(curve.name), names) for curve in shown}
-    wide = len(shown) == 1
-    panels = [_panel(curve, names, look, wide) for curve in shown]
-    small = look.share < _SMALL
-    title = alt.TitleParams(
-        words.headline(actuator, "what the model lacks, against its own signals"),
-        subtitle=[
-            words.verdict(fit),
-            f"{runs} · percentage: share of the residual's power that the curve takes off,",
-            "on stretches it was not fitted to",
-        ],
-    )
-    heading = {} if small else {"title": title}
-    chart: Chart = (
-        alt.concat(*panels, columns=2, spacing={"row": 26, "column": 34}, datasets=datasets(tables), **heading)
-        .resolve_scale(color="shared")
-        .configure(**look.config())
-    )
-    return chart
+    values = {
+        "headline": words.headline(actuator, "what the model lacks, against its own signals"),
+        "told": [words.verdict(fit), runs, *textwrap.wrap(_PERCENTAGE, look.across(130))],
+        "names": names,
+    }
+    hints = _hints([curve.shows for curve in shown], look)
+    for place, (curve, hint) in enumerate(zip(shown, hints, strict=True)):
+        along, across = _axes(curve)
+        written = {
+            "name": f"{curve.name.capitalize()}: {_share(curve)}",
+            "hint": hint,
+            "along": along,
+            "across": across,
+        }
+        values |= {f"{name}{place}": value for name, value in written.items()}
+    tables = {f"curve{i}": _rows(curve, other.get(curve.name), names) for i, curve in enumerate(shown)}
+    return Filled(_frame(len(shown), bool(other), look), tables, values)
+
+
+@lru_cache(maxsize=32)
+def _frame(count: int, compared: bool, look: Look) -> Frame:
+    panels = [_panel(place, compared, look, wide=count == 1) for place in range(count)]
+    title = alt.TitleParams(blank("headline"), subtitle=blank("told"))
+    heading = {} if look.small else {"title": title}
+    chart = alt.concat(*panels, columns=2, spacing={"row": 26, "column": 24}, **heading)
+    return frame(chart.resolve_scale(color="shared").configure(**look.config()))
 
 
 def _nothing(view: str | None, known: Sequence[str]) -> Unusable:
@@ -72,12 +81,25 @@ def _nothing(view: str | None, known: Sequence[str]) -> Unusable:
 
 
 def _rows(curve: Curve, other: Curve | None, names: Sequence[str]) -> list[dict[str, Any]]:
-    """x, y, l and h in the printed units, s the series."""
+    """x, y, l and h in the printed units, s the series, d the point in words."""
     along, across = _scales(curve)
-    rows = _series(curve, along, across, names[0])
+    rows = [row | {"d": _point(row, curve)} for row in _series(curve, along, across, names[0])]
     if other is not None:
         rows += [{key: row[key] for key in ("x", "y", "s")} for row in _series(other, along, across, names[1])]
     return rows
+
+
+def _point(row: Mapping[str, Any], curve: Curve) -> str:
+    x, y, low, high = (f"{row[field]:.3g}".replace("-", "−") for field in "xylh")
+    along, across = _axes(curve)
+    return f"{across}: {y}, 95 % from {low} to {high}; {along}: {x}"
+
+
+def _axes(curve: Curve) -> tuple[str, str]:
+    """What both axes show, with their units."""
+    x_unit = words.engineering(curve.x[1:-1], curve.x_unit)[1]
+    y_unit = words.engineering(_extent(curve), curve.y_unit)[1]
+    return words.axis(curve.against, x_unit), words.axis(curve.missing, y_unit)
 
 
 def _series(curve: Curve, along: float, across: float, name: str) -> list[dict[str, Any]]:
@@ -99,13 +121,17 @@ def _extent(curve: Curve) -> tuple[float, ...]:
     return (*curve.lower[1:-1], *curve.upper[1:-1])
 
 
-def _panel(curve: Curve, names: Sequence[str], look: Look, wide: bool) -> Panel:
-    x_unit = words.engineering(curve.x[1:-1], curve.x_unit)[1]
-    y_unit = words.engineering(_extent(curve), curve.y_unit)[1]
-    across = _axis(words.axis(curve.missing, y_unit), 5)
-    x = alt.X("x:Q", scale=alt.Scale(zero=False, nice=False), axis=_axis(words.axis(curve.against, x_unit), 6))
+def _hints(texts: Sequence[str], look: Look) -> list[list[str]]:
+    """What each panel may show, in lines of its width; all of one height, since the panels stand side by side."""
+    hints = [textwrap.wrap(text, look.across(105 if len(texts) == 1 else 60)) for text in texts]
+    most = max(map(len, hints))
+    return [hint + [""] * (most - len(hint)) for hint in hints]
+
+
+def _panel(place: int, compared: bool, look: Look, *, wide: bool) -> Panel:
+    data, across = alt.NamedData(f"curve{place}"), _axis(blank(f"across{place}"), 5)
+    x = alt.X("x:Q", scale=alt.Scale(zero=False, nice=False), axis=_axis(blank(f"along{place}"), 6))
     y = alt.Y("y:Q", scale=alt.Scale(zero=True), axis=across)
-    colours = [look.series[0], look.series[1]][: len(names)]
     legend = alt.Legend(
         title=None,
         orient="bottom",
@@ -113,27 +139,25 @@ def _panel(curve: Curve, names: Sequence[str], look: Look, wide: bool) -> Panel:
         symbolStrokeWidth=2,
         symbolOpacity=1,
         labelLimit=500,
-        columns=1 if look.share < _SMALL else 2,
+        columns=1 if look.small else 2,
     )
-    colour = alt.Color("s:N", scale=alt.Scale(domain=list(names), range=colours), legend=legend)
-    base = alt.Chart(alt.NamedData(curve.name)).encode(x=x)
-    seen = base.transform_filter(f"datum.s == '{names[0]}'")
+    scale = alt.Scale(domain=blank("names"), range=list(look.series[: 1 + compared]))
+    colour = alt.Color("s:N", scale=scale, legend=legend)
+    base = alt.Chart(data).encode(x=x)
+    seen = base.transform_filter(f"datum.s == '{_MEASURED}'")
     layers = [
-        alt.Chart(alt.NamedData(curve.name)).mark_rule(color=look.faint, strokeWidth=0.8).encode(y=alt.datum(0)),
+        alt.Chart(data).mark_rule(color=look.faint, strokeWidth=0.8).encode(y=alt.datum(0)),
         seen.mark_area(opacity=0.25).encode(y=alt.Y("l:Q", axis=across), y2="h:Q", color=colour),
-        seen.mark_line(strokeWidth=1.8, point=alt.OverlayMarkDef(size=22)).encode(
-            y=y, color=colour, tooltip=_tooltip(curve, x_unit, y_unit)
-        ),
+        seen.mark_line(strokeWidth=1.8, point=alt.OverlayMarkDef(size=22)).encode(y=y, color=colour, tooltip="d:N"),
     ]
-    if len(names) > 1:
-        predicted = base.transform_filter(f"datum.s != '{names[0]}'")
+    if compared:
+        predicted = base.transform_filter(f"datum.s != '{_MEASURED}'")
         layers.append(predicted.mark_line(strokeWidth=2, strokeDash=[6, 4]).encode(y=y, color=colour))
-    width, height = (640, 340 if look.share >= _SMALL else 200) if wide else (_WIDTH, _HEIGHT)
-    hint = textwrap.wrap(curve.shows, look.across(95 if wide else 54))
-    hint += [""] * (2 - len(hint))  # titles of one height: the panels of a row stand side by side
+    width, height = (640, 200 if look.small else 340) if wide else (_WIDTH, _HEIGHT)
     title = alt.TitleParams(
-        f"{curve.name.capitalize()}: {_share(curve)}",
-        fontSize=12, subtitle=hint, subtitleFontSize=11, subtitleLineHeight=13, offset=8, frame="group",
+        blank(f"name{place}"),
+        subtitle=blank(f"hint{place}"),
+        fontSize=12, subtitleFontSize=11, subtitleLineHeight=13, offset=8, frame="group",
     )  # fmt: skip
     panel: Panel = alt.layer(*layers, width=look.across(width), height=height, title=title)
     return panel
@@ -143,12 +167,5 @@ def _share(curve: Curve) -> str:
     return f"explains {100 * curve.explained:.0f} %" if curve.explained > 0.005 else "explains nothing"
 
 
-def _axis(title: str, ticks: int) -> alt.Axis:
+def _axis(title: Any, ticks: int) -> alt.Axis:
     return alt.Axis(title=title, tickCount=ticks, format=".4~g")
-
-
-def _tooltip(curve: Curve, x_unit: str, y_unit: str) -> list[alt.Tooltip]:
-    named: Mapping[str, str] = {
-        "x": words.axis(curve.against, x_unit), "y": words.axis(curve.missing, y_unit), "l": "Lower", "h": "Upper",
-    }  # fmt: skip
-    return [alt.Tooltip(f"{field}:Q", title=title, format=".3g") for field, title in named.items()]

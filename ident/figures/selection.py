@@ -57,16 +57,21 @@ def band_of(options: Mapping[str, Any]) -> Band:
 
 def band_params(band: Band) -> list[alt.Parameter]:
     """`low` and `high`, 0 where the end is open."""
-    return [alt.param(name=LOW, value=band.low or 0), alt.param(name=HIGH, value=band.high or 0)]
+    return [alt.param(name=name, value=value) for name, value in band_values(band).items()]
 
 
-def zoomed(lower: float, upper: float) -> list[Any]:
-    """Ends of a logarithmic axis that shows all of [lower, upper], or the surroundings of the chosen band."""
-    low, high = f"({LOW} || {lower:.6g})", f"({HIGH} || {upper:.6g})"
+def band_values(band: Band) -> dict[str, float]:
+    """The values of `low` and `high`."""
+    return {LOW: band.low or 0, HIGH: band.high or 0}
+
+
+def zoomed(lower: str, upper: str) -> list[Any]:
+    """Ends of a logarithmic axis that shows all between two parameters, or the surroundings of the chosen band."""
+    low, high = f"({LOW} || {lower})", f"({HIGH} || {upper})"
     middle, half = f"sqrt({low}*{high})", f"sqrt(max({_WIDEST:g}, 2*{high}/{low}))"
     return [
-        {"expr": f"max({lower:.6g}, min({middle}/{half}, {upper / _WIDEST:.6g}))"},
-        {"expr": f"min({upper:.6g}, max({middle}*{half}, {lower * _WIDEST:.6g}))"},
+        {"expr": f"max({lower}, min({middle}/{half}, {upper} / {_WIDEST:g}))"},
+        {"expr": f"min({upper}, max({middle}*{half}, {lower} * {_WIDEST:g}))"},
     ]
 
 

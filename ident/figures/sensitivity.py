@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import altair as alt
@@ -13,14 +14,16 @@ from numpy.typing import NDArray
 from ident.chain import linear_model
 from ident.compare import fitted, response
 from ident.figures import words
+from ident.figures.frame import Filled, Frame, blank, frame
 from ident.figures.look import Look
-from ident.figures.render import Chart, Panel, datasets
+from ident.figures.render import Panel
 from ident.figures.thin import decade_ticks, excited_band, significant
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Matrix, Run, Specimen
 
 MULTIPLES = tuple(float(value) for value in np.geomspace(0.1, 10, 11))
 POINTS = 90
+_HEADINGS = {"mass": "Mass", "stiffness": "Stiffness", "gain": "Gain Kp"}
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -34,7 +37,7 @@ def loaded(runs: Sequence[Run]) -> Run:
     return ordered[len(ordered) // 2]
 
 
-def sensitivity(run: Run, actuator: Actuator, fit: FitResult, look: Look) -> Chart:
+def sensitivity(run: Run, actuator: Actuator, fit: FitResult, look: Look) -> Filled:
     """Magnitude (dB) and phase (degrees) of the fitted model as one quantity of `run` goes from 0.1 to 10 times.
 
     A quantity that the run does not state, or that is 0, has no column; multiples that make the loop unstable are
@@ -48,40 +51,38 @@ def sensitivity(run: Run, actuator: Actuator, fit: FitResult, look: Look) -> Cha
         name: _rows(frequency, {x: response(fit, vary(run, x), actuator, frequency) for x in stable[name]})
         for name, (_, vary) in varied.items()
     }
-    axes = _Axes(tables)
-    columns = [
-        _column(name, text + _without(stable[name]), axes, look, first=place == 0, width=look.across(600 / len(varied)))
-        for place, (name, (text, _)) in enumerate(varied.items())
-    ]
-    title = alt.TitleParams(
-        words.headline(actuator, "sensitivity of the frequency response"),
-        subtitle=[words.verdict(fit), f"About {words.describe(run)}, which is drawn dashed"],
+    values = {
+        "headline": words.headline(actuator, "sensitivity of the frequency response"),
+        "told": [words.verdict(fit), f"About {words.describe(run)}, which is drawn dashed"],
+        **{name: [text, _without(stable[name])] for name, (text, _) in varied.items()},
+        **_ends(tables),
+    }
+    return Filled(_frame(tuple(varied), look), tables, values)
+
+
+@lru_cache(maxsize=32)
+def _frame(names: tuple[str, ...], look: Look) -> Frame:
+    columns = [_column(name, look, first=name == names[0], width=look.across(600 / len(names))) for name in names]
+    chart = alt.concat(
+        *(panel for row in zip(*columns, strict=True) for panel in row),
+        columns=len(names),
+        spacing={"row": 12, "column": 22},
+        bounds="flush",
+        title=alt.TitleParams(blank("headline"), subtitle=blank("told")),
     )
-    chart: Chart = (
-        alt.concat(
-            *(panel for row in zip(*columns, strict=True) for panel in row),
-            columns=len(varied),
-            spacing={"row": 12, "column": 22},
-            bounds="flush",
-            datasets=datasets(tables),
-            title=title,
-        )
-        .resolve_scale(color="shared")
-        .configure(**look.config())
-    )
-    return chart
+    return frame(chart.resolve_scale(color="shared").configure(**look.config()))
 
 
 def _variations(run: Run) -> dict[str, tuple[str, Varied]]:
-    """What can be varied on this run: heading with the run's own value, and how."""
+    """What can be varied on this run: the run's own value in words, and how."""
     varied: dict[str, tuple[str, Varied]] = {}
     specimen = run.specimen
     if specimen is not None and specimen.mass > 0:
-        varied["mass"] = (f"Mass, 1 × = {specimen.mass:.4g} kg", _with_mass)
+        varied["mass"] = (f"1 × = {specimen.mass:.4g} kg", _with_mass)
     if specimen is not None and specimen.stiffness > 0:
-        varied["stiffness"] = (f"Stiffness, 1 × = {specimen.stiffness / 1000:.4g} kN/m", _with_stiffness)
+        varied["stiffness"] = (f"1 × = {specimen.stiffness / 1000:.4g} kN/m", _with_stiffness)
     stated = f"{run.Kp:g}" if run.gain is not None else "1 (not stated)"
-    varied["gain"] = (f"Gain Kp, 1 × = {stated}", _with_gain)
+    varied["gain"] = (f"1 × = {stated}", _with_gain)
     return varied
 
 
@@ -109,12 +110,12 @@ def _stable(vary: Varied, run: Run, actuator: Actuator, fit: FitResult) -> list[
 
 
 def _without(stable: Sequence[float]) -> str:
-    """What is left out, for the heading."""
+    """What is left out, for the line under the heading."""
     lost = [x for x in MULTIPLES if x not in stable]
     if not lost:
         return ""
     above = not stable or lost[0] > stable[-1]
-    return f"; unstable from {lost[0]:.2g} ×" if above else f"; unstable at {', '.join(f'{x:.2g}' for x in lost)} ×"
+    return f"unstable from {lost[0]:.2g} ×" if above else f"unstable at {', '.join(f'{x:.2g}' for x in lost)} ×"
 
 
 def _rows(frequency: Real, answers: Mapping[float, Complex]) -> list[dict[str, Any]]:
@@ -129,36 +130,41 @@ def _rows(frequency: Real, answers: Mapping[float, Complex]) -> list[dict[str, A
     return rows
 
 
-class _Axes:
-    """Scales common to all columns, so that they can be compared."""
-
-    def __init__(self, tables: Mapping[str, list[dict[str, Any]]]) -> None:
-        rows = [row for table in tables.values() for row in table]
-        self.frequency = [rows[0]["f"], rows[-1]["f"]]
-        self.limits = {
-            field: [min(row[field] for row in rows), max(row[field] for row in rows)] for field in ("a", "p")
-        }
-
-    def x(self, named: bool) -> alt.X:
-        ticks = decade_ticks(*self.frequency)
-        axis = alt.Axis(labels=named, title="Frequency (Hz)" if named else None, values=ticks, format="~r")
-        return alt.X("f:Q", scale=alt.Scale(type="log", domain=self.frequency, nice=False), axis=axis)
-
-    def y(self, field: str, title: str, first: bool) -> alt.Y:
-        scale = alt.Scale(domain=self.limits[field], nice=True, zero=False)
-        return alt.Y(
-            f"{field}:Q", scale=scale, axis=alt.Axis(title=title if first else None, labels=first, tickCount=6)
-        )
+def _ends(tables: Mapping[str, list[dict[str, Any]]]) -> dict[str, list[float]]:
+    """Of scales common to all columns, so that they can be compared, and the marks of the frequency axis."""
+    rows = [row for table in tables.values() for row in table]
+    magnitude, phase = ([min(row[field] for row in rows), max(row[field] for row in rows)] for field in ("a", "p"))
+    frequency = [rows[0]["f"], rows[-1]["f"]]
+    return {"frequency": frequency, "marks": decade_ticks(*frequency), "magnitude": magnitude, "phase": phase}
 
 
-def _column(name: str, text: str, axes: _Axes, look: Look, *, first: bool, width: int) -> list[Panel]:
+def _x(named: bool) -> alt.X:
+    axis = alt.Axis(
+        labels=named, title="Frequency (Hz)" if named else None, values=blank("marks"), format="~r", labelSeparation=4
+    )
+    return alt.X("f:Q", scale=alt.Scale(type="log", domain=blank("frequency"), nice=False), axis=axis)
+
+
+def _y(field: str, limits: str, title: str, first: bool) -> alt.Y:
+    axis = alt.Axis(title=title if first else None, labels=first, tickCount=6)
+    return alt.Y(f"{field}:Q", scale=alt.Scale(domain=blank(limits), nice=True, zero=False), axis=axis)
+
+
+def _column(name: str, look: Look, *, first: bool, width: int) -> list[Panel]:
     data = alt.NamedData(name)
-    magnitude = _panel(data, axes.x(named=False), axes.y("a", "Magnitude (dB)", first), look, width)
-    phase = _panel(data, axes.x(named=True), axes.y("p", "Phase (°)", first), look, width)
-    return [magnitude.properties(title=alt.TitleParams(text, fontSize=12, offset=6, frame="group")), phase]
+    heading: dict[str, Any] = {
+        "fontSize": 12,
+        "subtitleFontSize": 11,
+        "subtitlePadding": 2,
+        "offset": 6,
+        "frame": "group",
+    }
+    title = alt.TitleParams(_HEADINGS[name], subtitle=blank(name), **heading)
+    magnitude = _panel(data, _x(named=False), _y("a", "magnitude", "Magnitude (dB)", first), look, width, title=title)
+    return [magnitude, _panel(data, _x(named=True), _y("p", "phase", "Phase (°)", first), look, width)]
 
 
-def _panel(data: alt.NamedData, x: alt.X, y: alt.Y, look: Look, width: int) -> Panel:
+def _panel(data: alt.NamedData, x: alt.X, y: alt.Y, look: Look, width: int, **heading: Any) -> Panel:
     legend = alt.Legend(
         title="× run's value", orient="right", values=[0.1, 0.3, 1, 3, 10], format="~g", gradientLength=180
     )
@@ -174,4 +180,4 @@ def _panel(data: alt.NamedData, x: alt.X, y: alt.Y, look: Look, width: int) -> P
         .mark_line(strokeWidth=2, color=look.ink, strokeDash=[5, 3])
         .encode(x=x, y=y)
     )
-    return alt.layer(lines, own, width=width, height=190)
+    return alt.layer(lines, own, width=width, height=190, **heading)

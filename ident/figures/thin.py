@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterable
 
@@ -31,11 +30,10 @@ def envelope(signal: Real, bins: int) -> Places:
     if n <= 2 * bins:
         return np.arange(n)
     edges = np.linspace(0, n, bins + 1).astype(np.intp)
-    pairs = [
-        (start + int(np.argmin(signal[start:stop])), start + int(np.argmax(signal[start:stop])))
-        for start, stop in itertools.pairwise(edges)
-    ]
-    return np.unique(np.array([0, *(place for pair in pairs for place in pair), n - 1]))
+    # Parts differ by one sample in length: each is laid out as long as the longest, its last sample repeated.
+    rows = np.minimum(edges[:-1, None] + np.arange(np.diff(edges).max()), edges[1:, None] - 1)
+    lowest, highest = (edges[:-1] + of(signal[rows], axis=1) for of in (np.argmin, np.argmax))
+    return np.unique(np.concatenate([[0, n - 1], lowest, highest]))
 
 
 def significant(values: Iterable[float] | Real, digits: int = 5) -> list[float]:

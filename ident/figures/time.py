@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from typing import Any
 
 import altair as alt
@@ -11,8 +12,9 @@ import numpy as np
 from ident.compare import RunComparison
 from ident.errors import Unusable
 from ident.figures import words
+from ident.figures.frame import Filled, Frame, blank, frame
 from ident.figures.look import Look
-from ident.figures.render import Chart, Panel, datasets
+from ident.figures.render import Panel
 from ident.figures.selection import OPEN, Band
 from ident.figures.thin import Real, envelope, significant
 from ident.fit.result import FitResult
@@ -41,7 +43,7 @@ def time(
     start: float | None = None,
     seconds: float | None = None,
     band: Band = OPEN,
-) -> Chart:
+) -> Filled:
     """Command, measured and model over time, the residual below on its own scale.
 
     `start` and `seconds` are in s (or samples where the clock is unknown); by default twelve mean periods of the
@@ -62,16 +64,24 @@ def time(
     signals = {"measured": measured, "model": modelled}
     if "command" in run.channels and run.units.get("command", "m") == unit:
         signals = {"command": command} | signals
-    upper = _traces(tuple(signals), run, window, look, printed)
-    lower = _residual(run, window, look, small)
     left = f"error {words.percent(compared.error)}, offset {words.percent(compared.offset)}"
-    title = alt.TitleParams(
-        words.headline(actuator, "time record, measured and model"),
-        subtitle=[words.verdict(fit), f"{words.describe(run)}: {left}", *([f"filtered: {band.words}"] if band else [])],
-    )
-    rows = {"traces": _table(signals, factor, run, window), "residual": _rows(fine * residual, run, window)}
-    chart: Chart = alt.vconcat(upper, lower, title=title, spacing=8, datasets=datasets(rows)).configure(**look.config())
-    return chart
+    values = {
+        "headline": words.headline(actuator, "time record, measured and model"),
+        "told": [words.verdict(fit), f"{words.describe(run)}: {left}", *([f"filtered: {band.words}"] if band else [])],
+        "begin": window.start / run.sample_rate,
+        "end": (window.stop - 1) / run.sample_rate,
+        "across": words.axis(run.output.replace("_", " ").capitalize(), printed),
+        "small": words.axis("Measured − model", small),
+    }
+    tables = {"traces": _table(signals, factor, run, window), "residual": _rows(fine * residual, run, window)}
+    return Filled(_frame(tuple(signals), "s" if run.time_unit == "s" else "samples", look), tables, values)
+
+
+@lru_cache(maxsize=32)
+def _frame(shown: tuple[str, ...], clock: str, look: Look) -> Frame:
+    title = alt.TitleParams(blank("headline"), subtitle=blank("told"))
+    panels = _traces(shown, clock, look), _residual(clock, look)
+    return frame(alt.vconcat(*panels, title=title, spacing=8).configure(**look.config()))
 
 
 def _window(run: Run, command: Real, start: float | None, seconds: float | None) -> slice:
@@ -101,18 +111,16 @@ def _rows(signal: Real, run: Run, window: slice, **more: str) -> list[dict[str, 
     return [{"t": t, "y": y, **more} for t, y in zip(np.round(times, 6).tolist(), values, strict=True)]
 
 
-def _clock(run: Run, window: slice, title: bool) -> alt.X:
-    unit = "s" if run.time_unit == "s" else "samples"
-    ends = [window.start / run.sample_rate, (window.stop - 1) / run.sample_rate]
+def _clock(unit: str, title: bool) -> alt.X:
     axis = alt.Axis(labels=title, title=f"Time ({unit})" if title else None, tickCount=8)
-    return alt.X("t:Q", scale=alt.Scale(domain=ends, nice=False), axis=axis)
+    return alt.X("t:Q", scale=alt.Scale(domain=[blank("begin"), blank("end")], nice=False), axis=axis)
 
 
 def _table(signals: Mapping[str, Real], factor: float, run: Run, window: slice) -> list[dict[str, Any]]:
     return [row for name, signal in signals.items() for row in _rows(factor * signal, run, window, s=name)]
 
 
-def _traces(shown: Sequence[str], run: Run, window: slice, look: Look, unit: str) -> Panel:
+def _traces(shown: Sequence[str], clock: str, look: Look) -> Panel:
     colours = {"command": look.faint, "measured": look.series[0], "model": look.series[1]}
     legend = alt.Legend(title=None, orient="top", symbolType="stroke", symbolStrokeWidth=2, symbolSize=500, offset=4)
     colour = alt.Color(
@@ -123,13 +131,12 @@ def _traces(shown: Sequence[str], run: Run, window: slice, look: Look, unit: str
     dashes = alt.StrokeDash(
         "s:N", scale=alt.Scale(domain=list(shown), range=[_DASHES[name] for name in shown]), legend=legend
     )
-    name = run.output.replace("_", " ").capitalize()
     panel: Panel = (
         alt.Chart(alt.NamedData("traces"), width=look.across(720), height=240)
         .mark_line(strokeWidth=1.5)
         .encode(
-            x=_clock(run, window, title=False),
-            y=alt.Y("y:Q", title=words.axis(name, unit), scale=alt.Scale(zero=False)),
+            x=_clock(clock, title=False),
+            y=alt.Y("y:Q", axis=alt.Axis(title=blank("across")), scale=alt.Scale(zero=False)),
             color=colour,
             strokeDash=dashes,
         )
@@ -137,13 +144,13 @@ def _traces(shown: Sequence[str], run: Run, window: slice, look: Look, unit: str
     return panel
 
 
-def _residual(run: Run, window: slice, look: Look, unit: str) -> Panel:
+def _residual(clock: str, look: Look) -> Panel:
     panel: Panel = (
         alt.Chart(alt.NamedData("residual"), width=look.across(720), height=110)
         .mark_line(strokeWidth=1.1, color=look.series[2])
         .encode(
-            x=_clock(run, window, title=True),
-            y=alt.Y("y:Q", title=words.axis("Measured − model", unit), axis=alt.Axis(tickCount=4)),
+            x=_clock(clock, title=True),
+            y=alt.Y("y:Q", axis=alt.Axis(title=blank("small"), tickCount=4)),
         )
     )
     return panel

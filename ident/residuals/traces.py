@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 import numpy as np
@@ -54,7 +54,10 @@ class Trace:
 
 @dataclass(frozen=True)
 class Traces:
-    """All runs; `values` are those of the fit under the equations' names, `band` all that counts of a residual."""
+    """All runs; `values` are those of the fit under the equations' names, `band` all that counts of a residual.
+
+    `_paths` keeps the responses of the views that were asked for, which no band changes.
+    """
 
     preset: Preset
     actuator: Actuator
@@ -63,6 +66,7 @@ class Traces:
     runs: tuple[Trace, ...]
     parameters: tuple[str, ...]
     band: Band | None = None
+    _paths: dict[str, list[Response]] = field(default_factory=dict, repr=False, compare=False)
 
     @property
     def units(self) -> Mapping[str, str]:
@@ -71,6 +75,11 @@ class Traces:
 
     def paths(self, view: View) -> list[Response]:
         """For each run the linear response from what is added at the view's place to the output and to its signals."""
+        if view.name not in self._paths:
+            self._paths[view.name] = self._found(view)
+        return self._paths[view.name]
+
+    def _found(self, view: View) -> list[Response]:
         broken = injected(self.chain, view.at)
 
         def one(trace: Trace) -> Response:

@@ -37,6 +37,8 @@ class View:
 VIEWS = (
     View("spool", "w", "w", "Missing spool opening", "Drive signal at the spool",
          "a dead zone is flat outside and slopes inside, an asymmetry is a V, saturation bends both ends"),
+    View("play", "w", "dq", "Missing spool opening", "Speed of the drive signal at the spool",
+         "play between valve and spool is a step at zero: it lags where the motion turns round"),
     View("friction", "R", "v", "Missing resistance", "Piston velocity",
          "dry friction is a step at zero, turbulent damping curves upwards on both sides like v|v|"),
     View("spring", "R", "x", "Missing resistance", "Piston position",
@@ -69,9 +71,14 @@ def views(preset: Preset) -> tuple[View, ...]:
 
 
 def view_of(effect: Effect, preset: Preset) -> View | None:
-    """The view in which an effect of this model shows itself; None where it is no function of one signal."""
+    """The view in which an effect of this model shows itself; None where it is no function of one signal.
+
+    What remembers where the spool came from shows against the spool's speed.
+    """
     targets = {equation.target for equation in effect.equations}
     name = next((name for signal, name in _SEEN.items() if signal in targets), None)
+    if name == "spool" and any(equation.is_memory for equation in effect.equations):
+        name = "play"
     return next((view for view in views(preset) if view.name == name), None)
 
 

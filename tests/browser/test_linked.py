@@ -74,6 +74,36 @@ def test_a_band_drawn_across_the_map_moves_the_bode_plot_without_the_service(pag
     assert len([url for url in watch.requests if "bode.json" in url]) == asked
 
 
+@pytest.mark.parametrize("name", ["bode", "time", "residual-curve", "sensitivity"])
+def test_a_figure_that_follows_a_pick_shows_what_it_would_if_it_were_drawn_anew(name, page, site, fitted):
+    figure, runs = f"#figure-{name}", [run["id"] for run in site.client.get(f"/fits/{fitted}").json()["result"]["runs"]]
+    canvas = page.locator(f"{figure} canvas")
+    page.goto(f"{site.address}/fits/{fitted}?figure={name}&run={runs[1]}")
+    answered(page, figure, f"run={runs[1]}")
+    before = drawing(canvas)
+    canvas.evaluate("canvas => canvas.dataset.first = 'it stays'")
+    page.get_by_label("Run", exact=True).select_option(runs[4])
+    answered(page, figure, f"run={runs[4]}")
+    if name != "sensitivity":  # which has no band
+        for label, end in (("From (Hz)", "3"), ("To (Hz)", "40")):
+            page.get_by_label(label).fill(end)
+            page.keyboard.press("Tab")
+        answered(page, figure, f"run={runs[4]}&low=3&high=40")
+    followed = drawing(canvas)
+    assert followed != before
+    expect(canvas).to_have_attribute("data-first", "it stays")
+    page.reload()
+    answered(page, figure, f"run={runs[4]}")
+    assert drawing(canvas) == followed
+
+
+def drawing(canvas):
+    """The picture, once it is there."""
+    expect(canvas).to_be_visible(timeout=LONG)
+    expect(canvas.locator("xpath=ancestor::*[@aria-busy]")).to_have_attribute("aria-busy", "false", timeout=LONG)
+    return canvas.evaluate("canvas => canvas.toDataURL()")
+
+
 def test_run_and_band_are_picked_by_keyboard_alone(page, site, fitted):
     opened(page, f"{site.address}/fits/{fitted}")
     page.get_by_text(re.compile("Table of the .* runs")).click()
@@ -157,6 +187,12 @@ def test_a_value_is_copied_with_its_unit_and_a_table_with_tabs(page, site, fitte
     expect(page.locator("[role=status]", has_text="is copied")).to_have_count(1)
     value, unit = page.evaluate("navigator.clipboard.readText()").split()
     assert unit == "s"
+    error = page.get_by_role("button", name="Copy Error, fit runs = ")
+    assert error.evaluate("button => getComputedStyle(button).opacity") == "0"
+    error.focus()
+    page.keyboard.press("Enter")
+    expect(error).to_have_css("opacity", "1")
+    assert re.fullmatch(r"[\d.]+ %", page.evaluate("navigator.clipboard.readText()"))
     assert float(value) == pytest.approx(stored["value"], rel=1e-7)
     page.locator("table", has_text="Mean over runs").get_by_role("button", name=re.compile("Copy the table")).click()
     expect(page.locator("[role=status]", has_text="The table is copied")).to_have_count(1)

@@ -55,6 +55,11 @@ def test_a_wrong_unit_is_mended_in_place_for_all_runs(page, watch, site, tmp_pat
     expect(page.get_by_text("· a revision of")).to_be_visible()
     assert page.url != before
     expect(page.get_by_text("No fault, no doubt")).to_be_visible()
+    expect(page.get_by_text("A newer revision exists")).to_have_count(0)
+    newest = page.url
+    page.goto(before)
+    page.get_by_role("link", name="look at the newest one").click()
+    expect(page).to_have_url(newest)
 
 
 def test_a_sign_is_turned_round_and_back(page, site, tmp_path):

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-import ident.figures
+import ident.figures.study
 from ident.compare import Comparison
 from ident.errors import Unusable
 from ident.figures import FIGURES, figure, render
@@ -21,7 +21,7 @@ def hand_made(monkeypatch: pytest.MonkeyPatch) -> None:
     def compare(matrix, fit):
         return Comparison(matrix, fit, tuple(map(make_comparison, matrix.runs)))
 
-    monkeypatch.setattr(ident.figures, "compare", compare)
+    monkeypatch.setattr(ident.figures.study, "compare", compare)
 
 
 def drawn(name, matrix, fit, theme="light", **options):
@@ -175,8 +175,8 @@ def test_sensitivity_goes_from_a_tenth_to_ten_times_the_run_s_own_value(matrix, 
 
 def test_a_gain_that_makes_the_loop_unstable_is_named_and_not_drawn(matrix, fit):
     spec = drawn("sensitivity", matrix, fit, run="m4.25-k17.5-kp6-a1.27")
-    headings = [panel["title"]["text"] for panel in spec["concat"] if "title" in panel]
-    assert "unstable from" in headings[2]
+    headings = [panel["title"]["subtitle"] for panel in spec["concat"] if "title" in panel]
+    assert headings[2][1].startswith("unstable from")
     assert max(row["x"] for row in spec["datasets"]["gain"]) < 10
 
 
@@ -213,3 +213,15 @@ def test_what_cannot_be_drawn_is_refused_with_the_remedy(arguments, says, matrix
 def test_an_unknown_format_is_refused(matrix, fit):
     with pytest.raises(Unusable, match="use one of json, svg, png, pdf"):
         render(figure("evolution", matrix, fit), "gif")
+
+
+@pytest.mark.parametrize("name", ["bode", "time", "sensitivity"])
+def test_drawn_live_two_runs_differ_in_data_and_parameters_only(name, matrix, fit):
+    first, second = (
+        json.loads(render(figure(name, matrix, fit, run=run), "json", live=True))
+        for run in ("m0.87-k36.3-kp7-a1.27", "m2.1-k17.5-kp7-a1.27")
+    )
+    assert [param["name"] for param in first["params"]] == [param["name"] for param in second["params"]]
+    assert first.pop("params") != second.pop("params")
+    assert first.pop("datasets") != second.pop("datasets")
+    assert first == second

@@ -37,8 +37,8 @@ function button(label, text, act) {
   return made;
 }
 
-for (const cell of document.querySelectorAll("td[data-plain]")) {
-  const name = cell.closest("tr").querySelector("th").textContent.trim();
+for (const cell of document.querySelectorAll("[data-plain]")) {
+  const name = cell.dataset.name ?? cell.closest("tr").querySelector("th").textContent.trim();
   const value = cell.dataset.plain;
   cell.append(button(`Copy ${name} = ${value}`, "", (made) => copy(value, made, `${name} = ${value}`)));
 }

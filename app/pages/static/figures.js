@@ -26,13 +26,27 @@ function query(figure) {
 }
 
 // True where the figure that is there could follow by its own signals, at once, without the service.
-function moved(figure, wanted) {
+async function moved(figure, wanted) {
   if (!figure.view || figure.dataset.drawn === undefined) return false;
   const before = new URLSearchParams(figure.dataset.drawn);
   const changed = [...new Set([...before.keys(), ...wanted.keys()])].filter((name) => before.get(name) !== wanted.get(name));
   if (!changed.every((name) => figure.signals.has(name))) return false;
   for (const name of changed) figure.view.signal(name, name === "run" ? wanted.get(name) ?? "" : Number(wanted.get(name)));
-  figure.view.run();
+  await figure.view.runAsync(); // what others ask of the service is under way meanwhile
+  return true;
+}
+
+// What of a definition stays as it is while its data and the values of its parameters are exchanged.
+function frame({ datasets, params = [], ...fixed }) {
+  return JSON.stringify([fixed, Object.keys(datasets ?? {}), params.map(({ value, ...param }) => param)]);
+}
+
+// True where the figure that is there could take over what a new definition shows.
+async function refilled(figure, { datasets, params }, kept) {
+  if (!figure.view || figure.frame !== kept) return false;
+  for (const { name, value } of params ?? []) if (value !== undefined) figure.view.signal(name, value);
+  for (const [name, rows] of Object.entries(datasets)) figure.view.data(name, rows);
+  await figure.view.resize().runAsync(); // words of another length need another place
   return true;
 }
 
@@ -45,34 +59,44 @@ async function draw(figure) {
     link.href = `${figure.dataset.url}.${link.dataset.format}?${wanted}`;
   }
   const turn = (figure.turn = (figure.turn ?? 0) + 1);
-  if (moved(figure, wanted)) {
-    figure.dataset.drawn = hand;
-    plot.setAttribute("aria-busy", "false");
-    return;
-  }
   plot.setAttribute("aria-busy", "true");
   note.textContent = "";
   try {
-    const answer = await fetch(`${figure.dataset.url}.json?${wanted}&share=${figure.dataset.share}`, { credentials: "same-origin" });
+    if (await moved(figure, wanted)) {
+      if (turn === figure.turn) figure.dataset.drawn = hand;
+      return;
+    }
+    const address = `${figure.dataset.url}.json?${wanted}&share=${figure.dataset.share}&live=1`;
+    figure.asked?.abort(); // nobody waits for the answer before
+    figure.asked = new AbortController();
+    const answer = await fetch(address, { credentials: "same-origin", signal: figure.asked.signal });
     const spec = await answer.json();
     if (!answer.ok) throw new Error([spec.what ?? spec.detail ?? spec.title, spec.remedy].filter(Boolean).join("; "));
-    const embed = await loadVega(figure.dataset.vega);
     if (turn !== figure.turn) return;
-    figure.view?.finalize();
-    figure.view = undefined;
-    const made = await embed(plot, spec, {
-      ast: true, renderer: "canvas", actions: false, defaultStyle: false, tooltip: { disableDefaultStyle: true },
-    });
-    if (turn !== figure.turn) return made.view.finalize();
-    figure.view = made.view;
-    figure.signals = new Set((spec.params ?? []).map(({ name }) => name));
+    const kept = frame(spec);
+    if (!(await refilled(figure, spec, kept))) await embedded(figure, plot, spec, turn);
+    if (turn !== figure.turn) return;
+    figure.frame = kept;
     figure.dataset.drawn = hand;
-    listen(figure);
   } catch (error) {
     if (turn === figure.turn) note.textContent = `This figure cannot be drawn: ${error.message}.`;
   } finally {
     if (turn === figure.turn) plot.setAttribute("aria-busy", "false");
   }
+}
+
+async function embedded(figure, plot, spec, turn) {
+  const embed = await loadVega(figure.dataset.vega);
+  if (turn !== figure.turn) return;
+  figure.view?.finalize();
+  figure.view = undefined;
+  const { view } = await embed(plot, spec, {
+    ast: true, renderer: "canvas", actions: false, defaultStyle: false, tooltip: { disableDefaultStyle: true },
+  });
+  if (turn !== figure.turn) return view.finalize();
+  figure.view = view;
+  figure.signals = new Set((spec.params ?? []).map(({ name }) => name));
+  listen(figure);
 }
 
 // A square that is clicked, a band that is drawn: both are picked out for every figure.

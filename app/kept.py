@@ -1,0 +1,35 @@
+"""What was made lately, in memory."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable, Hashable
+from threading import Lock
+from typing import Generic, TypeVar
+
+Item = TypeVar("Item")
+
+
+class Kept(Generic[Item]):
+    """The `most` items that were used last, by key; what a key stands for never changes."""
+
+    def __init__(self, most: int) -> None:
+        self._most = most
+        self._items: OrderedDict[Hashable, Item] = OrderedDict()
+        self._lock = Lock()
+
+    def get(self, key: Hashable, make: Callable[[], Item]) -> Item:
+        """The item, made where it is not kept; two at a time may make the same one."""
+        with self._lock:
+            if key in self._items:
+                self._items.move_to_end(key)
+                return self._items[key]
+        return self.put(key, make())
+
+    def put(self, key: Hashable, item: Item) -> Item:
+        """Keep an item."""
+        with self._lock:
+            item = self._items.setdefault(key, item)
+            while len(self._items) > self._most:
+                self._items.popitem(last=False)
+        return item

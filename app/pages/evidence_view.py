@@ -1,0 +1,38 @@
+"""Which figure shows an effect that a diagnosis found, beside the words of its card."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+from urllib.parse import urlencode
+
+from ident.custom import read_effect
+from ident.effects import EFFECTS
+from ident.presets import preset
+from ident.residuals.views import view_of
+from schemas.diagnosis import CandidateView, DiagnosisView
+from schemas.matrix import RunView
+
+_CATALOGUE = {effect.name: effect for effect in EFFECTS}
+
+
+def telling_run(runs: Sequence[RunView], errors: Mapping[str, float]) -> str:
+    """Of the runs with the smallest amplitude, where most is nonlinear, the one with the largest error; "" for none."""
+    smallest = min((run.amplitude for run in runs if run.amplitude is not None), default=None)
+    small = [run for run in runs if smallest is None or (run.amplitude or 0.0) == smallest]
+    return max(small, key=lambda run: errors.get(run.id, 0.0)).id if small else ""
+
+
+def evidence(
+    best: CandidateView, found: DiagnosisView, own: Mapping[str, Any] | None, run: str = ""
+) -> tuple[str, str] | None:
+    """The figure in which the effect shows, with what it predicts; None where it was not refitted.
+
+    Where no curve shows it, the Bode plot of `run` does.
+    """
+    effect = read_effect(own) if own is not None else _CATALOGUE.get(best.effect)
+    if effect is None or not best.parameters:
+        return None
+    view = view_of(effect, preset(found.model))
+    query = {"candidate": f"{found.id}:{best.effect}", **({"view": view.name} if view else {"run": run})}
+    return "residual-curve" if view else "bode", urlencode({name: text for name, text in query.items() if text})

@@ -1,0 +1,61 @@
+"""A fit beside its data, for figures one after the other: what takes long is kept."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from dataclasses import dataclass, field, replace
+
+from ident.compare import Comparison, RunComparison, compare
+from ident.figures.selection import Band
+from ident.fit.result import FitResult
+from ident.matrix import Matrix, Run
+from ident.residuals.curves import Curve, curves, curves_of, traced
+from ident.residuals.traces import Traces
+
+_MOST = 64  # sets of curves, some kB each
+
+
+@dataclass
+class Study:
+    """Compared runs, the inner signals of the runs that were looked at last, and the curves that were drawn of them.
+
+    Two threads at a time may compute the same; both get the same answer.
+    """
+
+    matrix: Matrix
+    fit: FitResult
+    _runs: dict[str, RunComparison] = field(default_factory=dict)
+    _traced: tuple[tuple[str, ...], Traces] | None = None
+    _curves: dict[Hashable, tuple[Curve, ...]] = field(default_factory=dict)
+
+    def compared(self, runs: tuple[Run, ...]) -> Comparison:
+        """Some runs against the model."""
+        missing = tuple(run for run in runs if run.id not in self._runs)
+        if missing:
+            found = compare(replace(self.matrix, runs=missing), self.fit)
+            self._runs.update({each.run.id: each for each in found.runs})
+        return Comparison(replace(self.matrix, runs=runs), self.fit, tuple(self._runs[run.id] for run in runs))
+
+    def curves(
+        self, runs: tuple[Run, ...], view: str | None, band: Band, other: FitResult | None = None
+    ) -> tuple[Curve, ...]:
+        """What the model lacks in some runs; with another fit, what that one has more."""
+        names = tuple(run.id for run in runs)
+        more = (other.model, other.effects, *sorted(other.values.items())) if other else ()
+        key = (names, view, band, more)
+        if key not in self._curves:
+            if len(self._curves) >= _MOST:
+                self._curves.clear()
+            self._curves[key] = self._found(runs, view, (band.low, band.high) if band else None, other)
+        return self._curves[key]
+
+    def _found(
+        self, runs: tuple[Run, ...], view: str | None, ends: tuple[float | None, float | None] | None,
+        other: FitResult | None,
+    ) -> tuple[Curve, ...]:  # fmt: skip
+        if other is not None:
+            return curves(self.compared(runs), Study(self.matrix, other).compared(runs), view=view, band=ends)
+        names, kept = tuple(run.id for run in runs), self._traced
+        if kept is None or kept[0] != names:
+            kept = self._traced = names, traced(self.compared(runs))
+        return curves_of(replace(kept[1], band=ends), view)

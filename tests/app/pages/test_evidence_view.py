@@ -1,0 +1,32 @@
+"""The figure on a card is one in which its effect can be seen."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.pages.evidence_view import evidence, telling_run
+from schemas.diagnosis import CandidateView
+from schemas.matrix import RunView
+from tests.app.pages.test_diagnosis_view import candidate, found
+
+
+@pytest.mark.parametrize(
+    ("effect", "shown"),
+    [
+        ("backlash", ("residual-curve", "candidate=d%3Abacklash&view=play")),
+        ("dead_zone", ("residual-curve", "candidate=d%3Adead_zone&view=spool")),
+        ("lead", ("bode", "candidate=d%3Alead&run=r7")),
+    ],
+)
+def test_a_curve_shows_the_effect_or_else_the_bode_plot_of_one_run(effect, shown):
+    assert evidence(CandidateView(**candidate(effect, 0.01)), found(), None, "r7") == shown
+
+
+def test_the_telling_run_is_the_worst_of_the_smallest_amplitude():
+    def run(name, amplitude):
+        return RunView.model_construct(id=name, amplitude=amplitude)
+
+    runs = [run("a", 1.0), run("b", 0.5), run("c", 0.5), run("d", None)]
+    assert telling_run(runs, {"a": 0.9, "b": 0.1, "c": 0.2, "d": 0.8}) == "c"
+    assert telling_run([run("d", None)], {}) == "d"
+    assert telling_run([], {}) == ""
