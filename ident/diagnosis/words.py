@@ -35,8 +35,9 @@ def verdict_text(
     parts = []
     if added:
         names = " and ".join(", ".join(name.replace("_", " ") for name in added).rsplit(", ", 1))
+        them = "it" if len(added) == 1 else "them"
         parts.append(
-            f"The model lacks {names}: with it the error falls from {percent(before)} to {percent(errors['fit'])}"
+            f"The model lacks {names}: with {them} the error falls from {percent(before)} to {percent(errors['fit'])}"
             + (f" ({percent(errors['verify'])} on verify runs)." if errors.get("verify") is not None else ".")
         )
     elif not unexplained:

@@ -22,6 +22,8 @@ PLACES = {
     "dead_zone": "spool", "coulomb_friction": "friction", "pressure_flow": "pressure-flow",
     "quadratic_damping": "friction", "gain_asymmetry": "spool", "backlash": "play",
 }  # fmt: skip
+LEAST = {"backlash": 0.8}
+"""Of the residual's power: play is memory, of which a curve against the speed of the spool shows only the ends."""
 
 
 def best(name):
@@ -34,7 +36,7 @@ def test_the_curve_at_the_place_of_the_effect_explains_most(name):
     """And it takes nearly all of the residual's power but the noise's."""
     curve, _, _ = best(name)
     assert curve.name == PLACES[name]
-    assert curve.explained > 0.8
+    assert curve.explained > LEAST.get(name, 0.85)
 
 
 def test_a_dead_zone_is_a_step_of_its_half_width_against_the_drive_signal():
