@@ -9,7 +9,8 @@ from ident.compare import Comparison, RunComparison, compare
 from ident.figures.selection import Band
 from ident.fit.result import FitResult
 from ident.matrix import Matrix, Run
-from ident.residuals.curves import Curve, curves, curves_of, traced
+from ident.residuals.curves import Curve, curves, curves_of, settled, traced
+from ident.residuals.settled import Settled
 from ident.residuals.traces import Traces
 
 _MOST = 64  # sets of curves, some kB each
@@ -17,7 +18,7 @@ _MOST = 64  # sets of curves, some kB each
 
 @dataclass
 class Study:
-    """Compared runs, the inner signals of the runs that were looked at last, and the curves that were drawn of them.
+    """Compared runs, the views of the runs that were looked at last, and the curves that were drawn of them.
 
     Two threads at a time may compute the same; both get the same answer.
     """
@@ -25,7 +26,7 @@ class Study:
     matrix: Matrix
     fit: FitResult
     _runs: dict[str, RunComparison] = field(default_factory=dict)
-    _traced: tuple[tuple[str, ...], Traces] | None = None
+    _settled: tuple[tuple[str, ...], Traces, tuple[Settled, ...]] | None = None
     _curves: dict[Hashable, tuple[Curve, ...]] = field(default_factory=dict)
 
     def compared(self, runs: tuple[Run, ...]) -> Comparison:
@@ -55,7 +56,9 @@ class Study:
     ) -> tuple[Curve, ...]:  # fmt: skip
         if other is not None:
             return curves(self.compared(runs), Study(self.matrix, other).compared(runs), view=view, band=ends)
-        names, kept = tuple(run.id for run in runs), self._traced
+        names, kept = tuple(run.id for run in runs), self._settled
         if kept is None or kept[0] != names:
-            kept = self._traced = names, traced(self.compared(runs))
-        return curves_of(replace(kept[1], band=ends), view)
+            found = traced(self.compared(runs))
+            kept = self._settled = names, found, settled(found)
+        wanted = [one for one in kept[2] if one.view.name == view] or kept[2]
+        return curves_of(kept[1], wanted, ends)

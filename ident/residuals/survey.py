@@ -8,7 +8,7 @@ from typing import Any
 from ident.compare import Comparison
 from ident.errors import Unusable
 from ident.residuals.budget import Budget, budget
-from ident.residuals.curves import Curve, curves_of, traced
+from ident.residuals.curves import Curve, curves_of, settled, traced
 from ident.residuals.trends import Trend, trends
 from ident.residuals.where import Where, where
 
@@ -41,7 +41,7 @@ def survey(comparison: Comparison) -> Survey:
     shown = where(comparison)
     try:
         found = traced(comparison)
-        return Survey(shown, curves_of(found), trends(found), budget(comparison))
+        return Survey(shown, curves_of(found, settled(found)), trends(found), budget(comparison))
     except Unusable as error:
         if error.code != "unstable-model":
             raise

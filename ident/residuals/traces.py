@@ -54,9 +54,9 @@ class Trace:
 
 @dataclass(frozen=True)
 class Traces:
-    """All runs; `values` are those of the fit under the equations' names, `band` all that counts of a residual.
+    """All runs; `values` are those of the fit under the equations' names.
 
-    `_paths` keeps the responses of the views that were asked for, which no band changes.
+    `_paths` keeps the responses of the views that were asked for.
     """
 
     preset: Preset
@@ -65,7 +65,6 @@ class Traces:
     chain: Chain
     runs: tuple[Trace, ...]
     parameters: tuple[str, ...]
-    band: Band | None = None
     _paths: dict[str, list[Response]] = field(default_factory=dict, repr=False, compare=False)
 
     @property
