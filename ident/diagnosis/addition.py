@@ -20,7 +20,7 @@ MOST = 6  # effects that are added
 USUAL = 4  # where the user says nothing
 _WEIGHED = 3  # effects that are weighed against others in their place: of more the data tell too little
 _ROUNDS = 3  # of replacing
-_PAIRED = 6  # finalists that are tried two at a time
+_PAIRED = 5  # finalists that are tried two at a time
 _SHARES = (1.0, 0.3, 0.03)  # of the second's strength alone
 
 
@@ -110,7 +110,8 @@ class Addition:
 
         One at a time may lead astray: two lags look like a delay, and from there to whatever mends the difference.
         """
-        finalists = [c.refit for c in self.ranking if c.refit is not None][:_PAIRED]
+        begun = self.steps[1].effects[-1] if len(self.steps) > 1 else ""  # every other was tried beside it
+        finalists = [c.refit for c in self.ranking if c.refit is not None and c.effect != begun][:_PAIRED]
         if self.most < 2 or len(finalists) < 2 or self.models.floor is None or self.models.at_floor(self.found):
             return False
         pairs = list(combinations(finalists, 2))
