@@ -135,6 +135,6 @@ def measure() -> Table:
         f"The page of a stored fit of 84 runs of {SECONDS:g} s at 1280 px in headless Chromium, on loopback.",
         ("what", "measured"),
         rows,
-        f"loaded in {FIRST:g} s, {WEIGHT / 1000:g} kB, Bode plot redrawn in {1000 * REDRAW:g} ms",
-        begun <= FIRST and weight <= WEIGHT and redraws["bode"] <= REDRAW,
+        f"loaded in {FIRST:g} s, {WEIGHT / 1000:g} kB, each figure redrawn in {1000 * REDRAW:g} ms",
+        begun <= FIRST and weight <= WEIGHT and max(redraws.values()) <= REDRAW,
     )
