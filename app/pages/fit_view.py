@@ -50,6 +50,7 @@ class Determined:
     """A combination of parameters that the data determine, with its relative standard error."""
 
     expression: Markup
+    spoken: str
     value: str
     relative: str
 
@@ -120,6 +121,7 @@ def combination_rows(fit: FitResult) -> tuple[Determined, ...]:
     return tuple(
         Determined(
             expression=_formula(entry.expression),
+            spoken=entry.expression,
             value=numbers.quantity(entry.value, entry.unit),
             relative=numbers.percent(entry.std_error / abs(entry.value), 2) if entry.value else "–",
         )

@@ -77,6 +77,7 @@ def test_a_measured_actuator_goes_the_same_way(page, site, measured_data, full, 
     (serial,) = page.locator(".crumbs a:last-child").all_inner_texts()
     story.fit(page)
     expect(page.get_by_role("heading", name="Where does it fail?")).to_be_visible()
+    page.locator("#figure-residual-map").scroll_into_view_if_needed()
     expect(page.locator("#figure-residual-map canvas")).to_be_visible(timeout=story.LONG)
     errors = page.locator("section:has-text('Error, eq. (17)') tbody tr").all_inner_texts()
     assert all(float(row.split("\t")[1].split()[0]) > 3 for row in errors), errors
