@@ -26,7 +26,7 @@ class Study:
     matrix: Matrix
     fit: FitResult
     _runs: dict[str, RunComparison] = field(default_factory=dict)
-    _settled: tuple[tuple[str, ...], Traces, tuple[Settled, ...]] | None = None
+    _settled: tuple[tuple[str, ...], Traces, dict[str | None, tuple[Settled, ...]]] | None = None
     _curves: dict[Hashable, tuple[Curve, ...]] = field(default_factory=dict)
 
     def compared(self, runs: tuple[Run, ...]) -> Comparison:
@@ -58,7 +58,8 @@ class Study:
             return curves(self.compared(runs), Study(self.matrix, other).compared(runs), view=view, band=ends)
         names, kept = tuple(run.id for run in runs), self._settled
         if kept is None or kept[0] != names:
-            found = traced(self.compared(runs))
-            kept = self._settled = names, found, settled(found)
-        wanted = [one for one in kept[2] if one.view.name == view] or kept[2]
-        return curves_of(kept[1], wanted, ends)
+            kept = self._settled = names, traced(self.compared(runs)), {}
+        _, found, known = kept
+        if view not in known:  # the figure of a card asks for one view, and need not wait for the others
+            known[view] = settled(found, view)
+        return curves_of(found, known[view], ends)
