@@ -10,16 +10,13 @@ from typing import Any
 from markupsafe import Markup
 
 from app.pages import numbers
-from app.pages.evidence_view import evidence
+from app.pages.evidence_view import evidence, known_effect
 from app.pages.job_view import JobPageView, job_page
-from ident.custom import read_effect
 from ident.effect import Effect
-from ident.effects import EFFECTS
 from ident.mathml import mathml
 from schemas.diagnosis import CandidateView, DiagnosisView
 from schemas.fit import JobView
 
-_CATALOGUE = {effect.name: effect for effect in EFFECTS}
 _LABELS = {"mass": "kg", "stiffness": "N/m", "gain": ""}
 """Labels that a revision can mend, with the unit that it writes."""
 _USES = ("fit", "held_out", "verify")
@@ -192,7 +189,7 @@ def definitions(found: DiagnosisView) -> dict[str, Mapping[str, Any]]:
 
 
 def _member(candidate: CandidateView, own: Mapping[str, Any] | None) -> Member:
-    effect: Effect | None = read_effect(own) if own is not None else _CATALOGUE.get(candidate.effect)
+    effect = known_effect(candidate.effect, own)
     return member(candidate.effect, effect, candidate.parameters, own)
 
 

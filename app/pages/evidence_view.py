@@ -7,6 +7,7 @@ from typing import Any
 from urllib.parse import urlencode
 
 from ident.custom import read_effect
+from ident.effect import Effect
 from ident.effects import EFFECTS
 from ident.presets import preset
 from ident.residuals.views import view_of
@@ -14,6 +15,11 @@ from schemas.diagnosis import CandidateView, DiagnosisView
 from schemas.matrix import RunView
 
 _CATALOGUE = {effect.name: effect for effect in EFFECTS}
+
+
+def known_effect(name: str, own: Mapping[str, Any] | None) -> Effect | None:
+    """An effect of one's own from its definition, or the catalogue's of that name; None where neither is there."""
+    return read_effect(own) if own is not None else _CATALOGUE.get(name)
 
 
 def telling_run(runs: Sequence[RunView], errors: Mapping[str, float]) -> str:
@@ -30,7 +36,7 @@ def evidence(
 
     Where no curve shows it, the Bode plot of `run` does.
     """
-    effect = read_effect(own) if own is not None else _CATALOGUE.get(best.effect)
+    effect = known_effect(best.effect, own)
     if effect is None or not best.parameters:
         return None
     view = view_of(effect, preset(found.model))
