@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -212,17 +212,19 @@ def _pack_filter(rows: Array, known: Filter, values: Mapping[str, Array]) -> Non
     for i, node in enumerate(known.coefficients):
         entries[:, i] = constant(node, values)
     entries[:, order] = values[STEP]
+    same = np.all(entries == entries[0])
     numbers: dict[tuple[float, ...], int] = {}  # of the lanes' different cases
-    case = [numbers.setdefault(entry, len(numbers)) for entry in map(tuple, entries.tolist())]
+    case = [numbers.setdefault(tuple(entry), len(numbers)) for entry in (entries[:1] if same else entries).tolist()]
     block = order * (order + 3)
-    gains = np.array([_gains(np.array(entry[:-1]), entry[-1]) for entry in numbers])  # (cases, 3 blocks)
+    gains = np.array([_gains(entry[:-1], entry[-1]) for entry in numbers])  # (cases, 3 blocks)
     first = known.first + order + 1
-    rows[first : first + 3 * block] = gains[case].T
+    rows[first : first + 3 * block] = gains[case].T  # one case serves every lane
 
 
-def _gains(coefficients: Array, step: float) -> Array:
+@lru_cache(4096)
+def _gains(of: tuple[float, ...], step: float) -> Array:
     """The three blocks for one filter: start, half step, whole step; flat."""
-    order = len(coefficients)
+    coefficients, order = np.array(of), len(of)
     start, half, whole = (np.zeros((order, order + 3)) for _ in range(3))
     if not np.any(coefficients > 0):
         start[0, order] = half[0, order + 2] = whole[0, order + 2] = 1.0

@@ -20,13 +20,13 @@ from ident.diagnosis.held_out import bounded_step, scored, weight_of_offsets
 from ident.diagnosis.models import Models, Refit
 from ident.fit.objective import STEP
 from ident.fit.output_error import OutputError
+from ident.fit.responses import Responses, Sensitivities
 from ident.parallel import each
 
 Array = NDArray[np.float64]
-SAMPLES = 57_344
+SAMPLES = 49_152
 _LADDER = (0.01, 0.03, 0.1, 0.3, 1.0)  # of the way from off to each bound
 _FINER = (1e-4, 3e-4, 1e-3, 3e-3)  # besides, for a machine of unknown size, whose bounds are wide
-_TOGETHER = 6  # effects simulated in one go
 _REACH = 2.0  # by which factor a response may be scaled: beyond, it would be another strength's
 _FAR = 0.1  # of an axis: a parameter that hardly matters where it is may be sent anywhere by a linearisation
 _PARTS = (1.0, 0.5, 0.2, 0.05, 0.01)  # of the way to a prediction: it may be too bold
@@ -73,69 +73,89 @@ class Prediction:
 
 def predict(models: Models, base: Refit, names: Sequence[str]) -> list[Prediction]:
     """What adding each effect to the refitted model promises, in the order of the names."""
-    whole = models.fitness((*base.effects, *names), SAMPLES, whole=True) if models.fit_together else None
-    together = 1 if whole is None else _TOGETHER
-    shares = [list(names[i : i + together]) for i in range(0, len(names), together)]
+    if models.fit_together:
+        return _predicted(models, models.fitness((*base.effects, *names), SAMPLES, whole=True), base, names)
 
-    def of_share(share: list[str]) -> list[Prediction]:
-        return _predicted(models, whole or models.fitness((*base.effects, *share), SAMPLES), base, share)
+    def of_one(name: str) -> list[Prediction]:
+        return _predicted(models, models.fitness((*base.effects, name), SAMPLES), base, [name])
 
-    return list(chain.from_iterable(each(of_share, shares)))
+    return list(chain.from_iterable(each(of_one, names)))
 
 
-def _predicted(models: Models, fitness: OutputError, base: Refit, names: list[str]) -> list[Prediction]:
-    """The predictions of a few effects, simulated in one go, and again where a threshold was jumped over."""
+def _predicted(models: Models, fitness: OutputError, base: Refit, names: Sequence[str]) -> list[Prediction]:
+    """The predictions of effects that one chain holds; strengths are added where a threshold was jumped over."""
     off = {symbol: value for symbol, value in models.off.items() if symbol not in base.values}
     known = {name: value for name, value in {**off, **base.values}.items() if name in fitness.space.order}
+    sight = _Sight.of(models, fitness, base, known)
     trials = [(name, strength) for name in names for strength in _strengths(fitness, models.strength(name), known)]
-    found = _Simulated.of(models, fitness, base, known, trials)
+    found = sight.at(trials)
     between = found.thresholds()
-    every = [found, _Simulated.of(models, fitness, base, known, between)] if between else [found]
-    best = {name: (found.before, np.zeros(len(base.point) + 1), strength) for name, strength in reversed(trials)}
-    for name, after, step, strength in chain.from_iterable(simulated.outlooks() for simulated in every):
+    every = [found, sight.at(between)] if between else [found]
+    before = sight.before
+    best = {name: (before, np.zeros(len(base.point) + 1), strength) for name, strength in reversed(trials)}
+    for name, after, step, strength in chain.from_iterable(seen.outlooks() for seen in every):
         if after.score < best[name][0].score:
             best[name] = after, step, strength
     return [
-        Prediction(name, after, found.before, len(found.gram), _starts(models, base, name, step, strength))
+        Prediction(name, after, before, len(sight.gram), _starts(models, base, name, step, strength))
         for name, (after, step, strength) in ((name, best[name]) for name in names)
     ]
 
 
 @dataclass(frozen=True)
-class _Simulated:
-    """The products of a fitted model's sensitivities, of its responses to effects of some strengths, and its residual.
+class _Sight:
+    """A fitted model's sensitivities and residual at each run, beside which effects are set.
 
-    `gram` (runs, q, q) and `means` (runs, q): the p parameters, one column each trial, the residual.
+    `known` are its values with every effect off by the equations' names; `gram` (runs, p+1, p+1) and `means` (runs,
+    p+1) of the p parameters and the residual.
     """
 
+    models: Models
     point: Array
-    trials: list[tuple[str, float]]
+    known: Mapping[str, float]
+    sensitivities: Sensitivities
     gram: Array
     means: Array
     records: _Records
 
     @classmethod
-    def of(
-        cls, models: Models, fitness: OutputError, base: Refit, known: Mapping[str, float],
-        trials: list[tuple[str, float]],
-    ) -> _Simulated:  # fmt: skip
-        """Simulate the model with each strength alone."""
-        values, strides = _cloud(base, known, [(models.strength(name), strength) for name, strength in trials])
-        gram, means = fitness.differences(values, strides)
+    def of(cls, models: Models, fitness: OutputError, base: Refit, known: Mapping[str, float]) -> _Sight:
+        """Simulate the model with each parameter moved."""
+        signs = np.where(base.point + STEP > 1.0, -1.0, 1.0)
+        moved = base.space.values(np.concatenate([base.point[None], base.point + np.diag(STEP * signs)]))
+        values = {name: np.full(len(base.point) + 1, value) for name, value in known.items()}
+        values |= {name: value for name, value in moved.items() if name in known}
+        found = Sensitivities.of(fitness, values, STEP * signs)
         totals = np.array([np.sum((r.measured - r.measured.mean()) ** 2) for r in fitness.runs])
-        return cls(base.point, trials, gram, means, _Records(totals, np.array([r.length for r in fitness.runs])))
+        records = _Records(totals, np.array([r.length for r in fitness.runs]))
+        return cls(models, base.point, known, found, *found.products(), records)
+
+    def at(self, trials: list[tuple[str, float]]) -> _Seen:
+        """The model with each effect at its strength alone."""
+        values = {name: np.full(len(trials), value) for name, value in self.known.items()}
+        for i, (name, strength) in enumerate(trials):
+            values[self.models.strength(name)][i] = strength
+        return _Seen(self, trials, self.sensitivities.beside(values))
 
     @cached_property
     def before(self) -> Outlook:
         """Without any effect."""
-        return self._after(list(range(len(self.point))))[0]
+        return _after(self.gram, self.means, self.records, self.point, len(self.point))[0]
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """The responses of a fitted model to effects of some strengths."""
+
+    sight: _Sight
+    trials: list[tuple[str, float]]
+    responses: Responses
 
     def outlooks(self) -> Iterator[tuple[str, Outlook, Array, float]]:
         """Effect, what is left with a share of its response, the step to there, the strength that was simulated."""
-        p = len(self.point)
         for i, (name, strength) in enumerate(self.trials):
             if self._power(i) > 0:
-                yield name, *self._after([*range(p), p + i]), strength
+                yield name, *self._after(i), strength
 
     def thresholds(self) -> list[tuple[str, float]]:
         """Strengths between two neighbours of which one does next to nothing and the other much."""
@@ -146,12 +166,17 @@ class _Simulated:
         return found
 
     def _power(self, trial: int) -> float:
-        column = len(self.point) + trial
-        return float(self.gram[:, column, column].sum())
+        return float(self.responses.power[:, trial].sum())
 
-    def _after(self, columns: list[int]) -> tuple[Outlook, Array]:
-        kept = np.array([*columns, self.gram.shape[-1] - 1])
-        return _after(self.gram[:, kept[:, None], kept], self.means[:, kept], self.records, self.point, len(self.point))
+    def _after(self, trial: int) -> tuple[Outlook, Array]:
+        p, sight, responses = len(self.sight.point), self.sight, self.responses
+        order = [*range(p), p + 1, p]  # the effect's share behind the parameters, the residual last
+        gram = np.empty((len(sight.gram), p + 2, p + 2))
+        gram[:, : p + 1, : p + 1] = sight.gram
+        gram[:, p + 1, : p + 1] = gram[:, : p + 1, p + 1] = responses.products[:, :, trial]
+        gram[:, p + 1, p + 1] = responses.power[:, trial]
+        means = np.column_stack([sight.means, responses.means[:, trial]])
+        return _after(gram[:, order][:, :, order], means[:, order], sight.records, sight.point, p)
 
 
 def _starts(models: Models, base: Refit, name: str, step: Array, strength: float) -> tuple[dict[str, float], ...]:
@@ -175,22 +200,6 @@ def _strengths(fitness: OutputError, symbol: str, values: Mapping[str, float]) -
     ends = [end for end in (upper, lower) if end]
     shares = (*_FINER, *_LADDER) if fitness.space.scale_free else _LADDER
     return [share * end for end in ends for share in shares]
-
-
-def _cloud(
-    base: Refit, values: Mapping[str, float], trials: Sequence[tuple[str, float]]
-) -> tuple[dict[str, Array], Array]:  # fmt: skip
-    """The fitted model, it with each parameter moved, and it with each strength; the strides of these."""
-    p = len(base.point)
-    signs = np.where(base.point + STEP > 1.0, -1.0, 1.0)
-    points = np.concatenate([base.point[None], base.point + np.diag(STEP * signs)])
-    moved = base.space.values(np.concatenate([points, np.repeat(base.point[None], len(trials), axis=0)]))
-    cloud = {name: np.full(p + 1 + len(trials), value) for name, value in values.items()}
-    cloud |= {name: value for name, value in moved.items() if name in cloud}
-    for i, (symbol, strength) in enumerate(trials):
-        cloud[symbol] = cloud[symbol].copy()
-        cloud[symbol][p + 1 + i] = strength
-    return cloud, np.concatenate([STEP * signs, np.ones(len(trials))])
 
 
 @dataclass(frozen=True)

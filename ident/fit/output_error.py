@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ident.chain import Chain, conditions, linear_model
 from ident.effect import Effect
 from ident.fit.objective import STEP, UNSTABLE, Local, local
-from ident.fit.products import add_products, removal, without
+from ident.fit.products import add_products
 from ident.fit.record import Moments, first_state, moments_of
 from ident.fit.space import Space
 from ident.matrix import Matrix, Run
@@ -27,7 +27,6 @@ from ident.simulate import MOST, Simulation, rates, steps_needed
 Array = NDArray[np.float64]
 _TOGETHER = 256  # lanes simulated in one go: memory stays small, the cores stay busy
 _BLOCKS = 32  # of a record: see ident.fit.record
-_LARGEST = 1e30  # a sum of squares beyond it is of a model that ran away
 _REACH = 1e-3  # of a state's size, for sensitivities to the first state
 _SETTLING = 3  # rounds in which the first states of a model are found
 
@@ -64,7 +63,7 @@ class OutputError:
         """Eq. (17) averaged over runs at points of the space, (v, p) → (v,)."""
         self.evaluations += len(points)
         values = self.space.values(points)
-        steps = self._steps(values)
+        steps = self.steps(values)
         errors = np.empty(len(points))
         for level in np.unique(steps):
             of_level = np.flatnonzero(steps == level)
@@ -78,7 +77,7 @@ class OutputError:
             measured = np.column_stack([run.measured for run in runs])[:, :, None]
             sums = np.zeros((2, len(runs), vectors))
             mean = measured.mean(axis=0)
-            for rows, first, last in self._simulation(runs, values, steps).outputs():
+            for rows, first, last in self.simulation(runs, values, steps).outputs():
                 residual = measured[first:last] - mean - rows
                 sums[0] += residual.sum(axis=0)
                 sums[1] += np.einsum("nrv,nrv->rv", residual, residual)
@@ -88,7 +87,7 @@ class OutputError:
                 found = np.sqrt(np.maximum(variance, 0.0)) / np.std(measured, axis=0)
             return np.where(np.isfinite(found), found, np.inf)
 
-        by_run = np.concatenate(each(of_runs, list(self._together(vectors))))
+        by_run = np.concatenate(each(of_runs, list(self.together(vectors))))
         errors = np.where(np.all(np.isfinite(by_run), axis=0), by_run.mean(axis=0), UNSTABLE)
         return np.minimum(errors, UNSTABLE)
 
@@ -104,7 +103,7 @@ class OutputError:
         cloud = np.concatenate([point[None], moved])
         values = self.space.values(cloud)
         self.evaluations += len(cloud)
-        steps = int(self._steps(values).max())
+        steps = int(self.steps(values).max())
         self.begin({name: float(value[0]) for name, value in values.items()})
         with np.errstate(over="ignore", invalid="ignore"):
             found = self._found(values, strides, steps)
@@ -115,7 +114,7 @@ class OutputError:
         found: dict[str, Moments] = {}
         p = len(strides)
         for _ in range(1 if p else _SETTLING):
-            todo = list(self._together(p + 1 + len(self.chain.states)))
+            todo = list(self.together(p + 1 + len(self.chain.states)))
             parts = each(lambda runs: self._moments(runs, values, strides, steps), todo)
             found = {
                 run.id: m for runs, part in zip(todo, parts, strict=True) for run, m in zip(runs, part, strict=True)
@@ -139,13 +138,13 @@ class OutputError:
         """The model's output of each run, with the first state that fits best."""
         self.exact(point, sensitivities=False)
         values = self.space.values(point[None])
-        steps = int(self._steps(values).max())
+        steps = int(self.steps(values).max())
 
         def of_runs(runs: tuple[Run, ...]) -> Array:
-            blocks = [rows[:, :, 0] for rows, _, _ in self._simulation(runs, values, steps).outputs()]
+            blocks = [rows[:, :, 0] for rows, _, _ in self.simulation(runs, values, steps).outputs()]
             return np.concatenate(blocks).T
 
-        todo = list(self._together(1))
+        todo = list(self.together(1))
         found = zip(todo, each(of_runs, todo), strict=True)
         return {run.id: y for runs, outputs in found for run, y in zip(runs, outputs, strict=True)}
 
@@ -153,61 +152,37 @@ class OutputError:
         """The moments of runs of one length, from one simulation of all of them."""
         return moments_of(runs, self._products(runs, values, strides, steps), len(strides))
 
-    def _products(
-        self, runs: tuple[Run, ...], values: Mapping[str, Array], strides: Array, steps: int, blocks: int = _BLOCKS
-    ) -> Array:  # fmt: skip
+    def _products(self, runs: tuple[Run, ...], values: Mapping[str, Array], strides: Array, steps: int) -> Array:
         """Σ of products of [J, N, 1, r] of runs of one length and of each block of them, (runs, blocks, q, q).
 
         J are the differences of the vectors behind the first to it, over `strides`.
         """
-        p = len(strides)
-        moving = not all(run.starts_at_rest for run in runs)
-        states = len(self.chain.states) if moving else 0
-        start = None
-        wide = dict(values)
-        if moving:
-            wide = {name: np.concatenate([value, np.repeat(value[:1], states)]) for name, value in values.items()}
-            start = np.repeat(np.array([self.start(run) for run in runs])[:, None], p + 1 + states, axis=1)
-            for i in range(states):
-                start[:, p + 1 + i, i] += self._reach[i]
-        length = max(16, -(-runs[0].length // blocks))
+        released = self.released(runs, values, steps)
+        length = max(16, -(-runs[0].length // _BLOCKS))
         records = np.column_stack([run.measured - run.measured.mean() for run in runs])
-        scale = np.array([*strides, *[1.0] * (states + 2)])
+        q = released.shape[1] + 1
+        scale = np.append(strides, np.ones(q - len(strides)))
         found = []
-        for rows, first, last in self._simulation(runs, wide, steps, start).outputs(length):
-            sums = np.zeros((len(runs), p + states + 2, p + states + 2))
+        for rows, first, last in released.outputs(length):
+            sums = np.zeros((len(runs), q, q))
             add_products(rows, records[first:last], sums)
             found.append((sums + np.tril(sums, -1).transpose(0, 2, 1)) / scale[:, None] / scale)
         return np.array(found).transpose(1, 0, 2, 3)
 
-    def differences(self, values: Mapping[str, Array], strides: Array) -> tuple[Array, Array]:
-        """The products of [d, r] of each run, (runs, p+1, p+1), and their means, for the first of `values`.
+    def released(self, runs: tuple[Run, ...], values: Mapping[str, Array], steps: int) -> Simulation:
+        """A simulation of vectors and, where runs start moving, of the first with each of its first states moved."""
+        if all(run.starts_at_rest for run in runs):
+            return self.simulation(runs, values, steps)
+        vectors, states = len(next(iter(values.values()))), len(self.chain.states)
+        wide = {name: np.concatenate([value, np.repeat(value[:1], states)]) for name, value in values.items()}
+        start = np.repeat(np.array([self.start(run) for run in runs])[:, None], vectors + states, axis=1)
+        start[:, vectors:] += np.diag(self._reach)
+        return self.simulation(runs, wide, steps, start)
 
-        d are the other vectors' outputs less the first one's, over `strides`; what is free in each record is projected
-        out. A vector that is unstable at a run has nothing but zeros there. Kinks are met at whole samples.
-        """
-        p, steps = len(strides), int(self._steps(values, kinks=False).max())
-        self.begin({name: float(value[0]) for name, value in values.items()})
-
-        def of_share(runs: tuple[Run, ...]) -> tuple[Array, Array]:
-            with np.errstate(over="ignore", invalid="ignore"):
-                sums = self._products(runs, values, strides, steps, blocks=1)[:, 0]
-            power = np.abs(np.diagonal(sums, axis1=1, axis2=2))
-            sound = np.where(power < _LARGEST, 1.0, 0.0)
-            sums = np.where(sound[:, :, None] * sound[:, None, :] > 0, sums, 0.0)
-            remove = removal(sums, p)
-            means = -remove[:, -2] + np.append(np.zeros(p), 1.0) * np.array([[run.measured.mean()] for run in runs])
-            return without(remove, sums), means
-
-        todo = list(self._together(p + 1 + len(self.chain.states)))
-        parts = each(of_share, todo)
-        order = {run.id: i for i, run in enumerate(run for runs in todo for run in runs)}
-        where = [order[run.id] for run in self.runs]
-        return np.concatenate([gram for gram, _ in parts])[where], np.concatenate([mean for _, mean in parts])[where]
-
-    def _simulation(
+    def simulation(
         self, runs: tuple[Run, ...], values: Mapping[str, Array], steps: int, start: Array | None = None
     ) -> Simulation:
+        """A simulation of vectors at runs of a kind, from the first states that are known."""
         known = [conditions(run, self.matrix.actuator) for run in runs]
         stacked = {name: np.array([entry[name] for entry in known])[:, None] for name in known[0]}
         vectors = len(next(iter(values.values())))
@@ -250,19 +225,19 @@ class OutputError:
 
     # Shares ------------------------------------------------------------------------------------------------------
 
-    def _together(self, vectors: int) -> Iterator[tuple[Run, ...]]:
+    def together(self, vectors: int, lanes: int = _TOGETHER) -> Iterator[tuple[Run, ...]]:
         """Runs that are simulated in one go: of one length, sample rate, output and kind of start."""
         groups: dict[tuple[object, ...], list[Run]] = {}
         for run in self.runs:
             groups.setdefault((run.length, run.sample_rate, run.output, run.starts_at_rest), []).append(run)
         for runs in groups.values():
-            most = max(1, _TOGETHER // vectors)
+            most = max(1, lanes // vectors)
             shares = -(-len(runs) // most)
             shares = min(len(runs), max(shares, cores()))
             for share in np.array_split(np.arange(len(runs)), shares):
                 yield tuple(runs[i] for i in share)
 
-    def _steps(self, values: Mapping[str, Array], kinks: bool = True) -> NDArray[np.int64]:
+    def steps(self, values: Mapping[str, Array], kinks: bool = True) -> NDArray[np.int64]:
         """Steps a sample for each vector, by the fastest mode of the linear core and the effects at small signals."""
         vectors = len(next(iter(values.values())))
         fastest = np.zeros(vectors)

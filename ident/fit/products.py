@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 _BLIND = 1e-12  # relative to the largest eigenvalue: nuisances that do the same
-_CHUNK = 256  # samples turned at a time, so that the sums run along contiguous memory
+CHUNK = 256  # samples turned at a time, so that the sums run along contiguous memory
 
 
 @njit(cache=True, fastmath=True, nogil=True)
@@ -21,10 +21,10 @@ def add_products(rows: Array, measured: Array, sums: Array) -> None:
     """
     samples, runs, vectors = rows.shape
     q = vectors + 1
-    z = np.empty((q, _CHUNK))
+    z = np.empty((q, CHUNK))
     for run in range(runs):
-        for first in range(0, samples, _CHUNK):
-            count = min(_CHUNK, samples - first)
+        for first in range(0, samples, CHUNK):
+            count = min(CHUNK, samples - first)
             for t in range(count):
                 base = rows[first + t, run, 0]
                 for j in range(1, vectors):
@@ -47,14 +47,21 @@ def removal(gram: Array, p: int) -> Array:
     """
     last = gram.shape[-1] - 1
     kept, free = np.array([*range(p), last]), np.arange(p, last)
-    inner = gram[:, free[:, None], free]
-    size = np.sqrt(np.maximum(np.diagonal(inner, axis1=1, axis2=2), 1e-300))
-    outer = size[:, :, None] * size[:, None, :]
-    shares = (np.linalg.pinv(inner / outer, rcond=_BLIND, hermitian=True) / outer) @ gram[:, free[:, None], kept]
+    shares = shares_of(gram[:, free[:, None], free], gram[:, free[:, None], kept])
     remove = np.zeros((len(gram), last + 1, p + 1))
     remove[:, kept, range(p + 1)] = 1.0
     remove[:, free] = -shares
     return remove
+
+
+def shares_of(inner: Array, columns: Array) -> Array:
+    """The least-squares shares of k nuisances in m columns, (runs, k, m).
+
+    `inner` (runs, k, k) are the products of the nuisances, `columns` (runs, k, m) theirs with the columns.
+    """
+    size = np.sqrt(np.maximum(np.diagonal(inner, axis1=1, axis2=2), 1e-300))
+    outer = size[:, :, None] * size[:, None, :]
+    return np.asarray((np.linalg.pinv(inner / outer, rcond=_BLIND, hermitian=True) / outer) @ columns)
 
 
 def without(remove: Array, gram: Array) -> Array:

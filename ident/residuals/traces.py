@@ -188,7 +188,7 @@ def _simulated(
     error = OutputError(preset, matrix, matrix.runs, Space((), tuple(values), values, {}), 0.0)
     error.exact(np.empty(0), sensitivities=False)
     chain = showing(preset.chain, signals)
-    steps = int(error._steps(error.space.values(np.empty((1, 0)))).max())
+    steps = int(error.steps(error.space.values(np.empty((1, 0)))).max())
 
     def one(entry: tuple[str, Run]) -> Array:
         name, run = entry

@@ -1,0 +1,156 @@
+"""How a fitted model's output answers to changes of many kinds, set beside its sensitivities.
+
+The model is simulated once with each of its parameters moved, then with each change by itself. Of a change only its
+products with the sensitivities and the residual are wanted, and its own power: never those of two changes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from ident.fit.output_error import OutputError
+from ident.fit.products import CHUNK, removal, shares_of, without
+from ident.matrix import Run
+from ident.parallel import each
+
+Array = NDArray[np.float64]
+_LANES = 1024  # simulated in one go: what all of them share is worked out once
+_LARGEST = 1e30  # a sum of squares beyond it is of a model that ran away
+
+
+@dataclass(frozen=True)
+class Responses:
+    """Products of n changes d of the output with [J, r] of each run, (runs, p+1, n), their power and means (runs, n).
+
+    What is free in a record is taken off. A change that makes a run unstable has nothing but zeros there.
+    """
+
+    products: Array
+    power: Array
+    means: Array
+
+
+@dataclass(frozen=True)
+class _Columns:
+    """Z = [J, N, 1, r] of a run, (q, samples), ZᵀZ, and what takes N and 1 off J and r, (q, p+1)."""
+
+    Z: Array
+    gram: Array
+    remove: Array
+
+
+@dataclass(frozen=True)
+class Sensitivities:
+    """J, the sensitivities of a fitted model to its p parameters, and its residual r, at every run of a fitness.
+
+    `values` (p+1,) are the model and its neighbours, each with one parameter moved by a stride (p,). Kinks of effects
+    are met at whole samples: for a first sight only.
+    """
+
+    fitness: OutputError
+    values: Mapping[str, Array]
+    strides: Array
+    columns: Mapping[str, _Columns]
+
+    @classmethod
+    def of(cls, fitness: OutputError, values: Mapping[str, Array], strides: Array) -> Sensitivities:
+        """Simulate the model and its neighbours; begins the fitness's first states."""
+        steps = int(fitness.steps(values, kinks=False).max())
+        fitness.begin({name: float(value[0]) for name, value in values.items()})
+
+        def of_share(runs: tuple[Run, ...]) -> list[_Columns]:
+            with np.errstate(over="ignore", invalid="ignore"):
+                rows = np.concatenate([rows for rows, _, _ in fitness.released(runs, values, steps).outputs()])
+                moved = rows[:, :, 1:] - rows[:, :, :1]
+                moved[:, :, : len(strides)] /= strides
+                measured = np.column_stack([run.measured - run.measured.mean() for run in runs])
+                residual = (measured - rows[:, :, 0])[:, :, None]
+                Z = np.concatenate([moved, np.ones_like(residual), residual], axis=2).transpose(1, 2, 0)
+                Z = np.where(np.sum(Z * Z, axis=2, keepdims=True) < _LARGEST, Z, 0.0)
+            gram = Z @ Z.transpose(0, 2, 1)
+            return [_Columns(*parts) for parts in zip(Z, gram, removal(gram, len(strides)), strict=True)]
+
+        todo = list(fitness.together(len(strides) + 1 + len(fitness.chain.states)))
+        parts = zip(todo, each(of_share, todo), strict=True)
+        columns = {run.id: found for runs, part in parts for run, found in zip(runs, part, strict=True)}
+        return cls(fitness, values, strides, columns)
+
+    def products(self) -> tuple[Array, Array]:
+        """Σ of products of [J, r] of each run, (runs, p+1, p+1), and their means, (runs, p+1)."""
+        found = [self.columns[run.id] for run in self.fitness.runs]
+        means = np.array([-known.remove[-2] for known in found])
+        means[:, -1] += [run.measured.mean() for run in self.fitness.runs]
+        return np.array([without(known.remove, known.gram) for known in found]), means
+
+    def beside(self, values: Mapping[str, Array]) -> Responses:
+        """The responses to n changes, each an entry (n,) of `values`."""
+        count, runs = len(next(iter(values.values()))), self.fitness.runs
+        found = Responses(np.zeros((len(runs), len(self.strides) + 1, count)), *np.zeros((2, len(runs), count)))
+        where = {run.id: i for i, run in enumerate(runs)}
+        steps = self.fitness.steps(values, kinks=False)
+        todo = [
+            (share, np.flatnonzero(steps == level), int(level))
+            for level in np.unique(steps)
+            for share in self.fitness.together(1 + int(np.sum(steps == level)), _LANES)
+        ]
+
+        def of_share(share: tuple[tuple[Run, ...], NDArray[np.intp], int]) -> None:
+            rows, columns = np.ix_(np.array([where[run.id] for run in share[0]]), share[1])
+            products, found.power[rows, columns], found.means[rows, columns] = self._responses(*share, values)
+            found.products[rows, :, columns] = products.transpose(0, 2, 1)
+
+        each(of_share, todo)
+        return found
+
+    def _responses(
+        self, runs: tuple[Run, ...], changes: NDArray[np.intp], steps: int, values: Mapping[str, Array]
+    ) -> tuple[Array, Array, Array]:  # fmt: skip
+        """Products, power and means of some changes at runs of a kind; the model itself is the first of the lanes."""
+        known = [self.columns[run.id] for run in runs]
+        Z = np.array([columns.Z for columns in known])
+        lanes = {name: np.append(self.values[name][:1], value[changes]) for name, value in values.items()}
+        cross = np.zeros((len(runs), Z.shape[1], len(changes)))
+        power = np.zeros((len(runs), len(changes)))
+        for rows, first, last in self.fitness.simulation(runs, lanes, steps).outputs():
+            _add(rows, Z[:, :, first:last], cross, power)
+        sound = power < _LARGEST  # false where it is not a number
+        cross, power = np.where(sound[:, None], cross, 0.0), np.where(sound, power, 0.0)
+        free = np.arange(len(self.strides), Z.shape[1] - 1)
+        gram = np.array([columns.gram for columns in known])
+        shares = shares_of(gram[:, free[:, None], free], cross[:, free])
+        left = np.maximum(power - np.einsum("rkn,rkn->rn", shares, cross[:, free]), 0.0)
+        remove = np.array([columns.remove for columns in known])
+        return remove.transpose(0, 2, 1) @ cross, left, shares[:, -1]
+
+
+@njit(cache=True, fastmath=True, nogil=True)
+def _add(rows: Array, Z: Array, cross: Array, power: Array) -> None:
+    """Add to `cross` (runs, q, n) and `power` (runs, n) what the changes d give over the samples of a block.
+
+    `rows` (samples, runs, 1+n) holds the model's output, then the changed ones; `Z` (runs, q, samples).
+    """
+    samples, runs, lanes = rows.shape
+    q = Z.shape[1]
+    d = np.empty((lanes, CHUNK))
+    for run in range(runs):
+        for first in range(0, samples, CHUNK):
+            count = min(CHUNK, samples - first)
+            for t in range(count):
+                base = rows[first + t, run, 0]
+                for j in range(1, lanes):
+                    d[j, t] = rows[first + t, run, j] - base
+            for j in range(1, lanes):
+                total = 0.0
+                for t in range(count):
+                    total += d[j, t] * d[j, t]
+                power[run, j - 1] += total
+                for i in range(q):
+                    total = 0.0
+                    for t in range(count):
+                        total += Z[run, i, first + t] * d[j, t]
+                    cross[run, i, j - 1] += total
