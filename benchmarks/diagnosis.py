@@ -27,10 +27,10 @@ hidden = json.loads(sys.argv[1])
 matrix = Machine(Plant(), hidden, 0.01, seed=1).measured()
 fit = identify(matrix, Settings())
 began, stages = time.perf_counter(), []
-found = diagnose(matrix, fit, report=lambda p: stages.append((time.perf_counter(), p.stage)))
+found = diagnose(matrix, fit, report=lambda p: stages.append((time.perf_counter(), p.stage, p.expected)))
 ended = time.perf_counter()
-asked = next(at for at, stage in stages if stage == "predicting")
-told = next(at for at, stage in stages if stage == "trying")
+asked = next(at for at, stage, _ in stages if stage == "predicting")
+told = next(at for at, _, expected in stages if expected)
 print(json.dumps({
     "named": list(found.verdict.effects) == list(hidden), "instant": told - asked, "whole": ended - began,
     "memory": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,

@@ -30,7 +30,7 @@ from ident.fit.space import Space
 from ident.fit.uncertainty import covariance
 from ident.matrix import Matrix
 from ident.noise import averaged
-from ident.progress import Progress, Report, silent
+from ident.progress import Expected, Progress, Report, silent
 from ident.spectra import excited_band
 
 _NOISE_LIKE = 0.5  # correlation of neighbouring residuals that noise may have, where there is no floor
@@ -54,8 +54,9 @@ def diagnose(
         return diagnose_bench(matrix, fit, most, report)
     given = replace(Settings.from_json(dict(fit.settings)), effects=()) if fit.settings else Settings(model=fit.model)
     models = Models.of(matrix, given, excited_band(matrix.of_use("fit")), custom)
-    found = Work(models, fit, most, report).diagnosis()
-    report(Progress("next run", 0, 1))
+    work = Work(models, fit, most, report)
+    found = work.diagnosis()
+    work.tell(Progress("next run", 0, 1))
     advised = replace(found, budget=error_budget(matrix, fit), next_experiment=next_run(matrix, found, custom))
     return replace(advised, seconds=time.monotonic() - begun)
 
@@ -65,6 +66,7 @@ class Work:
 
     def __init__(self, models: Models, fit: FitResult, most: int, report: Report) -> None:
         self.models, self.fit, self.most, self.report = models, fit, most, report
+        self.expected: tuple[Expected, ...] = ()
 
     def diagnosis(self) -> Diagnosis:
         """The whole of it."""
@@ -99,13 +101,15 @@ class Work:
         base = models.refit(tuple(self.fit.effects), start)
         if not base.finite:
             raise Unusable("bad-fit", "the fitted model is unstable on a run", "fit", "fit the model to this matrix")
-        return Addition(models, base, self.most, self._progress).run()
+        return Addition(models, base, self.most, self.tell).run()
 
-    def _progress(self, stage: str, done: int, total: int) -> None:
-        self.report(Progress(stage, done, total))
+    def tell(self, progress: Progress) -> None:
+        """Report; the first sight of the fitted model stays with all that follows."""
+        self.expected = self.expected or progress.expected
+        self.report(replace(progress, expected=self.expected))
 
     def _doubted(self, addition: Addition) -> list[Suspect]:
-        self.report(Progress("labels", 0, 1))
+        self.tell(Progress("labels", 0, 1))
         return suspects(addition.models, addition.found, self.models.floors)
 
     # What is said ----------------------------------------------------------------------------------------------
@@ -139,13 +143,12 @@ class Work:
         listed = []
         for i, candidate in enumerate(addition.ranking):
             refit = candidate.refit
-            predicted = base.error * candidate.prediction.after.error / candidate.prediction.before.error
             errors: Mapping[str, float | None] = {"fit": None, "held_out": None, "verify": None}
             listed.append(Ranked(
                 effect=candidate.effect,
                 error=self._errors(models, refit) if refit else errors,
                 offset=refit.held_out.offset if refit else None,
-                predicted_error=predicted,
+                predicted_error=base.error * candidate.prediction.share,
                 parameters=self._parameters(models, refit) if refit else {},
                 group=group if candidate.effect in group else (),
                 evidence=_evidence(candidate, models.effects[candidate.effect]),

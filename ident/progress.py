@@ -7,17 +7,26 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
+class Expected:
+    """An effect, and the error (eq. 17) that the model is expected to have with it, before any refit."""
+
+    effect: str
+    error: float
+
+
+@dataclass(frozen=True)
 class Progress:
     """One report of long work.
 
     `stage` is a phrase for the user ("search", "polish"), `done` of `total` its steps, `error` the best value of
-    eq. (17) so far, where there is one.
+    eq. (17) so far, where there is one. `expected` is a diagnosis's first sight: the effects that promise most, first.
     """
 
     stage: str
     done: int
     total: int
     error: float | None = None
+    expected: tuple[Expected, ...] = ()
 
 
 Report = Callable[[Progress], None]

@@ -44,13 +44,24 @@ class EffectsRequest(BaseModel):
     custom: list[dict[str, Any] | str] = Field(default_factory=list, max_length=10)
 
 
+class ExpectedView(BaseModel):
+    """An effect, and the error (eq. 17) that a fit is expected to have with it, before any refit."""
+
+    effect: str
+    error: float
+
+
 class ProgressView(BaseModel):
-    """Where a job is: `done` of `total` steps of `stage`; `error` is the best eq. (17) so far."""
+    """Where a job is: `done` of `total` steps of `stage`; `error` is the best eq. (17) so far.
+
+    `expected` is what a diagnosis sees at once: the effects that promise most, first, while it confirms them.
+    """
 
     stage: str = ""
     done: int = 0
     total: int = 0
     error: float | None = None
+    expected: list[ExpectedView] = Field(default_factory=list)
 
 
 class JobView(BaseModel):

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
+from functools import partial
 
 from app.cli.interrupts import heed
 from app.cli.numbers import percent
@@ -20,19 +21,24 @@ def shown() -> Iterator[Report]:
     """A report to hand to long work, shown until the block ends; what is compiled meanwhile is reported too."""
     from ident.compiled import watching
 
-    with bar() if sys.stderr.isatty() else nullcontext(Lines()) as show:
+    with bar() if sys.stderr.isatty() else nullcontext((Lines(), _plain)) as (show, say):
+        told = False
 
         def report(progress: Progress) -> None:
+            nonlocal told
             heed()
             show(progress)
+            if progress.expected and not told:
+                told = True
+                say(first_sight(progress))
 
         with watching(lambda: report(COMPILING)):
             yield report
 
 
 @contextmanager
-def bar() -> Iterator[Report]:
-    """A bar of rich for the stage that is under way."""
+def bar() -> Iterator[tuple[Report, Callable[[str], None]]]:
+    """A bar of rich for the stage that is under way, and what prints a line above it."""
     from rich import progress as rich
     from rich.console import Console
 
@@ -55,7 +61,7 @@ def bar() -> Iterator[Report]:
                 error=error_text(progress),
             )
 
-        yield report
+        yield report, partial(display.console.print, markup=False, highlight=False, soft_wrap=True)
 
 
 class Lines:
@@ -71,7 +77,17 @@ class Lines:
         if progress.stage == self.stage and progress.done < progress.total and now - self.last < SILENCE:
             return
         self.stage, self.last = progress.stage, now
-        print(f"{progress.stage} {progress.done}/{progress.total} {error_text(progress)}".rstrip(), file=sys.stderr)
+        _plain(f"{progress.stage} {progress.done}/{progress.total} {error_text(progress)}".rstrip())
+
+
+def _plain(line: str) -> None:
+    print(line, file=sys.stderr)
+
+
+def first_sight(progress: Progress) -> str:
+    """What a diagnosis sees before it confirms anything, in a line."""
+    seen = ", ".join(f"{one.effect} {percent(one.error)}" for one in progress.expected)
+    return f"at first sight, before any refit, the error would be: {seen}"
 
 
 def error_text(progress: Progress) -> str:

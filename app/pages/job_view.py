@@ -26,6 +26,7 @@ class JobPageView:
     done: int
     total: int
     error: float | None
+    expected: tuple[tuple[str, float], ...]
     problem: str
     facts: tuple[tuple[str, str], ...]
     made: str
@@ -46,6 +47,7 @@ def job_page(job: JobView) -> JobPageView:
         done=job.progress.done,
         total=job.progress.total,
         error=job.progress.error,
+        expected=tuple((one.effect.replace("_", " "), one.error) for one in job.progress.expected),
         problem=_problem(job.problem),
         facts=settings_facts(job.settings),
         made=job.created_at,

@@ -14,7 +14,8 @@ from itertools import combinations
 
 from ident.diagnosis.chance import gain
 from ident.diagnosis.models import Models, Refit
-from ident.diagnosis.ranking import Candidate, Report, rank
+from ident.diagnosis.ranking import Candidate, rank
+from ident.progress import Progress, Report
 
 MOST = 6  # effects that are added
 USUAL = 4  # where the user says nothing
@@ -117,7 +118,7 @@ class Addition:
         pairs = list(combinations(finalists, 2))
         tried: list[Refit] = []
         for i, pair in enumerate(pairs):
-            self.report("trying pairs", i, len(pairs))
+            self.report(Progress("trying pairs", i, len(pairs)))
             tried.append(self._both(*pair))
         best = min(tried, key=lambda trial: trial.here.error)
         if not best.here.error < self.models.tried(self.found):

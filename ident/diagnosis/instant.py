@@ -61,9 +61,14 @@ class Prediction:
     starts: tuple[Mapping[str, float], ...]
 
     @property
+    def share(self) -> float:
+        """The part of the error that is left."""
+        return self.after.error / self.before.error
+
+    @property
     def fall(self) -> float:
         """Relative fall of the error."""
-        return 1.0 - self.after.error / self.before.error
+        return 1.0 - self.share
 
     @property
     def nats(self) -> float:

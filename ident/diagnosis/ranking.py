@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -10,6 +10,7 @@ from ident.diagnosis.chance import VISIBLE, WORTHWHILE, Gain, gain
 from ident.diagnosis.instant import Prediction, predict
 from ident.diagnosis.models import Models, Refit
 from ident.parallel import each
+from ident.progress import Expected, Progress, Report
 
 _CONTENDERS, _FEW = 12, 10  # refitted; fewer, the more effects there are already
 _QUICK = 200_000  # samples of a matrix so small that every promise can be tried
@@ -20,7 +21,7 @@ _DEEPER = 2  # of the finalists are looked for elsewhere, too
 _STRONG = (1.0, 0.3)  # of the largest strength, from where
 _PROMISING = 0.3 * WORTHWHILE  # relative fall of the score that is worth a refit
 _NATS = 3.0  # of the offsets, too
-Report = Callable[[str, int, int], None]
+_SIGHT = 5  # effects that are told at first sight
 
 
 @dataclass(frozen=True)
@@ -52,8 +53,10 @@ class Candidate:
 
 def rank(models: Models, base: Refit, names: Iterable[str], report: Report, thorough: bool = True) -> list[Candidate]:
     """The candidates, best first. `thorough`: more are refitted, and also where nothing promises to help."""
-    report("predicting", 0, 1)
+    report(Progress("predicting", 0, 1))
     predictions = sorted(predict(models, base, list(names)), key=lambda p: p.after.score)
+    first = tuple(Expected(p.effect, base.error * p.share) for p in predictions[:_SIGHT])
+    report(Progress("predicting", 1, 1, base.error, first))
     contenders = predictions[:_CONTENDERS]
     if not thorough:
         near = _NEAR * predictions[0].after.error
@@ -66,7 +69,7 @@ def rank(models: Models, base: Refit, names: Iterable[str], report: Report, thor
         nonlocal done
         refit = models.trial((*base.effects, prediction.effect), prediction.starts)
         done += 1
-        report("trying", done, len(contenders) + _FINALISTS)
+        report(Progress("trying", done, len(contenders) + _FINALISTS))
         return Candidate(prediction, refit if refit.finite else None)
 
     tried = sorted(each(trial, contenders), key=lambda candidate: candidate.score)
@@ -80,13 +83,13 @@ def rank(models: Models, base: Refit, names: Iterable[str], report: Report, thor
         assert candidate.trial is not None
         refit = models.refit((*base.effects, candidate.effect), candidate.trial.values)
         done += 1
-        report("confirming", done, len(contenders) + len(finalists))
+        report(Progress("confirming", done, len(contenders) + len(finalists)))
         if not refit.finite:
             return replace(candidate, trial=None)
         return replace(candidate, refit=refit, gain=gain(base.held_out, refit.held_out))
 
     found = sorted(each(final, finalists), key=lambda candidate: candidate.score)
-    report("confirming", done, done + 1)
+    report(Progress("confirming", done, done + 1))
     found = [*each(partial(_elsewhere, models, base), found[:_DEEPER]), *found[_DEEPER:]]
     confirmed = {candidate.effect: candidate for candidate in (*tried, *found)}
     rest = [confirmed.get(p.effect, Candidate(p)) for p in predictions]

@@ -51,6 +51,9 @@ def diagnosis(service: TestClient, linear: str) -> dict[str, Any]:
     job = ended(service, service.post(f"{API}/diagnoses", json={"fit": linear, "max_effects": 2, "seed": 5}))
     assert (job["kind"], job["state"], job["fit"], job["parent"]) == ("diagnosis", "succeeded", None, linear), job
     found: dict[str, Any] = service.get(f"{API}/diagnoses/{job['diagnosis']}").json()
+    seen = job["progress"]["expected"]  # at first sight, while the rest was under way
+    assert seen[0] == {"effect": "dead_zone", "error": found["candidates"][0]["predicted_error"]}
+    assert [one["error"] for one in seen] == sorted(one["error"] for one in seen)
     return found
 
 

@@ -34,6 +34,7 @@ def search(page: Page, searching: Path | None = None, patience: float = LONG) ->
     page.keyboard.press("Enter")
     expect(page.get_by_role("progressbar", name="Progress of the diagnosis")).to_be_visible(timeout=LONG)
     expect(page.locator("#missing [data-stage]")).to_have_text(re.compile("trying|confirming"), timeout=patience)
+    expect(page.locator("#missing [data-sight]")).to_contain_text("%")  # the list of the first sight, while it works
     if searching is not None:
         page.locator("#missing").screenshot(path=searching)
     card = page.locator(".card").filter(has=page.get_by_role("button", name="Add it")).first

@@ -23,6 +23,7 @@ def told(servoident, matrix, tmp_path_factory) -> tuple[str, dict]:
     done = servoident("diagnose", matrix, "--json", file)
     assert done.returncode == 0, done.stderr
     assert "confirming" in done.stderr
+    assert "at first sight, before any refit, the error would be: dead_zone" in done.stderr
     return done.stdout, json.loads(file.read_text())
 
 

@@ -11,7 +11,7 @@ import pytest
 from app.cli.interrupts import heard
 from app.cli.progress import shown
 from ident import compiled
-from ident.progress import Progress
+from ident.progress import Expected, Progress
 
 SOURCE = """from numba import njit
 
@@ -60,6 +60,16 @@ def test_nobody_is_told_after_the_work(new_function, capsys):
         pass
     new_function()
     assert not capsys.readouterr().err
+
+
+def test_the_first_sight_of_a_diagnosis_is_told_once(capsys):
+    """It comes with every later report, too."""
+    seen = (Expected("dead_zone", 0.0102), Expected("loop_delay", 0.02))
+    with shown() as report:
+        for done in range(3):
+            report(Progress("trying", done, 2, expected=seen))
+    told = [line for line in capsys.readouterr().err.splitlines() if "dead_zone" in line]
+    assert told == ["at first sight, before any refit, the error would be: dead_zone 1.02 %, loop_delay 2.00 %"]
 
 
 def test_ctrl_c_ends_the_work_at_its_next_report_where_it_was_swallowed():

@@ -12,6 +12,7 @@ function follow(live) {
   const error = live.querySelector("[data-error]");
   const trace = live.querySelector(".trace polyline");
   const cancel = live.querySelector("button");
+  const sight = live.querySelector("[data-sight]");
   const seen = [];
 
   function report(progress) {
@@ -27,6 +28,10 @@ function follow(live) {
       error.closest("span").hidden = false;
       seen.push(progress.error);
       trace?.setAttribute("points", line(seen));
+    }
+    if (progress.expected?.length && sight.hidden) {
+      sight.querySelector("[data-expected]").replaceChildren(...progress.expected.map(expectation));
+      sight.hidden = false;
     }
   }
 
@@ -53,6 +58,14 @@ function follow(live) {
       stage.textContent = "stopping at the next step";
     }),
   );
+}
+
+// An effect that promises to help, and the error with it.
+function expectation({ effect, error }) {
+  const shown = document.createElement("span"), value = document.createElement("b");
+  value.textContent = `${(100 * error).toPrecision(3)} %`;
+  shown.append(`${effect.replaceAll("_", " ")} `, value);
+  return shown;
 }
 
 // Best error on a logarithmic scale over the reports so far, as the points of a line.
