@@ -2,8 +2,8 @@
 
 Forward: the best of the ranking is added while it helps beyond chance. Backward: what the model can do without since
 is taken out. In the end each effect that was added is weighed against everything that could stand in its place: a
-better one replaces it, those as good by chance are its group. Where all of this ends above the noise, two at a time are
-tried in the place of one.
+better one replaces it, those as good by chance are its group. Where all of this ends above the noise, strong effects
+are tried, far from where the search stands, and two at a time in the place of one.
 """
 
 from __future__ import annotations
@@ -52,11 +52,12 @@ class Addition:
         return tuple(name for name in self.found.effects if name not in self.base.effects)
 
     def run(self) -> Addition:
-        """Add, take out, replace, until nothing helps; where the noise is not reached, once more from two at a time."""
+        """Add, take out, replace, until nothing helps; where the noise is not reached, look farther and go on."""
         self.steps = [self.base]
         self._rounds()
-        if self._paired():
-            self._rounds()
+        for farther in (self._stronger, self._paired):
+            if self.models.floor is not None and not self.models.at_floor(self.found) and farther():
+                self._rounds()
         return self
 
     def _rounds(self) -> None:
@@ -90,8 +91,9 @@ class Addition:
             rungs.append((name, step))
         return rungs
 
-    def _rank(self, base: Refit, thorough: bool) -> list[Candidate]:
-        return rank(self.models, base, [n for n in self.models.effects if n not in base.effects], self.report, thorough)
+    def _rank(self, base: Refit, thorough: bool, strong: bool = False) -> list[Candidate]:
+        names = [n for n in self.models.effects if n not in base.effects]
+        return rank(self.models, base, names, self.report, thorough, strong)
 
     def _forward(self) -> None:
         while len(self.added) < self.most:
@@ -106,6 +108,18 @@ class Addition:
             if self._backward(best.effect):
                 break
 
+    def _stronger(self) -> bool:
+        """Go on with an effect that helps only where its refit begins with a strong one."""
+        if len(self.added) == self.most:
+            return False
+        ranking = self._rank(self.found, thorough=True, strong=True)
+        best = next((candidate for candidate in ranking if candidate.helps), None)
+        if best is None or best.refit is None:
+            return False
+        self.steps.append(best.refit)
+        self._backward(best.effect)
+        return True
+
     def _paired(self) -> bool:
         """Go on from two finalists of the first ranking at once, where these do better beyond chance.
 
@@ -113,7 +127,7 @@ class Addition:
         """
         begun = self.steps[1].effects[-1] if len(self.steps) > 1 else ""  # every other was tried beside it
         finalists = [c.refit for c in self.ranking if c.refit is not None and c.effect != begun][:_PAIRED]
-        if self.most < 2 or len(finalists) < 2 or self.models.floor is None or self.models.at_floor(self.found):
+        if self.most < 2 or len(finalists) < 2:
             return False
         pairs = list(combinations(finalists, 2))
         tried: list[Refit] = []

@@ -155,12 +155,15 @@ class Models:
 
     def best_of(self, refit: Refit, starts: Sequence[Mapping[str, float]]) -> Refit | None:
         """The best refit of the same model from other starts, where one is better than `refit`."""
-        others = [self.refit(refit.effects, start, _TRIAL, _SEARCHING) for start in starts]
-        best = min(others, key=lambda other: other.here.error)
+        best = min(self.searched(refit, starts), key=lambda other: other.here.error)
         if best.here.error > _BETTER * self.tried(refit):
             return None
         found = self.refit(refit.effects, best.values)
         return found if found.here.error < refit.here.error else None
+
+    def searched(self, refit: Refit, starts: Sequence[Mapping[str, float]]) -> list[Refit]:
+        """First refits of the same model from other starts, far off: on the beginnings of the records."""
+        return [self.refit(refit.effects, start, _TRIAL, _SEARCHING) for start in starts]
 
     def refit(
         self,

@@ -51,8 +51,14 @@ class Candidate:
         return (1, self.trial.here.error) if self.trial is not None else (2, self.prediction.after.score)
 
 
-def rank(models: Models, base: Refit, names: Iterable[str], report: Report, thorough: bool = True) -> list[Candidate]:
-    """The candidates, best first. `thorough`: more are refitted, and also where nothing promises to help."""
+def rank(
+    models: Models, base: Refit, names: Iterable[str], report: Report, thorough: bool = True, strong: bool = False
+) -> list[Candidate]:
+    """The candidates, best first.
+
+    `thorough`: more are refitted, and also where nothing promises to help. `strong`: from strong effects, too, which a
+    promise made with the fitted parameters does not see where these have gone far astray for want of the effect.
+    """
     report(Progress("predicting", 0, 1))
     predictions = sorted(predict(models, base, list(names)), key=lambda p: p.after.score)
     first = tuple(Expected(p.effect, base.error * p.share) for p in predictions[:_SIGHT])
@@ -68,6 +74,8 @@ def rank(models: Models, base: Refit, names: Iterable[str], report: Report, thor
     def trial(prediction: Prediction) -> Candidate:
         nonlocal done
         refit = models.trial((*base.effects, prediction.effect), prediction.starts)
+        if strong:
+            refit = min([refit, *models.searched(refit, _strong(models, base, refit))], key=lambda r: r.here.error)
         done += 1
         report(Progress("trying", done, len(contenders) + _FINALISTS))
         return Candidate(prediction, refit if refit.finite else None)
@@ -98,15 +106,21 @@ def rank(models: Models, base: Refit, names: Iterable[str], report: Report, thor
 
 def _elsewhere(models: Models, base: Refit, candidate: Candidate) -> Candidate:
     """The candidate, refitted from strong effects too where its error stays above the noise: there are local optima."""
-    refit, symbol = candidate.refit, models.strength(candidate.effect)
+    refit = candidate.refit
     if refit is None or models.at_floor(refit):
         return candidate
-    lower, upper = refit.fitness.space.bounds(refit.values)[symbol]
-    end = lower if refit.values[symbol] < 0 else upper
-    other = models.best_of(refit, [{**base.values, symbol: share * end} for share in _STRONG])
+    other = models.best_of(refit, _strong(models, base, refit))
     if other is None:
         return candidate
     return replace(candidate, refit=other, gain=gain(base.held_out, other.held_out))
+
+
+def _strong(models: Models, base: Refit, refit: Refit) -> list[dict[str, float]]:
+    """The model without the effect that a refit added, and that effect at large strengths of the refit's sign."""
+    symbol = models.strength(refit.effects[-1])
+    lower, upper = refit.fitness.space.bounds(refit.values)[symbol]
+    end = lower if refit.values[symbol] < 0 else upper
+    return [{**base.values, symbol: share * end} for share in _STRONG]
 
 
 def _promises(prediction: Prediction) -> bool:

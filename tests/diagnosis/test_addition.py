@@ -16,8 +16,9 @@ class Judged:
     effects = ("a", "b", "c")
     floor = 0.1
 
-    def __init__(self, scores: dict[str, float], needed: set[str]) -> None:
+    def __init__(self, scores: dict[str, float], needed: set[str], far: str) -> None:
         self.scores, self.needed = {"abc": 2.0, "ac": 2.0, "bc": 2.0, "c": 2.0} | scores, needed
+        self.far = far  # effects that are found from a strong effect alone
 
     def refit(self, effects, _start):
         """A refit that knows its effects and score."""
@@ -41,8 +42,9 @@ class Judged:
         """An effect has one parameter of its own name."""
         return effect
 
-    def rank(self, _models, base, names, _report, _thorough):
+    def rank(self, _models, base, names, _report, _thorough, strong):
         """An effect helps where the score falls."""
+        names = [name for name in names if strong or name not in self.far]
         refits = sorted((self.refit((*base.effects, name), {}) for name in names), key=lambda r: r.held_out.score)
         before = base.held_out.score
         helps = [r.held_out.score < before and not {"b", "c"} <= set(r.effects) for r in refits]
@@ -61,8 +63,8 @@ class Judged:
 def added(monkeypatch):
     """The effects that are added for given scores and needs."""
 
-    def of(scores: dict[str, float], needed: set[str]) -> set[str]:
-        judged = Judged(scores, needed)
+    def of(scores: dict[str, float], needed: set[str], far: str = "") -> set[str]:
+        judged = Judged(scores, needed, far)
         monkeypatch.setattr(addition, "rank", judged.rank)
         monkeypatch.setattr(addition, "gain", judged.gain)
         tried = Addition(judged, judged.refit((), {}), 2, lambda *_: None)  # type: ignore[arg-type]
@@ -87,6 +89,13 @@ def test_two_that_only_together_explain_the_data_are_found_where_a_third_came_fi
     """a alone does best, as a delay does for two lags, and leads nowhere; b and c together leave nothing."""
     scores = {"": 1.0, "a": 0.5, "b": 0.7, "c": 0.7, "ab": 0.6, "ac": 0.6, "bc": 0.05}
     assert added(scores, needed={"a", "b", "c"}) == {"b", "c"}
+
+
+def test_an_effect_that_shows_only_from_far_is_found_where_the_noise_is_not_reached(added):
+    """a helps at once and leaves much; b, whose refit from its promise ends where it began, leaves nothing."""
+    scores = {"": 1.0, "a": 0.7, "b": 0.5, "ab": 0.05}
+    assert added(scores, needed={"a", "b"}, far="b") == {"a", "b"}
+    assert added({**scores, "a": 0.1}, needed={"a", "b"}, far="b") == {"a"}  # the noise is reached without
 
 
 def test_nothing_is_tried_two_at_a_time_where_one_leaves_nothing(added):
