@@ -265,6 +265,22 @@ def held_mean(command, t, h, rate):
 
 
 @njit(cache=True)
+def jump_of(command, t, h, rate, linear_hold, late):
+    """By how much a command jumps in a sub-step, and when: as a share of it.
+
+    The lead makes a kick of a jump, which goes to both ends of the sub-step so that its mean time is right. A record
+    that is not late does not jump where it begins: what was before it is not known.
+    """
+    n = max(int(np.ceil(t * rate - 1e-9)), 0)
+    share = (n / rate - t) / h
+    if share >= 1 - 1e-9 or n >= len(command) or (n > 0 and linear_hold) or (n == 0 and not late):
+        return 0.0, 0.0
+    if linear_hold:  # with the rise behind it: the sub-step in which a record begins has no slope of its own
+        return command_at(command, t + h, rate, True), max(share, 0.0)
+    return command[n] - (command[n - 1] if n > 0 else 0.0), max(share, 0.0)
+
+
+@njit(cache=True)
 def command_at(command, t, rate, linear_hold):
     if t < 0:
         return 0.0
@@ -298,15 +314,17 @@ def integrate(  # noqa: PLR0912, PLR0915  the whole story of a step in one place
     h = 1 / (rate * substeps)
     history = np.zeros((len(command) * substeps + 3, 2))
     history[-1, 0] = h
-    play, previous = 0.0, command[0]
+    play, kick = 0.0, 0.0
     for sample in range(len(command)):
-        if not linear_hold and f.lead_Td > 0:
-            s[Q] += cell.gain * f.lead_Td * (command[sample] - previous) / plant.tau
-            previous = command[sample]
         for step in range(substeps):
             t = (sample * substeps + step) * h
             here = sample * substeps + step
             start = t - f.command_delay_T
+            if f.lead_Td > 0:
+                jump, share = jump_of(command, start, h, rate, linear_hold, f.command_delay_T > 0)
+                jump *= cell.gain * f.lead_Td / plant.tau
+                s[Q] += kick + (1 - share) * jump
+                kick = share * jump
             u0 = command_at(command, start, rate, True) if linear_hold else held_mean(command, start, h, rate)
             slope = 0.0
             if linear_hold:

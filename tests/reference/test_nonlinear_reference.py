@@ -143,6 +143,25 @@ def test_the_agreement_is_not_blind(name):
     )
 
 
+class LateLead(plain_effects.CommandDelay, plain_effects.Lead):
+    """What the lead makes of the jumps of a late command, its first one among them."""
+
+
+@pytest.mark.parametrize("run", [0, 1], ids=[hold for _, hold in RUNS])
+def test_a_lead_sees_the_jumps_of_a_late_command(run):
+    """The two effects of the controller of which one changes what the other differentiates."""
+    cell, hold = RUNS[run]
+    given = command("command_delay", run, SAMPLES)
+    wanted = plain_machine.respond(LateLead(PLANT, cell, {"T": 1.7e-3, "Td": 2e-3}), given, RATE, hold)
+    hidden = reference.named({"command_delay.T": 1.7e-3, "lead.Td": 2e-3})
+    usual, fine = (
+        miss(np.array(reference.respond(PLANT, hidden, cell, given, hold, RATE, steps)), wanted)
+        for steps in (STEPS, 4 * STEPS)
+    )
+    assert usual < 2 * KINKS.error  # a kick inside a sub-step goes to both of its ends
+    assert fine < usual / KINKS.gain
+
+
 def miss(got: np.ndarray, wanted: np.ndarray) -> float:
     """The largest of the three outputs' deviations, each over its own standard deviation."""
     return float(np.max(np.std(got - wanted, axis=1) / np.std(wanted, axis=1)))
