@@ -9,7 +9,7 @@ SPECIMEN_HYSTERESIS = Effect(
     meaning="the specimen yields and dissipates, after Bouc and Wen",
     strength=Parameter("force", "fy", "N", 0.0, 500.0, 0.0, "yield force"),
     texts=(
-        "z' = v / xy * (1 - abs(z)**n * (0.5 + 0.5 * sgn(v * z)))",
+        "z' = vL / xy * (1 - abs(z)**n * (0.5 + 0.5 * sgn(vL * z)))",
         "S = S + fy * z",
     ),
     shape=(

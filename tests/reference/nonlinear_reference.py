@@ -320,7 +320,7 @@ def integrate(  # noqa: PLR0912, PLR0915  the whole story of a step in one place
             t = (sample * substeps + step) * h
             here = sample * substeps + step
             start = t - f.command_delay_T
-            if f.lead_Td > 0:
+            if f.lead_Td > 0 and f.valve_rate_limit_a == 0:  # a valve of limited rate does not follow a kick
                 jump, share = jump_of(command, start, h, rate, linear_hold, f.command_delay_T > 0)
                 jump *= cell.gain * f.lead_Td / plant.tau
                 s[Q] += kick + (1 - share) * jump
