@@ -64,15 +64,20 @@ class Sensitivities:
         fitness.begin({name: float(value[0]) for name, value in values.items()})
 
         def of_share(runs: tuple[Run, ...]) -> list[_Columns]:
+            measured = np.array([run.measured - run.measured.mean() for run in runs])
+            released = fitness.released(runs, values, steps)
+            Z = np.ones((len(runs), released.shape[1] + 1, runs[0].length))
             with np.errstate(over="ignore", invalid="ignore"):
-                rows = np.concatenate([rows for rows, _, _ in fitness.released(runs, values, steps).outputs()])
-                moved = rows[:, :, 1:] - rows[:, :, :1]
-                moved[:, :, : len(strides)] /= strides
-                measured = np.column_stack([run.measured - run.measured.mean() for run in runs])
-                residual = (measured - rows[:, :, 0])[:, :, None]
-                Z = np.concatenate([moved, np.ones_like(residual), residual], axis=2).transpose(1, 2, 0)
-                Z = np.where(np.sum(Z * Z, axis=2, keepdims=True) < _LARGEST, Z, 0.0)
-            gram = Z @ Z.transpose(0, 2, 1)
+                for rows, first, last in released.outputs():  # block by block: records may be long
+                    outputs = rows.transpose(1, 2, 0)
+                    Z[:, :-2, first:last] = outputs[:, 1:] - outputs[:, :1]
+                    Z[:, -1, first:last] = measured[:, first:last] - outputs[:, 0]
+                Z[:, : len(strides)] /= strides[:, None]
+                gram = Z @ Z.transpose(0, 2, 1)
+                unsound = ~(np.diagonal(gram, axis1=1, axis2=2) < _LARGEST)
+            Z[unsound] = 0.0
+            gram[unsound] = 0.0
+            gram.transpose(0, 2, 1)[unsound] = 0.0
             return [_Columns(*parts) for parts in zip(Z, gram, removal(gram, len(strides)), strict=True)]
 
         todo = list(fitness.together(len(strides) + 1 + len(fitness.chain.states)))
