@@ -70,8 +70,8 @@ def read_fit(path: Path) -> FitResult:
 
 def show(rows: list[tuple[str, str, float, float]], error: Any) -> None:
     """Print the error of every run and the means."""
-    from app.cli.numbers import percent
     from app.cli.tables import output, table
+    from ident.percent import percent
 
     lines = [(name, use, percent(of_run), percent(offset)) for name, use, of_run, offset in rows]
     lines += [("mean", use, percent(mean), "") for use, mean in error.items() if mean is not None]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from app.cli.numbers import percent
 from app.cli.tables import output, table
+from ident.percent import percent
 
 if TYPE_CHECKING:
     from ident.diagnosis.result import Diagnosis, Found, Ranked

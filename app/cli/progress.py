@@ -9,7 +9,7 @@ from contextlib import contextmanager, nullcontext
 from functools import partial
 
 from app.cli.interrupts import heed
-from app.cli.numbers import percent
+from ident.percent import percent
 from ident.progress import Progress, Report
 
 SILENCE = 5.0  # s between two plain lines of one stage

@@ -10,8 +10,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from app.cli.numbers import percent
 from ident.fit.result import Estimate, FitResult
+from ident.percent import percent
 
 if TYPE_CHECKING:
     from ident.bench.acceptance import Line

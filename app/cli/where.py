@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.cli.numbers import percent
 from app.cli.tables import output, table
+from ident.percent import percent
 
 if TYPE_CHECKING:
     from ident.residuals.budget import Budget

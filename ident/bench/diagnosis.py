@@ -14,9 +14,10 @@ from ident.bench.outputs import errors_of, model_of, noise_floor
 from ident.bench.records import Record, bench_set
 from ident.diagnosis.chance import gain
 from ident.diagnosis.result import Diagnosis, Found, Ranked, Rung, Verdict
-from ident.diagnosis.words import percent, verdict_text
+from ident.diagnosis.words import verdict_text
 from ident.fit.result import FitResult
 from ident.matrix import Matrix
+from ident.percent import percent
 from ident.presets.kononykhin import KONONYKHIN
 from ident.progress import Progress, Report, silent
 

@@ -176,11 +176,7 @@ class Addition:
         self.groups = {}
         for name in self.added:
             here = self.found
-            ranking = self.ranking
-            if len(here.effects) - len(self.base.effects) > 1 or self.ranking[0].refit is not here:
-                effects = tuple(e for e in here.effects if e != name)
-                others = self.models.refit(effects, _without(here.values, name))
-                ranking = self._rank(others, thorough=False)
+            ranking = self._in_place_of(name)
             best = next((c for c in ranking if c.refit is not None), None)
             if best is None or best.refit is None:
                 continue
@@ -189,6 +185,14 @@ class Addition:
                 return True
             self.groups[name] = _group(name, here, ranking)
         return False
+
+    def _in_place_of(self, name: str) -> list[Candidate]:
+        """What could stand in the place of an added effect, ranked: what it was chosen from, where it came first."""
+        here = self.found
+        if self.ranking[0].refit is here:
+            return self.ranking
+        effects = tuple(e for e in here.effects if e != name)
+        return self._rank(self.models.refit(effects, _without(here.values, name)), thorough=False)
 
 
 def _without(values: Mapping[str, float], effect: str) -> dict[str, float]:

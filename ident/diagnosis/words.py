@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.suspects import Suspect
 from ident.effect import Effect
+from ident.percent import percent
 
 
 def why(candidate: Candidate, effect: Effect, before: float, floor: float | None, best: bool) -> str:
@@ -52,8 +53,3 @@ def verdict_text(
     if unexplained:
         parts.append("Something is left that none of the listed effects explains.")
     return " ".join(parts)
-
-
-def percent(value: float | None) -> str:
-    """A fraction in per cent."""
-    return "–" if value is None else f"{100 * value:.3g} %"

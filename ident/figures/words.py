@@ -7,15 +7,14 @@ from collections.abc import Iterable
 
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Run, Specimen
+from ident.percent import percent as in_percent
 
 _TIDY = {"^3": "³", "^2": "²", "*": "·"}  # a raised 4 is missing from too many fonts
 
 
 def percent(fraction: float | None) -> str:
-    """0.0407 → "4.07 %"; three significant digits, "unknown" where there is none."""
-    if fraction is None or not math.isfinite(fraction):
-        return "unknown"
-    return f"{100 * fraction:#.3g}".rstrip(".").replace("-", "−") + " %"
+    """0.0407 → "4.07 %", with a printer's minus; "unknown" where there is none."""
+    return in_percent(fraction, "unknown").replace("-", "−")
 
 
 def tidy_unit(unit: str) -> str:
