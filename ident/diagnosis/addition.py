@@ -19,7 +19,7 @@ from ident.progress import Progress, Report
 
 MOST = 6  # effects that are added
 USUAL = 4  # where the user says nothing
-_WEIGHED = 3  # effects that are weighed against others in their place: of more the data tell too little
+_WEIGHED = 3  # effects that are weighed against others in their place each time: more take long
 _ROUNDS = 3  # of replacing
 _PAIRED = 5  # finalists that are tried two at a time
 _SHARES = (1.0, 0.3, 0.03)  # of the second's strength alone
@@ -55,7 +55,7 @@ class Addition:
         """Add, take out, replace, until nothing helps; where the noise is not reached, look farther and go on."""
         self.steps = [self.base]
         self._rounds()
-        for farther in (self._stronger, self._paired):
+        for farther in (self._weighed, self._stronger, self._paired):
             if self.models.floor is not None and not self.models.at_floor(self.found) and farther():
                 self._rounds()
         return self
@@ -107,6 +107,10 @@ class Addition:
             self.steps.append(best.refit)
             if self._backward(best.effect):
                 break
+
+    def _weighed(self) -> bool:
+        """Weigh as many effects as are not weighed otherwise, once; True where one was replaced."""
+        return len(self.added) > _WEIGHED and self._replaced()
 
     def _stronger(self) -> bool:
         """Go on with an effect that helps only where its refit begins with a strong one."""
@@ -182,6 +186,7 @@ class Addition:
                 continue
             if best.effect != name and gain(here.held_out, best.refit.held_out).beyond_chance:
                 self.steps.append(best.refit)
+                self._backward(best.effect)
                 return True
             self.groups[name] = _group(name, here, ranking)
         return False

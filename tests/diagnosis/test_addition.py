@@ -16,9 +16,9 @@ class Judged:
     effects = ("a", "b", "c")
     floor = 0.1
 
-    def __init__(self, scores: dict[str, float], needed: set[str], far: str) -> None:
+    def __init__(self, scores: dict[str, float], needed: set[str], far: str, late: str) -> None:
         self.scores, self.needed = {"abc": 2.0, "ac": 2.0, "bc": 2.0, "c": 2.0} | scores, needed
-        self.far = far  # effects that are found from a strong effect alone
+        self.far, self.late = far, late  # effects found only from strong ones; only beside another
 
     def refit(self, effects, _start):
         """A refit that knows its effects and score."""
@@ -44,7 +44,7 @@ class Judged:
 
     def rank(self, _models, base, names, _report, _thorough, strong):
         """An effect helps where the score falls."""
-        names = [name for name in names if strong or name not in self.far]
+        names = [name for name in names if (strong or name not in self.far) and (base.effects or name not in self.late)]
         refits = sorted((self.refit((*base.effects, name), {}) for name in names), key=lambda r: r.held_out.score)
         before = base.held_out.score
         helps = [r.held_out.score < before and not {"b", "c"} <= set(r.effects) for r in refits]
@@ -63,8 +63,8 @@ class Judged:
 def added(monkeypatch):
     """The effects that are added for given scores and needs."""
 
-    def of(scores: dict[str, float], needed: set[str], far: str = "") -> set[str]:
-        judged = Judged(scores, needed, far)
+    def of(scores: dict[str, float], needed: set[str], far: str = "", late: str = "") -> set[str]:
+        judged = Judged(scores, needed, far, late)
         monkeypatch.setattr(addition, "rank", judged.rank)
         monkeypatch.setattr(addition, "gain", judged.gain)
         tried = Addition(judged, judged.refit((), {}), 2, lambda *_: None)  # type: ignore[arg-type]
@@ -96,6 +96,12 @@ def test_an_effect_that_shows_only_from_far_is_found_where_the_noise_is_not_reac
     scores = {"": 1.0, "a": 0.7, "b": 0.5, "ab": 0.05}
     assert added(scores, needed={"a", "b"}, far="b") == {"a", "b"}
     assert added({**scores, "a": 0.1}, needed={"a", "b"}, far="b") == {"a"}  # the noise is reached without
+
+
+def test_what_a_replacement_makes_needless_is_taken_out(added):
+    """c, which showed only beside b, takes the place of a; with it b gains nothing."""
+    scores = {"": 1.0, "a": 0.7, "b": 0.8, "c": 0.05, "ab": 0.2, "bc": 0.05}
+    assert added(scores, needed=set(), late="c") == {"c"}
 
 
 def test_nothing_is_tried_two_at_a_time_where_one_leaves_nothing(added):
