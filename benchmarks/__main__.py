@@ -1,9 +1,10 @@
-"""`python -m benchmarks [NAME ...]`: run them and print the tables; with all of them, write docs/benchmarks.md."""
+"""`python -m benchmarks [NAME ...]`: run them, print the tables and renew their sections of docs/benchmarks.md."""
 
 from __future__ import annotations
 
 import os
 import platform
+import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -37,18 +38,27 @@ def main(names: list[str]) -> int:
     if unknown:
         print(f"no benchmark {', '.join(sorted(unknown))}; choose from {', '.join(ALL)}", file=sys.stderr)
         return 2
-    tables = []
+    met = True
     for name in names or ALL:
-        tables.append(ALL[name]())
-        print(tables[-1].markdown(), flush=True)
-    if not names:
-        load = os.getloadavg()[0]
-        machine = (
-            f"{os.cpu_count()} cores ({platform.machine()}), Python {platform.python_version()}; "
-            f"load average at the end {load:.1f}."
-        )
-        PAGE.write_text("\n".join([HEAD, machine, "", *(table.markdown() for table in tables)]), encoding="utf-8")
-    return 0 if all(table.met for table in tables) else 1
+        table = ALL[name]()
+        met = met and table.met
+        section = f"{table.markdown()}\nMeasured on {machine()}.\n"
+        print(section, flush=True)
+        PAGE.write_text(renewed(PAGE.read_text(encoding="utf-8"), section), encoding="utf-8")
+    return 0 if met else 1
+
+
+def machine() -> str:
+    """What a section was measured on, and how busy it was."""
+    cores = f"{os.cpu_count()} cores ({platform.machine()}), Python {platform.python_version()}"
+    return f"{cores}; load average at the end {os.getloadavg()[0]:.1f}"
+
+
+def renewed(page: str, section: str) -> str:
+    """The page with a section in the place of the one of the same title, or behind all others."""
+    _, *old = re.split(r"^(?=## )", page, flags=re.MULTILINE)
+    sections = {text.partition("\n")[0]: text.rstrip() for text in [*old, section]}
+    return "\n\n".join([HEAD.rstrip(), *sections.values()]) + "\n"
 
 
 if __name__ == "__main__":
