@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from ident.grammar import FUNCTIONS, parsed, refused
+from ident.grammar import FUNCTIONS, parsed, refused, tree_of
 
 
 @dataclass(frozen=True)
@@ -101,4 +101,4 @@ def _replaced(text: str, values: Mapping[str, ast.expr]) -> str:
         def visit_Name(self, node: ast.Name) -> ast.expr:
             return values.get(node.id, node)
 
-    return ast.unparse(Replace().visit(ast.parse(text, mode="eval")))
+    return ast.unparse(Replace().visit(tree_of(text)))

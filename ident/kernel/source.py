@@ -15,7 +15,7 @@ from typing import Any
 
 from ident.chain import FORCE, INPUT, INPUT_RATE, STEP, Chain
 from ident.errors import Unusable
-from ident.grammar import DYNAMIC, FUNCTIONS, TABLES, TIME
+from ident.grammar import DYNAMIC, FUNCTIONS, TABLES, TIME, tree_of
 from ident.interpolation import coefficient
 
 
@@ -50,7 +50,7 @@ class Source:
         return f"t{self.temporaries}"
 
     def _text(self, text: str) -> str:
-        return self._constant(ast.parse(text, mode="eval").body)
+        return self._constant(tree_of(text))
 
     def _constant(self, node: ast.expr) -> str:
         """The local name of an expression of symbols only, which is computed once for each lane, outside the loop."""

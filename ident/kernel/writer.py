@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from ident.chain import FORCE, INPUT, INPUT_RATE, STEP, friction
 from ident.expression import Equation
-from ident.grammar import TIME
+from ident.grammar import TIME, tree_of
 from ident.kernel.layout import HELD, LANES, SHARE, Filter, Kernel, filter_rows
 from ident.kernel.source import Source, named
 
@@ -160,7 +160,7 @@ class Writer(Source):
         stops inside the step it either stays, and friction takes just the momentum that is there, or it turns, after
         the share θ of the step, and friction with it. Where the limit depends on the speed it is taken in mid-step.
         """
-        limit, speed, acceleration, mass = (ast.parse(text, mode="eval").body for text in found)
+        limit, speed, acceleration, mass = (tree_of(text) for text in found)
         self._write(f"{force}_f", "0.0")
         for equation in _behind(_names(acceleration), needed, {force}):
             self._write(f"{equation.target}_f", self._lower(equation.tree, "f"))
