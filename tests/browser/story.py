@@ -29,7 +29,6 @@ def fit(page: Page) -> str:
 
 def search(page: Page, searching: Path | None = None, patience: float = LONG) -> Locator:
     """By keyboard: find what is missing; the first card, once it is there."""
-    page.wait_for_load_state()  # the button is drawn before the script that hears it has come
     page.get_by_role("button", name="Find what is missing").focus()
     page.keyboard.press("Enter")
     expect(page.get_by_role("progressbar", name="Progress of the diagnosis")).to_be_visible(timeout=LONG)

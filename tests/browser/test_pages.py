@@ -44,6 +44,22 @@ def test_a_figure_and_the_ground_follow_the_system_theme(page, site, fitted):
         assert (sum(map(int, re.findall(r"\d+", ground))) < 200) == (theme == "dark")
 
 
+def test_what_is_pressed_before_the_scripts_have_come_is_heard(page, site, fitted):
+    held = []
+    page.route(re.compile(r"/own\.js"), lambda route: held.append(route))
+    page.goto(f"{site.address}/fits/{fitted}", wait_until="commit")
+    own = page.locator("form[data-own]")
+    fields = {"Name": "overlap", "Strength, symbol": "h", "Unit": "mm", "Largest": "1", "Equation": "w = w - h"}
+    for label, text in fields.items():
+        own.get_by_label(label, exact=label != "Equation").fill(text)
+    for _ in range(2):
+        own.get_by_role("button", name="Check").click()
+    expect(own.locator("math")).to_have_count(0)
+    held[0].continue_()
+    expect(own.locator("math")).to_have_count(1)
+    assert page.url == f"{site.address}/fits/{fitted}"
+
+
 def test_a_running_fit_is_told_to_everybody(page, site, running, screenshots):
     page.goto(f"{site.address}/fits/{running}")
     expect(page.locator("[data-step]")).to_contain_text("of 10000", timeout=60_000)
