@@ -58,7 +58,17 @@ class Addition:
         for farther in (self._weighed, self._stronger, self._paired):
             if self.models.floor is not None and not self.models.at_floor(self.found) and farther():
                 self._rounds()
+        self._learned()
         return self
+
+    def _learned(self) -> None:
+        """Rank by what was met on the way: an effect alone, at a better optimum than the ranking found for it."""
+        alone = {step.effects[-1]: step for step in self.steps if len(step.effects) == len(self.base.effects) + 1}
+        for i, candidate in enumerate(self.ranking):
+            met, known = alone.get(candidate.effect), candidate.refit
+            if met is not None and (known is None or met.held_out.score < known.held_out.score):
+                self.ranking[i] = candidate.refitted(self.base, met)
+        self.ranking.sort(key=lambda candidate: candidate.score)
 
     def _rounds(self) -> None:
         self.groups = {}

@@ -50,6 +50,10 @@ class Candidate:
             return 0, self.refit.held_out.score
         return (1, self.trial.here.error) if self.trial is not None else (2, self.prediction.after.score)
 
+    def refitted(self, base: Refit, refit: Refit) -> Candidate:
+        """The candidate with a refit on all records, and what that gains over the model without the effect."""
+        return replace(self, refit=refit, gain=gain(base.held_out, refit.held_out))
+
 
 def rank(
     models: Models, base: Refit, names: Iterable[str], report: Report, thorough: bool = True, strong: bool = False
@@ -92,9 +96,7 @@ def rank(
         refit = models.refit((*base.effects, candidate.effect), candidate.trial.values)
         done += 1
         report(Progress("confirming", done, len(contenders) + len(finalists)))
-        if not refit.finite:
-            return replace(candidate, trial=None)
-        return replace(candidate, refit=refit, gain=gain(base.held_out, refit.held_out))
+        return candidate.refitted(base, refit) if refit.finite else replace(candidate, trial=None)
 
     found = sorted(each(final, finalists), key=lambda candidate: candidate.score)
     report(Progress("confirming", done, done + 1))
@@ -110,9 +112,7 @@ def _elsewhere(models: Models, base: Refit, candidate: Candidate) -> Candidate:
     if refit is None or models.at_floor(refit):
         return candidate
     other = models.best_of(refit, _strong(models, base, refit))
-    if other is None:
-        return candidate
-    return replace(candidate, refit=other, gain=gain(base.held_out, other.held_out))
+    return candidate if other is None else candidate.refitted(base, other)
 
 
 def _strong(models: Models, base: Refit, refit: Refit) -> list[dict[str, float]]:

@@ -46,7 +46,7 @@ def test_a_figure_and_the_ground_follow_the_system_theme(page, site, fitted):
 
 def test_what_is_pressed_before_the_scripts_have_come_is_heard(page, site, fitted):
     held = []
-    page.route(re.compile(r"/own\.js"), lambda route: held.append(route))
+    page.route(re.compile(r"/own\.js"), lambda route: held.extend([route]))  # a bound method cannot be marked
     page.goto(f"{site.address}/fits/{fitted}", wait_until="commit")
     own = page.locator("form[data-own]")
     fields = {"Name": "overlap", "Strength, symbol": "h", "Unit": "mm", "Largest": "1", "Equation": "w = w - h"}

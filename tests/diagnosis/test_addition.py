@@ -2,12 +2,32 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
 from ident.diagnosis import addition
 from ident.diagnosis.addition import Addition
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """A candidate: its refit, where it came that far, and whether it helps."""
+
+    effect: str
+    refit: Any
+    helps: bool
+
+    @property
+    def score(self):
+        """What it is sorted by."""
+        return (0, self.refit.held_out.score) if self.refit else (1, 0.0)
+
+    def refitted(self, _base, refit):
+        """It helps, since its refit was met on the way."""
+        return replace(self, refit=refit, helps=True)
 
 
 class Judged:
@@ -44,14 +64,15 @@ class Judged:
 
     def rank(self, _models, base, names, _report, _thorough, strong):
         """An effect helps where the score falls."""
-        names = [name for name in names if (strong or name not in self.far) and (base.effects or name not in self.late)]
-        refits = sorted((self.refit((*base.effects, name), {}) for name in names), key=lambda r: r.held_out.score)
-        before = base.held_out.score
-        helps = [r.held_out.score < before and not {"b", "c"} <= set(r.effects) for r in refits]
-        return [
-            SimpleNamespace(effect=r.effects[-1], refit=r, helps=help_, score=(0, r.held_out.score))
-            for r, help_ in zip(refits, helps, strict=True)
-        ]
+
+        def judged(name):
+            if (name in self.far and not strong) or (name in self.late and not base.effects):
+                return Judgement(name, None, helps=False)
+            refit = self.refit((*base.effects, name), {})
+            together = {"b", "c"} <= set(refit.effects)
+            return Judgement(name, refit, helps=refit.held_out.score < base.held_out.score and not together)
+
+        return sorted(map(judged, names), key=lambda candidate: candidate.score)
 
     def gain(self, less, more):
         """Whether an effect that only one of them has was needed, or the other does better by far."""
@@ -60,17 +81,22 @@ class Judged:
 
 
 @pytest.fixture
-def added(monkeypatch):
-    """The effects that are added for given scores and needs."""
+def searched(monkeypatch):
+    """The additions for given scores and needs."""
 
-    def of(scores: dict[str, float], needed: set[str], far: str = "", late: str = "") -> set[str]:
+    def of(scores: dict[str, float], needed: set[str], far: str = "", late: str = "") -> Addition:
         judged = Judged(scores, needed, far, late)
         monkeypatch.setattr(addition, "rank", judged.rank)
         monkeypatch.setattr(addition, "gain", judged.gain)
-        tried = Addition(judged, judged.refit((), {}), 2, lambda *_: None)  # type: ignore[arg-type]
-        return set(tried.run().added)
+        return Addition(judged, judged.refit((), {}), 2, lambda *_: None).run()  # type: ignore[arg-type]
 
     return of
+
+
+@pytest.fixture
+def added(searched):
+    """The effects that are added."""
+    return lambda *given, **more: set(searched(*given, **more).added)
 
 
 def test_what_a_later_effect_makes_needless_is_taken_out(added):
@@ -96,6 +122,15 @@ def test_an_effect_that_shows_only_from_far_is_found_where_the_noise_is_not_reac
     scores = {"": 1.0, "a": 0.7, "b": 0.5, "ab": 0.05}
     assert added(scores, needed={"a", "b"}, far="b") == {"a", "b"}
     assert added({**scores, "a": 0.1}, needed={"a", "b"}, far="b") == {"a"}  # the noise is reached without
+
+
+def test_an_effect_that_was_met_on_the_way_is_ranked_by_what_was_met(searched):
+    """b, which the first ranking had no refit of, is all that stays: it stands first, not a."""
+    scores = {"": 1.0, "a": 0.7, "b": 0.05, "c": 0.8, "ab": 0.05}
+    found = searched(scores, needed={"b"}, far="b")
+    assert found.added == ("b",)
+    assert [candidate.effect for candidate in found.ranking] == ["b", "a", "c"]
+    assert found.ranking[0].refit is found.found
 
 
 def test_what_a_replacement_makes_needless_is_taken_out(added):
