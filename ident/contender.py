@@ -16,7 +16,7 @@ from ident.fit.record import Moments
 from ident.fit.settings import Settings
 from ident.fit.space import search_space
 from ident.matrix import Matrix, Run
-from ident.noise import noise_floor
+from ident.noise import like_transducer, noise_floor
 from ident.parallel import each
 from ident.presets import Preset
 
@@ -32,13 +32,9 @@ def deviation_of_noise(runs: Sequence[Run], band: float, noise: float) -> Deviat
 
     `noise` is the mean relative floor, which stands where the records do not show theirs.
     """
-    floors = each(lambda run: noise_floor(run, band), runs)
     sizes = np.array([np.std(run.measured) for run in runs])
-    seen = np.array([np.nan if floor is None else floor for floor in floors])
-    steady = float(np.exp(np.mean(np.log(noise * sizes))))
-    if len(runs) < 3 or not np.all(seen > 0):
-        return lambda size: noise * size
-    if np.std(np.log(seen * sizes)) < np.std(np.log(seen)):
+    if like_transducer(sizes, each(lambda run: noise_floor(run, band), runs)):
+        steady = float(np.exp(np.mean(np.log(noise * sizes))))
         return lambda _size: steady
     return lambda size: noise * size
 

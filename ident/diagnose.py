@@ -29,7 +29,7 @@ from ident.fit.settings import Settings
 from ident.fit.space import Space
 from ident.fit.uncertainty import covariance
 from ident.matrix import Matrix
-from ident.noise import averaged
+from ident.noise import averaged, repeated
 from ident.progress import Expected, Progress, Report, silent
 from ident.spectra import excited_band
 
@@ -80,7 +80,8 @@ class Work:
         unexplained = self._unexplained(addition)
         groups = tuple(tuple(c.effect for c in group) for group in addition.groups.values() if len(group) > 1)
         base = addition.base
-        text = verdict_text(addition.added, groups, doubted, unexplained, ladder[-1].error, base.error)
+        text = verdict_text(addition.added, groups, doubted, unexplained, ladder[-1].error, base.error,
+                            repeats=bool(repeated(self.models.matrix.runs)))  # fmt: skip
         return Diagnosis(
             model=self.fit.model,
             given=base.effects,

@@ -1,17 +1,28 @@
-"""The noise floor: how small eq. (17) can become on a run, read off the record where the command has no power."""
+"""The noise floor: how small eq. (17) can become on a run.
+
+Where a command was measured twice, noise is what does not repeat. Without repeats it is read off the record where the
+command has no power.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from itertools import combinations
 
 import numpy as np
 import scipy.signal
+from numpy.typing import NDArray
 
 from ident.matrix import USES, Matrix, Run
 from ident.parallel import each
 
+Array = NDArray[np.float64]
 _CLEAR = 1.6  # times the band edge: beyond it a Hann window lets less than 1e-6 of the band's power through
 _LEAST = 0.2  # of the Nyquist frequency must be left above that, to average over
+_SAME = 1e-3  # relative difference of two commands that are one
+_GLANCE = 64  # samples that show most commands to be different
+_SETTLED = 0.1  # of a record, in which the states that it begins with die away
+_FEW, _OF_ONE_SIZE = 3, 0.02  # records, and their spread in logarithms, from which nothing is told of the noise's size
 
 
 def noise_floor(run: Run, band: float) -> float | None:
@@ -32,13 +43,66 @@ def noise_floor(run: Run, band: float) -> float | None:
 
 def noise_floors(matrix: Matrix, band: float) -> Mapping[str, float | None]:
     """The noise floor averaged over the runs of each use; None where it cannot be told of every run."""
-    return averaged(matrix, floors_by_run(matrix, band))
+    return averaged(matrix, floors_by_run(matrix.runs, band))
 
 
-def floors_by_run(matrix: Matrix, band: float) -> Mapping[str, float | None]:
-    """The noise floor of each run by its id."""
-    floors = each(lambda run: noise_floor(run, band), matrix.runs)
-    return {run.id: floor for run, floor in zip(matrix.runs, floors, strict=True)}
+def floors_by_run(runs: Sequence[Run], band: float, left_out: Collection[str] = ()) -> Mapping[str, float | None]:
+    """The noise floor of each run by its id; `left_out` are ids of runs whose repeats are not trusted.
+
+    From repeats: half the power of their difference, the median over the pairs, for all runs; in the unit of the
+    displacement or in proportion to it, as the pairs say, or where these are few, the spectra.
+    """
+    seen = each(lambda run: noise_floor(run, band), runs)
+    pairs = repeated([run for run in runs if run.id not in left_out])
+    if not pairs:
+        return {run.id: floor for run, floor in zip(runs, seen, strict=True)}
+    powers = np.array([0.5 * np.var(_settled(a.measured, b) - _settled(b.measured, a)) for a, b in pairs])
+    shares = powers / [0.5 * (np.var(a.measured) + np.var(b.measured)) for a, b in pairs]
+    sizes = np.array([np.std(run.measured) for run in runs])
+    steady = like_transducer(np.sqrt(powers / shares), list(np.sqrt(shares)))
+    if steady is None:
+        steady = like_transducer(sizes, seen)
+    floors = np.full(len(runs), np.sqrt(np.median(shares))) if steady is False else np.sqrt(np.median(powers)) / sizes
+    return {run.id: float(floor) for run, floor in zip(runs, floors, strict=True)}
+
+
+def repeated(runs: Sequence[Run]) -> list[tuple[Run, Run]]:
+    """Pairs of runs of one use, specimen, gain and command: not the same record under two names.
+
+    A run to verify is not taken for a repeat of one to fit: something was changed on purpose, such as an added load.
+    """
+    groups: dict[object, list[Run]] = {}
+    for run in runs:
+        groups.setdefault((run.use, run.specimen, run.gain, run.sample_rate), []).append(run)
+    return [pair for members in groups.values() for pair in combinations(members, 2) if _same(*pair)]
+
+
+def like_transducer(sizes: Array, floors: Sequence[float | None]) -> bool | None:
+    """Whether the noise is as large on every record, or in proportion to its size: whichever varies less.
+
+    `sizes` are standard deviations, `floors` those of the noise over them. None where that cannot be told.
+    """
+    known = np.array([np.nan if floor is None else floor for floor in floors])
+    if len(sizes) < _FEW or not np.all(known > 0) or np.std(np.log(sizes)) < _OF_ONE_SIZE:
+        return None
+    return bool(np.std(np.log(known * sizes)) < np.std(np.log(known)))
+
+
+def _same(a: Run, b: Run) -> bool:
+    if abs(a.length - b.length) > 0.1 * a.length:
+        return False
+    u, v = _settled(a.command, b), _settled(b.command, a)
+    thin = slice(None, None, 1 + len(u) // _GLANCE)
+    if np.std(u[thin] - v[thin]) > 3.0 * _SAME * np.std(u[thin]):  # most pairs differ at a glance
+        return False
+    different = not np.array_equal(_settled(a.measured, b), _settled(b.measured, a))
+    return different and bool(np.std(u - v) < _SAME * np.std(u))
+
+
+def _settled(samples: Array, other: Run) -> Array:
+    """What two records have in common once they have settled."""
+    count = min(len(samples), other.length)
+    return samples[int(_SETTLED * count) : count]
 
 
 def averaged(matrix: Matrix, floors: Mapping[str, float | None]) -> Mapping[str, float | None]:

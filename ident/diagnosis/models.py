@@ -141,7 +141,7 @@ class Models:
     @cached_property
     def floors(self) -> Mapping[str, float | None]:
         """The noise floor of each run of the matrix by its id."""
-        return floors_by_run(self.matrix, self.band)
+        return floors_by_run(self.matrix.runs, self.band, self.left_out)
 
     @property
     def floor(self) -> float | None:

@@ -30,9 +30,9 @@ def why(candidate: Candidate, effect: Effect, before: float, floor: float | None
 
 def verdict_text(
     added: Sequence[str], groups: Sequence[tuple[str, ...]], suspects: Sequence[Suspect], unexplained: bool,
-    errors: Mapping[str, float | None], before: float,
+    errors: Mapping[str, float | None], before: float, repeats: bool = True,
 ) -> str:  # fmt: skip
-    """The verdict in a few sentences."""
+    """The verdict in a few sentences; without `repeats` nobody knows how much noise lies in the command's band."""
     parts = []
     if added:
         names = " and ".join(", ".join(name.replace("_", " ") for name in added).rsplit(", ", 1))
@@ -52,4 +52,7 @@ def verdict_text(
         parts.append(f"Run {suspect.run} is doubted ({suspect.what}): {suspect.evidence}.")
     if unexplained:
         parts.append("Something is left that none of the listed effects explains.")
+        if not repeats:
+            parts.append("No command was measured twice: part of it may be noise in the command's band, "
+                         "which a repeated run would tell.")  # fmt: skip
     return " ".join(parts)

@@ -17,6 +17,7 @@ from ident.fit.result import Combination, Estimate, FitResult, Generation, RunEr
 from ident.fit.settings import Settings
 from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
 from ident.matrix import Run
+from ident.noise import repeated
 from ident.presets.preset import Combined
 from ident.simulate import MOST
 
@@ -165,7 +166,9 @@ def _notes(objective: Objective | OutputError, floors: Mapping[str, float | None
         )
     if objective.matrix.actuator.piston_area is None and objective.preset.without_area:
         notes.append("Piston area unknown: only ratios to it are determined, and parameters are given as such.")
-    if floors["fit"] is None:
+    if repeated(objective.matrix.runs):
+        notes.append("Noise floor from repeats of the same command: what does not repeat.")
+    elif floors["fit"] is None:
         notes.append("Noise floor unknown: the command has power up to nearly half the sample rate, "
                      "so no part of the spectrum shows the noise alone; repeat a run to measure it.")  # fmt: skip
     else:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from itertools import combinations, product
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from ident.compare import Comparison, RunComparison
 from ident.errors import Unusable
 from ident.matrix import Run
-from ident.noise import noise_floor
+from ident.noise import floors_by_run, repeated
 from ident.parallel import each
 from ident.residuals.coarse import averaged, stride
 from ident.spectra import excited_band
@@ -31,7 +31,6 @@ Array = NDArray[np.float64]
 _REACHES = (3, 8, 24)  # samples of the correction to either side of now; the best is taken
 _WIDTH = 2 * _REACHES[-1] + 1
 _STRETCHES = 8
-_SAME = 1e-3  # relative difference of two commands that are one
 _LEVELS = (1e-8, 1e-6, 1e-4, 1e-2)  # of the diagonal, against directions that are hardly excited; the best is taken
 
 
@@ -72,16 +71,19 @@ def budget(comparison: Comparison, use: str = "fit") -> Budget:
     sums = each(lambda run: _sums(run, count), runs)
     common = _left(squares, _gains(sums, [_condition(run.run) for run in runs], squares))
     own = _left(squares, _gains(sums, [(_condition(run.run), _amplitude(run.run)) for run in runs], squares))
-    measured, floor = _repeats(runs), _floors([run.run for run in runs])
-    noise = measured if measured is not None else floor
-    parts = _parts(float(np.mean(np.sqrt(squares))), common, own, noise, measured is not None)
+    everything = comparison.matrix.runs
+    floors = floors_by_run(everything, excited_band([run.run for run in runs]))
+    known = [floor for run in runs if (floor := floors[run.run.id]) is not None]
+    noise = float(np.mean(known)) if len(known) == len(runs) else None
+    measured = bool(repeated(everything))
+    parts = _parts(float(np.mean(np.sqrt(squares))), common, own, noise, measured)
     several = len({(_condition(run.run), _amplitude(run.run)) for run in runs}) > len({_condition(r.run) for r in runs})
     return Budget(
         noise=None if noise is None else parts["noise"][0],
         linear=parts["linear"][0],
         nonlinear=parts["nonlinear"][1],
         bounds=parts,
-        notes=tuple(_notes(measured is not None, floor is not None, several, parts)),
+        notes=tuple(_notes(measured, noise is not None, several, parts)),
     )
 
 
@@ -178,37 +180,3 @@ def _correction(total: Array, used: NDArray[np.intp], level: float) -> Array:
 def _taken(sums: Array, used: NDArray[np.intp], h: Array) -> float:
     """Σr² − Σ(r − h*y)²."""
     return float(2 * h @ sums[used, -1] - h @ sums[np.ix_(used, used)] @ h)
-
-
-# Noise ------------------------------------------------------------------------------------------------------------
-
-
-def _repeats(runs: Sequence[RunComparison]) -> float | None:
-    """Noise over the standard deviation, averaged over the runs, from pairs of runs of one command; None without."""
-    groups: dict[object, list[Run]] = {}
-    for compared in runs:
-        groups.setdefault(_condition(compared.run), []).append(compared.run)
-    pairs = [pair for members in groups.values() for pair in combinations(members, 2) if _same(*pair)]
-    if not pairs:
-        return None
-    powers = [0.5 * float(np.var(_cut(b.measured, a) - _cut(a.measured, b))) for a, b in pairs]
-    return float(np.mean([np.sqrt(np.mean(powers)) / np.std(run.run.measured) for run in runs]))
-
-
-def _cut(samples: Array, other: Run) -> Array:
-    return samples[: other.length]
-
-
-def _same(a: Run, b: Run) -> bool:
-    """One command, measured twice: not the same record under two names."""
-    if a.sample_rate != b.sample_rate or abs(a.length - b.length) > 0.1 * a.length:
-        return False
-    u, v = _cut(a.command, b), _cut(b.command, a)
-    different = not np.array_equal(_cut(a.measured, b), _cut(b.measured, a))
-    return different and bool(np.std(u - v) < _SAME * np.std(u))
-
-
-def _floors(runs: Sequence[Run]) -> float | None:
-    band = excited_band(runs)
-    found = [floor for floor in (noise_floor(run, band) for run in runs) if floor is not None]
-    return float(np.mean(found)) if len(found) == len(runs) else None

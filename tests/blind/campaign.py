@@ -2,7 +2,7 @@
 
 python -m tests.blind.campaign one --noise 0.01 --level 3 --seeds 1 2   [--small] [--effects NAME …]
 python -m tests.blind.campaign none|two|three --seeds 1 2 3   [--small]
-python -m tests.blind.campaign outside|own|label --seeds 1 2 3
+python -m tests.blind.campaign outside|own|label|noise --seeds 1 2 3
 options: --minutes N (stop after), --out FILE
 """
 
@@ -14,19 +14,24 @@ import time
 from pathlib import Path
 from typing import Any
 
-from tests.blind.trial import NAMES, label, outside, own, several, single
+from tests.blind.noises import NOISES
+from tests.blind.trial import NAMES, label, noisy, outside, own, several, single
 from tests.blind.written import WRITTEN
 from tests.reference.outside_reference import Outside
 
-NAMED = {"one": NAMES, "outside": Outside._fields, "own": WRITTEN, "label": ("mass", "stiffness", "gain")}
-"""What is hidden in the trials of a kind, by name; the other kinds draw it."""
+NAMED = {
+    "one": NAMES, "outside": Outside._fields, "own": WRITTEN, "label": ("mass", "stiffness", "gain"),
+    "noise": tuple(NOISES),
+}  # fmt: skip
+"""What the trials of a kind are about, by name: what is hidden, but for noise; the other kinds draw it."""
+SMALL = ("one", "none", "two", "three")
 OUT = Path(__file__).parents[2] / "docs" / "blind-trials.jsonl"
 
 
 def key(row: dict[str, Any]) -> tuple[Any, ...]:
     """What a trial is told from others by."""
-    hidden = next(iter(row["hidden"]), "") if row["kind"] in NAMED else ""
-    return row["kind"], row["matrix"], row["noise"], row.get("level"), row["seed"], hidden
+    name = row.get("of") or (next(iter(row["hidden"]), "") if row["kind"] in NAMED else "")
+    return row["kind"], row["matrix"], row["noise"], row.get("level"), row["seed"], name
 
 
 def rows(path: Path = OUT) -> list[dict[str, Any]]:
@@ -58,7 +63,7 @@ def show(row: dict[str, Any]) -> None:
 def main() -> None:
     """Run what is asked for and is not there yet."""
     parser = argparse.ArgumentParser()
-    parser.add_argument("kind", choices=("one", "none", "two", "three", "outside", "own", "label"))
+    parser.add_argument("kind", choices=(*NAMED, "none", "two", "three"))
     parser.add_argument("--noise", type=float, default=0.01)
     parser.add_argument("--level", type=float, default=3.0)
     parser.add_argument("--seeds", type=int, nargs="+", default=[1])
@@ -71,14 +76,16 @@ def main() -> None:
     end = time.monotonic() + 60 * asked.minutes
     for seed in asked.seeds:
         for name in asked.effects or NAMED.get(asked.kind, ("",)):
-            matrix = "small" if asked.small and asked.kind in ("one", "none", "two", "three") else "full"
+            small = (asked.small and asked.kind in SMALL) or asked.kind == "noise"
+            matrix = "small" if small else "full"
             level = asked.level if asked.kind == "one" else None
             if (asked.kind, matrix, asked.noise, level, seed, name) in done or time.monotonic() > end:
                 continue
             if asked.kind == "one":
                 row = single(name, asked.level, asked.noise, asked.small, seed)
             elif asked.kind in NAMED:
-                row = {"outside": outside, "own": own, "label": label}[asked.kind](name, seed, asked.noise)
+                of = {"outside": outside, "own": own, "label": label, "noise": noisy}
+                row = of[asked.kind](name, seed, asked.noise)
             else:
                 row = several({"none": 0, "two": 2, "three": 3}[asked.kind], seed, asked.noise, asked.small)
             add(row, asked.out)

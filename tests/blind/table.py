@@ -11,6 +11,7 @@ import numpy as np
 from scipy.stats import beta
 
 from tests.blind.campaign import OUT, rows
+from tests.blind.noises import NOISES
 
 PAGE = OUT.with_suffix(".md")
 Row = dict[str, Any]
@@ -66,6 +67,17 @@ def levels(tried: Sequence[Row]) -> Iterable[str]:
         yield f"| {cell[0]} | {100 * cell[1]:g} % | {cell[2]:g} | {rate(found)} |"
 
 
+def noises(tried: Sequence[Row]) -> Iterable[str]:
+    """Noise of other kinds than white, with nothing hidden and with one effect."""
+    yield "| noise | nothing hidden, nothing named | rate in % | one effect hidden, named | rate in % |"
+    yield "|---|---|---|---|---|"
+    for kind in NOISES:
+        found = [row for row in tried if row.get("of") == kind]
+        parts = [[row for row in found if bool(row["hidden"]) is wanted] for wanted in (False, True)]
+        if all(parts):
+            yield f"| {kind.replace('_', '-')} | {' | '.join(map(rate, parts))} |"
+
+
 def confusion(tried: Sequence[Row]) -> Iterable[str]:
     """What was named for each hidden effect."""
     yield "| hidden | named (trials) |"
@@ -92,7 +104,8 @@ def page(everything: Sequence[Row]) -> str:
     tried = [row for row in everything if row.get("reachable", True)]
     parts: list[tuple[str, Callable[[Sequence[Row]], Iterable[str]], Sequence[Row]]] = [
         ("Rates", summary, tried), ("One effect, by noise and size", levels, tried),
-        ("What was named", confusion, tried), ("Unreachable", unreachable, everything),
+        ("Noise of other kinds", noises, tried), ("What was named", confusion, tried),
+        ("Unreachable", unreachable, everything),
     ]  # fmt: skip
     head = (
         "# Blind trials\n\nWritten by `python -m tests.blind.table` from blind-trials.jsonl. Data come from the "

@@ -16,6 +16,7 @@ from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.matrix import Matrix, Run, Specimen
 from tests.blind.machines import OFFSET, Machine, as_fit, drawn_plant, matrix_of, offset_strength, strength_for
+from tests.blind.noises import NOISES, with_noise
 from tests.blind.written import written
 from tests.reference import qian_reference as linear
 from tests.reference.outside_reference import Outside, measure_all
@@ -120,6 +121,20 @@ def _mislabelled(run: Run, what: str, change: float) -> Run:
         return replace(run, gain=run.Kp * (1 + change))
     name = {"mass": "mass", "stiffness": "stiffness"}[what]
     return replace(run, specimen=replace(specimen, **{name: max(getattr(specimen, name) + change, 0.0)}))
+
+
+def noisy(kind: str, seed: int, share: float = 0.01) -> dict[str, Any]:
+    """Noise that is not white, on a small matrix; nothing hidden, with an odd seed one effect at 3 times the noise."""
+    rng = np.random.default_rng([seed, 5000 + tuple(NOISES).index(kind)])
+    machine = Machine(drawn_plant(rng), {}, share, True, int(rng.integers(1 << 30)))
+    hidden: dict[str, float] = {}
+    while seed % 2 and not hidden:
+        name = str(rng.choice([n for n in NAMES if n not in OFFSET]))
+        strength, reached = strength_for(machine, name, 3.0)
+        hidden = {name: strength} if reached >= _REACHED * 3.0 * share else {}
+    clean = replace(machine, hidden=hidden, noise=0.0).measured()
+    row = {"kind": "noise", "matrix": "small", "noise": share, "seed": seed, "of": kind, "hidden": hidden}
+    return row | judged(with_noise(clean, kind, share, seed), hidden)
 
 
 def outcome(machine: Machine) -> dict[str, Any]:

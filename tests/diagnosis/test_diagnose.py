@@ -14,6 +14,7 @@ from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from tests.blind.machines import Machine, matrix_of
+from tests.blind.noises import with_noise
 from tests.reference import outside_reference as outside
 from tests.reference import qian_reference as linear
 
@@ -77,6 +78,19 @@ def test_with_nothing_hidden_nothing_is_added():
     assert found.verdict.suspects == ()
 
 
+def test_repeats_tell_that_what_is_left_is_noise_in_the_band():
+    """Low-passed noise: no spectrum shows it, but the runs that were measured twice do."""
+    clean = Machine(PLANT, {}, 0.0, small=True, seed=21).measured(seconds=1.0, every=4)
+    matrix = with_noise(clean, "low_passed", NOISE, seed=7, repeats=2)
+    fit = identify(matrix, Settings())
+    assert "Noise floor from repeats of the same command: what does not repeat." in fit.notes
+    found = diagnose(matrix, fit)
+    assert found.noise_floor["fit"] == pytest.approx(NOISE, rel=0.15)
+    assert found.verdict.effects == ()
+    assert not found.verdict.unexplained
+    assert found.verdict.text.startswith("Nothing is missing")
+
+
 def test_two_hidden_effects_are_both_found():
     found = diagnose(measured(dead_zone=2.5e-4, quadratic_damping=6e3))
     assert set(found.verdict.effects) == {"dead_zone", "quadratic_damping"}
@@ -108,6 +122,7 @@ def test_what_the_catalogue_does_not_hold_is_called_unexplained():
     found = diagnose(matrix_of(records, PLANT))
     assert found.ladder[0].error["fit"] > 1.5 * found.noise_floor["fit"]
     assert found.verdict.unexplained
+    assert "a repeated run would tell" in found.verdict.text
 
 
 def test_the_same_matrix_gives_the_same_diagnosis():
