@@ -16,7 +16,7 @@ from ident.bench.diagnosis import diagnose_bench
 from ident.diagnosis.addition import MOST, USUAL, Addition
 from ident.diagnosis.advice import error_budget, next_run
 from ident.diagnosis.chance import gain
-from ident.diagnosis.models import AT_FLOOR, Models, Refit
+from ident.diagnosis.models import Models, Refit
 from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.result import Diagnosis, Found, Ranked, Rung, Verdict
 from ident.diagnosis.suspects import Suspect, suspects
@@ -29,7 +29,7 @@ from ident.fit.settings import Settings
 from ident.fit.space import Space
 from ident.fit.uncertainty import covariance
 from ident.matrix import Matrix
-from ident.noise import averaged, repeated
+from ident.noise import repeated
 from ident.progress import Expected, Progress, Report, silent
 from ident.spectra import excited_band
 
@@ -76,7 +76,7 @@ class Work:
             addition = self._added(self.models.without(suspect.run for suspect in doubted))
             doubted = self._doubted(addition)
         ladder = self._ladder(addition)
-        floor = averaged(self.models.matrix, self.models.floors)
+        floor = addition.models.floors.of_use(self.models.matrix)
         unexplained = self._unexplained(addition)
         groups = tuple(tuple(c.effect for c in group) for group in addition.groups.values() if len(group) > 1)
         base = addition.base
@@ -111,7 +111,7 @@ class Work:
 
     def _doubted(self, addition: Addition) -> list[Suspect]:
         self.tell(Progress("labels", 0, 1))
-        return suspects(addition.models, addition.found, self.models.floors)
+        return suspects(addition.models, addition.found, self.models.floors.by_run)
 
     # What is said ----------------------------------------------------------------------------------------------
 
@@ -171,8 +171,7 @@ class Work:
         """Whether the error is still above the noise: its floor, or where that is not known, its lack of memory."""
         found, models = addition.found, addition.models
         if models.floor is not None:
-            samples = sum(run.length for run in models.runs)
-            return bool(found.error > models.floor * (1.0 + AT_FLOOR + 3.0 / np.sqrt(samples / 2)))
+            return not models.at_floor(found)
         outputs = found.fitness.outputs(found.point)
         residuals = [run.measured - outputs[run.id] for run in models.runs]
         memory = [float(np.corrcoef(r[1:], r[:-1])[0, 1]) for r in residuals]

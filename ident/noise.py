@@ -7,6 +7,7 @@ command has no power.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
@@ -14,11 +15,13 @@ import scipy.signal
 from numpy.typing import NDArray
 
 from ident.matrix import USES, Matrix, Run
+from ident.memory import independent_samples
 from ident.parallel import each
 
 Array = NDArray[np.float64]
 _CLEAR = 1.6  # times the band edge: beyond it a Hann window lets less than 1e-6 of the band's power through
 _LEAST = 0.2  # of the Nyquist frequency must be left above that, to average over
+_UPPER_HALF = 0.5  # of the spectrum shows the noise
 _SAME = 1e-3  # relative difference of two commands that are one
 _GLANCE = 64  # samples that show most commands to be different
 _SETTLED = 0.1  # of a record, in which the states that it begins with die away
@@ -41,13 +44,34 @@ def noise_floor(run: Run, band: float) -> float | None:
     return float(np.sqrt(density * nyquist) / np.std(run.measured))
 
 
-def noise_floors(matrix: Matrix, band: float) -> Mapping[str, float | None]:
-    """The noise floor averaged over the runs of each use; None where it cannot be told of every run."""
-    return averaged(matrix, floors_by_run(matrix.runs, band))
+@dataclass(frozen=True)
+class Floors:
+    """The noise floor of each run by its id, as a fraction like eq. (17), and how well it is known.
+
+    `told_by` is the number of independent samples that tell it, `fresh` the share of a run's samples that are
+    independent where there is nothing but noise.
+    """
+
+    by_run: Mapping[str, float | None]
+    told_by: float
+    fresh: float = 1.0
+
+    def of_use(self, matrix: Matrix) -> Mapping[str, float | None]:
+        """Averaged over the runs of each use; None where it cannot be told of every run."""
+        return {use: self.mean(matrix.of_use(use)) for use in USES}
+
+    def mean(self, runs: Sequence[Run]) -> float | None:
+        """Averaged over runs; None where it cannot be told of every one."""
+        known = [floor for run in runs if (floor := self.by_run[run.id]) is not None]
+        return float(np.mean(known)) if known and len(known) == len(runs) else None
+
+    def spread(self, samples: int) -> float:
+        """The relative standard deviation of noise over so many samples about its floor."""
+        return float(np.sqrt(0.5 / (self.fresh * samples) + 0.5 / self.told_by))
 
 
-def floors_by_run(runs: Sequence[Run], band: float, left_out: Collection[str] = ()) -> Mapping[str, float | None]:
-    """The noise floor of each run by its id; `left_out` are ids of runs whose repeats are not trusted.
+def noise_floors(runs: Sequence[Run], band: float, left_out: Collection[str] = ()) -> Floors:
+    """The noise floors of runs whose command ends at `band` (rad/s); `left_out` are ids that are not trusted.
 
     From repeats: half the power of their difference, the median over the pairs, for all runs; in the unit of the
     displacement or in proportion to it, as the pairs say, or where these are few, the spectra.
@@ -55,15 +79,19 @@ def floors_by_run(runs: Sequence[Run], band: float, left_out: Collection[str] = 
     seen = each(lambda run: noise_floor(run, band), runs)
     pairs = repeated([run for run in runs if run.id not in left_out])
     if not pairs:
-        return {run.id: floor for run, floor in zip(runs, seen, strict=True)}
-    powers = np.array([0.5 * np.var(_settled(a.measured, b) - _settled(b.measured, a)) for a, b in pairs])
+        told_by = _UPPER_HALF * sum(run.length for run in runs if run.use == "fit")
+        return Floors({run.id: floor for run, floor in zip(runs, seen, strict=True)}, max(told_by, 1.0))
+    differences = [_settled(a.measured, b) - _settled(b.measured, a) for a, b in pairs]
+    told_by = sum(independent_samples(difference) for difference in differences)
+    powers = np.array([0.5 * np.var(difference) for difference in differences])
     shares = powers / [0.5 * (np.var(a.measured) + np.var(b.measured)) for a, b in pairs]
     sizes = np.array([np.std(run.measured) for run in runs])
     steady = like_transducer(np.sqrt(powers / shares), list(np.sqrt(shares)))
     if steady is None:
         steady = like_transducer(sizes, seen)
     floors = np.full(len(runs), np.sqrt(np.median(shares))) if steady is False else np.sqrt(np.median(powers)) / sizes
-    return {run.id: float(floor) for run, floor in zip(runs, floors, strict=True)}
+    by_run = {run.id: float(floor) for run, floor in zip(runs, floors, strict=True)}
+    return Floors(by_run, told_by, told_by / sum(map(len, differences)))
 
 
 def repeated(runs: Sequence[Run]) -> list[tuple[Run, Run]]:
@@ -103,13 +131,3 @@ def _settled(samples: Array, other: Run) -> Array:
     """What two records have in common once they have settled."""
     count = min(len(samples), other.length)
     return samples[int(_SETTLED * count) : count]
-
-
-def averaged(matrix: Matrix, floors: Mapping[str, float | None]) -> Mapping[str, float | None]:
-    """Floors by run averaged over the runs of each use; None where one of them is."""
-    return {use: _mean([floors[run.id] for run in matrix.of_use(use)]) for use in USES}
-
-
-def _mean(floors: Sequence[float | None]) -> float | None:
-    known = [floor for floor in floors if floor is not None]
-    return float(np.mean(known)) if known and len(known) == len(floors) else None

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ident.noise import floors_by_run, noise_floors, repeated
+from ident.noise import noise_floors, repeated
 from ident.spectra import excited_band
 from tests.blind.machines import Machine
 from tests.blind.noises import with_noise
@@ -24,7 +24,7 @@ def clean():
 
 def floors(matrix, **options):
     """The floors by run."""
-    return floors_by_run(matrix.runs, excited_band(matrix.of_use("fit")), **options)
+    return noise_floors(matrix.runs, excited_band(matrix.of_use("fit")), **options).by_run
 
 
 def test_white_noise_is_told_by_the_spectrum():
@@ -52,11 +52,23 @@ def test_the_noise_of_a_transducer_weighs_more_in_a_small_record(clean, seed):
 def test_repeats_tell_where_the_command_fills_the_spectrum(clean):
     """With so low a sample rate nothing of the spectrum is the noise's alone."""
     band = np.pi * linear.SAMPLE_RATE
-    twice = with_noise(clean, "low_passed", SHARE, seed=4, repeats=2)
-    assert noise_floors(with_noise(clean, "low_passed", SHARE, seed=4), band) == {"fit": None, "verify": None}
-    told = {run.id: floor for run, floor in zip(twice.runs, floors_by_run(twice.runs, band).values(), strict=True)}
+    once, twice = (with_noise(clean, "low_passed", SHARE, seed=4, repeats=repeats) for repeats in (0, 2))
+    assert noise_floors(once.runs, band).of_use(once) == {"fit": None, "verify": None}
+    told = noise_floors(twice.runs, band).by_run
     size = np.mean([SHARE * np.std(run.measured) for run in twice.runs[:4]])
     assert told == pytest.approx({run.id: size / np.std(run.measured) for run in twice.runs}, rel=0.15)
+
+
+@pytest.mark.parametrize("kind", ["low_passed", "pink"])
+def test_floors_from_a_repeat_scatter_as_they_say(clean, kind):
+    """Not much less, so that a fit is not called short of them by chance, and not much more."""
+    off = []
+    for seed in range(40):
+        matrix = with_noise(clean, kind, SHARE, seed, repeats=1)
+        found = noise_floors(matrix.runs, excited_band(matrix.of_use("fit")))
+        off.append((found.by_run[matrix.runs[0].id] / SHARE - 1.0) / np.sqrt(0.5 / found.told_by))
+    assert np.std(off) == pytest.approx(0.9, abs=0.5)
+    assert found.spread(10_000) > np.sqrt(0.5 / found.told_by)
 
 
 def test_a_pair_with_a_run_that_is_not_trusted_tells_nothing(clean):

@@ -20,7 +20,7 @@ from ident.fit.settings import Settings
 from ident.fit.space import Space, search_space
 from ident.matrix import Matrix, Run
 from ident.memory import independent_samples
-from ident.noise import floors_by_run
+from ident.noise import Floors, noise_floors
 from ident.presets import PRESETS, Preset
 
 Array = NDArray[np.float64]
@@ -29,7 +29,8 @@ _FITTING = 1e-7, 20  # relative promise of a further step below which a refit st
 _TRYING = 1e-5, 10
 _SEARCHING = 1e-5, 30
 _BETTER = 0.99  # times the error: a new optimum, not the same one
-AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be noise
+_AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be noise, beside
+_CHANCE = 3.0  # standard deviations
 
 
 @dataclass(frozen=True)
@@ -139,19 +140,21 @@ class Models:
         return known.fresh(known.runs)  # no search goes on from the first states in which another one ended
 
     @cached_property
-    def floors(self) -> Mapping[str, float | None]:
-        """The noise floor of each run of the matrix by its id."""
-        return floors_by_run(self.matrix.runs, self.band, self.left_out)
+    def floors(self) -> Floors:
+        """The noise floors of all runs of the matrix."""
+        return noise_floors(self.matrix.runs, self.band, self.left_out)
 
     @property
     def floor(self) -> float | None:
         """The noise floor averaged over the runs that are fitted; None where it cannot be told of every run."""
-        floors = [floor for run in self.runs if (floor := self.floors[run.id]) is not None]
-        return float(np.mean(floors)) if len(floors) == len(self.runs) else None
+        return self.floors.mean(self.runs)
 
     def at_floor(self, refit: Refit) -> bool:
-        """Whether the error of a refit is noise alone; never where the floor cannot be told."""
-        return self.floor is not None and refit.error < (1.0 + AT_FLOOR) * self.floor
+        """Whether the error of a refit is noise alone, as far as the floor is known; never where it cannot be told."""
+        if self.floor is None:
+            return False
+        chance = _CHANCE * self.floors.spread(sum(run.length for run in self.runs))
+        return refit.error < (1.0 + _AT_FLOOR + chance) * self.floor
 
     def best_of(self, refit: Refit, starts: Sequence[Mapping[str, float]]) -> Refit | None:
         """The best refit of the same model from other starts, where one is better than `refit`."""

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from ident.compare import Comparison, RunComparison
 from ident.errors import Unusable
 from ident.matrix import Run
-from ident.noise import floors_by_run, repeated
+from ident.noise import noise_floors, repeated
 from ident.parallel import each
 from ident.residuals.coarse import averaged, stride
 from ident.spectra import excited_band
@@ -71,10 +71,8 @@ def budget(comparison: Comparison, use: str = "fit") -> Budget:
     sums = each(lambda run: _sums(run, count), runs)
     common = _left(squares, _gains(sums, [_condition(run.run) for run in runs], squares))
     own = _left(squares, _gains(sums, [(_condition(run.run), _amplitude(run.run)) for run in runs], squares))
-    everything = comparison.matrix.runs
-    floors = floors_by_run(everything, excited_band([run.run for run in runs]))
-    known = [floor for run in runs if (floor := floors[run.run.id]) is not None]
-    noise = float(np.mean(known)) if len(known) == len(runs) else None
+    everything, used = comparison.matrix.runs, [run.run for run in runs]
+    noise = noise_floors(everything, excited_band(used)).mean(used)
     measured = bool(repeated(everything))
     parts = _parts(float(np.mean(np.sqrt(squares))), common, own, noise, measured)
     several = len({(_condition(run.run), _amplitude(run.run)) for run in runs}) > len({_condition(r.run) for r in runs})
