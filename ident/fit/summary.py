@@ -170,7 +170,7 @@ def _notes(objective: Objective | OutputError, floors: Mapping[str, float | None
         notes.append("Noise floor from repeats of the same command: what does not repeat.")
     elif floors["fit"] is None:
         notes.append("Noise floor unknown: the command has power up to nearly half the sample rate, "
-                     "so no part of the spectrum shows the noise alone; repeat a run to measure it.")  # fmt: skip
+                     "so no part of the spectrum shows the noise alone; repeat a run of stated specimen or gain.")  # fmt: skip
     else:
         notes.append("Noise floor from the spectrum above the command's band, taken as white: a lower bound.")
     if isinstance(objective, OutputError) and objective.coarse:
