@@ -169,8 +169,10 @@ def _notes(objective: Objective | OutputError, floors: Mapping[str, float | None
     if repeated(objective.matrix.runs):
         notes.append("Noise floor from repeats of the same command: what does not repeat.")
     elif floors["fit"] is None:
-        notes.append("Noise floor unknown: the command has power up to nearly half the sample rate, "
-                     "so no part of the spectrum shows the noise alone; repeat a run of stated specimen or gain.")  # fmt: skip
+        notes.append(
+            "Noise floor unknown: the command has power up to nearly half the sample rate, so no part of the "
+            "spectrum shows the noise alone; repeat a run of stated specimen or gain to measure it."
+        )
     else:
         notes.append("Noise floor from the spectrum above the command's band, taken as white: a lower bound.")
     if isinstance(objective, OutputError) and objective.coarse:
