@@ -21,7 +21,7 @@ from ident.bench.records import bench_set
 from ident.bench.residual import Residual, observe
 from ident.errors import Unusable
 from ident.fit import genetic
-from ident.fit.library_search import GENERATIONS, cma_es, differential_evolution
+from ident.fit.evolution import GENERATIONS, cma_es, differential_evolution
 from ident.fit.result import Estimate, FitResult, Generation, RunError, Undetermined
 from ident.fit.settings import Settings
 from ident.fit.space import Axis, Space
@@ -97,7 +97,7 @@ class BenchIdentification:
     def advance(self, state: State, generations: int) -> State:
         """The state after at most `generations` more; the library searches run to their end at once."""
         if self.settings.method in GENERATIONS and not state["done"]:
-            return self._library_search(state)
+            return self._evolved(state)
         step = genetic.paper_step if self.settings.method == "paper-ga" else genetic.default_step
         for _ in range(generations):
             if state["done"]:
@@ -107,7 +107,7 @@ class BenchIdentification:
             self.report(Progress("search", done, self.generations, best))
         return state
 
-    def _library_search(self, state: State) -> State:
+    def _evolved(self, state: State) -> State:
         search = differential_evolution if self.settings.method == "differential-evolution" else cma_es
         history = search(len(self.space.axes), self.settings.seed, self.errors)
         entries = [{"population": points.tolist(), "errors": cost.tolist()} for points, cost in history]

@@ -15,7 +15,7 @@ from ident.bench.identification import BenchIdentification
 from ident.custom import preset_with
 from ident.errors import Unusable
 from ident.fit import genetic
-from ident.fit.library_search import GENERATIONS, cma_es, differential_evolution
+from ident.fit.evolution import GENERATIONS, cma_es, differential_evolution
 from ident.fit.objective import UNSTABLE, Local, Objective
 from ident.fit.output_error import OutputError, shortened
 from ident.fit.polish import polish
@@ -129,7 +129,7 @@ class Identification:
         """The state after at most `generations` more; the library searches run to their end at once."""
         if self.settings.method in GENERATIONS and not state["done"]:
             self._take_up(state)
-            return self._library_search(state)
+            return self._evolved(state)
         self._take_up(state)
         step = genetic.paper_step if self.settings.method == "paper-ga" else genetic.default_step
         for _ in range(generations):
@@ -140,7 +140,7 @@ class Identification:
             self.report(Progress("search", done, self.generations, min(state["history"][-1]["errors"])))
         return state
 
-    def _library_search(self, state: State) -> State:
+    def _evolved(self, state: State) -> State:
         count = 0
 
         def errors(points: Array) -> Array:
