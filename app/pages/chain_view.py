@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from app.pages.diagnosis_view import Member, member
+from app.pages.effect_view import Member, member
 from ident.custom import HANDED_ON, preset_with, read_effect
 from ident.effects import EFFECTS
 from ident.errors import Unusable

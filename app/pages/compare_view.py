@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from app.pages import numbers
-from app.pages.diagnosis_view import title, with_error
+from app.pages.effect_view import title
 from app.pages.figure_forms import FigureForm, forms
 from ident.fit.result import Estimate, FitResult
 from ident.presets import preset
@@ -124,7 +124,7 @@ def _parameters(a: FitResult, b: FitResult) -> Iterator[Compared]:
 
 
 def _value(entry: Estimate | None, without: str) -> str:
-    return without if entry is None else with_error(entry.value, entry.std_error, entry.unit)
+    return without if entry is None else numbers.with_error(entry.value, entry.std_error, entry.unit)
 
 
 def _sure(one: Estimate | None, other: Estimate | None) -> str:

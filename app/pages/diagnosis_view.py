@@ -7,37 +7,16 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from markupsafe import Markup
-
 from app.pages import numbers
+from app.pages.effect_view import Member, member, title
 from app.pages.evidence_view import evidence, known_effect
 from app.pages.job_view import JobPageView, job_page
-from ident.effect import Effect
-from ident.mathml import mathml
 from schemas.diagnosis import CandidateView, DiagnosisView
 from schemas.fit import JobView
 
 _LABELS = {"mass": "kg", "stiffness": "N/m", "gain": ""}
 """Labels that a revision can mend, with the unit that it writes."""
 _USES = ("fit", "held_out", "verify")
-
-
-@dataclass(frozen=True)
-class Member:
-    """An effect on a card; `known` is False where neither the catalogue nor the diagnosis has it.
-
-    `definition` is that of a user's own effect, as JSON, "" for one of the catalogue.
-    """
-
-    name: str
-    title: str
-    known: bool
-    place: str
-    meaning: str
-    equations: tuple[Markup, ...]
-    strength: str
-    strength_is: str
-    definition: str = ""
 
 
 @dataclass(frozen=True)
@@ -135,11 +114,6 @@ def _would_add(cards: tuple[Card, ...], names: list[str]) -> tuple[Member, ...]:
     return tuple(members[name] for name in names if name in members)
 
 
-def title(name: str) -> str:
-    """The name of an effect in words."""
-    return name.replace("_", " ")
-
-
 def _cards(found: DiagnosisView, run: str) -> Iterator[Card]:
     """A card for each candidate; those of a group share the card of the best."""
     by_name = {candidate.effect: candidate for candidate in found.candidates}
@@ -191,46 +165,6 @@ def definitions(found: DiagnosisView) -> dict[str, Mapping[str, Any]]:
 def _member(candidate: CandidateView, own: Mapping[str, Any] | None) -> Member:
     effect = known_effect(candidate.effect, own)
     return member(candidate.effect, effect, candidate.parameters, own)
-
-
-def member(
-    name: str, effect: Effect | None, parameters: Mapping[str, Mapping[str, Any]], own: Mapping[str, Any] | None
-) -> Member:
-    """An effect as the page tells of it, with the strength that is among the parameters."""
-    return Member(
-        name=name,
-        title=title(name),
-        known=effect is not None,
-        place=effect.place if effect else "",
-        meaning=effect.meaning if effect else "",
-        equations=tuple(Markup(mathml(line.text)) for line in effect.equations) if effect else (),
-        strength=_strength(name, parameters),
-        strength_is=f"{effect.strength.symbol}, {effect.strength.meaning}" if effect else "strength",
-        definition=json.dumps(own) if own is not None else "",
-    )
-
-
-def _strength(effect: str, parameters: Mapping[str, Mapping[str, Any]]) -> str:
-    """The first parameter of the effect, with standard error and unit."""
-    own = (entry for name, entry in parameters.items() if name.startswith(f"{effect}."))
-    entry = next(own, None)
-    if entry is None:
-        return "–"
-    return with_error(entry["value"], entry["std_error"], entry["unit"])
-
-
-def with_error(value: float, std_error: float | None, unit: str) -> str:
-    """ "80.27 ± 0.18 µm": value and standard error in a readable multiple of the unit."""
-    if std_error is None:
-        return numbers.quantity(value, unit)
-    power = numbers.power_of(value)
-    scaled, error = value / 10.0**power, std_error / 10.0**power
-    places = numbers.decimals(scaled, error)
-    printed = numbers.scaled_unit(unit, power)
-    text = f"{numbers.fixed(scaled, places)} ± {numbers.fixed(error, places)}"
-    if printed == "–":
-        return text
-    return f"({text})·{printed}" if printed.startswith("10") else f"{text} {printed}"
 
 
 def _suspect(entry: Mapping[str, Any]) -> SuspectCard:

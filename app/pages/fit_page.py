@@ -11,7 +11,8 @@ from markupsafe import Markup
 
 from app.pages import numbers
 from app.pages.chain_view import Drawing, drawing
-from app.pages.diagnosis_view import MissingView, title
+from app.pages.diagnosis_view import MissingView
+from app.pages.effect_view import title
 from app.pages.figure_forms import MAP, FigureForm, forms
 from app.pages.fit_view import Determined, ErrorRow, ParameterRow, combination_rows, error_rows, parameter_rows
 from app.pages.job_view import settings_facts

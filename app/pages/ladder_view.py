@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.pages import numbers
-from app.pages.diagnosis_view import title, with_error
+from app.pages.effect_view import title
 from schemas.fit import LadderRung, LadderView
 
 
@@ -50,7 +50,7 @@ def _step(rung: LadderRung, before: LadderRung | None, here: str) -> Step:
 def _strength(rung: LadderRung, effect: str) -> str:
     own = (entry for name, entry in rung.parameters.items() if name.startswith(f"{effect}."))
     entry = next(own, None)
-    return "" if entry is None else with_error(entry["value"], entry["std_error"], entry["unit"])
+    return "" if entry is None else numbers.with_error(entry["value"], entry["std_error"], entry["unit"])
 
 
 def _change(rung: LadderRung, before: LadderRung | None) -> str:

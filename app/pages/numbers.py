@@ -95,3 +95,17 @@ def quantity(value: float | None, text: str) -> str:
     if printed == "–":
         return number
     return f"{number}·{printed}" if power and printed.startswith("10") else f"{number} {printed}"
+
+
+def with_error(value: float, std_error: float | None, unit: str) -> str:
+    """ "80.27 ± 0.18 µm": value and standard error in a readable multiple of the unit."""
+    if std_error is None:
+        return quantity(value, unit)
+    power = power_of(value)
+    scaled, error = value / 10.0**power, std_error / 10.0**power
+    places = decimals(scaled, error)
+    printed = scaled_unit(unit, power)
+    text = f"{fixed(scaled, places)} ± {fixed(error, places)}"
+    if printed == "–":
+        return text
+    return f"({text})·{printed}" if printed.startswith("10") else f"{text} {printed}"

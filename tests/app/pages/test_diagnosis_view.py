@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from app.pages.diagnosis_view import missing, with_error
+from app.pages.diagnosis_view import missing
 from app.pages.rendering import _TEMPLATES
 from schemas.diagnosis import DiagnosisView
 
@@ -69,9 +69,3 @@ def test_the_section_is_markup_with_everything_escaped():
     assert "{&#34;runs&#34;: {&#34;r &lt;1&gt;&#34;: {&#34;specimen&#34;: {&#34;mass&#34;: &#34;0.9 kg&#34;}}}}" in text
     assert text.count('data-add="/api/v1/fits/f/effects"') == 2  # the group and the one by chance
     assert "In data: flat tops." in text
-
-
-def test_a_value_carries_its_standard_error_and_one_unit():
-    assert with_error(8.027e-5, 1.8e-7, "m") == "80.27 ± 0.18 µm"
-    assert with_error(2.777e-9, 8.8e-11, "m^3/Pa") == "(2.777 ± 0.088)·10⁻⁹ m³/Pa"
-    assert with_error(0.25, None, "1") == "0.2500"

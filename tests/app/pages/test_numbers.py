@@ -44,3 +44,9 @@ def test_a_ratio_keeps_its_divisor_beside_the_symbol():
 
 def test_a_unit_with_a_root_is_written_with_its_sign():
     assert numbers.unit("m^3/(s*Pa^0.5)") == "m³/(s·√Pa)"
+
+
+def test_a_value_carries_its_standard_error_and_one_unit():
+    assert numbers.with_error(8.027e-5, 1.8e-7, "m") == "80.27 ± 0.18 µm"
+    assert numbers.with_error(2.777e-9, 8.8e-11, "m^3/Pa") == "(2.777 ± 0.088)·10⁻⁹ m³/Pa"
+    assert numbers.with_error(0.25, None, "1") == "0.2500"

@@ -1,0 +1,63 @@
+"""An effect as the pages tell of it: its name in words, its equations and its strength."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from markupsafe import Markup
+
+from app.pages import numbers
+from ident.effect import Effect
+from ident.mathml import mathml
+
+
+@dataclass(frozen=True)
+class Member:
+    """An effect on a card; `known` is False where neither the catalogue nor the diagnosis has it.
+
+    `definition` is that of a user's own effect, as JSON, "" for one of the catalogue.
+    """
+
+    name: str
+    title: str
+    known: bool
+    place: str
+    meaning: str
+    equations: tuple[Markup, ...]
+    strength: str
+    strength_is: str
+    definition: str = ""
+
+
+def title(name: str) -> str:
+    """The name of an effect in words."""
+    return name.replace("_", " ")
+
+
+def member(
+    name: str, effect: Effect | None, parameters: Mapping[str, Mapping[str, Any]], own: Mapping[str, Any] | None
+) -> Member:
+    """An effect as the page tells of it, with the strength that is among the parameters."""
+    return Member(
+        name=name,
+        title=title(name),
+        known=effect is not None,
+        place=effect.place if effect else "",
+        meaning=effect.meaning if effect else "",
+        equations=tuple(Markup(mathml(line.text)) for line in effect.equations) if effect else (),
+        strength=_strength(name, parameters),
+        strength_is=f"{effect.strength.symbol}, {effect.strength.meaning}" if effect else "strength",
+        definition=json.dumps(own) if own is not None else "",
+    )
+
+
+def _strength(effect: str, parameters: Mapping[str, Mapping[str, Any]]) -> str:
+    """The first parameter of the effect, with standard error and unit."""
+    own = (entry for name, entry in parameters.items() if name.startswith(f"{effect}."))
+    entry = next(own, None)
+    if entry is None:
+        return "–"
+    return numbers.with_error(entry["value"], entry["std_error"], entry["unit"])
