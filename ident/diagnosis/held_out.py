@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from ident.fit.objective import Local, local, weight_of
@@ -156,24 +157,36 @@ def _step(point: Array, here: Local, parts: list[Array]) -> Array:
     return bounded_step(point, H, g)
 
 
+@njit(cache=True, nogil=True)
 def bounded_step(point: Array, H: Array, g: Array) -> Array:
     """−H⁻¹ g on the axes that it leaves in the unit cube; the axis that would leave it farthest stays at its bound, and
-    so on with the others."""
+    so on with the others. Zero where H is not finite."""
     step = np.zeros(len(point))
+    if not np.all(np.isfinite(H)):
+        return step
+    least = 1e-12 * max(np.diag(H).max(), 1e-300)
     free = np.arange(len(point))
     while len(free):
-        rest = g + H @ step
-        A = H[np.ix_(free, free)]
-        scale = np.sqrt(np.maximum(np.diag(A), 1e-12 * max(np.diag(H).max(), 1e-300)))
-        strengths, directions = np.linalg.eigh(A / scale[:, None] / scale)
-        seen = directions[:, strengths > _LOST * strengths[-1]]
-        move = -seen @ ((seen.T @ (rest[free] / scale)) / strengths[strengths > _LOST * strengths[-1]]) / scale
+        count = len(free)
+        scale, rest, A = np.empty(count), np.empty(count), np.empty((count, count))
+        for i, axis in enumerate(free):
+            scale[i] = np.sqrt(max(H[axis, axis], least))
+        for i, axis in enumerate(free):
+            rest[i] = (g[axis] + np.sum(H[axis] * step)) / scale[i]
+            for j, other in enumerate(free):
+                A[i, j] = H[axis, other] / (scale[i] * scale[j])
+        strengths, directions = np.linalg.eigh(A)
+        move = np.zeros(count)
+        for i in range(count):
+            if strengths[i] > _LOST * strengths[-1]:
+                move -= directions[:, i] * (np.sum(directions[:, i] * rest) / strengths[i])
+        move /= scale
         there = point[free] + move
-        inside = np.clip(there, 0.0, 1.0)
+        inside = np.minimum(np.maximum(there, 0.0), 1.0)
         worst = int(np.argmax(np.abs(there - inside)))
         if there[worst] == inside[worst]:
             step[free] = move
             break
         step[free[worst]] = inside[worst] - point[free[worst]]
-        free = np.delete(free, worst)
+        free = free[np.arange(count) != worst]
     return step

@@ -33,6 +33,7 @@ _PARTS = (1.0, 0.5, 0.2, 0.05, 0.01)  # of the way to a prediction: it may be to
 _SUDDEN, _WIDE = 300.0, 4.0  # a response grows so much in power, over so wide a step, by a threshold between
 _BETWEEN = (0.2, 0.4, 0.6, 0.8)  # powers of the step
 _BACK = (0.67, 0.33, 0.0)  # powers of the share of the simulated strength
+_ROUNDING = 1e-9  # of a score, by which nothing is better
 _ROUNDS = 3  # of weighting each run by what it is left with
 
 
@@ -99,7 +100,7 @@ def _predicted(models: Models, fitness: OutputError, base: Refit, names: Sequenc
     before = sight.before
     best = {name: (before, np.zeros(len(base.point) + 1), strength) for name, strength in reversed(trials)}
     for name, after, step, strength in chain.from_iterable(seen.outlooks() for seen in every):
-        if after.score < best[name][0].score:
+        if after.score < (1.0 - _ROUNDING) * best[name][0].score:
             best[name] = after, step, strength
     return [
         Prediction(name, after, before, len(sight.gram), _starts(models, base, name, step, strength))
@@ -229,14 +230,14 @@ def _after(
     step, direction = np.zeros(p), np.append(np.zeros(p), 1.0)
     for _ in range(_ROUNDS):
         weights = 1.0 / np.sqrt(np.maximum(left, 1e-24 * records.totals) * records.totals)
-        joint = np.einsum("r,rij->ij", weights, gram)
+        joint = (weights @ gram.reshape(runs, -1)).reshape(p + 1, p + 1)
         error = float(np.mean(np.sqrt(left / records.totals)))
         squared = max(float(direction @ of_offsets @ direction), 1e-18 * runs)
         joint += share * runs * error * of_offsets / squared  # the gradient of the score's second part
         H, g = joint[:p, :p], -joint[:p, p]
         step = scale * bounded_step(here / scale, H * scale[:, None] * scale, g * scale)
         direction = np.append(-step, 1.0)
-        left = np.maximum(np.einsum("i,rij,j->r", direction, gram, direction), 1e-12 * records.totals)
+        left = np.maximum(gram @ direction @ direction, 1e-12 * records.totals)
     error = float(np.mean(np.sqrt(left / records.totals)))
     offset = float(np.sqrt(max(direction @ of_offsets @ direction, 1e-18 * runs) / runs))
     return Outlook(error, offset, scored(error, offset, share)), step

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -116,7 +116,7 @@ class Models:
     @cached_property
     def fit_together(self) -> bool:
         """Whether one chain can hold every effect: in a drive without a valve some close a circle of signals."""
-        return _fits(self.preset, *self.effects.values())
+        return _sound(lambda: self._whole)
 
     def strength(self, effect: str) -> str:
         """The name of an effect's strength in the equations."""
@@ -200,10 +200,15 @@ class Models:
         return self.refit(effects, min(starts, key=error), _TRIAL)
 
 
-def _fits(preset: Preset, *effects: Effect) -> bool:
-    """Whether the model has a place for the effects and no circle of signals with them."""
+def _fits(preset: Preset, effect: Effect) -> bool:
+    """Whether the model has a place for an effect and no circle of signals with it."""
+    return _sound(lambda: preset.with_effects((effect,)))
+
+
+def _sound(model: Callable[[], Preset]) -> bool:
+    """Whether a model can be made and no signal waits for itself."""
     try:
-        _ = preset.with_effects(effects).chain.signals
+        _ = model().chain.signals
     except Unusable:
         return False
     return True
