@@ -16,8 +16,7 @@ from ident.fit.record import Moments
 from ident.fit.settings import Settings
 from ident.fit.space import search_space
 from ident.matrix import Matrix, Run
-from ident.noise import like_transducer, noise_floor
-from ident.parallel import each
+from ident.noise import by_spectrum, like_transducer
 from ident.presets import Preset
 
 Array = NDArray[np.float64]
@@ -33,7 +32,7 @@ def deviation_of_noise(runs: Sequence[Run], band: float, noise: float) -> Deviat
     `noise` is the mean relative floor, which stands where the records do not show theirs.
     """
     sizes = np.array([np.std(run.measured) for run in runs])
-    if like_transducer(sizes, each(lambda run: noise_floor(run, band), runs)):
+    if like_transducer(sizes, by_spectrum(runs, band)):
         steady = float(np.exp(np.mean(np.log(noise * sizes))))
         return lambda _size: steady
     return lambda size: noise * size

@@ -29,7 +29,6 @@ from ident.fit.settings import Settings
 from ident.fit.space import Space
 from ident.fit.uncertainty import covariance
 from ident.matrix import Matrix
-from ident.noise import repeated
 from ident.progress import Expected, Progress, Report, silent
 from ident.spectra import excited_band
 
@@ -81,7 +80,7 @@ class Work:
         groups = tuple(tuple(c.effect for c in group) for group in addition.groups.values() if len(group) > 1)
         base = addition.base
         text = verdict_text(addition.added, groups, doubted, unexplained, ladder[-1].error, base.error,
-                            repeats=bool(repeated(self.models.matrix.runs)))  # fmt: skip
+                            repeats=addition.models.floors.measured)  # fmt: skip
         return Diagnosis(
             model=self.fit.model,
             given=base.effects,

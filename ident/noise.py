@@ -44,17 +44,23 @@ def noise_floor(run: Run, band: float) -> float | None:
     return float(np.sqrt(density * nyquist) / np.std(run.measured))
 
 
+def by_spectrum(runs: Sequence[Run], band: float) -> list[float | None]:
+    """The noise floor that the spectrum of each run tells."""
+    return each(lambda run: noise_floor(run, band), runs)
+
+
 @dataclass(frozen=True)
 class Floors:
     """The noise floor of each run by its id, as a fraction like eq. (17), and how well it is known.
 
     `told_by` is the number of independent samples that tell it, `fresh` the share of a run's samples that are
-    independent where there is nothing but noise.
+    independent where there is nothing but noise; `measured` is true where repeats tell it, not the spectra.
     """
 
     by_run: Mapping[str, float | None]
     told_by: float
     fresh: float = 1.0
+    measured: bool = False
 
     def of_use(self, matrix: Matrix) -> Mapping[str, float | None]:
         """Averaged over the runs of each use; None where it cannot be told of every run."""
@@ -76,11 +82,11 @@ def noise_floors(runs: Sequence[Run], band: float, left_out: Collection[str] = (
     From repeats: half the power of their difference, the median over the pairs, for all runs; in the unit of the
     displacement or in proportion to it, as the pairs say, or where these are few, the spectra.
     """
-    seen = each(lambda run: noise_floor(run, band), runs)
     pairs = repeated([run for run in runs if run.id not in left_out])
     if not pairs:
         told_by = _UPPER_HALF * sum(run.length for run in runs if run.use == "fit")
-        return Floors({run.id: floor for run, floor in zip(runs, seen, strict=True)}, max(told_by, 1.0))
+        seen = zip(runs, by_spectrum(runs, band), strict=True)
+        return Floors({run.id: floor for run, floor in seen}, max(told_by, 1.0))
     differences = [_settled(a.measured, b) - _settled(b.measured, a) for a, b in pairs]
     told_by = sum(independent_samples(difference) for difference in differences)
     powers = np.array([0.5 * np.var(difference) for difference in differences])
@@ -88,10 +94,10 @@ def noise_floors(runs: Sequence[Run], band: float, left_out: Collection[str] = (
     sizes = np.array([np.std(run.measured) for run in runs])
     steady = like_transducer(np.sqrt(powers / shares), list(np.sqrt(shares)))
     if steady is None:
-        steady = like_transducer(sizes, seen)
+        steady = like_transducer(sizes, by_spectrum(runs, band))
     floors = np.full(len(runs), np.sqrt(np.median(shares))) if steady is False else np.sqrt(np.median(powers)) / sizes
     by_run = {run.id: float(floor) for run, floor in zip(runs, floors, strict=True)}
-    return Floors(by_run, told_by, told_by / sum(map(len, differences)))
+    return Floors(by_run, told_by, told_by / sum(map(len, differences)), measured=True)
 
 
 def repeated(runs: Sequence[Run]) -> list[tuple[Run, Run]]:

@@ -48,16 +48,16 @@ def member(
         place=effect.place if effect else "",
         meaning=effect.meaning if effect else "",
         equations=tuple(Markup(mathml(line.text)) for line in effect.equations) if effect else (),
-        strength=_strength(name, parameters),
+        strength=strength(name, parameters) or "–",
         strength_is=f"{effect.strength.symbol}, {effect.strength.meaning}" if effect else "strength",
         definition=json.dumps(own) if own is not None else "",
     )
 
 
-def _strength(effect: str, parameters: Mapping[str, Mapping[str, Any]]) -> str:
-    """The first parameter of the effect, with standard error and unit."""
+def strength(effect: str, parameters: Mapping[str, Mapping[str, Any]]) -> str:
+    """The first parameter of the effect, with standard error and unit; "" where it is not among the parameters."""
     own = (entry for name, entry in parameters.items() if name.startswith(f"{effect}."))
     entry = next(own, None)
     if entry is None:
-        return "–"
+        return ""
     return numbers.with_error(entry["value"], entry["std_error"], entry["unit"])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.pages import numbers
-from app.pages.effect_view import title
+from app.pages.effect_view import strength, title
 from schemas.fit import LadderRung, LadderView
 
 
@@ -40,17 +40,11 @@ def _step(rung: LadderRung, before: LadderRung | None, here: str) -> Step:
         state = ("succeeded", "approved earlier")
     return Step(
         fit=rung.fit, before=before.fit if before else "", here=rung.fit == here,
-        added=tuple((title(name), _strength(rung, name)) for name in rung.added),
+        added=tuple((title(name), strength(name, rung.parameters)) for name in rung.added),
         error_fit=rung.error["fit"], error_verify=rung.error["verify"], change=_change(rung, before),
         seed=rung.seed, version=rung.version, data=rung.data_hash[:12], made=rung.created_at,
         state=state[0], state_text=state[1],
     )  # fmt: skip
-
-
-def _strength(rung: LadderRung, effect: str) -> str:
-    own = (entry for name, entry in rung.parameters.items() if name.startswith(f"{effect}."))
-    entry = next(own, None)
-    return "" if entry is None else numbers.with_error(entry["value"], entry["std_error"], entry["unit"])
 
 
 def _change(rung: LadderRung, before: LadderRung | None) -> str:

@@ -61,7 +61,7 @@ class Identification:
             self.objective = self.searched = Objective(self.preset, matrix, self._runs, space, Basis(band))
         self.left_out: tuple[str, ...] = ()
         self._started = time.monotonic()
-        self.floors = noise_floors(matrix.runs, band).of_use(matrix)
+        self.floors = noise_floors(matrix.runs, band)
         if space.axes:
             report(Progress("prepare", 0, 1))
             self.searched.prepare()

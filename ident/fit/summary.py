@@ -17,7 +17,7 @@ from ident.fit.result import Combination, Estimate, FitResult, Generation, RunEr
 from ident.fit.settings import Settings
 from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
 from ident.matrix import Run
-from ident.noise import repeated
+from ident.noise import Floors
 from ident.presets.preset import Combined
 from ident.simulate import MOST
 
@@ -32,13 +32,13 @@ def summarise(
     here: Local,
     valley: Array,
     state: Mapping[str, Any],
-    floors: Mapping[str, float | None],
+    floors: Floors,
     seconds: float,
     left_out: tuple[str, ...] = (),
 ) -> FitResult:
     """The result of a fit that ended at `point`, where the objective is `here`; `valley` has points as good.
 
-    `floors` is the noise floor of the runs of each use; `left_out` names runs to fit that were not used.
+    `floors` are the noise floors of the runs; `left_out` names runs to fit that were not used.
     """
     space, matrix, preset = objective.space, objective.matrix, objective.preset
     values = {name: float(found[0]) for name, found in space.values(point[None]).items()}
@@ -69,7 +69,7 @@ def summarise(
         undetermined=tuple(Undetermined(label[name][0], _reason(objective, name, relative)) for name in weak),
         error={"fit": _mean(fit_errors, "error"), "held_out": None, "verify": _mean(verify_errors, "error")},
         offset={"fit": _mean(fit_errors, "offset"), "verify": _mean(verify_errors, "offset")},
-        noise_floor=floors,
+        noise_floor=floors.of_use(matrix),
         runs=(*fit_errors, *verify_errors),
         method=settings.method,
         seed=settings.seed,
@@ -157,7 +157,7 @@ def _reason(objective: Objective | OutputError, name: str, relative: Mapping[str
     return f"{size}; other parameters make up for it (see what is determined)"
 
 
-def _notes(objective: Objective | OutputError, floors: Mapping[str, float | None], here: Local) -> list[str]:
+def _notes(objective: Objective | OutputError, floors: Floors, here: Local) -> list[str]:
     notes = list(objective.matrix.notices)
     if objective.space.scale_free and objective.space.axes:
         notes.append(
@@ -166,9 +166,9 @@ def _notes(objective: Objective | OutputError, floors: Mapping[str, float | None
         )
     if objective.matrix.actuator.piston_area is None and objective.preset.without_area:
         notes.append("Piston area unknown: only ratios to it are determined, and parameters are given as such.")
-    if repeated(objective.matrix.runs):
+    if floors.measured:
         notes.append("Noise floor from repeats of the same command: what does not repeat.")
-    elif floors["fit"] is None:
+    elif floors.of_use(objective.matrix)["fit"] is None:
         notes.append(
             "Noise floor unknown: the command has power up to nearly half the sample rate, so no part of the "
             "spectrum shows the noise alone; repeat a run of stated specimen or gain to measure it."

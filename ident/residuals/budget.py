@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from ident.compare import Comparison, RunComparison
 from ident.errors import Unusable
 from ident.matrix import Run
-from ident.noise import noise_floors, repeated
+from ident.noise import noise_floors
 from ident.parallel import each
 from ident.residuals.coarse import averaged, stride
 from ident.spectra import excited_band
@@ -71,17 +71,17 @@ def budget(comparison: Comparison, use: str = "fit") -> Budget:
     sums = each(lambda run: _sums(run, count), runs)
     common = _left(squares, _gains(sums, [_condition(run.run) for run in runs], squares))
     own = _left(squares, _gains(sums, [(_condition(run.run), _amplitude(run.run)) for run in runs], squares))
-    everything, used = comparison.matrix.runs, [run.run for run in runs]
-    noise = noise_floors(everything, excited_band(used)).mean(used)
-    measured = bool(repeated(everything))
-    parts = _parts(float(np.mean(np.sqrt(squares))), common, own, noise, measured)
+    used = [run.run for run in runs]
+    floors = noise_floors(comparison.matrix.runs, excited_band(used))
+    noise = floors.mean(used)
+    parts = _parts(float(np.mean(np.sqrt(squares))), common, own, noise, floors.measured)
     several = len({(_condition(run.run), _amplitude(run.run)) for run in runs}) > len({_condition(r.run) for r in runs})
     return Budget(
         noise=None if noise is None else parts["noise"][0],
         linear=parts["linear"][0],
         nonlinear=parts["nonlinear"][1],
         bounds=parts,
-        notes=tuple(_notes(measured, noise is not None, several, parts)),
+        notes=tuple(_notes(floors.measured, noise is not None, several, parts)),
     )
 
 
