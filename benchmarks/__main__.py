@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
-import os
-import platform
 import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from benchmarks import bench, diagnosis, fitness, identification, kernel, memory, pages, scaling, simulation, start
+from benchmarks import (
+    bench,
+    diagnosis,
+    fitness,
+    identification,
+    kernel,
+    machine,
+    memory,
+    pages,
+    scaling,
+    simulation,
+    start,
+)
 from benchmarks.table import Table
 
 ALL: dict[str, Callable[[], Table]] = {
@@ -42,16 +52,10 @@ def main(names: list[str]) -> int:
     for name in names or ALL:
         table = ALL[name]()
         met = met and table.met
-        section = f"{table.markdown()}\nMeasured on {machine()}.\n"
+        section = f"{table.markdown()}\nMeasured on {machine.described()}.\n"
         print(section, flush=True)
         PAGE.write_text(renewed(PAGE.read_text(encoding="utf-8"), section), encoding="utf-8")
     return 0 if met else 1
-
-
-def machine() -> str:
-    """What a section was measured on, and how busy it was."""
-    cores = f"{os.cpu_count()} cores ({platform.machine()}), Python {platform.python_version()}"
-    return f"{cores}; load average at the end {os.getloadavg()[0]:.1f}"
 
 
 def renewed(page: str, section: str) -> str:

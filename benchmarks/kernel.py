@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import tempfile
 import time
+from collections import deque
 from collections.abc import Callable
 from pathlib import Path
 
@@ -129,7 +130,7 @@ def measure() -> Table:
         "three effects, program": simulation(three, LANES, one),
         "every effect, program": simulation(whole, LANES, one),
     }
-    works: dict[str, Callable[[], object]] = {name: (lambda s=s: list(s.outputs(SAMPLES))) for name, s in ways.items()}
+    works: dict[str, Callable[[], object]] = {name: (lambda s=s: deque(s.outputs(), 0)) for name, s in ways.items()}
     c = by_hand()
     if c is not None:
         works["three effects, C by hand"] = c
@@ -149,14 +150,13 @@ def measure() -> Table:
     rows = [(name, f"{value:.1f} ns", f"{value / three_time:.2f}") for name, value in taken.items()]
     rows.append(("three effects, python-control", f"{control_time / 1e3:.0f} µs", f"{control_time / three_time:.0f}"))
     rows.append((f"polish of 8 parameters, 63 runs of 2 s, {evaluations} vectors", f"{polish_time:.2f} s", "–"))
-    met = bool(taken["every effect, program"] <= 35 and control_time / three_time >= 3000 and polish_time <= 1.5)
-    met &= not three_time > 1.8 * c_time
+    met = bool(control_time / three_time >= 3000 and polish_time <= 1.5) and not three_time > 1.3 * c_time
     return Table(
         "Simulation with effects",
         f"Runge-Kutta steps, {LANES} vectors side by side on one core, packing included; {SAMPLES} steps. "
         f"Three effects: {', '.join(THREE)}. The C loop has the same equations (gcc -O3 -march=native -ffast-math).",
         ("way", "per step and vector", "times the program's"),
         rows,
-        "every effect in 35 ns, three within 1.8 times the C loop and 3000 times python-control, the polish in 1.5 s",
+        "three effects within 1.3 times the C loop and 3000 times python-control, the polish in 1.5 s",
         met,
     )

@@ -12,7 +12,7 @@ from ident.presets import PRESETS
 from ident.recursion import discretise, respond
 from tests.reference import qian_reference as reference
 
-VECTORS = 64
+VECTORS, GOAL = 64, 1.2
 
 
 def measure() -> Table:
@@ -49,6 +49,6 @@ def measure() -> Table:
             ("program", f"{1e9 * quick / run.length:.2f} ns", "1"),
             ("SciPy `lfilter`", f"{1e9 * slow / run.length:.2f} ns", f"{slow / quick:.2f}"),
         ],
-        "no slower than `lfilter`",
-        quick <= slow,
+        f"{GOAL} times as fast as `lfilter`",
+        slow >= GOAL * quick,
     )

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-import scipy.signal
 from numpy.typing import NDArray
 
 from ident.matrix import USES, Matrix, Run
 from ident.memory import independent_samples
 from ident.parallel import each
+from ident.spectra import power_density
 
 Array = NDArray[np.float64]
 _CLEAR = 1.6  # times the band edge: beyond it a Hann window lets less than 1e-6 of the band's power through
@@ -38,7 +38,7 @@ def noise_floor(run: Run, band: float) -> float | None:
     if clear > (1 - _LEAST) * nyquist or run.length < 256:
         return None
     segment = min(run.length, 8192)
-    frequency, power = scipy.signal.welch(run.measured, run.sample_rate, nperseg=segment, detrend="constant")
+    frequency, power = power_density(run.measured, run.sample_rate, segment)
     # Kinks of friction and dead zones reach far beyond the command's band; half-way up they are gone.
     density = float(np.mean(power[(frequency > max(clear, nyquist / 2)) & (frequency < 0.98 * nyquist)]))
     return float(np.sqrt(density * nyquist) / np.std(run.measured))

@@ -10,7 +10,7 @@ Sixteen systems run side by side through one command, one a SIMD lane; blocks of
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -24,6 +24,7 @@ from ident.linear import LinearModel
 
 Array = NDArray[np.float64]
 LANES = 16
+_BLOCK = 24_576  # outputs of a block
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,10 @@ class Recursion:
     def part(self, first: int, last: int) -> Recursion:
         """The systems first to last − 1 of the batch."""
         return Recursion(*(a[first:last] for a in self._parts))
+
+    def beside(self, other: Recursion) -> Recursion:
+        """The systems of both batches in one."""
+        return Recursion(*(np.concatenate(pair) for pair in zip(self._parts, other._parts, strict=True)))
 
     @property
     def _parts(self) -> tuple[Array, ...]:
@@ -107,13 +112,30 @@ def recursion(b, u, first, last, out, stride):
 """
 
 
+def responses(recursion: Recursion, u: Array, spare: int = 0) -> Iterator[tuple[Array, int, int]]:
+    """Outputs of all systems of a batch to one command, block by block: (rows, first, last).
+
+    `rows` (samples, lanes) has a column for each system, then at least `spare` of zeros. It is one buffer that every
+    block overwrites, small enough to stay in the processor's cache: memory that is touched for the first time costs
+    more than the recursion itself.
+    """
+    batch, order = recursion.C.shape
+    lanes = -(-(batch + spare) // LANES) * LANES
+    kernel, length = advance(order, LANES), max(1, _BLOCK // lanes)
+    buffer = np.empty(length * lanes)
+    groups = [(recursion.part(i, i + LANES).packed(LANES), buffer[i:]) for i in range(0, lanes, LANES)]
+    for first in range(0, len(u), length):
+        last = min(first + length, len(u))
+        for packed, out in groups:
+            kernel(packed, u, first, last, out, lanes)
+        yield buffer[: (last - first) * lanes].reshape(-1, lanes), first, last
+
+
 def respond(recursion: Recursion, u: Array) -> Array:
     """Outputs of all systems of a batch to one command: (n,) → (b, n)."""
-    batch, order = recursion.C.shape
-    out = np.empty((len(u), -(-batch // LANES) * LANES))
-    kernel = advance(order, LANES)
-    for first in range(0, batch, LANES):
-        lanes = np.empty(len(u) * LANES)
-        kernel(recursion.part(first, first + LANES).packed(LANES), u, 0, len(u), lanes, LANES)
-        out[:, first : first + LANES] = lanes.reshape(-1, LANES)
-    return np.ascontiguousarray(out[:, :batch].T)
+    out = np.empty((len(recursion.D), len(u)))
+    for group in range(0, len(out), LANES):
+        there = out[group : group + LANES]
+        for rows, first, last in responses(recursion.part(group, group + LANES), u):
+            there[:, first:last] = rows[:, : len(there)].T
+    return out

@@ -12,7 +12,7 @@ holds for any model whose G the filters can represent; :meth:`Basis.doubt` says 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from ident.linear import LinearModel
 from ident.matrix import Run
 from ident.parallel import each
-from ident.recursion import LANES, Recursion, advance, discretise
+from ident.recursion import Recursion, discretise, responses
 
 Array = NDArray[np.float64]
 
@@ -33,10 +33,10 @@ Array = NDArray[np.float64]
 # damping of about 0.06 W; three real poles take the slow and the fast ends. Found by scanning random models in the
 # bounds of Table 2: error of representation 2e-5 at Table 4, below 1e-3 everywhere (docs/accuracy.md).
 _PAIR_DAMPING, _PAIR_SPACING, _PAIR_REACH = 0.12, 0.07, 1.5
+_PAIRS = np.arange(_PAIR_SPACING / 2, _PAIR_REACH, _PAIR_SPACING)
 _REAL = (0.03, 2.0, 5.0)
 _NODES, _NODE_REACH, _BEYOND_BAND = 44, 1.6, 0.1
 _CHECKS = 4
-_BLOCK = 1024
 
 
 @dataclass(frozen=True)
@@ -45,13 +45,18 @@ class Basis:
 
     band: float
 
+    @property
+    def pairs(self) -> int:
+        """The filters that come in pairs; they stand first."""
+        return 2 * len(_PAIRS)
+
     @cached_property
     def filters(self) -> LinearModel:
         """m filters of two states: (s + σ)/D and ω/D for each pair, D = (s + σ)² + ω², and β/(s + β)."""
         sigma = _PAIR_DAMPING * self.band
-        omega = np.arange(_PAIR_SPACING / 2, _PAIR_REACH, _PAIR_SPACING) * self.band
+        omega = _PAIRS * self.band
         beta = np.array(_REAL) * self.band
-        pairs, m = 2 * len(omega), 2 * len(omega) + len(beta)
+        pairs, m = self.pairs, self.pairs + len(beta)
         A, B, C = np.zeros((m, 2, 2)), np.zeros((m, 2)), np.zeros((m, 2))
         A[:pairs, 0, 0] = A[:pairs, 1, 1] = -sigma
         A[:pairs, 0, 1], A[:pairs, 1, 0] = np.repeat(omega, 2), -np.repeat(omega, 2)
@@ -118,29 +123,18 @@ class Spectrum:
 
 @njit(cache=True, fastmath=True, nogil=True)
 def _reduce(g, W, d, rest, unit, check, errors, doubt):  # type: ignore[no-untyped-def]
-    none = np.zeros(len(check))
-    half = g.shape[1] // 2
+    outputs, misfits = np.dot(g, W.T), np.dot(g, check.T)
+    half, checks = g.shape[1] // 2, len(check)
     for v in range(len(g)):
-        errors[v] = np.sqrt(_distance(W, d, g[v]) * unit + rest)
-        size = 1e-300
-        for k in range(len(check) // 2):  # the checking nodes stand last, real parts and imaginary parts
+        distance, misfit, size = 0.0, 0.0, 1e-300
+        for row in range(len(d)):
+            distance += (outputs[v, row] - d[row]) ** 2
+        for row in range(checks):
+            misfit += misfits[v, row] ** 2
+        for k in range(checks // 2):  # the checking nodes stand last, real parts and imaginary parts
             size += g[v, half - 1 - k] ** 2 + g[v, 2 * half - 1 - k] ** 2
-        doubt[v] = np.sqrt(_distance(check, none, g[v]) / size)
-
-
-@njit(cache=True, fastmath=True, nogil=True)
-def _distance(W, d, g):  # type: ignore[no-untyped-def]
-    """|W g − d|², four rows at a time so that g is loaded once for them; the number of rows is a multiple of four."""
-    total = 0.0
-    for row in range(0, len(d), 4):
-        a, b, c, e = -d[row], -d[row + 1], -d[row + 2], -d[row + 3]
-        for k in range(len(g)):
-            a += W[row, k] * g[k]
-            b += W[row + 1, k] * g[k]
-            c += W[row + 2, k] * g[k]
-            e += W[row + 3, k] * g[k]
-        total += a * a + b * b + c * c + e * e
-    return total
+        errors[v] = np.sqrt(distance * unit + rest)
+        doubt[v] = np.sqrt(misfit / size)
 
 
 def excited_band(runs: Sequence[Run]) -> float:
@@ -152,7 +146,7 @@ def excited_band(runs: Sequence[Run]) -> float:
 
     def edge(run: Run) -> float:
         segment = min(run.length, max(256, run.length // 4), 16384)
-        frequency, power = scipy.signal.welch(run.command, run.sample_rate, nperseg=segment, detrend="constant")
+        frequency, power = power_density(run.command, run.sample_rate, segment)
         share = np.cumsum(power)
         return float(frequency[max(1, np.searchsorted(share, 0.99 * share[-1]))])
 
@@ -164,11 +158,7 @@ def excited_band(runs: Sequence[Run]) -> float:
 def spectrum(run: Run, basis: Basis) -> Spectrum:
     """Reduce a run. What no model of the command can explain is projected out first: the mean and, in a record that
     starts moving, the decay of whatever state it started in."""
-    columns = len(basis.filters.D)
-    sums = np.sum([block.T @ block for block in _blocks(run, basis)], axis=0)
-    width = _width(columns)
-    order = [*range(columns + 1), *range(width, min(width + columns, len(sums))), columns + 1]  # the constant goes last
-    gram = sums[np.ix_(order, order)]
+    columns, (gram, rounding) = len(basis.filters.D), _gram(run, basis)
     kept, nuisance = slice(0, columns + 1), slice(columns + 1, None)
     values, vectors = np.linalg.eigh(gram[nuisance, nuisance])
     sound = values > 1e-12 * values[-1]
@@ -176,7 +166,7 @@ def spectrum(run: Run, basis: Basis) -> Spectrum:
     mean_free = gram[columns, columns] - gram[columns, -1] ** 2 / gram[-1, -1]
     gram = gram[kept, kept] - projection @ projection.T
     values, vectors = np.linalg.eigh(gram[:columns, :columns])
-    sound = values > 1e-13 * values[-1]
+    sound = values > max(1e-13, rounding) * values[-1]
     root = np.sqrt(values[sound])
     d = (vectors[:, sound].T @ gram[:columns, columns]) / root
     # Rows of W that no model of ordinary size can make felt are dropped: their share of d is part of the rest.
@@ -184,35 +174,70 @@ def spectrum(run: Run, basis: Basis) -> Spectrum:
     felt = strength > 1e-6 * strength[0]
     d = left[:, felt].T @ d
     W = strength[felt, None] * right[felt]
-    spare = -len(d) % 4  # empty rows, see _distance
-    d, W = np.pad(d, (0, spare)), np.pad(W, ((0, spare), (0, 0)))
     return Spectrum(W, d, max(float(gram[columns, columns] - d @ d), 0.0), float(mean_free))
 
 
-def _width(columns: int) -> int:
-    """Lanes for the filters, the record and the constant."""
-    return -(-(columns + 2) // LANES) * LANES
+def _gram(run: Run, basis: Basis) -> tuple[Array, float]:
+    """Sums of products of [filtered command, record, decays from a moving start, 1], (q, q), and their relative error.
 
-
-def _blocks(run: Run, basis: Basis) -> Iterator[Array]:
-    """Blocks of rows [filtered command, record, 1, spare lanes | decays from a moving start, spare lanes].
-
-    The recursion writes where the block wants it; record and constant take the place of spare lanes.
+    Only the products of the filters with command, record and 1 are summed sample by sample; see :func:`_products`.
     """
     filters = discretise(basis.filters, run.sample_rate, run.hold)
-    groups = [filters] if run.starts_at_rest else [filters, _decays(filters)]
-    columns, width, kernel = len(filters.D), _width(len(filters.D)), advance(2)
-    buffers = [group.part(i, i + LANES).packed(LANES) for group in groups for i in range(0, width, LANES)]
+    systems = filters if run.starts_at_rest else filters.beside(_decays(filters))
     # The mean of a record would cost digits in the sums of squares, so it goes first; the model is blind to it anyway.
     measured = run.measured - run.measured.mean()
-    for first in range(0, run.length, _BLOCK):
-        last = min(first + _BLOCK, run.length)
-        block = np.empty((last - first, len(groups) * width))
-        for lane, buffer in enumerate(buffers):
-            kernel(buffer, run.command, first, last, block.reshape(-1)[lane * LANES :], block.shape[1])
-        block[:, columns] = measured[first:last]
-        block[:, columns + 1] = 1.0
-        yield block
+    now, then = np.append(run.command[:-1], 0.0), np.append(run.command[1:], 0.0)
+    beside = np.column_stack([now, then, measured, np.ones(run.length)])
+    sums, last = np.zeros((len(systems.D), 4)), np.zeros(len(systems.D))
+    for rows, begin, end in responses(systems, run.command):
+        sums += (rows.T @ beside[begin:end])[: len(sums)]
+        last = rows[-1, : len(sums)].copy()
+    record = beside.T @ beside
+    gram = np.block(
+        [[_products(systems, sums, last, record, basis.pairs), sums[:, 2:]], [sums[:, 2:].T, record[2:, 2:]]]
+    )
+    columns, count = len(filters.D), len(systems.D)
+    order = [*range(columns), count, *range(columns, count), count + 1]
+    slowest = float(1.0 - np.abs(systems.phi[:, 0, 0]).max() ** 2)  # a filter's sums are divided by this
+    return gram[np.ix_(order, order)], np.finfo(float).eps / slowest
+
+
+def _products(systems: Recursion, sums: Array, last: Array, record: Array, pairs: int) -> Array:
+    """Σ_k x_i[k] x_j[k] of n filters over a record of N samples in closed form, (n, n).
+
+    Each is x = Re c of a complex filter of first order, c[k+1] = φ c[k] + γ0 u[k] + γ1 u[k+1]: in a pair x_i is the
+    real part of one and its partner the imaginary part, with a sign. The recursion, multiplied by that of another
+    filter and summed over the samples, gives S = Σ c_i c_j from what is known:
+
+        (1 − φi φj) S = ci[0] cj[0] − φi φj ci[N−1] cj[N−1] + φi Σ c_i w_j + φj Σ w_i c_j + Σ w_i w_j,
+
+    w[k] = γ0 u[k] + γ1 u[k+1]; the last three sums go to N − 2. Likewise with c_j conjugate; half the sum of both is
+    the product of the real parts. `sums` (n, ≥2) are those of x with u[k] and u[k+1], `record` (≥2, ≥2) those of the
+    command with itself.
+    """
+
+    def with_partner(x: Array) -> NDArray[np.complex128]:
+        partner = np.zeros_like(x)
+        for start in range(0, len(x), pairs + len(_REAL)):  # the filters, then their decays
+            even, odd = x[start : start + pairs : 2], x[start + 1 : start + pairs : 2]
+            partner[start : start + pairs : 2], partner[start + 1 : start + pairs : 2] = -odd, even
+        return x + 1j * partner
+
+    def shown(states: Array) -> NDArray[np.complex128]:
+        return with_partner(np.einsum("in,in->i", systems.C, states))
+
+    pole = systems.phi[:, 0, 0] - 1j * systems.phi[:, 1, 0]
+    drive = np.stack([shown(systems.gamma0), shown(systems.gamma1)], axis=1)
+    start, end, driven = shown(systems.start), with_partner(last), with_partner(sums[:, :2])
+    total = np.zeros((len(pole), len(pole)))
+    for conjugate in (False, True):
+        other = np.conj if conjugate else np.asarray
+        through = np.outer(pole, other(pole))
+        inputs = drive @ record[:2, :2] @ other(drive).T
+        mixed = pole[:, None] * (driven @ other(drive).T) + other(pole) * (drive @ other(driven).T)
+        known = np.outer(start, other(start)) - through * np.outer(end, other(end)) + mixed + inputs
+        total += 0.5 * (known / (1.0 - through)).real
+    return total
 
 
 def _decays(filters: Recursion) -> Recursion:
@@ -221,6 +246,29 @@ def _decays(filters: Recursion) -> Recursion:
     start[:, 0] = 1.0
     still = np.zeros_like(filters.gamma0)
     return Recursion(filters.phi, still, still, filters.C, filters.D, start)
+
+
+def power_density(signal: Array, sample_rate: float, segment: int) -> tuple[Array, Array]:
+    """One-sided power density of a signal by Welch's method: frequencies in Hz, density in the signal's unit² per Hz.
+
+    Hann windows of `segment` samples, each overlapping the next by half, each without its own mean (Welch 1967). As
+    :func:`scipy.signal.welch`, segment by segment in memory that stays in the cache.
+    """
+    window, starts = (
+        scipy.signal.get_window("hann", segment),
+        range(0, len(signal) - segment + 1, segment - segment // 2),
+    )
+    part, power = np.empty(segment), np.zeros(segment // 2 + 1)
+    for first in starts:
+        piece = signal[first : first + segment]
+        np.subtract(piece, piece.mean(), out=part)
+        part *= window
+        found = scipy.fft.rfft(part)
+        power += found.real**2 + found.imag**2
+    power[1 : len(power) - (segment + 1) % 2] *= 2.0  # all but zero and, where it is there, the Nyquist frequency
+    scale = sample_rate * np.sum(window**2) * len(starts)
+    frequency = np.arange(len(power)) * (sample_rate / segment)
+    return np.asarray(frequency, dtype=np.float64), np.asarray(power / scale, dtype=np.float64)
 
 
 def within(signal: Array, sample_rate: float, low: float | None, high: float | None) -> Array:

@@ -80,12 +80,17 @@ class Observed:
         """Everything compared, scaled: position part by part, then pressure."""
         return np.asarray(self.residuals(model.constants[None], model.table.nodes, model.table.pieces[None])[0])
 
-    def residuals(self, constants: Array, nodes: Array, pieces: Array) -> Array:
-        """The residuals of several models, (models, samples compared)."""
-        record = self.record
-        positions, pressures = bool(np.isfinite(self.position_scale)), self.pressure_scale is not None
-        count = sum(end - first for first, end in self.parts) * (positions + pressures)
-        out = np.empty((len(constants), count))
+    @property
+    def count(self) -> int:
+        """Samples compared."""
+        outputs = int(np.isfinite(self.position_scale)) + int(self.pressure_scale is not None)
+        return outputs * sum(end - first for first, end in self.parts)
+
+    def residuals(self, constants: Array, nodes: Array, pieces: Array, room: Array | None = None) -> Array:
+        """The residuals of several models, (models, samples compared); in `room`, where that is given."""
+        record, positions = self.record, bool(np.isfinite(self.position_scale))
+        size = len(constants) * self.count
+        out = (np.empty(size) if room is None else room[:size]).reshape(len(constants), self.count)
         scales = np.array([self.position_scale if positions else 0.0, self.pressure_scale or 0.0])
         residuals(
             record.current, 1.0 / record.rate, record.hold == "zoh", constants, nodes, pieces, record.position,
@@ -214,9 +219,9 @@ class Residual:
         constants = np.array([model.constants for model in every])
         pieces = np.array([model.table.pieces for model in every])
 
-        def one(observed: Observed) -> tuple[int, Array]:
+        def one(observed: Observed, room: Array) -> tuple[int, Array]:
             seen = np.flatnonzero(observed.reach + abs(here.I0) > limits)
-            rows = observed.residuals(constants[seen], here.table.nodes, pieces[seen])
+            rows = observed.residuals(constants[seen], here.table.nodes, pieces[seen], room)
             base = rows[0].copy()
             rows[:-1] = (rows[1:] - base) / strides[seen[1:] - 1, None]
             rows[-1] = base
@@ -226,7 +231,12 @@ class Residual:
             out[:, place[:, None], place] = found
             return len(base), out
 
-        shares = each(lambda share: [(i, one(self.observed[i])) for i in share], self._shares)
+        def of_share(share: list[int]) -> list[tuple[int, tuple[int, Array]]]:
+            # One piece of memory for all of them: fresh memory would cost more than the simulation.
+            room = np.empty(len(every) * max(self.observed[i].count for i in share))
+            return [(i, one(self.observed[i], room)) for i in share]
+
+        shares = each(of_share, self._shares)
         found = [part for _, part in sorted((pair for share in shares for pair in share), key=lambda pair: pair[0])]
         return Normal(np.concatenate([products for _, products in found]), sum(count for count, _ in found))
 

@@ -150,24 +150,39 @@ class Objective:
         return np.minimum(errors, UNSTABLE), np.max([doubt for _, doubt in found], axis=0)
 
     def _over_runs(self, points: Array, measure: Callable[[int, Array, NDArray[np.bool_]], Outcome]) -> list[Outcome]:
-        """`measure`(run, values at the nodes, stable) of every run, in order; the runs are shared out to the cores."""
+        """`measure`(run, values at the nodes, stable) of every run, in order; shared out to the cores.
+
+        Runs of one specimen and gain differ in their command only: the model is evaluated once for all of them.
+        """
         self.prepare()
         values = self.space.values(points)
 
-        def of_share(share: Array) -> list[Outcome]:
-            runs = [self.runs[i] for i in share]
-            model, pattern = self._models(runs, values), self._patterns[runs[0].output]
-            reduced = values_at(model, pattern, self.basis.nodes, self.basis.band)
-            return [measure(i, g, stable) for i, (g, stable) in zip(share, reduced, strict=True)]
+        def of_share(share: tuple[Sequence[int], ...]) -> list[tuple[int, Outcome]]:
+            first = [self.runs[alike[0]] for alike in share]
+            reduced = values_at(
+                self._models(first, values), self._patterns[first[0].output], self.basis.nodes, self.basis.band
+            )
+            return [
+                (run, measure(run, g, stable))
+                for alike, (g, stable) in zip(share, reduced, strict=True)
+                for run in alike
+            ]
 
-        shares = [
-            share
-            for output in self._patterns
-            for share in np.array_split([i for i, run in enumerate(self.runs) if run.output == output], cores())
-            if len(share)
+        found = dict(chain.from_iterable(each(of_share, self._shares)))
+        return [found[run] for run in range(len(self.runs))]
+
+    @cached_property
+    def _shares(self) -> list[tuple[Sequence[int], ...]]:
+        """The runs as groups of one output and equal conditions, (runs alike, …), shared out to the cores."""
+        groups: dict[str, dict[tuple[float, ...], list[int]]] = {}
+        for i, run in enumerate(self.runs):
+            known = tuple(conditions(run, self.matrix.actuator).values())
+            groups.setdefault(run.output, {}).setdefault(known, []).append(i)
+        return [
+            tuple(alike[core :: cores()])
+            for alike in (list(of_output.values()) for of_output in groups.values())
+            for core in range(min(cores(), len(alike)))
         ]
-        found = dict(zip(np.concatenate(shares), chain.from_iterable(each(of_share, shares)), strict=True))
-        return [found[i] for i in range(len(self.runs))]
 
     def _models(self, runs: Sequence[Run], values: Mapping[str, Array]) -> LinearModel:
         """Linear models of a batch (runs, vectors)."""

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ident.chain import Chain, conditions, linear_model
 from ident.effect import Effect
 from ident.fit.objective import STEP, UNSTABLE, Local, local
-from ident.fit.products import add_products
+from ident.fit.products import add_products, completed
 from ident.fit.record import Moments, first_state, moments_of
 from ident.fit.space import Space
 from ident.matrix import Matrix, Run
@@ -161,13 +161,10 @@ class OutputError:
         length = max(16, -(-runs[0].length // _BLOCKS))
         records = np.column_stack([run.measured - run.measured.mean() for run in runs])
         q = released.shape[1] + 1
-        scale = np.append(strides, np.ones(q - len(strides)))
-        found = []
-        for rows, first, last in released.outputs(length):
-            sums = np.zeros((len(runs), q, q))
-            add_products(rows, records[first:last], sums)
-            found.append((sums + np.tril(sums, -1).transpose(0, 2, 1)) / scale[:, None] / scale)
-        return np.array(found).transpose(1, 0, 2, 3)
+        sums = np.zeros((-(-runs[0].length // length), len(runs), q, q))
+        for block, (rows, first, last) in enumerate(released.outputs(length)):
+            add_products(rows, records[first:last], q - 2, sums[block])
+        return completed(sums, strides).transpose(1, 0, 2, 3)
 
     def released(self, runs: tuple[Run, ...], values: Mapping[str, Array], steps: int) -> Simulation:
         """A simulation of vectors and, where runs start moving, of the first with each of its first states moved."""

@@ -12,23 +12,27 @@ CHUNK = 256  # samples turned at a time, so that the sums run along contiguous m
 
 
 @njit(cache=True, fastmath=True, nogil=True)
-def add_products(rows: Array, measured: Array, sums: Array) -> None:
+def add_products(rows: Array, measured: Array, moved: int, sums: Array) -> None:
     """Add Σ of products of [J, N, 1, r] over the samples of a block to `sums`, (runs, q, q), lower triangle.
 
-    `rows` (samples, runs, vectors) holds the model's output, then those with one parameter moved, then those with a
-    first state moved; `measured` (samples, runs) the mean-free records. J, N are differences to the first column:
-    taken here, before the products, which would lose half the digits.
+    `rows` (samples, runs, vectors) holds the model's output, then `moved` others, with one parameter or first state
+    moved, then decays of first states; spare vectors behind those are left out. `measured` (samples, runs) are the
+    mean-free records. J, and N where a first state was moved, are differences to the model's output: taken here,
+    before the products, which would lose half the digits.
     """
-    samples, runs, vectors = rows.shape
-    q = vectors + 1
+    samples, runs, _ = rows.shape
+    q = sums.shape[1]
+    vectors = q - 1
     z = np.empty((q, CHUNK))
     for run in range(runs):
         for first in range(0, samples, CHUNK):
             count = min(CHUNK, samples - first)
             for t in range(count):
                 base = rows[first + t, run, 0]
-                for j in range(1, vectors):
+                for j in range(1, moved + 1):
                     z[j - 1, t] = rows[first + t, run, j] - base
+                for j in range(moved + 1, vectors):
+                    z[j - 1, t] = rows[first + t, run, j]
                 z[q - 2, t] = 1.0
                 z[q - 1, t] = measured[first + t, run] - base
             for i in range(q):
@@ -37,6 +41,12 @@ def add_products(rows: Array, measured: Array, sums: Array) -> None:
                     for t in range(count):
                         total += z[i, t] * z[j, t]
                     sums[run, i, j] += total
+
+
+def completed(sums: Array, strides: Array) -> Array:
+    """Both triangles of sums of products (…, q, q) of [J, N, 1, r], the differences J over the strides (p,)."""
+    scale = np.append(strides, np.ones(sums.shape[-1] - len(strides)))
+    return np.asarray((sums + np.swapaxes(np.tril(sums, -1), -1, -2)) / scale[:, None] / scale)
 
 
 def removal(gram: Array, p: int) -> Array:

@@ -7,16 +7,16 @@ and, where it starts moving, the decay of its unknown first state).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.fit.products import removal, without
+from ident.fit.products import add_products, completed, removal, without
 from ident.linear import LinearModel
 from ident.matrix import Run
-from ident.recursion import LANES, Recursion, advance, discretise
+from ident.recursion import Recursion, discretise, respond, responses
 
 Array = NDArray[np.float64]
 _BLOCKS = 32  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
@@ -106,13 +106,13 @@ def output(run: Run, model: LinearModel) -> Array:
     systems = discretise(model, run.sample_rate, run.hold)
     if not run.starts_at_rest:
         systems = _with_releases(systems)
-    y = np.concatenate([rows[:, : len(systems.D)] for rows, _, _ in _responses(run, systems, 8192)])
-    if y.shape[1] == 1:
-        return np.ascontiguousarray(y[:, 0])
-    free = np.column_stack([y[:, 1:], np.ones(run.length)])
+    y = respond(systems, run.command)
+    if len(y) == 1:
+        return np.asarray(y[0])
+    free = np.column_stack([*y[1:], np.ones(run.length)])
     size = np.maximum(np.linalg.norm(free, axis=0), 1e-300)
-    coefficients = np.linalg.lstsq(free / size, run.measured - y[:, 0], rcond=1e-12)[0] / size
-    return np.asarray(y[:, 0] + y[:, 1:] @ coefficients[:-1])
+    coefficients = np.linalg.lstsq(free / size, run.measured - y[0], rcond=1e-12)[0] / size
+    return np.asarray(y[0] + coefficients[:-1] @ y[1:])
 
 
 def _with_releases(systems: Recursion) -> Recursion:
@@ -127,38 +127,14 @@ def _with_releases(systems: Recursion) -> Recursion:
     return Recursion(phi, gamma0, gamma1, C, D, np.concatenate([systems.start, np.diag(scale)]))
 
 
-def _responses(run: Run, systems: Recursion, length: int) -> Iterator[tuple[Array, int, int]]:
-    """Outputs of the batch in blocks of at most `length` samples: (rows, first, last).
-
-    Rows have a column for each lane; at least one is spare, and zero: (samples, a multiple of the lanes above b).
-    """
-    kernel = advance(systems.C.shape[1])
-    buffers = [systems.part(i, i + LANES).packed(LANES) for i in range(0, len(systems.D) + 1, LANES)]
-    for first in range(0, run.length, length):
-        last = min(first + length, run.length)
-        parts = []
-        for buffer in buffers:
-            lanes = np.empty((last - first) * LANES)
-            kernel(buffer, run.command, first, last, lanes, LANES)
-            parts.append(lanes.reshape(-1, LANES))
-        yield parts[0] if len(parts) == 1 else np.hstack(parts), first, last
-
-
 def _products(run: Run, systems: Recursion, strides: Array) -> Array:
-    """Sums of products of [J, releases, 1, r] for each block, (blocks, q, q).
-
-    The differences are taken in place, before the products: taken after, they would lose half the digits.
-    """
-    length = max(16, -(-run.length // _BLOCKS))
-    batch, p, mean = len(systems.D), len(strides), run.measured.mean()
-    order = np.array([*range(1, batch + 1), 0])
-    out = []
-    for rows, first, last in _responses(run, systems, length):
-        rows[:, 1 : p + 1] -= rows[:, :1]
-        rows[:, 0] = run.measured[first:last] - mean - rows[:, 0]
-        rows[:, batch] = 1.0  # a spare lane
-        out.append((rows.T @ rows)[np.ix_(order, order)])
-    products = np.array(out)
-    products[:, :p] /= strides[:, None]
-    products[:, :, :p] /= strides
-    return products
+    """Sums of products of [J, releases, 1, r] for each block of the record, (blocks, q, q)."""
+    length, q = max(16, -(-run.length // _BLOCKS)), len(systems.D) + 1
+    sums = np.zeros((-(-run.length // length), q, q))
+    measured = (run.measured - run.measured.mean())[:, None]
+    for rows, first, last in responses(systems, run.command):
+        for block in range(first // length, -(-last // length)):
+            begin, end = max(first, block * length), min(last, (block + 1) * length)
+            part = rows[begin - first : end - first, None]
+            add_products(part, measured[begin:end], len(strides), sums[block : block + 1])
+    return completed(sums, strides)

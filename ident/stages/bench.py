@@ -1,5 +1,7 @@
 """Kononykhin's blocks: open loop, play, speed characteristic, and a load that takes its share of the speed."""
 
+from functools import lru_cache
+
 from ident.stages.stage import Quantity, stage
 from ident.stages.valve import FIRST_ORDER_VALVE
 
@@ -7,6 +9,7 @@ FRACTIONS = (0.05, 0.1, 0.25, 0.5, 0.75, 1.0)
 """Where the speed characteristic has its nodes, in rated currents from the zero shift; denser for small signals."""
 
 
+@lru_cache
 def node_names(fractions: tuple[float, ...] = FRACTIONS) -> tuple[str, ...]:
     """Names of the speeds of the table: V_p5 at +5 % of rated current … , V_m5 at −5 % … ."""
     return tuple(f"V_{sign}{100 * fraction:.4g}".replace(".", "_") for sign in "pm" for fraction in fractions)
