@@ -19,7 +19,8 @@ from ident.matrix import Run
 
 Array = NDArray[np.float64]
 FINE = 0.4  # radians or time constants a step: the largest eigenvalue times the step, above which steps are divided
-MOST = 32  # steps a sample; a faster mode is cut there, and said
+MOST = 32  # steps a sample
+FASTEST = FINE * MOST  # radians a sample of the fastest mode that is followed closely; one beyond is said
 _SMALL = 1e-9  # of a unit: where small-signal behaviour is taken
 
 
