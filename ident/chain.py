@@ -221,10 +221,11 @@ class Chain:
     def linearise(self, values: Mapping[str, Array | float], output: str = "displacement") -> LinearModel:
         """State matrices by applying the equations to unit vectors: exact, because the cores are linear.
 
-        `values` holds every symbol, as numbers or arrays of one broadcast shape; `output` is a channel's name.
+        `values` holds every symbol, as numbers or arrays of one broadcast shape, which is that of the batch whether the
+        equations read them all or not; `output` is a channel's name.
         """
         evaluate, n = self.evaluator(output), len(self.states)
-        shape = np.broadcast_shapes(*(np.shape(values[name]) for name in self.symbols))
+        shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
         system = np.zeros((n + 1, n + 1, *shape))
         for j in range(n + 1):
             unit = [float(i == j) for i in range(n)]
