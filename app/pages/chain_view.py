@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -15,6 +16,7 @@ from ident.expression import Equation
 from ident.fit.identification import check_settings
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
+from ident.grammar import DYNAMIC
 
 _STEP, _WIDTH, _TOP, _LINE = 136, 108, 34, 15  # px of the drawing
 _LETTERS = 17  # that fit into a box
@@ -24,11 +26,15 @@ _BACK = (("P", "pressure", "flow"), ("v", "load", "pressure"), ("y", "sensor", "
 
 @dataclass(frozen=True)
 class Place:
-    """A place: where it is drawn, the signal that the next one reads, its effects that are on and those to add."""
+    """A place: where it is drawn, the signal that the next one reads, its effects that are on and those to add.
+
+    `core` is what it is without effects.
+    """
 
     name: str
     x: int
     signal: str
+    core: str
     on: tuple[Member, ...]
     off: tuple[Member, ...]
 
@@ -80,7 +86,7 @@ def drawing(fit: FitResult) -> Drawing:
     on, off = tuple(_on(fit, own)), tuple(_off(fit))
     places = tuple(
         Place(
-            name=name, x=10 + _STEP * number, signal=signals[number],
+            name=name, x=10 + _STEP * number, signal=signals[number], core=_core(model.core.equations, name),
             on=tuple(one for one in on if one.place == name), off=tuple(one for one in off if one.place == name),
         )
         for number, name in enumerate(names)
@@ -110,6 +116,13 @@ def _off(fit: FitResult) -> Iterator[Member]:
         except Unusable:
             continue  # it acts on what this model has not
         yield member(effect.name, effect, {}, None)
+
+
+def _core(equations: Sequence[Equation], place: str) -> str:
+    """Whether a place is linear without effects: its equations call no function but what remembers, off in a core."""
+    trees = (equation.tree for equation in equations if equation.place == place)
+    called = {node.func.id for tree in trees for node in ast.walk(tree) if isinstance(node, ast.Call)}  # type: ignore[attr-defined]
+    return "nonlinear" if called - set(DYNAMIC) else "linear"
 
 
 def _handed_on(equations: Sequence[Equation], place: str, behind: str) -> str:

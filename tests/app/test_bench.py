@@ -78,6 +78,7 @@ def test_the_page_offers_what_a_bench_has(service, fit):
     assert "Acceptance sheet" in page
     assert "data-budget" not in page
     assert "Your own effect" not in page
+    assert "own.js" not in page  # it would look for the form
     assert ">50 %<" in page
     assert "Add it" not in page
     assert re.findall(r'class="signal[^>]*>([^<]*)<', page) == ["e", "q", "w", "V0", "X"]

@@ -35,6 +35,12 @@ def test_each_signal_drawn_is_one_that_a_place_hands_on(model):
     assert {line.signal for line in drawn.back} == LOOPS[model]
 
 
+@pytest.mark.parametrize(("model", "bent"), [("qian2014", ()), ("kononykhin", ("spool", "flow", "load"))])
+def test_a_place_is_called_linear_where_its_equations_are(model, bent):
+    """A bench's play, speed characteristic and share of the speed are not; friction that is off does not count."""
+    assert tuple(place.name for place in drawing(fit(model)).places if place.core == "nonlinear") == bent
+
+
 def test_what_an_effect_feeds_back_is_drawn_with_it():
     """The flow depends on the load pressure where an effect makes it."""
     assert {line.signal for line in drawing(fit("qian2014", "pressure_flow")).back} == {"P", "v", "y"}
