@@ -63,7 +63,8 @@ EFFECTS_HEAD = (
     "default unless a fit is given bounds for them. Within a place effects act in the order of this list. An equation",
     "reads a signal that its effect redefines as it was before; `:=` is a memory, on the right as it was at the start",
     "of the step; `lag(x, T)` is x/(T s + 1), `lag2(x, a1, a2)` is x/(a2 s² + a1 s + 1), `delay(x, T)` is x(t − T),",
-    "`t` the time since the start of the record. How to write one of your own: [own-effects.md](own-effects.md).",
+    "`t` the time since the start of the record. A model takes an effect where it has the signals that it redefines,",
+    "in their units. How to write one of your own: [own-effects.md](own-effects.md).",
 )
 
 
@@ -74,7 +75,8 @@ def models() -> str:
         lines += model(preset)
     lines += ["# Effects", "", *EFFECTS_HEAD, ""]
     for effect in EFFECTS:
-        lines += [f"## {effect.name}", "", f"At the place *{effect.place}*: {effect.meaning}.", ""]
+        on = ", ".join(f"`{signal}` ({unit})" for signal, unit in effect.units.items())
+        lines += [f"## {effect.name}", "", f"At the place *{effect.place}*, on {on}: {effect.meaning}.", ""]
         lines += [*(f"    {text}" for text in effect.texts), ""]
         lines += [f"In data: {effect.looks}. Source: {effect.source}.", ""]
         lines += parameters(effect.parameters)

@@ -59,7 +59,7 @@ def conditions(run: Run, actuator: Actuator) -> dict[str, float]:
 class Chain:
     """Stages in the order of the signal, the signal that each recordable channel shows, and the effects added.
 
-    Raises Unusable where an effect finds nothing to act on.
+    Raises Unusable where an effect finds nothing to act on, or a signal in another unit than it is made for.
     """
 
     stages: tuple[Stage, ...]
@@ -70,6 +70,9 @@ class Chain:
         for effect in self.effects:
             if not self._core & {equation.target for equation in effect.equations}:
                 raise unfit(effect)
+            for signal, unit in effect.units.items():
+                if self.units.get(signal, unit) != unit:
+                    raise of_other_unit(effect, signal, self.units[signal])
 
     def __hash__(self) -> int:
         return hash((self.stages, tuple(self.outputs.items()), self.effects))
@@ -81,6 +84,11 @@ class Chain:
     @cached_property
     def _core(self) -> frozenset[str]:
         return frozenset(equation.target for stage in self.stages for equation in stage.equations)
+
+    @cached_property
+    def units(self) -> Mapping[str, str]:
+        """The unit of each state and signal, as its stage states it."""
+        return {quantity.name: quantity.unit for stage in self.stages for quantity in stage.publishes}
 
     @cached_property
     def equations(self) -> tuple[Equation, ...]:
@@ -213,10 +221,11 @@ class Chain:
     def linearise(self, values: Mapping[str, Array | float], output: str = "displacement") -> LinearModel:
         """State matrices by applying the equations to unit vectors: exact, because the cores are linear.
 
-        `values` holds every symbol, as numbers or arrays of one broadcast shape; `output` is a channel's name.
+        `values` holds every symbol, as numbers or arrays of one broadcast shape, which is that of the batch whether the
+        equations read them all or not; `output` is a channel's name.
         """
         evaluate, n = self.evaluator(output), len(self.states)
-        shape = np.broadcast_shapes(*(np.shape(values[name]) for name in self.symbols))
+        shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
         system = np.zeros((n + 1, n + 1, *shape))
         for j in range(n + 1):
             unit = [float(i == j) for i in range(n)]
@@ -242,6 +251,13 @@ def unfit(effect: Effect) -> Unusable:
     """The refusal of an effect that a model has no place for."""
     return Unusable("effect-does-not-fit", "the model has nothing that it could act on", f"effect {effect.name}",
                     "choose another effect, or a model that has its place")  # fmt: skip
+
+
+def of_other_unit(effect: Effect, signal: str, unit: str) -> Unusable:
+    """The refusal of an effect by a model whose signal has another unit than the effect is made for."""
+    here = "a plain number" if unit == "1" else f"in {unit}"
+    return Unusable("effect-does-not-fit", f"it redefines {signal} in {effect.units[signal]}, which is {here} here",
+                    f"effect {effect.name}", "choose another effect, or another model")  # fmt: skip
 
 
 def friction(equation: Equation) -> tuple[str, str, str, str] | None:

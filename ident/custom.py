@@ -94,6 +94,7 @@ def _read(text: str, model: str) -> Effect:
     effect = Effect(
         name=name, place=place, meaning=fields.text("meaning", "an effect of the user"), strength=strength,
         texts=tuple(line.equation for line in lines), shape=shapes,
+        units={line.target: chosen.chain.units[line.target] for line in lines if line.target in chosen.chain.units},
         looks=fields.text("looks"), source=fields.text("source", "defined by the user"),
         steps=2 if any(_KINKS.search(line.right) for line in lines) else 1,
     )  # fmt: skip

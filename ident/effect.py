@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from ident.errors import Unusable
@@ -19,9 +20,11 @@ class Effect:
     other parameters, held at their defaults unless a fit is told to free them. `equations` redefine signals of the
     chain and give the rates and memories of the effect's own states. An equation reads a signal that its effect
     redefines as it was left by what stands before, every other name in its final value, and a memory of the effect in
-    the equation of a memory as it was at the start of the step. `looks` says what the effect looks like in data,
-    `steps` into how many a sample has to be divided so that its kinks are met closely enough, `stride` by which share
-    of its range its strength is moved for a sensitivity: far where it acts in jumps.
+    the equation of a memory as it was at the start of the step. `units` are those of the signals of the chain that it
+    redefines, for which its strength is made: a chain that has such a signal in another unit refuses it. `looks` says
+    what the effect looks like in data, `steps` into how many a sample has to be divided so that its kinks are met
+    closely enough, `stride` by which share of its range its strength is moved for a sensitivity: far where it acts in
+    jumps.
 
     Raises Unusable where place or strength are not of that form.
     """
@@ -36,6 +39,7 @@ class Effect:
     source: str = ""
     steps: int = 1
     stride: float = 1e-5
+    units: Mapping[str, str] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
         _ = self.equations

@@ -49,7 +49,7 @@ def _not_off(effect: Effect, what: str) -> Unusable:
 def _drawn(preset: Preset, effect: Effect, chain: Chain, rng: np.random.Generator) -> dict[str, Any]:
     """Values of everything that the equations read but do not define, and of the states; arrays (trials,)."""
 
-    units = {q.name: q.unit for stage in chain.stages for q in stage.publishes} | {INPUT: "m", FORCE: "N"}
+    units = {**chain.units, INPUT: "m", FORCE: "N"}
 
     def signal(name: str) -> Array:
         return rng.choice((-1, 1), _TRIALS) * _SIZES.get(units.get(name, ""), 1.0) * 10.0 ** rng.uniform(-4, 0, _TRIALS)

@@ -19,8 +19,31 @@ from ident.matrix import Run
 
 Array = NDArray[np.float64]
 FINE = 0.4  # radians or time constants a step: the largest eigenvalue times the step, above which steps are divided
-MOST = 32  # steps a sample; a faster mode is cut there, and said
+MOST = 32  # steps a sample
+FASTEST = FINE * MOST  # radians a sample of the fastest mode that is followed closely; one beyond is said
 _SMALL = 1e-9  # of a unit: where small-signal behaviour is taken
+
+
+@dataclass(frozen=True)
+class _Input:
+    """One input of every run at the fine steps, one run after the other, (m,).
+
+    `begin` is where each lane begins in it, `delay` the fine steps by which it is late, both (lanes,).
+    """
+
+    record: Array
+    begin: NDArray[np.int64]
+    delay: Array
+
+    @property
+    def first(self) -> Array:
+        """The value with which each lane begins."""
+        return np.asarray(self.record[self.begin])
+
+    @property
+    def share(self) -> Array:
+        """The fraction of a step in each delay."""
+        return np.maximum(self.delay - _whole(self.delay), 0.0)
 
 
 @dataclass(frozen=True)
@@ -49,20 +72,21 @@ class Simulation:
         lanes = -(-count * vectors // LANES) * LANES
         built = self._kernel()
         lane_values = self._lanes(lanes)
-        commands, where, shares = self._inputs(lanes, INPUT, built, lane_values)
-        forces = self._inputs(lanes, FORCE, built, lane_values)[0] if FORCE in built.inputs else commands
-        lane_values |= {HELD: self._held(lanes), SHARE: shares}
-        buffers = self._packed(built, lane_values, lanes, commands, forces, where)
+        inputs = {name: self._input(lanes, name, built, lane_values) for name in built.inputs}
+        command, force = inputs[INPUT], inputs.get(FORCE, inputs[INPUT])
+        lane_values |= {HELD: self._held(lanes), SHARE: command.share}
+        buffers = self._packed(built, lane_values, lanes, inputs)
         for first in range(0, samples, length):
             last = min(first + length, samples)
             out = np.empty((last - first) * lanes)
             for i, buffer in enumerate(buffers):
                 group = slice(i * LANES, (i + 1) * LANES)
+                driven = buffer, command.record, force.record, command.begin[group], force.begin[group]
                 ends = first * self.steps, (last - 1) * self.steps + 1
-                built.advance(buffer, commands, forces, where[group], *ends, self.steps, out[i * LANES :], lanes)
+                built.advance(*driven, *ends, self.steps, out[i * LANES :], lanes)
                 if last < samples:  # on to the first step of the next block
                     rest = ends[1], last * self.steps
-                    built.advance(buffer, commands, forces, where[group], *rest, 1 << 40, np.empty(LANES), LANES)
+                    built.advance(*driven, *rest, 1 << 40, np.empty(LANES), LANES)
             yield out.reshape(last - first, lanes)[:, : count * vectors].reshape(-1, count, vectors), first, last
 
     def _kernel(self) -> Kernel:
@@ -88,41 +112,36 @@ class Simulation:
         held = np.array([[float(run.hold == "zoh")] for run in self.runs])
         return _filled(np.broadcast_to(held, self.shape).ravel(), lanes)
 
-    def _inputs(
-        self, lanes: int, name: str, built: Kernel, values: Mapping[str, Array]
-    ) -> tuple[Array, NDArray[np.int64], Array]:
-        """One input of every run at the fine steps, one after the other; where each lane begins; delays' fractions."""
-        shift = np.zeros(lanes)
+    def _input(self, lanes: int, name: str, built: Kernel, values: Mapping[str, Array]) -> _Input:
+        """One input of every run at the fine steps; a delay shifts the command alone."""
+        delay = np.zeros(lanes)
         if name == INPUT and built.shift is not None:
-            shift = np.broadcast_to(constant(built.shift, values) / values[STEP], (lanes,))
-        whole = np.floor(shift + 1e-9).astype(np.int64)
+            delay = np.broadcast_to(constant(built.shift, values) / values[STEP], (lanes,))
+        whole = _whole(delay)
         before = int(whole.max()) + 2
         records = [_fine(run, name, self.steps, before) for run in self.runs]
         starts = np.cumsum([0, *(len(record) for record in records[:-1])]) + before
         begin = _filled(np.repeat(starts, self.shape[1]).astype(float), lanes).astype(np.int64)
-        return np.concatenate(records), begin - whole, np.maximum(shift - whole, 0.0)
+        return _Input(np.concatenate(records), begin - whole, delay)
 
     def _packed(
-        self, built: Kernel, values: Mapping[str, Array], lanes: int, commands: Array, forces: Array,
-        where: NDArray[np.int64],
-    ) -> list[Array]:  # fmt: skip
+        self, built: Kernel, values: Mapping[str, Array], lanes: int, inputs: Mapping[str, _Input]
+    ) -> list[Array]:
         rows = np.zeros((built.rows, lanes))
         for row, node in built.constants:
             rows[row] = constant(node, values)
         for known in built.filters:
             _pack_filter(rows, known, values)
         for name, first in built.inputs.items():
-            record = commands if name == INPUT else forces
             # The first value did not jump there: what the command did before the record is not known.
-            rows[first] = rows[first + 1] = record[where]
+            rows[first] = rows[first + 1] = inputs[name].first
             if name == INPUT and built.shift is not None:
-                delay = np.broadcast_to(constant(built.shift, values) / values[STEP], (lanes,))
-                late = _begun_late(record, where, delay, values[HELD])
-                rows[first], rows[first + 1] = np.where(delay > 0, late, rows[first])
+                late = _begun_late(inputs[name], values[HELD])
+                rows[first], rows[first + 1] = np.where(inputs[name].delay > 0, late, rows[first])
         if self.start is not None:
             for i, name in enumerate(self.chain.states):
                 rows[built.states[name]] = _filled(self.start[..., i].ravel(), lanes)
-            self._settle(rows, built, values, commands[where])
+            self._settle(rows, built, values, inputs[INPUT].first)
         return [np.ascontiguousarray(rows[:, i : i + LANES]).ravel() for i in range(0, lanes, LANES)]
 
     def _settle(self, rows: Array, built: Kernel, values: Mapping[str, Array], command: Array) -> None:
@@ -153,6 +172,11 @@ def _reads_old(names: frozenset[str]) -> bool:
     return any(name.endswith("__old") for name in names)
 
 
+def _whole(delay: Array) -> NDArray[np.int64]:
+    """The whole steps in a delay of fine steps."""
+    return np.asarray(np.floor(delay + 1e-9).astype(np.int64))
+
+
 def _filled(values: Array, lanes: int) -> Array:
     return np.concatenate([values, np.full(lanes - len(values), values[-1])])
 
@@ -176,16 +200,16 @@ def _fine(run: Run, channel: str, steps: int, before: int) -> Array:
     return np.concatenate([front, fine, np.full(steps + 2, fine[-1])])
 
 
-def _begun_late(record: Array, where: NDArray[np.int64], delay: Array, held: Array) -> Array:
-    """A late command before and at the first fine step, (2, lanes); `delay` in fine steps."""
-    whole = np.floor(delay + 1e-9).astype(np.int64)
-    start = where + whole
+def _begun_late(command: _Input, held: Array) -> Array:
+    """A late command before and at the first fine step, (2, lanes)."""
+    record, begin, whole = command.record, command.begin, _whole(command.delay)
+    start = begin + whole
     front, jump = record[start - 2], record[start] - record[start - 2]
-    last = front - _jump_share(np.maximum(delay, 1e-9)) * jump
+    last = front - _jump_share(np.maximum(command.delay, 1e-9)) * jump
     drawn = held == 0
-    before = np.where(drawn & (whole == 0), last, record[where - 1])
+    before = np.where(drawn & (whole == 0), last, record[begin - 1])
     return np.array(
-        [np.where(drawn & (whole == 1), front, before), np.where(drawn & (whole == 1), last, record[where])]
+        [np.where(drawn & (whole == 1), front, before), np.where(drawn & (whole == 1), last, record[begin])]
     )
 
 

@@ -120,13 +120,20 @@ def fit_page(
         facts=_facts(fit),
         missing=lacks,
         ladder=steps(ladder),
-        places=tuple((place, HANDED_ON.get(place, "")) for place in dict.fromkeys(s.place for s in model.chain.stages)),
+        places=tuple(_places(model)),
         findings=counted(serious := [entry for entry in matrix.findings if entry.severity != "note"]),
         worst="fault" if any(entry.severity == "fault" for entry in serious) else "doubt",
         others=tuple((other.id, _other(other)) for other in others if other.id != stored.id),
         again=json.dumps(fit_request(fit, stored.id)),
         on_bench=fit.model == "kononykhin",
     )
+
+
+def _places(model: Preset) -> Iterator[tuple[str, str]]:
+    """The places of a model, each with the signal that a line without a name redefines, where the model has it."""
+    for place in dict.fromkeys(stage.place for stage in model.chain.stages):
+        signal = HANDED_ON[place]
+        yield place, signal if signal in model.chain.units else ""
 
 
 def _other(fit: ParameterSetView) -> str:

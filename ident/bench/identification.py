@@ -19,7 +19,6 @@ from ident.bench.model import CONSTANTS
 from ident.bench.outputs import model_of, noise_floor, run_errors
 from ident.bench.records import bench_set
 from ident.bench.residual import Residual, observe
-from ident.errors import Unusable
 from ident.fit import genetic
 from ident.fit.evolution import GENERATIONS, cma_es, differential_evolution
 from ident.fit.result import Estimate, FitResult, Generation, RunError, Undetermined
@@ -45,9 +44,6 @@ class BenchIdentification:
     def __init__(self, matrix: Matrix, settings: Settings, report: Report = silent) -> None:
         self.matrix, self.settings, self.report = matrix, settings, report
         self.preset = preset_called("kononykhin")
-        if settings.effects or settings.load != "none":
-            raise Unusable("effect-does-not-fit", "the model kononykhin takes no effect and no measured load", "fit",
-                           "leave --effect and --load out")  # fmt: skip
         self.bench = bench_set(matrix, "fit")
         self.options = {**self._defaults(), **settings.options}
         self.space = self._space()

@@ -9,6 +9,7 @@ ACQUISITION_LAG = Effect(
     meaning="the recorded displacement lags what the controller sees",
     strength=Parameter("time_constant", "T", "s", 0.0, 3e-3, 0.0, "time constant of the recorder"),
     texts=("y = lag(y, T)",),
+    units={"y": "m"},
     looks="the same lag at every gain and specimen, with some loss of magnitude",
     source="anti-aliasing filter of the recorder",
 )

@@ -12,6 +12,7 @@ BACKLASH = Effect(
         "p := clip(p, w - b, w + b)",
         "w = p",
     ),
+    units={"w": "m"},
     looks="phase lag and lost magnitude at small amplitudes, the same at every frequency; flat tops",
     source="Kononykhin, block b; play operator",
     steps=2,

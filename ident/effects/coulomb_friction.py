@@ -9,6 +9,7 @@ COULOMB_FRICTION = Effect(
     meaning="dry friction of seals and guides, which sticks",
     strength=Parameter("force", "Fc", "N", 0.0, 200.0, 0.0, "dry friction force"),
     texts=("Ff = Ff + Fc",),
+    units={"Ff": "N"},
     looks="flat tops where the speed changes sign; magnitude falls and lag grows at small amplitudes",
     source="Strano and Terzo, Fc sgn v",
     steps=2,

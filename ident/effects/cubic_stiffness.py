@@ -9,6 +9,7 @@ CUBIC_STIFFNESS = Effect(
     meaning="the specimen's spring hardens or softens",
     strength=Parameter("stiffness", "k3", "N/m^3", -1e11, 1e11, 0.0, "cubic stiffness of the specimen"),
     texts=("S = S + k3 * xL**3",),
+    units={"S": "N"},
     looks="static gain and resonance change with amplitude",
     source="Duffing",
 )

@@ -11,6 +11,7 @@ ENTRAINED_AIR = Effect(
         "content", "alpha", "1", 0.0, 5.0, 0.0, "relative compressibility that the air adds at low pressure"
     ),
     texts=("Ke = Ke * (1 + alpha / (1 + (P / Pr)**2))",),
+    units={"Ke": "m^3/Pa"},
     shape=(Parameter("pressure", "Pr", "Pa", 1e5, 2e7, 2e6, "pressure at which half of the effect is gone"),),
     looks="the oil-column resonance rises with amplitude and load",
     source="phenomenological; effective bulk modulus",

@@ -11,6 +11,7 @@ FLOW_SATURATION = Effect(
         "inverse_opening", "a", "1/m", 0.0, 300.0, 0.0, "inverse of the opening at which the flow bends"
     ),
     texts=("w = w / sqrt(1 + (a * w)**2)",),
+    units={"w": "m"},
     looks="bandwidth falls at large amplitudes and gains; rounded peaks of speed",
     source="Kononykhin, speed characteristic",
 )

@@ -9,6 +9,7 @@ FRAME_COMPLIANCE = Effect(
     meaning="the transducer's frame gives way under the force on the specimen",
     strength=Parameter("compliance", "s", "m/N", 0.0, 1e-6, 0.0, "compliance of the frame, 1/kf"),
     texts=("X = X + s * F",),
+    units={"X": "m"},
     looks="reading too small at resonance or too large, in proportion to the specimen's force",
     source="compliance between transducer and ground",
 )

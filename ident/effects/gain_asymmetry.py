@@ -11,6 +11,7 @@ GAIN_ASYMMETRY = Effect(
         "asymmetry", "a", "1", -0.3, 0.3, 0.0, "relative difference of the flow gain of the two directions"
     ),
     texts=("w = w * (1 + a * sgn(w))",),
+    units={"w": "m"},
     looks="one direction faster than the other; even harmonics, and an offset that grows with amplitude",
     source="Strano and Terzo, slopes kqn and kqp",
 )

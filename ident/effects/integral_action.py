@@ -12,6 +12,7 @@ INTEGRAL_ACTION = Effect(
         "i' = r - y_in",
         "e = e + Kp * Ki * i",
     ),
+    units={"e": "m"},
     looks="peaking at low frequency, no mean error whatever the bias; phase lag below a few hertz",
     source="PI control",
 )

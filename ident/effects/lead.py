@@ -9,6 +9,7 @@ LEAD = Effect(
     meaning="the controller adds the rate of the error",
     strength=Parameter("time", "Td", "s", 0.0, 5e-3, 0.0, "derivative time"),
     texts=("e = e + Kp * Td * (dr - v_in)",),
+    units={"e": "m"},
     looks="more bandwidth and damping than the gain explains, growing with frequency",
     source="PD control",
 )

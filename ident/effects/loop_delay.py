@@ -12,6 +12,7 @@ LOOP_DELAY = Effect(
         "y_in = delay(y_in, T)",
         "v_in = delay(v_in, T)",
     ),
+    units={"y_in": "m", "v_in": "m/s"},
     looks="less damping at high gain, hardly any at low gain; the recorded phase falls more at high gain",
     source="sampled controllers; in the loop as a second-order Padé approximant",
 )

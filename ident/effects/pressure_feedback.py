@@ -9,6 +9,7 @@ PRESSURE_FEEDBACK = Effect(
     meaning="the load pressure is fed back to damp the oil column",
     strength=Parameter("gain", "kd", "m/Pa", 0.0, 1e-9, 0.0, "gain from load pressure to drive signal"),
     texts=("e = e - kd * P",),
+    units={"e": "m"},
     looks="a flatter oil-column resonance; like more leakage, but behind the valve's lag",
     source="Merritt, Hydraulic Control Systems, dynamic pressure feedback",
 )

@@ -9,6 +9,7 @@ QUADRATIC_DAMPING = Effect(
     meaning="damping that grows with the square of the speed",
     strength=Parameter("coefficient", "c2", "N*s^2/m^2", 0.0, 2e4, 0.0, "damping force for each squared speed"),
     texts=("R = R + c2 * v * abs(v)",),
+    units={"R": "N"},
     looks="magnitude at mid frequencies falls with amplitude",
     source="turbulent damping",
 )

@@ -9,6 +9,7 @@ SENSOR_GAIN = Effect(
     meaning="the recorded displacement is scaled wrongly, outside the loop",
     strength=Parameter("error", "g", "1", -0.1, 0.1, 0.0, "relative error of the recorded displacement"),
     texts=("y = y * (1 + g)",),
+    units={"y": "m"},
     looks="the static gain is not 1, alike in all runs",
     source="calibration",
 )

@@ -12,6 +12,7 @@ SENSOR_LAG = Effect(
         "y_fb = lag(y_fb, T)",
         "v_fb = lag(v_fb, T)",
     ),
+    units={"y_fb": "m", "v_fb": "m/s"},
     looks="less damping at high gain; the record lags the motion",
     source="transducer and conditioner",
 )

@@ -9,6 +9,7 @@ SPECIMEN_FREE_PLAY = Effect(
     meaning="the specimen's spring has play",
     strength=Parameter("half_width", "g", "m", 0.0, 2e-3, 0.0, "half of the play"),
     texts=("xk = xk - clip(xk, -g, g)",),
+    units={"xk": "m"},
     looks="no stiffness at small displacements, full stiffness beyond; only with springs",
     source="clearance in the joint to the spring",
 )

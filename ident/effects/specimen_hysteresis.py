@@ -12,6 +12,7 @@ SPECIMEN_HYSTERESIS = Effect(
         "z' = vL / xy * (1 - abs(z)**n * (0.5 + 0.5 * sgn(vL * z)))",
         "S = S + fy * z",
     ),
+    units={"S": "N"},
     shape=(
         Parameter("yield_displacement", "xy", "m", 1e-5, 1e-2, 5e-4, "displacement at yield"),
         Parameter("exponent", "n", "1", 1.0, 5.0, 1.0, "sharpness of the yield"),

@@ -23,6 +23,7 @@ SPECIMEN_JOINT = Effect(
         "a = (D - R - f - F) / m0",
         "M = m0 + where(s > 0, 0, mL)",
     ),
+    units={"xL": "m", "vL": "m/s", "F": "N", "a": "m/s^2", "M": "kg"},
     looks="a second resonance that depends on the specimen's mass; none without specimen",
     source="mL x2'' = kj (x - x2) - S, solved for F = kj (x - x2): regular for s = 1/kj = 0",
 )

@@ -9,6 +9,7 @@ SPOOL_STICTION = Effect(
     meaning="the spool stands still until the drive signal is far enough from it",
     strength=Parameter("threshold", "s", "m", 0.0, 5e-4, 0.0, "drive difference below which the spool stands"),
     texts=("dq = where(abs(e - q1) < s, 0, dq)",),
+    units={"dq": "m/s"},
     looks="steps and small limit cycles at small amplitudes; hardly seen at large ones",
     source="stiction of the spool; dither is its remedy",
     steps=4,

@@ -9,6 +9,7 @@ STATIC_LOAD = Effect(
     meaning="a constant force acts on the rod",
     strength=Parameter("force", "F0", "N", -500.0, 500.0, 0.0, "constant force on the rod"),
     texts=("R = R - F0",),
+    units={"R": "N"},
     looks="an offset of each run in proportion to 1/Kp through the leakage, else nothing in a linear chain",
     source="weight, preload",
 )

@@ -9,6 +9,7 @@ STRIBECK_FRICTION = Effect(
     meaning="more friction at standstill than in motion",
     strength=Parameter("force", "dF", "N", 0.0, 200.0, 0.0, "excess of the breakaway force"),
     texts=("Ff = Ff + dF * exp(-(v / vs)**2)",),
+    units={"Ff": "N"},
     shape=(Parameter("speed", "vs", "m/s", 1e-4, 0.5, 5e-3, "speed at which the excess falls to 1/e"),),
     looks="sticking and jumps at small amplitudes and low frequency",
     source="Stribeck; Armstrong-Helouvry et al. 1994",

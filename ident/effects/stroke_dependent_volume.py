@@ -17,6 +17,7 @@ STROKE_DEPENDENT_VOLUME = Effect(
         "relative fall of the compressibility for each square metre of stroke",
     ),
     texts=("Ke = Ke * (1 - kappa * x**2)",),
+    units={"Ke": "m^3/Pa"},
     looks="stiffer oil away from mid-stroke; invisible at millimetres",
     source="Merritt, Hydraulic Control Systems, chamber volumes",
 )

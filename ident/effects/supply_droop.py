@@ -12,6 +12,7 @@ SUPPLY_DROOP = Effect(
         "Q = Q * (1 - d * z)",
         "z' = (abs(Q) - z) / T",
     ),
+    units={"Q": "m^3/s"},
     shape=(Parameter("time_constant", "T", "s", 5e-3, 5.0, 0.1, "time constant of the supply"),),
     looks="gain that falls some tenths of a second after large motions and recovers",
     source="pump and accumulator behind the valve",

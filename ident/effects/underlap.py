@@ -9,6 +9,7 @@ UNDERLAP = Effect(
     meaning="the valve's lands leave a gap: double flow gain near the centre",
     strength=Parameter("half_width", "h", "m", 0.0, 1e-3, 0.0, "half of the underlap, in the unit of the drive signal"),
     texts=("w = w + clip(w, -h, h)",),
+    units={"w": "m"},
     looks="bandwidth rises at small amplitudes",
     source="Merritt, Hydraulic Control Systems, open-centre valve",
 )

@@ -11,6 +11,7 @@ VALVE_RATE_LIMIT = Effect(
         "inverse_rate", "a", "s/m", 0.0, 1.0, 0.0, "inverse of the fastest change of the valve's output"
     ),
     texts=("dq = dq / sqrt(1 + (a * dq)**2)",),
+    units={"dq": "m/s"},
     looks="phase lag and loss of magnitude that grow with amplitude times frequency times gain",
     source="smooth rate limit",
 )

@@ -9,6 +9,7 @@ VALVE_SECOND_ORDER = Effect(
     meaning="the valve has two more poles behind its lag",
     strength=Parameter("inverse_frequency", "Tn", "s", 0.0, 3e-3, 0.0, "inverse of the natural frequency, 1/ωn"),
     texts=("q = lag2(q, 2 * zeta * Tn, Tn**2)",),
+    units={"q": "m"},
     shape=(Parameter("damping", "zeta", "1", 0.05, 2.0, 0.7, "damping ratio"),),
     looks="extra phase lag that grows towards the natural frequency, alike at all amplitudes",
     source="Strano and Terzo, second-order valve; Merritt, Hydraulic Control Systems",

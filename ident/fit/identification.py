@@ -232,6 +232,9 @@ def _distinct(points: Array) -> list[Array]:
 def check_settings(settings: Settings) -> None:
     """Raise Unusable for settings that no matrix could be fitted with."""
     preset = preset_with(settings.model, settings.effects, settings.custom)
+    if settings.model == "kononykhin" and (settings.effects or settings.load != "none"):
+        raise Unusable("effect-does-not-fit", "the model kononykhin takes no effect and no measured load", "fit",
+                       "leave --effect and --load out")  # fmt: skip
     if settings.method not in METHODS:
         remedy = f"choose from {', '.join(METHODS)}"
         raise Unusable("unknown-method", f"no method {settings.method!r}", "method", remedy)

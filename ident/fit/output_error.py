@@ -22,7 +22,7 @@ from ident.fit.space import Space
 from ident.matrix import Matrix, Run
 from ident.parallel import cores, each
 from ident.presets import Preset
-from ident.simulate import MOST, Simulation, rates, steps_needed
+from ident.simulate import Simulation, rates, steps_needed
 
 Array = NDArray[np.float64]
 _TOGETHER = 256  # lanes simulated in one go: memory stays small, the cores stay busy
@@ -35,8 +35,7 @@ _SETTLING = 3  # rounds in which the first states of a model are found
 class OutputError:
     """The fitness of a preset with effects on runs, over a search space; the interface is that of Objective.
 
-    `evaluations` counts parameter vectors, `unstable` those that were unstable at some run, `coarse` those with a mode
-    too fast for the finest step.
+    `evaluations` counts parameter vectors, `unstable` those that were unstable at some run.
     """
 
     preset: Preset
@@ -46,7 +45,6 @@ class OutputError:
     band: float
     evaluations: int = 0
     unstable: int = 0
-    coarse: int = 0
     starts: dict[str, Array] = field(default_factory=dict)
 
     @property
@@ -57,7 +55,7 @@ class OutputError:
     def prepare(self) -> None:
         """Compile the kernels, which their first use does."""
         self.errors(np.full((1, len(self.space.axes)), 0.5))
-        self.evaluations = self.unstable = self.coarse = 0
+        self.evaluations = self.unstable = 0
 
     def errors(self, points: Array) -> Array:
         """Eq. (17) averaged over runs at points of the space, (v, p) → (v,)."""
@@ -132,7 +130,7 @@ class OutputError:
 
     def fresh(self, runs: tuple[Run, ...]) -> OutputError:
         """The same for other runs, which know nothing of this search."""
-        return replace(self, runs=runs, starts={}, evaluations=0, unstable=0, coarse=0)
+        return replace(self, runs=runs, starts={}, evaluations=0, unstable=0)
 
     def outputs(self, point: Array) -> dict[str, Array]:
         """The model's output of each run, with the first state that fits best."""
@@ -235,16 +233,22 @@ class OutputError:
                 yield tuple(runs[i] for i in share)
 
     def steps(self, values: Mapping[str, Array], kinks: bool = True) -> NDArray[np.int64]:
-        """Steps a sample for each vector, by the fastest mode of the linear core and the effects at small signals."""
+        """Steps a sample for each vector."""
+        fastest, holds = self.fastest(values), {run.hold for run in self.runs}
+        on = [effect for effect in self.preset.effects if kinks and self._is_on(effect, values)]
+        return np.asarray(np.max([steps_needed(self.chain, fastest, hold, on) for hold in holds], axis=0))
+
+    def fastest(self, values: Mapping[str, Array]) -> Array:
+        """Radians a sample of each vector's fastest mode, of the linear core and the effects at small signals.
+
+        Beyond :data:`ident.simulate.FASTEST` it is followed only roughly.
+        """
         vectors = len(next(iter(values.values())))
         fastest = np.zeros(vectors)
         for run in self._extreme:
             known = {name: np.full(vectors, value) for name, value in conditions(run, self.matrix.actuator).items()}
             fastest = np.maximum(fastest, rates(self.chain, known | dict(values), run.output) / run.sample_rate)
-        self.coarse += int(np.sum(fastest > MOST))
-        holds = {run.hold for run in self.runs}
-        on = [effect for effect in self.preset.effects if kinks and self._is_on(effect, values)]
-        return np.asarray(np.max([steps_needed(self.chain, fastest, hold, on) for hold in holds], axis=0))
+        return fastest
 
     def _is_on(self, effect: Effect, values: Mapping[str, Array]) -> bool:
         """Whether an effect is searched, or held at a strength that is not zero."""

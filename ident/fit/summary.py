@@ -19,7 +19,7 @@ from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
 from ident.matrix import Run
 from ident.noise import Floors
 from ident.presets.preset import Combined
-from ident.simulate import MOST
+from ident.simulate import FASTEST, MOST
 
 Array = NDArray[np.float64]
 _SHARE_SCALE = ("c0", "Ka", "Cl")  # without a known force (m0, c0) × s and (Ka, Cl) / s change nothing
@@ -77,7 +77,11 @@ def summarise(
         seconds=seconds,
         version=version("servoident"),
         data_hash=matrix.data_hash,
-        notes=(*_notes(objective, floors, here), *_bad_runs(fit_errors, left_out)),
+        notes=(
+            *_notes(objective, floors, here),
+            *_fast_modes(objective, point, state),
+            *_bad_runs(fit_errors, left_out),
+        ),
         settings=settings.to_json(),
         searched=tuple(label[name][0] for name in space.names),
         evolution=_evolution(objective, state),
@@ -175,14 +179,25 @@ def _notes(objective: Objective | OutputError, floors: Floors, here: Local) -> l
         )
     else:
         notes.append("Noise floor from the spectrum above the command's band, taken as white: a lower bound.")
-    if isinstance(objective, OutputError) and objective.coarse:
-        notes.append(f"{objective.coarse} of the tried parameter vectors had a mode too fast for {MOST} steps a "
-                     "sample; it is followed only roughly.")  # fmt: skip
     if objective.unstable:
         notes.append(f"{objective.unstable} of the tried parameter vectors made the loop unstable; they cost, no more.")
     if not np.isfinite(here.error):
         notes.append("The model is unstable at these values: its error is reported as 1000.")
     return notes
+
+
+def _fast_modes(objective: Objective | OutputError, point: Array, state: Mapping[str, Any]) -> Iterator[str]:
+    """What is followed only roughly: vectors of the search, the model that was found."""
+    if not isinstance(objective, OutputError):
+        return
+    roughly = f"beyond {FASTEST:.3g} radians a sample it is followed only roughly, with {MOST} steps a sample."
+    tried = (objective.space.values(np.array(entry["population"])) for entry in state["history"])
+    count = sum(int(np.sum(objective.fastest(values) > FASTEST)) for values in tried)
+    if count:
+        yield f"{count} of the vectors that the search tried had a mode too fast: {roughly}"
+    here = float(objective.fastest(objective.space.values(point[None]))[0])
+    if here > FASTEST:
+        yield f"The fastest mode at these values goes {here:.3g} radians a sample: {roughly}"
 
 
 def _bad_runs(errors: Sequence[RunError], left_out: tuple[str, ...]) -> Iterator[str]:

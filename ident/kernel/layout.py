@@ -28,9 +28,10 @@ class Filter:
 class Kernel:
     """The generated kernel of a chain and one output, and where things are in its buffer (rows of lanes).
 
-    `advance(b, commands, forces, where, first, last, every, out, stride)` takes the buffer b over the steps first to
-    last − 1 and writes the output of every `every`-th of them to the flat array out, rows `stride` apart. Step k of a
-    lane reads its inputs at where[lane] + k.
+    `advance(b, commands, forces, command_at, force_at, first, last, every, out, stride)` takes the buffer b over the
+    steps first to last − 1 and writes the output of every `every`-th of them to the flat array out, rows `stride`
+    apart. Step k of a lane begins at commands[command_at[lane] + k], which its delay shifts, and at
+    forces[force_at[lane] + k], and reads up to the next value.
     """
 
     chain: Chain

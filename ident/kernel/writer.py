@@ -13,7 +13,7 @@ from ident.kernel.layout import HELD, LANES, SHARE, Filter, Kernel, filter_rows
 from ident.kernel.source import Source, named
 
 STAGES = (1, 2, 3, 4)
-_RECORDS = {INPUT: "commands", FORCE: "forces"}
+_RECORDS = {INPUT: "commands[command_at[lane] + k + 1]", FORCE: "forces[force_at[lane] + k + 1]"}
 
 
 @dataclass
@@ -38,8 +38,7 @@ class Writer(Source):
         source = _SOURCE.format(
             lanes=LANES,
             feed="\n".join(
-                f"            b[{(row + 2) * LANES} + lane] = {_RECORDS[name]}[where[lane] + k + 1]"
-                for name, row in inputs.items()
+                f"            b[{(row + 2) * LANES} + lane] = {_RECORDS[name]}" for name, row in inputs.items()
             ),
             body="\n".join(f"            {line}" for line in (*loads, *body)),
             shown=shown * LANES,
@@ -236,7 +235,7 @@ from numba import njit
 
 
 @njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
-def advance(b, commands, forces, where, first, last, every, out, stride):
+def advance(b, commands, forces, command_at, force_at, first, last, every, out, stride):
     for k in range(first, last):
         for lane in range({lanes}):
 {feed}

@@ -101,6 +101,5 @@ def injected(chain: Chain, at: str) -> Chain:
 
 def unit(preset: Preset, signal: str, area_known: bool) -> str:
     """A signal's unit as its stage declares it; of an unknown area A = 1 m², pressures are forces and flows speeds."""
-    units = {quantity.name: quantity.unit for stage in preset.chain.stages for quantity in stage.publishes}
-    found = units.get(signal, "1")
+    found = preset.chain.units.get(signal, "1")
     return found if area_known else {"Pa": "N", "m^3/s": "m/s"}.get(found, found)

@@ -3,7 +3,6 @@
 from functools import lru_cache
 
 from ident.stages.stage import Quantity, stage
-from ident.stages.valve import FIRST_ORDER_VALVE
 
 FRACTIONS = (0.05, 0.1, 0.25, 0.5, 0.75, 1.0)
 """Where the speed characteristic has its nodes, in rated currents from the zero shift; denser for small signals."""
@@ -21,7 +20,17 @@ OPEN_LOOP = stage(
     ("e = u / Ir", "the current acts at once; it is counted in rated currents"),
 )
 
-LAG = FIRST_ORDER_VALVE.with_equations(("dq = (e - q1) / T", "block a: T I' + I = Iin (Kononykhin, section 4)"))
+LAG = stage(
+    "valve",
+    (
+        Quantity("q1", "1", "current behind the lag, in rated currents"),
+        Quantity("dq", "1/s", "its rate"),
+        Quantity("q", "1", "current that the valve hands on, in rated currents"),
+    ),
+    ("dq = (e - q1) / T", "block a: T I' + I = Iin (Kononykhin, section 4)"),
+    ("q1' = dq", "the lag integrates its rate"),
+    ("q = q1", "nothing behind the lag"),
+)
 
 PLAY = stage(
     "spool",

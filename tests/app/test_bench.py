@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -72,9 +73,23 @@ def test_a_diagnosis_of_a_sound_set_names_nothing(service, fit):
 
 
 def test_the_page_offers_what_a_bench_has(service, fit):
-    """The sheet's tab, amplitudes in shares of the rated current; no budget, no effect of one's own."""
+    """The sheet's tab, amplitudes in shares of the rated current; no budget, no effect to add, nor one's own."""
     page = service.get(f"/fits/{fit}").text
     assert "Acceptance sheet" in page
     assert "data-budget" not in page
     assert "Your own effect" not in page
+    assert "own.js" not in page  # it would look for the form
     assert ">50 %<" in page
+    assert "Add it" not in page
+    assert re.findall(r'class="signal[^>]*>([^<]*)<', page) == ["e", "q", "w", "V0", "X"]
+
+
+def test_an_effect_of_the_catalogue_is_refused_at_once(service, fit):
+    """Nothing is queued that a fit of the bench must refuse: in metres, or of any unit."""
+    for name, what in (
+        ("dead_zone", "it redefines w in m, which is a plain number here"),
+        ("sensor_gain", "no effect"),
+    ):
+        refused = service.post(f"{API}/fits/{fit}/effects", json={"effect": name})
+        assert refused.status_code == 422
+        assert what in refused.json()["detail"]

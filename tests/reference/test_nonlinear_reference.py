@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from ident.effects import EFFECTS
+from tests.reference import measured_load_reference as loaded
 from tests.reference import nonlinear_reference as reference
 from tests.reference import plain_effects, plain_loads, plain_machine
 from tests.reference import qian_reference as linear
@@ -83,7 +84,7 @@ CASES = {
 
 
 @pytest.mark.parametrize(
-    "module", [reference, plain_machine, plain_effects, plain_loads], ids=lambda m: m.__name__.split(".")[-1]
+    "module", [reference, loaded, plain_machine, plain_effects, plain_loads], ids=lambda m: m.__name__.split(".")[-1]
 )
 def test_the_references_import_nothing_of_the_program(module):
     """Neither the reference nor its judge; beside numpy, numba and scipy only each other and the linear reference."""
