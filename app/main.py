@@ -31,6 +31,7 @@ from app.report.endpoints import router as report
 from app.security import Guard
 from app.settings import Settings
 from app.storage import Storage
+from ident.parallel import one_thread
 
 API = "/api/v1"
 
@@ -41,9 +42,10 @@ def create_app(settings: Settings) -> FastAPI:
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         context: Context = app.state.context
-        await run_in_threadpool(_start, context)
-        yield
-        await run_in_threadpool(_stop, context)
+        with one_thread():  # for its life: a job's answer hangs on no page that is drawn meanwhile
+            await run_in_threadpool(_start, context)
+            yield
+            await run_in_threadpool(_stop, context)
 
     app = FastAPI(
         title="servoident", version=version("servoident"), lifespan=lifespan, docs_url=None, redoc_url=None,
