@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from sqlalchemy import JSON, Boolean, Float, ForeignKey, Index, Integer, String, Text
@@ -12,6 +12,11 @@ from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, relationship
 def now() -> str:
     """This moment, UTC."""
     return datetime.now(UTC).isoformat(timespec="microseconds")
+
+
+def before(age: timedelta) -> str:
+    """The moment so long ago, UTC."""
+    return (datetime.now(UTC) - age).isoformat(timespec="microseconds")
 
 
 class Base(DeclarativeBase):
@@ -108,12 +113,16 @@ class DiagnosisRow(Base):
 
 
 class AnswerRow(Base):
-    """What a POST with an Idempotency-Key was answered."""
+    """What a POST with an Idempotency-Key was answered; without a status it is a claim that waits for its answer.
+
+    `subject` is the id of what comes of it, decided with the claim; `created_at` the time of the claim.
+    """
 
     __tablename__ = "idempotency"
     key: Mapped[str] = mapped_column(String(255), primary_key=True)
     fingerprint: Mapped[str] = mapped_column(String(64))
-    status: Mapped[int] = mapped_column(Integer)
+    subject: Mapped[str] = mapped_column(String(64), default="")
+    status: Mapped[int | None] = mapped_column(Integer)
     body: Mapped[dict[str, Any]]
     location: Mapped[str] = mapped_column(Text, default="")
-    created_at: Mapped[str] = mapped_column(String(40), default=now)
+    created_at: Mapped[str] = mapped_column(String(40), default=now, index=True)

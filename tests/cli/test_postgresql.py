@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.app.test_idempotency import context_of, posts_at_once
 from tests.running import Service, command, free_port
 
 SERVERS = sorted(Path("/usr/lib/postgresql").glob("*/bin/pg_ctl"))
@@ -68,3 +69,10 @@ def test_a_service_and_a_worker_share_the_queue(servoident, database, matrix, tm
         assert ended[0]["fit"] in servoident("query", "--serial", "SIM-0001", *service.options, "--csv", "-").stdout
     done = servoident("regress", *place)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_simultaneous_posts_under_one_key_queue_one_job(database, tmp_path):
+    """As on SQLite; last, because nobody works on these jobs."""
+    here = context_of(tmp_path, database)
+    posts_at_once(here)
+    here.engine.dispose()
