@@ -22,7 +22,7 @@ from app.fits.endpoints import router as fits
 from app.fits.job_endpoints import router as jobs
 from app.fits.service import resume
 from app.fits.work import FitWork
-from app.jobs import Jobs, Work
+from app.jobs import Jobs
 from app.matrices.endpoints import router as matrices
 from app.operation.endpoints import router as operation
 from app.pages import router as pages
@@ -31,6 +31,7 @@ from app.report.endpoints import router as report
 from app.security import Guard
 from app.settings import Settings
 from app.storage import Storage
+from app.work import Work
 from ident.parallel import one_thread
 
 API = "/api/v1"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from sqlalchemy import JSON, Boolean, Float, ForeignKey, Index, Integer, String, Text
+from sqlalchemy import JSON, Boolean, Float, ForeignKey, Index, Integer, LargeBinary, String, Text
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, relationship
 
 
@@ -70,7 +70,10 @@ class JobRow(Base):
 
 
 class FitRow(Base):
-    """A finished fit, which is a parameter set of its actuator. Its id is that of the job that made it."""
+    """A finished fit, which is a parameter set of its actuator. Its id is that of the job that made it.
+
+    `result` is without its evolution, which is an `EvolutionRow`; fits of earlier versions hold it themselves.
+    """
 
     __tablename__ = "fits"
     id: Mapped[str] = mapped_column(String(64), primary_key=True)
@@ -98,6 +101,14 @@ class ValueRow(Base):
     value: Mapped[float] = mapped_column(Float)
     unit: Mapped[str] = mapped_column(String(60))
     std_error: Mapped[float | None] = mapped_column(Float)
+
+
+class EvolutionRow(Base):
+    """The history of the search that made a fit, which is long: apart, and compressed."""
+
+    __tablename__ = "evolutions"
+    fit: Mapped[str] = mapped_column(ForeignKey("fits.id"), primary_key=True)
+    content: Mapped[bytes] = mapped_column(LargeBinary)
 
 
 class DiagnosisRow(Base):

@@ -156,8 +156,15 @@ def find(context: Context, fit_id: str) -> FitRow:
 
 
 def get(context: Context, fit_id: str) -> FitView:
-    """A fit by id."""
-    return view(find(context, fit_id))
+    """A fit by id, with the history of its search."""
+    return view(*whole(context, fit_id))
+
+
+def whole(context: Context, fit_id: str) -> tuple[FitRow, dict[str, Any]]:
+    """The record of a fit, and its result with the history of its search; raises Failure 404."""
+    row = find(context, fit_id)
+    with context.sessions() as session:
+        return row, repository.whole_result(session, row)
 
 
 def approve(context: Context, fit_id: str) -> FitView:
@@ -198,9 +205,9 @@ def job_view(row: JobRow, serial: str) -> JobView:
     )  # fmt: skip
 
 
-def view(row: FitRow) -> FitView:
+def view(row: FitRow, result: dict[str, Any]) -> FitView:
     """A fit as it is sent."""
     return FitView(
         id=row.id, matrix=row.matrix, serial=row.serial, parent=row.parent, created_at=row.created_at,
-        approved_at=row.approved_at, current=row.current, result=row.result,
+        approved_at=row.approved_at, current=row.current, result=result,
     )  # fmt: skip
