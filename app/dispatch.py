@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.fits import repository
-from app.jobs import State, Work
+from app.work import State, Work
 
 FIT = "fit"
 

@@ -20,7 +20,8 @@ from typing import Iterator, NoReturn  # noqa: UP035 - older interpreters must g
 
 ROOT = Path(__file__).resolve().parent.parent
 VENV = ROOT / ".venv"
-PYTHON = VENV / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+WINDOWS = os.name == "nt"
+PYTHON = VENV / ("Scripts/python.exe" if WINDOWS else "bin/python")
 LOG = VENV / "setup.log"
 OLDEST = (3, 11)
 
@@ -30,7 +31,7 @@ class SetupFailed(Exception):
 
 
 def enter(lock: str, arguments: list[str]) -> NoReturn:
-    """Replace this process by Python with `arguments` in `.venv`, which holds the packages of the file `lock`."""
+    """Go on as Python with `arguments` in `.venv`, which holds the packages of the file `lock`."""
     try:
         prepare(lock)
     except SetupFailed as error:
@@ -41,7 +42,20 @@ def enter(lock: str, arguments: list[str]) -> NoReturn:
         print("set-up: interrupted; start again to go on", file=sys.stderr)
         sys.exit(130)
     os.chdir(ROOT)
-    os.execv(PYTHON, [str(PYTHON), *arguments])
+    command = [str(PYTHON), *arguments]
+    if WINDOWS:  # whose execv starts a process beside this one and ends: the prompt would be back at once
+        sys.exit(ended(command))
+    os.execv(PYTHON, command)
+
+
+def ended(command: list[str]) -> int:
+    """Run a command to its end; its exit status. It hears Ctrl-C itself, and may have something to tidy up."""
+    with subprocess.Popen(command) as process:
+        while True:
+            try:
+                return process.wait()
+            except KeyboardInterrupt:
+                continue
 
 
 def prepare(lock: str) -> None:
@@ -57,17 +71,17 @@ def prepare(lock: str) -> None:
         began = time.monotonic()
         say("preparing .venv (first start, or the lock file has changed)")
         stamp.unlink(missing_ok=True)
-        LOG.write_text("")
+        LOG.write_text("", encoding="utf-8")
         if not has_pip():
             create()
         install(lock)
-        stamp.write_text(expected(lock))
+        stamp.write_text(expected(lock), encoding="utf-8")
         say(f"ready after {time.monotonic() - began:.0f} s")
 
 
 def is_current(stamp: Path, lock: str) -> bool:
     """True where `.venv` was completed for this lock file, project file, interpreter and place."""
-    return PYTHON.exists() and stamp.exists() and stamp.read_text() == expected(lock)
+    return PYTHON.exists() and stamp.exists() and stamp.read_text(encoding="utf-8") == expected(lock)
 
 
 def expected(lock: str) -> str:
@@ -82,7 +96,7 @@ def expected(lock: str) -> str:
 def only_one() -> Iterator[None]:
     """Let one process at a time prepare the environment; others wait."""
     VENV.mkdir(exist_ok=True)
-    with (VENV / "setup.lock").open("w") as handle:
+    with (VENV / "setup.lock").open("wb") as handle:
         try:
             import fcntl  # noqa: PLC0415 - not on every system
         except ImportError:
@@ -109,7 +123,7 @@ def has_pip() -> bool:
 def create() -> None:
     """Create `.venv` with pip, also where the system's Python comes without ensurepip (as Debian's does)."""
     say(f"creating it for Python {sys.version.split()[0]}")
-    builder = venv.EnvBuilder(symlinks=os.name != "nt", upgrade_deps=False)
+    builder = venv.EnvBuilder(symlinks=not WINDOWS, upgrade_deps=False)
     builder.create(VENV)
     try:
         call([str(PYTHON), "-m", "ensurepip", "--upgrade", "--default-pip"])
@@ -123,11 +137,11 @@ def install(lock: str) -> None:
     uv = [str(PYTHON), "-m", "uv", "pip", "install", "--quiet", "--system-certs", "--python", str(PYTHON)]
     packages = ["--require-hashes", "--requirement", str(ROOT / lock)]
     project = ["--no-deps", "--no-build-isolation", "--editable", str(ROOT)]
-    count = sum("==" in line for line in (ROOT / lock).read_text().splitlines())
+    count = sum("==" in line for line in (ROOT / lock).read_text(encoding="utf-8").splitlines())
     try:
         with tempfile.TemporaryDirectory() as folder:
             own = Path(folder) / "uv.txt"
-            own.write_text(entry("uv", ROOT / lock))
+            own.write_text(entry("uv", ROOT / lock), encoding="utf-8")
             call([*pip, "--require-hashes", "--requirement", str(own)])
         say(f"installing {count} packages of {lock} with uv")
         call([*uv, *packages])
@@ -140,7 +154,7 @@ def install(lock: str) -> None:
 
 def entry(package: str, lock: Path) -> str:
     """The lines of one package in a lock file: its pinned version and the hashes below."""
-    lines = lock.read_text().splitlines(keepends=True)
+    lines = lock.read_text(encoding="utf-8").splitlines(keepends=True)
     first = next(index for index, line in enumerate(lines) if line.startswith(f"{package}=="))
     rest = next((i for i in range(first + 1, len(lines)) if not lines[i].startswith(" ")), len(lines))
     return "".join(lines[first:rest])
@@ -148,7 +162,7 @@ def entry(package: str, lock: Path) -> str:
 
 def call(command: list[str]) -> None:
     """Run a step, its output into the log; raises SetupFailed with the last line that tells why."""
-    with LOG.open("a") as log:
+    with LOG.open("a", encoding="utf-8", errors="replace") as log:
         print("$", *command, file=log, flush=True)
         result = subprocess.run(command, capture_output=True, text=True, check=False)
         log.write(result.stdout + result.stderr)

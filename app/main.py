@@ -22,7 +22,7 @@ from app.fits.endpoints import router as fits
 from app.fits.job_endpoints import router as jobs
 from app.fits.service import resume
 from app.fits.work import FitWork
-from app.jobs import Jobs, Work
+from app.jobs import Jobs
 from app.matrices.endpoints import router as matrices
 from app.operation.endpoints import router as operation
 from app.pages import router as pages
@@ -31,6 +31,8 @@ from app.report.endpoints import router as report
 from app.security import Guard
 from app.settings import Settings
 from app.storage import Storage
+from app.work import Work
+from ident.parallel import one_thread
 
 API = "/api/v1"
 
@@ -41,9 +43,10 @@ def create_app(settings: Settings) -> FastAPI:
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         context: Context = app.state.context
-        await run_in_threadpool(_start, context)
-        yield
-        await run_in_threadpool(_stop, context)
+        with one_thread():  # for its life: a job's answer hangs on no page that is drawn meanwhile
+            await run_in_threadpool(_start, context)
+            yield
+            await run_in_threadpool(_stop, context)
 
     app = FastAPI(
         title="servoident", version=version("servoident"), lifespan=lifespan, docs_url=None, redoc_url=None,

@@ -9,9 +9,12 @@ from pathlib import Path
 
 
 def default_data() -> Path:
-    """The data folder: SERVOIDENT_DATA, or a folder of this user."""
-    base = os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share"
-    return Path(os.environ.get("SERVOIDENT_DATA") or Path(base) / "servoident")
+    """The data folder: SERVOIDENT_DATA, or a folder of this user; on Windows beside the cache of compiled kernels."""
+    if os.environ.get("SERVOIDENT_DATA"):
+        return Path(os.environ["SERVOIDENT_DATA"])
+    if not hasattr(os, "getuid") and os.environ.get("LOCALAPPDATA"):
+        return Path(os.environ["LOCALAPPDATA"]) / "servoident" / "data"
+    return Path(os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share") / "servoident"
 
 
 @dataclass(frozen=True)

@@ -70,4 +70,9 @@ class Storage:
     def _move(self, file: str | Path, sha256: str) -> None:
         target = self._place(sha256)
         target.parent.mkdir(mode=0o700, exist_ok=True)
-        os.replace(file, target)
+        try:
+            os.replace(file, target)
+        except PermissionError:  # Windows, while somebody reads the same blob
+            if not target.exists():
+                raise
+            os.unlink(file)

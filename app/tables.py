@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from sqlalchemy import JSON, Boolean, Float, ForeignKey, Index, Integer, String, Text
+from sqlalchemy import JSON, Boolean, Float, ForeignKey, Index, Integer, LargeBinary, String, Text
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, relationship
 
 
 def now() -> str:
     """This moment, UTC."""
     return datetime.now(UTC).isoformat(timespec="microseconds")
+
+
+def before(age: timedelta) -> str:
+    """The moment so long ago, UTC."""
+    return (datetime.now(UTC) - age).isoformat(timespec="microseconds")
 
 
 class Base(DeclarativeBase):
@@ -65,7 +70,10 @@ class JobRow(Base):
 
 
 class FitRow(Base):
-    """A finished fit, which is a parameter set of its actuator. Its id is that of the job that made it."""
+    """A finished fit, which is a parameter set of its actuator. Its id is that of the job that made it.
+
+    `result` is without its evolution, which is an `EvolutionRow`; fits of earlier versions hold it themselves.
+    """
 
     __tablename__ = "fits"
     id: Mapped[str] = mapped_column(String(64), primary_key=True)
@@ -95,6 +103,14 @@ class ValueRow(Base):
     std_error: Mapped[float | None] = mapped_column(Float)
 
 
+class EvolutionRow(Base):
+    """The history of the search that made a fit, which is long: apart, and compressed."""
+
+    __tablename__ = "evolutions"
+    fit: Mapped[str] = mapped_column(ForeignKey("fits.id"), primary_key=True)
+    content: Mapped[bytes] = mapped_column(LargeBinary)
+
+
 class DiagnosisRow(Base):
     """What is missing from a fit. Its id is that of the job that made it."""
 
@@ -108,12 +124,16 @@ class DiagnosisRow(Base):
 
 
 class AnswerRow(Base):
-    """What a POST with an Idempotency-Key was answered."""
+    """What a POST with an Idempotency-Key was answered; without a status it is a claim that waits for its answer.
+
+    `subject` is the id of what comes of it, decided with the claim; `created_at` the time of the claim.
+    """
 
     __tablename__ = "idempotency"
     key: Mapped[str] = mapped_column(String(255), primary_key=True)
     fingerprint: Mapped[str] = mapped_column(String(64))
-    status: Mapped[int] = mapped_column(Integer)
+    subject: Mapped[str] = mapped_column(String(64), default="")
+    status: Mapped[int | None] = mapped_column(Integer)
     body: Mapped[dict[str, Any]]
     location: Mapped[str] = mapped_column(Text, default="")
-    created_at: Mapped[str] = mapped_column(String(40), default=now)
+    created_at: Mapped[str] = mapped_column(String(40), default=now, index=True)

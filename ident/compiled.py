@@ -17,6 +17,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from ident.cache import cache_folder, tidy, used
+
 _watchers: list[Callable[[], None]] = []
 
 
@@ -30,42 +32,48 @@ def watching(tell: Callable[[], None]) -> Iterator[None]:
         _watchers.remove(tell)
 
 
-@lru_cache
-def cache_folder() -> Path:
-    """A folder that only this user can read; where none can be made, one that lives as long as the process."""
-    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    try:
-        folder = base / "servoident" / "kernels"
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        if folder.stat().st_uid != os.getuid() or folder.stat().st_mode & 0o022:
-            raise PermissionError(folder)
-    except OSError:
-        folder = Path(tempfile.mkdtemp(prefix="servoident-"))
-    return folder
-
-
 @lru_cache(maxsize=64)
 def function(name: str, source: str) -> Callable[..., Any]:
     """The function `name` defined by a generated module `source`."""
     digest = hashlib.sha256(source.encode()).hexdigest()[:24]
-    module_name = f"servoident_{name}_{digest}"
-    path = cache_folder() / f"{module_name}.py"
-    if not path.exists() or path.read_text() != source:
-        handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
-        with os.fdopen(handle, "w") as file:
-            file.write(source)
-        os.replace(temporary, path)  # whole or not at all, also with two processes at it
-    spec = importlib.util.spec_from_file_location(module_name, path)
-    if spec is None or spec.loader is None:
-        raise ImportError(path)
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[module_name] = module
-    spec.loader.exec_module(module)
-    compiled: Callable[..., Any] = getattr(module, name)
+    path = cache_folder() / f"servoident_{name}_{digest}.py"
+    try:
+        compiled = _loaded(name, path, source)
+    except FileNotFoundError:  # another process made room at that moment
+        compiled = _loaded(name, path, source)
     if not is_compiled(compiled):
+        tidy(path.parent)
         for tell in tuple(_watchers):
             tell()
     return compiled
+
+
+def _loaded(name: str, path: Path, source: str) -> Callable[..., Any]:
+    """The function from its file, which is written first where it is not there."""
+    if not path.exists() or path.read_text(encoding="utf-8") != source:
+        _write(path, source)
+    used(path)
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    if spec is None or spec.loader is None:
+        raise ImportError(path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[path.stem] = module
+    spec.loader.exec_module(module)
+    compiled: Callable[..., Any] = getattr(module, name)
+    return compiled
+
+
+def _write(path: Path, source: str) -> None:
+    """Whole or not at all, also with two processes at it."""
+    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
+    with os.fdopen(handle, "w", encoding="utf-8") as file:
+        file.write(source)
+    try:
+        os.replace(temporary, path)
+    except PermissionError:  # Windows, while the other process reads what it has written: the same
+        os.unlink(temporary)
+        if not path.exists():
+            raise
 
 
 def is_compiled(function: Any) -> bool:

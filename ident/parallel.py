@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from functools import lru_cache
-from typing import TypeVar
+from typing import Any, TypeVar
 
+import scipy.linalg  # noqa: F401  its library is held too, and only what is loaded is found
 from threadpoolctl import ThreadpoolController
 
 Item = TypeVar("Item")
@@ -22,8 +24,59 @@ def cores() -> int:
 
 
 @lru_cache
-def _controller() -> ThreadpoolController:
-    return ThreadpoolController()
+def _libraries() -> list[Any]:
+    return [one for one in ThreadpoolController().lib_controllers if one.user_api == "blas"]
+
+
+def _give(threads: Iterable[int]) -> None:
+    """Give each library of linear algebra so many threads, whichever of ours asks.
+
+    threadpoolctl lets one thread of a process set them at a time and ignores the others without a word.
+    """
+    for library, count in zip(_libraries(), threads, strict=True):
+        let_go = getattr(library, "clear_controlling_thread", lambda **_: None)
+        let_go(force=True)
+        library.set_num_threads(count)
+        let_go(force=True)
+
+
+class _Held:
+    """Whether linear algebra is held to one thread: a matter of the process, so those who ask for it are counted."""
+
+    def __init__(self) -> None:
+        self._lock, self._inside, self._before = threading.Lock(), 0, [1]
+
+    def enter(self) -> None:
+        """The first in sets one thread."""
+        with self._lock:
+            if not self._inside:
+                self._before = [library.num_threads for library in _libraries()]
+                _give([1 for _ in self._before])
+            self._inside += 1
+
+    def leave(self) -> None:
+        """The last out gives back what there was."""
+        with self._lock:
+            self._inside -= 1
+            if not self._inside:
+                _give(self._before)
+
+
+_held = _Held()
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Until the block ends, and every other such block in the process, linear algebra runs on one thread a call.
+
+    How a library splits a product over threads would change its rounding, and with it the answer, from one machine
+    to the next.
+    """
+    _held.enter()
+    try:
+        yield
+    finally:
+        _held.leave()
 
 
 @lru_cache
@@ -32,15 +85,11 @@ def _pool() -> ThreadPoolExecutor:
 
 
 def each(function: Callable[[Item], Outcome], items: Iterable[Item]) -> list[Outcome]:
-    """`function` of every item, in order; the compiled parts run side by side.
-
-    Linear algebra is held to one thread a call: how a library splits a product over threads would change its rounding,
-    and with it the answer, from one machine to the next.
-    """
+    """`function` of every item, in order; the compiled parts run side by side, linear algebra in :func:`one_thread`."""
     todo = list(items)
     if threading.current_thread().name.startswith(_NAME):  # already side by side with others, and they hold the pool
         return [function(item) for item in todo]
-    with _controller().limit(limits=1, user_api="blas"):
+    with one_thread():
         if cores() == 1 or len(todo) < 2:
             return [function(item) for item in todo]
         return list(_pool().map(function, todo))

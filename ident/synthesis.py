@@ -118,7 +118,8 @@ def simulate_matrix(
     what = f"seed {seed}, noise {noise:g} of each output{_listed(effects)}"
     notes = f"simulated with the model {preset}, {what}; not measured"
     machine = {"serial": serial, "name": "simulated", "piston_area": "497 mm^2", "notes": notes}
-    (out / "matrix.yaml").write_text(yaml.safe_dump({"actuator": machine, "runs": entries}, sort_keys=False))
+    described = yaml.safe_dump({"actuator": machine, "runs": entries}, sort_keys=False)
+    (out / "matrix.yaml").write_text(described, encoding="utf-8")
 
 
 def _listed(effects: Mapping[str, float] | None) -> str:

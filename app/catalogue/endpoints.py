@@ -31,4 +31,4 @@ def effects() -> list[EffectView]:
 def custom_effect(here: Here, definition: dict[str, Any] | str, key: Key = None) -> Response:
     """Check an effect of one's own, as JSON or as the text of its file; nothing is stored."""
     return once(here.sessions, key, fingerprint("custom-effect", definition),
-                lambda: (200, service.custom_effect(definition).model_dump(), ""))  # fmt: skip
+                lambda _: (200, service.custom_effect(definition).model_dump(), ""))  # fmt: skip

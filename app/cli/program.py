@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import sys
 from typing import NoReturn
 
@@ -43,8 +44,16 @@ for command in (*LOCAL, *SERVICE, *CLIENT):
     program.command(command.__name__.rstrip("_"))(command)
 
 
+def speak() -> None:
+    """Results hold Greek letters and arrows: pipes and files get UTF-8, a terminal without them its own signs."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper) and stream.encoding.lower() not in ("utf-8", "utf8"):
+            stream.reconfigure(encoding=stream.encoding if stream.isatty() else "utf-8", errors="replace")
+
+
 def main(arguments: list[str] | None = None) -> NoReturn:
     """Run a command and leave with its exit status; every failure is one line on standard error."""
+    speak()
     try:
         given = sys.argv[1:] if arguments is None else arguments
         with heard():

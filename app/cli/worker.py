@@ -23,14 +23,16 @@ def worker(
         what = "a queue in SQLite is worked on by the service's own process only"
         raise Unusable("needs-postgresql", what, "--database", "give a PostgreSQL URL here and to the service")
     from app.main import make_context
+    from ident.parallel import one_thread
 
     context = make_context(settings(data, database, executor=executor))
-    context.jobs.launch()
-    print(f"worker {executor} is waiting for jobs  (Ctrl-C stops it)", flush=True)
-    try:
-        while True:
-            time.sleep(_PULSE)
-    except KeyboardInterrupt:
-        print("stopped; its unfinished jobs go on when it starts again")
-    finally:
-        context.jobs.stop()
+    with one_thread():
+        context.jobs.launch()
+        print(f"worker {executor} is waiting for jobs  (Ctrl-C stops it)", flush=True)
+        try:
+            while True:
+                time.sleep(_PULSE)
+        except KeyboardInterrupt:
+            print("stopped; its unfinished jobs go on when it starts again")
+        finally:
+            context.jobs.stop()

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Query, Response
 from app.context import Here
 from app.diagnoses import proposal, service
 from app.errors import COMMON
-from app.idempotency import Key, fingerprint, once
+from app.idempotency import Key, fingerprint, queued_once
 from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView, ProposalView
 from schemas.fit import JobView
 
@@ -20,12 +20,8 @@ Seed = Annotated[int, Query(ge=0, lt=2**31)]
 @router.post("", status_code=202, response_model=JobView)
 def submit(here: Here, request: DiagnosisRequest, key: Key = None) -> Response:
     """Queue the diagnosis of a fit, or of a matrix whose fit is made first; Location is its job."""
-
-    def act() -> tuple[int, dict[str, object], str]:
-        job = service.submit(here, request)
-        return 202, job.model_dump(), f"/api/v1/jobs/{job.id}"
-
-    return once(here.sessions, key, fingerprint("diagnosis", request.model_dump(exclude_unset=True)), act)
+    asked = fingerprint("diagnosis", request.model_dump(exclude_unset=True))
+    return queued_once(here, key, asked, lambda job: service.submit(here, request, job))
 
 
 @router.get("")

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import uuid
 from dataclasses import replace
 
 from app.context import Context
 from app.diagnoses import repository
 from app.errors import Failure, missing
-from app.fits import repository as jobs
 from app.fits import service as fits
 from app.matrices import service as matrices
 from app.paging import cursor, keys_of
@@ -24,8 +22,8 @@ from schemas.fit import Chosen, JobView
 _BESIDE_A_FIT = {"fit", "seed", "max_effects", "custom"}
 
 
-def submit(context: Context, request: DiagnosisRequest) -> JobView:
-    """Queue a diagnosis. It is recorded before this returns, so that nothing can lose it."""
+def submit(context: Context, request: DiagnosisRequest, job: str) -> JobView:
+    """Queue a diagnosis under the id decided for its job. It is recorded before this returns: nothing can lose it."""
     most = USUAL if request.max_effects is None else request.max_effects
     if most > MOST:
         raise Unusable("bad-option", f"{most} effects", "max_effects", f"give 0 to {MOST}")
@@ -33,12 +31,7 @@ def submit(context: Context, request: DiagnosisRequest) -> JobView:
     matrix = matrices.find(context, matrix_id)
     reseed = request.seed if request.fit is not None and "seed" in request.model_fields_set else None
     settings |= {"max_effects": most, "reseed": reseed}
-    with context.sessions.begin() as session:
-        row = jobs.add_job(session, uuid.uuid4().hex, matrix.id, settings, request.fit, "diagnosis")
-        session.flush()
-        queued = fits.job_view(row, matrix.serial)
-    context.jobs.submit(queued.id)
-    return queued
+    return fits.recorded(context, job, matrix.id, settings, request.fit, "diagnosis")
 
 
 def _wanted(context: Context, request: DiagnosisRequest) -> tuple[str, dict[str, object]]:

@@ -77,5 +77,4 @@ def _keep(session: Session, job: JobRow, serial: str, made: State) -> None:
         return
     if made["fit"] is not None:
         fits.add_fit(session, job, serial, made["fit"])
-        session.flush()  # before the diagnosis, which refers to it
     repository.add(session, job, serial, made["diagnosis"])

@@ -58,8 +58,8 @@ def _study(context: Context, fit_id: str) -> Study:
     """A fit beside its data, from memory where it was drawn lately; raises Failure 404."""
 
     def made() -> Study:
-        row = service.find(context, fit_id)
-        return Study(matrices.load(context, row.matrix), FitResult.from_json(row.result))
+        row, result = service.whole(context, fit_id)
+        return Study(matrices.load(context, row.matrix), FitResult.from_json(result))
 
     return _studies.get((str(context.storage.folder), fit_id), made)
 

@@ -7,7 +7,7 @@ from fastapi import APIRouter, Request, Response
 from app.context import Here
 from app.errors import COMMON
 from app.fits import drawing, lineage, service
-from app.idempotency import Key, fingerprint, once
+from app.idempotency import Key, fingerprint, once, queued_once
 from schemas.fit import ComparisonView, EffectsRequest, ErrorBudget, FitRequest, FitView, JobView, LadderView
 
 router = APIRouter(prefix="/fits", tags=["fits"], responses=COMMON)
@@ -18,12 +18,8 @@ _IMAGES: dict[str, dict[str, str]] = {kind: {} for kind in _MEDIA}
 @router.post("", status_code=202, response_model=JobView)
 def submit(here: Here, request: FitRequest, key: Key = None) -> Response:
     """Queue a fit; Location is its job."""
-
-    def act() -> tuple[int, dict[str, object], str]:
-        job = service.submit(here, request)
-        return 202, job.model_dump(), f"/api/v1/jobs/{job.id}"
-
-    return once(here.sessions, key, fingerprint("fit", request.model_dump()), act)
+    asked = fingerprint("fit", request.model_dump())
+    return queued_once(here, key, asked, lambda job: service.submit(here, request, job))
 
 
 @router.get("/{fit}")
@@ -48,19 +44,15 @@ def budget(here: Here, fit: str) -> ErrorBudget:
 def approve(here: Here, fit: str, key: Key = None) -> Response:
     """Make the fit its actuator's current parameter set; older ones stay."""
     return once(
-        here.sessions, key, fingerprint("approve", fit), lambda: (200, service.approve(here, fit).model_dump(), "")
+        here.sessions, key, fingerprint("approve", fit), lambda _: (200, service.approve(here, fit).model_dump(), "")
     )
 
 
 @router.post("/{fit}/effects", status_code=202, response_model=JobView)
 def add_effects(here: Here, fit: str, request: EffectsRequest, key: Key = None) -> Response:
     """Add effects to a fit and fit again with the same settings: a new fit whose parent is this one."""
-
-    def act() -> tuple[int, dict[str, object], str]:
-        job = lineage.add(here, fit, request)
-        return 202, job.model_dump(), f"/api/v1/jobs/{job.id}"
-
-    return once(here.sessions, key, fingerprint("effects", fit, request.model_dump()), act)
+    asked = fingerprint("effects", fit, request.model_dump())
+    return queued_once(here, key, asked, lambda job: lineage.add(here, fit, request, job))
 
 
 @router.get("/{fit}/ladder")

@@ -14,8 +14,8 @@ from ident.fit.settings import Settings
 from schemas.fit import EffectsRequest, JobView, LadderRung, LadderView
 
 
-def add(context: Context, fit_id: str, request: EffectsRequest) -> JobView:
-    """Queue the refit of a fit with more effects and otherwise its own settings."""
+def add(context: Context, fit_id: str, request: EffectsRequest, job: str) -> JobView:
+    """Queue the refit of a fit with more effects and otherwise its own settings, under the id decided for its job."""
     parent = service.find(context, fit_id)
     more = [definition_of(definition) for definition in request.custom]
     named = [*([request.effect] if request.effect is not None else []), *request.effects]
@@ -32,7 +32,7 @@ def add(context: Context, fit_id: str, request: EffectsRequest) -> JobView:
         raise Failure(409, "effect-there", f"the fit has {', '.join(there)} already", "effect",
                       "add another one, or start from the fit before it")  # fmt: skip
     settings = replace(settings, effects=(*parent.result["effects"], *wanted))
-    return service.queue(context, parent.matrix, parent.serial, settings, parent.id)
+    return service.queue(context, job, parent.matrix, settings, parent.id)
 
 
 def _settings(row: FitRow) -> Settings:

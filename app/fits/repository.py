@@ -8,7 +8,8 @@ from typing import Any
 from sqlalchemy import ColumnElement, Select, or_, select, tuple_, update
 from sqlalchemy.orm import Session
 
-from app.tables import FitRow, JobRow, MatrixRow, ValueRow, now
+from app.fits.history import packed, unpacked
+from app.tables import EvolutionRow, FitRow, JobRow, MatrixRow, ValueRow, now
 
 OPEN = ("queued", "running")
 ENDED = ("succeeded", "failed", "cancelled")
@@ -103,7 +104,9 @@ def lineage(session: Session, row: FitRow) -> Sequence[FitRow]:
 
 
 def add_fit(session: Session, job_row: JobRow, serial: str, result: dict[str, Any]) -> FitRow:
-    """The fit that a job made, with its parameters in rows of their own."""
+    """The fit that a job made, with its parameters in rows of their own, and the history of its search."""
+    evolution = result.get("evolution", [])
+    result = {name: value for name, value in result.items() if name != "evolution"}
     row = FitRow(
         id=job_row.id, matrix=job_row.matrix, serial=serial, parent=job_row.parent, model=result["model"],
         error_fit=result["error"]["fit"], error_verify=result["error"]["verify"], result=result,
@@ -113,7 +116,15 @@ def add_fit(session: Session, job_row: JobRow, serial: str, result: dict[str, An
         for name, entry in result["parameters"].items()
     ]
     session.add(row)
+    session.flush()  # before what refers to it
+    session.add(EvolutionRow(fit=row.id, content=packed(evolution)))
     return row
+
+
+def whole_result(session: Session, row: FitRow) -> dict[str, Any]:
+    """The result of a fit with the history of its search."""
+    kept = session.get(EvolutionRow, row.id)
+    return row.result if kept is None else {**row.result, "evolution": unpacked(kept.content)}
 
 
 def approve(session: Session, row: FitRow) -> None:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-import uuid
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
+
+from sqlalchemy.exc import IntegrityError
 
 from app.context import Context
 from app.errors import missing
@@ -33,23 +35,44 @@ from schemas.fit import (
 )
 
 
-def submit(context: Context, request: FitRequest) -> JobView:
-    """Queue a fit. It is recorded before this returns, so that nothing can lose it."""
+def submit(context: Context, request: FitRequest, job: str) -> JobView:
+    """Queue a fit under the id decided for its job. It is recorded before this returns: nothing can lose it."""
     matrix = matrices.find(context, request.matrix)
     if request.parent is not None:
         find(context, request.parent)
-    return queue(context, matrix.id, matrix.serial, settings_of(request), request.parent)
+    return queue(context, job, matrix.id, settings_of(request), request.parent)
 
 
-def queue(context: Context, matrix: str, serial: str, settings: Settings, parent: str | None) -> JobView:
+def queue(context: Context, job: str, matrix: str, settings: Settings, parent: str | None) -> JobView:
     """Record and queue the job of a fit. Raises Unusable where its settings cannot be."""
     check_settings(settings)
-    with context.sessions.begin() as session:
-        row = repository.add_job(session, uuid.uuid4().hex, matrix, settings.to_json(), parent)
-        session.flush()
-        queued = job_view(row, serial)
-    context.jobs.submit(queued.id)
+    return recorded(context, job, matrix, settings.to_json(), parent, "fit")
+
+
+def recorded(
+    context: Context, job: str, matrix: str, settings: dict[str, Any], parent: str | None, kind: str
+) -> JobView:
+    """Record and queue a job; one that is recorded under this id already is taken for it."""
+    with context.sessions() as session:
+        try:
+            repository.add_job(session, job, matrix, settings, parent, kind)
+            session.commit()
+        except IntegrityError:  # by the process before, which did not live to answer
+            session.rollback()
+    queued = requeued(context, job)
+    assert queued is not None
     return queued
+
+
+def requeued(context: Context, job: str) -> JobView | None:
+    """A recorded job as it stands, queued unless it has ended or is queued already; None where there is no such job."""
+    with context.sessions() as session:
+        found = repository.job_of(session, job)
+    if found is None:
+        return None
+    if found[0].state in repository.OPEN:
+        context.jobs.submit(job)
+    return job_view(*found)
 
 
 def settings_of(request: Chosen) -> Settings:
@@ -133,8 +156,15 @@ def find(context: Context, fit_id: str) -> FitRow:
 
 
 def get(context: Context, fit_id: str) -> FitView:
-    """A fit by id."""
-    return view(find(context, fit_id))
+    """A fit by id, with the history of its search."""
+    return view(*whole(context, fit_id))
+
+
+def whole(context: Context, fit_id: str) -> tuple[FitRow, dict[str, Any]]:
+    """The record of a fit, and its result with the history of its search; raises Failure 404."""
+    row = find(context, fit_id)
+    with context.sessions() as session:
+        return row, repository.whole_result(session, row)
 
 
 def approve(context: Context, fit_id: str) -> FitView:
@@ -175,9 +205,9 @@ def job_view(row: JobRow, serial: str) -> JobView:
     )  # fmt: skip
 
 
-def view(row: FitRow) -> FitView:
+def view(row: FitRow, result: dict[str, Any]) -> FitView:
     """A fit as it is sent."""
     return FitView(
         id=row.id, matrix=row.matrix, serial=row.serial, parent=row.parent, created_at=row.created_at,
-        approved_at=row.approved_at, current=row.current, result=row.result,
+        approved_at=row.approved_at, current=row.current, result=result,
     )  # fmt: skip

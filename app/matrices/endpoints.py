@@ -53,7 +53,7 @@ async def upload(request: Request, here: Here, key: Key = None) -> Response:
     if len(files) < len(parts):
         raise Failure(422, "duplicate-file", "two files of the form have one name", "body", "give each its own name")
 
-    def act() -> tuple[int, dict[str, object], str]:
+    def act(_: str) -> tuple[int, dict[str, object], str]:
         stored, new = service.upload(here, files)
         return (201 if new else 200), stored.model_dump(), f"/api/v1/matrices/{stored.id}"
 
@@ -93,7 +93,7 @@ def description(here: Here, matrix: str) -> dict[str, Any]:
 def revise(here: Here, matrix: str, revision: Revision, key: Key = None) -> Response:
     """Mend labels, units or signs: a new matrix with the same raw bytes."""
 
-    def act() -> tuple[int, dict[str, object], str]:
+    def act(_: str) -> tuple[int, dict[str, object], str]:
         stored, new = service.revise(here, matrix, revision)
         return (201 if new else 200), stored.model_dump(), f"/api/v1/matrices/{stored.id}"
 

@@ -128,8 +128,8 @@ def write_bench(out: Path, seed: int, noise: float, report: Report = silent, ser
         "supply_pressure": f"{1e-6 * SUPPLY:g} MPa", "notes": notes,
     }  # fmt: skip
     whole = {"actuator": machine, "limits": "limits.yaml", "runs": entries}
-    (out / "matrix.yaml").write_text(yaml.safe_dump(whole, sort_keys=False))
-    (out / "limits.yaml").write_text(yaml.safe_dump(LIMITS, sort_keys=False))
+    (out / "matrix.yaml").write_text(yaml.safe_dump(whole, sort_keys=False), encoding="utf-8")
+    (out / "limits.yaml").write_text(yaml.safe_dump(LIMITS, sort_keys=False), encoding="utf-8")
 
 
 def quantised(position: Array) -> Array:

@@ -5,11 +5,14 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from app.database import connect
+from tests.app.test_idempotency import context_of, posts_at_once
 from tests.running import Service, command, free_port
 
 SERVERS = sorted(Path("/usr/lib/postgresql").glob("*/bin/pg_ctl"))
@@ -48,6 +51,18 @@ def test_the_schema_is_made_and_made_again(servoident, database, tmp_path):
         assert done.returncode == 0, done.stderr
 
 
+def nothing_left(database: str) -> bool:
+    """Whether the queue has, a moment after the last job, removed what it kept of each."""
+    engine, deadline = connect(database), time.monotonic() + 30
+    with engine.connect() as connection:
+        while connection.exec_driver_sql("SELECT count(*) FROM dbos.operation_outputs").scalar():
+            connection.rollback()
+            if time.monotonic() > deadline:
+                return False
+            time.sleep(0.1)
+    return True
+
+
 def test_a_service_and_a_worker_share_the_queue(servoident, database, matrix, tmp_path):
     """Fits of one matrix all end well, and an approved one is found by its serial number and rechecked."""
     place = ("--database", database, "--data", tmp_path)
@@ -66,5 +81,13 @@ def test_a_service_and_a_worker_share_the_queue(servoident, database, matrix, tm
         assert [job["state"] for job in ended] == ["succeeded", "succeeded"]
         assert servoident("approve", ended[0]["fit"], *service.options).returncode == 0
         assert ended[0]["fit"] in servoident("query", "--serial", "SIM-0001", *service.options, "--csv", "-").stdout
+        assert nothing_left(database)
     done = servoident("regress", *place)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_simultaneous_posts_under_one_key_queue_one_job(database, tmp_path):
+    """As on SQLite; last, because nobody works on these jobs."""
+    here = context_of(tmp_path, database)
+    posts_at_once(here)
+    here.engine.dispose()

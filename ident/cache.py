@@ -1,0 +1,91 @@
+"""The cache folder of compiled kernels: where it is, and how it stays small.
+
+A kernel is a generated file and what numba keeps beside it. The last use of each is noted in the time of access of
+its file; the time of change stays, because numba trusts its machine code by that.
+"""
+
+from __future__ import annotations
+
+import atexit
+import os
+import shutil
+import tempfile
+import time
+from collections import defaultdict
+from contextlib import suppress
+from functools import lru_cache
+from pathlib import Path
+
+LARGEST = 256 << 20  # bytes
+OLDEST = 90 * 86_400.0  # s since the last use
+IN_USE = 86_400.0  # s since the last use, before which nothing is removed whatever its size
+
+
+@lru_cache
+def cache_folder() -> Path:
+    """A folder that only this user can read; where none can be made, one that lives as long as the process."""
+    try:
+        folder = _base() / "servoident" / "kernels"
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if not _is_private(folder):
+            raise PermissionError(folder)
+    except OSError:
+        folder = Path(tempfile.mkdtemp(prefix="servoident-"))
+        atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
+
+
+def _base() -> Path:
+    """The user's folder for what can be made again; Windows has its own."""
+    local = "" if hasattr(os, "getuid") else os.environ.get("LOCALAPPDATA", "")
+    return Path(local or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+
+
+def _is_private(folder: Path) -> bool:
+    """Whether nobody else can write into it. Windows knows no such owner and mode; its folder is this user's anyhow."""
+    if not hasattr(os, "getuid"):
+        return True
+    found = folder.stat()
+    return found.st_uid == os.getuid() and not found.st_mode & 0o022
+
+
+def used(path: Path) -> None:
+    """Note that a kernel is used now."""
+    with suppress(OSError):  # a cache that may only be read
+        os.utime(path, ns=(time.time_ns(), path.stat().st_mtime_ns))
+
+
+def tidy(folder: Path, largest: int = LARGEST) -> None:
+    """Remove what was not used for long and, where the rest is too large, what was unused longest."""
+    kernels = defaultdict(list)
+    for file in (*folder.glob("*.*"), *(folder / "__pycache__").glob("*.*")):
+        kernels[file.name.partition(".")[0]].append(file)
+    sizes = {name: sum(_size(file) for file in files) for name, files in kernels.items()}
+    total = sum(sizes.values())
+    for name, files in sorted(kernels.items(), key=lambda kernel: _last_use(kernel[1])):
+        idle = time.time() - _last_use(files)  # looked at again: another process may have taken it up meanwhile
+        if idle > OLDEST or (idle > IN_USE and total > largest):
+            _remove(files)
+            total -= sizes[name]
+
+
+def _last_use(files: list[Path]) -> float:
+    times = [0.0]
+    for file in files:
+        with suppress(OSError):
+            found = file.stat()
+            times.append(found.st_atime if file.suffix == ".py" else found.st_mtime)
+    return max(times)
+
+
+def _size(file: Path) -> int:
+    try:
+        return file.stat().st_size
+    except OSError:  # another process was quicker
+        return 0
+
+
+def _remove(files: list[Path]) -> None:
+    for file in files:
+        with suppress(OSError):  # gone already or, on Windows, being read
+            file.unlink()

@@ -1,0 +1,48 @@
+"""The service and a worker hold linear algebra to one thread for their life, also between jobs and drawings."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from fastapi.testclient import TestClient
+
+from app import main
+from app.cli.worker import worker
+from app.settings import Settings
+from tests.test_parallel import OWN, notebook, threads
+
+__all__ = ["notebook"]
+
+
+@pytest.mark.usefixtures("notebook")
+def test_the_service_from_its_start_to_its_end(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    seen: list[set[int]] = []
+    for name in ("_start", "_stop"):
+        monkeypatch.setattr(main, name, lambda _: seen.append(threads()))
+    monkeypatch.setattr(main, "make_context", lambda _: None)
+    with TestClient(main.create_app(Settings(data=tmp_path))):
+        seen.append(threads())
+    assert seen == [{1}, {1}, {1}]
+    assert threads() == {OWN}
+
+
+@pytest.mark.usefixtures("notebook")
+def test_a_worker_from_its_start_to_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[set[int]] = []
+
+    def note(*_: float) -> None:
+        seen.append(threads())
+
+    def interrupted(*_: float) -> None:
+        seen.append(threads())
+        raise KeyboardInterrupt
+
+    jobs = SimpleNamespace(launch=note, stop=note)
+    monkeypatch.setattr(main, "make_context", lambda _: SimpleNamespace(jobs=jobs))
+    monkeypatch.setattr(time, "sleep", interrupted)
+    worker("one", "postgresql://nobody@127.0.0.1:9/none")
+    assert seen == [{1}, {1}, {1}]
+    assert threads() == {OWN}

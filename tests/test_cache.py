@@ -1,0 +1,98 @@
+"""The cache of compiled kernels stays small, and nothing goes from it that is in use."""
+
+from __future__ import annotations
+
+import os
+import time
+import uuid
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from ident import compiled
+from ident.cache import IN_USE, OLDEST, tidy
+
+SOURCE = """from numba import njit
+
+@njit(cache=True)
+def tripled(x):  # {mark}
+    return 3 * x
+"""
+DAY = 86_400.0
+
+
+def kernel(folder: Path, name: str, unused: float, size: int = 100) -> None:
+    """The files of a kernel that was last used so many seconds ago."""
+    (folder / "__pycache__").mkdir(exist_ok=True)
+    files = [folder / f"{name}.py", *(folder / "__pycache__" / f"{name}.f-6.py311.{end}" for end in ("nbi", "1.nbc"))]
+    for file in files:
+        file.write_bytes(bytes(size))
+        os.utime(file, (time.time() - unused, time.time() - unused))
+
+
+def names(folder: Path) -> set[str]:
+    return {file.name.partition(".")[0] for file in folder.rglob("*") if file.is_file()}
+
+
+def test_kernels_that_were_not_used_for_long_are_removed_with_all_their_files(tmp_path: Path) -> None:
+    kernel(tmp_path, "old", OLDEST + DAY)
+    kernel(tmp_path, "late", OLDEST - DAY)
+    tidy(tmp_path)
+    assert names(tmp_path) == {"late"}
+
+
+def test_of_too_many_the_longest_unused_go_and_none_that_is_in_use(tmp_path: Path) -> None:
+    for days in (4, 3, 2):
+        kernel(tmp_path, f"unused-{days}", days * DAY)
+    kernel(tmp_path, "in-use", 0.5 * IN_USE, size=1000)
+    tidy(tmp_path, largest=3400)
+    assert names(tmp_path) == {"unused-2", "in-use"}
+    tidy(tmp_path, largest=0)
+    assert names(tmp_path) == {"in-use"}
+
+
+def test_several_processes_may_tidy_at_once(tmp_path: Path) -> None:
+    for number in range(50):
+        kernel(tmp_path, f"old-{number}", OLDEST + DAY)
+    with ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(tidy, 4 * [tmp_path])) == 4 * [None]
+    assert not names(tmp_path)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setattr(compiled, "cache_folder", lambda: tmp_path)
+    return tmp_path
+
+
+def loaded(source: str) -> float:
+    """What a process gets that has not used the function before."""
+    compiled.function.cache_clear()
+    try:
+        return float(compiled.function("tripled", source)(2.0))
+    finally:
+        compiled.function.cache_clear()
+
+
+def test_a_kernel_that_is_used_stays_and_is_not_compiled_again(folder: Path) -> None:
+    """To use it is noted without a change that would make numba distrust its machine code."""
+    source, told = SOURCE.format(mark=uuid.uuid4().hex), []
+    assert loaded(source) == 6.0
+    for file in folder.rglob("*"):
+        if file.is_file():
+            os.utime(file, (time.time() - OLDEST - DAY, time.time() - OLDEST - DAY))
+    before = names(folder)
+    with compiled.watching(lambda: told.append(1)):
+        loaded(source)  # numba looks at the time of the file, which moved here by hand
+        told.clear()
+        assert loaded(source) == 6.0
+    tidy(folder)
+    assert names(folder) == before
+    assert not told
+
+
+def test_a_new_kernel_makes_room_for_itself(folder: Path) -> None:
+    kernel(folder, "old", OLDEST + DAY)
+    loaded(SOURCE.format(mark=uuid.uuid4().hex))
+    assert "old" not in names(folder)
