@@ -36,5 +36,6 @@ def install_system_packages() -> None:
 
 if __name__ == "__main__":
     install_system_packages()
-    everything = ["-n", "auto", "--dist", "loadfile"]  # a worker a core; the tests of a file share what they set up
+    # A worker a core; the tests of a file share what they set up; files in the order of tests/conftest.py.
+    everything = ["-n", "auto", "--dist", "loadfile", "--no-loadscope-reorder"]
     enter("requirements-tests.lock", ["-m", "pytest", *(sys.argv[1:] or everything)])

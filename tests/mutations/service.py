@@ -8,8 +8,8 @@ _SECURITY = ("tests/app/test_security.py",)
 SERVICE = (
     Mutation("same-key", "app/idempotency.py", "if known.fingerprint != asked:", "if known.fingerprint == asked:",
              "another request under a key is answered", (f"{_SERVICE}::test_the_same_key_is_answered_once",)),
-    Mutation("stored-once", "app/steps.py", "if row is None or row.state in repository.ENDED:", "if row is None:",
-             "the result of a job that has ended is stored again", ("tests/faults/test_kill.py", _SERVICE)),
+    Mutation("how-it-ended", "app/steps.py", 'state = last["outcome"] or "succeeded"', 'state = "succeeded"',
+             "whatever ends is called a success", (f"{_SERVICE}::test_a_running_job_is_cancelled_and_leaves_no_fit",)),
     Mutation("cancelled", "app/steps.py", "if not alive or row is None or row.cancel:", "if not alive or row is None:",
              "a job that is to stop goes on", (f"{_SERVICE}::test_a_running_job_is_cancelled_and_leaves_no_fit",)),
     Mutation("foreign-origin", "app/security.py", 'origin.partition("://")[2] not in self.hosts',
