@@ -38,4 +38,6 @@ if __name__ == "__main__":
     install_system_packages()
     # A worker a core; the tests of a file share what they set up; files in the order of tests/conftest.py.
     everything = ["-n", "auto", "--dist", "loadfile", "--no-loadscope-reorder"]
-    enter("requirements-tests.lock", ["-m", "pytest", *(sys.argv[1:] or everything)])
+    chosen = sys.argv[1:]
+    whole = [*everything, *chosen] if chosen in ([], ["--full"]) else chosen
+    enter("requirements-tests.lock", ["-m", "pytest", *whole])

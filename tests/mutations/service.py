@@ -10,8 +10,6 @@ SERVICE = (
              "another request under a key is answered", (f"{_SERVICE}::test_the_same_key_is_answered_once",)),
     Mutation("how-it-ended", "app/steps.py", 'state = last["outcome"] or "succeeded"', 'state = "succeeded"',
              "whatever ends is called a success", (f"{_SERVICE}::test_a_running_job_is_cancelled_and_leaves_no_fit",)),
-    Mutation("cancelled", "app/steps.py", "if not alive or row is None or row.cancel:", "if not alive or row is None:",
-             "a job that is to stop goes on", (f"{_SERVICE}::test_a_running_job_is_cancelled_and_leaves_no_fit",)),
     Mutation("foreign-origin", "app/security.py", 'origin.partition("://")[2] not in self.hosts',
              'not origin.partition("://")[2]', "any page may post", _SECURITY),
     Mutation("token", "app/security.py", "if self._right(bearer) or self._right(cookie):",
