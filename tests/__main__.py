@@ -36,5 +36,8 @@ def install_system_packages() -> None:
 
 if __name__ == "__main__":
     install_system_packages()
-    everything = ["-n", "auto", "--dist", "loadfile"]  # a worker a core; the tests of a file share what they set up
-    enter("requirements-tests.lock", ["-m", "pytest", *(sys.argv[1:] or everything)])
+    # A worker a core; the tests of a file share what they set up; files in the order of tests/conftest.py.
+    everything = ["-n", "auto", "--dist", "loadfile", "--no-loadscope-reorder"]
+    chosen = sys.argv[1:]
+    whole = [*everything, *chosen] if chosen in ([], ["--full"]) else chosen
+    enter("requirements-tests.lock", ["-m", "pytest", *whole])

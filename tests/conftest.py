@@ -18,6 +18,22 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--full", action="store_true", help="run the acceptance tests at full length (many minutes)")
 
 
+LONGEST = (
+    "diagnosis/test_diagnose", "browser/test_linked", "bench/test_diagnosis", "app/test_diagnoses",
+    "browser/test_workbench", "browser/test_pages", "faults/test_kill", "test_project", "cli/test_postgresql",
+    "fit/test_recovery", "effects/test_contract", "acceptance/test_identification", "cli/test_commands",
+    "app/test_bench", "cli/test_service_commands", "residuals/test_curves", "figures/test_figures",
+    "bench/test_identification", "bench/test_figures", "effects/test_pairs", "acceptance/test_fitness",
+)  # fmt: skip
+"""Files that take longest, the longest first."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Long files go first, so that no core is left alone with one at the end."""
+    place = {f"{name}.py": number for number, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: place.get(item.path.relative_to(ROOT / "tests").as_posix(), len(place)))
+
+
 @pytest.fixture(scope="session")
 def full(request: pytest.FixtureRequest) -> bool:
     """True where the full forms were asked for, by ``--full`` or SERVOIDENT_FULL=1."""

@@ -1,4 +1,4 @@
-"""A running service and Debian's chromium; screenshots are left in build/screenshots."""
+"""A running service and Debian's chromium; with --full screenshots are left in build/screenshots."""
 
 from __future__ import annotations
 
@@ -88,6 +88,9 @@ def watch(page, site) -> Iterator[Watch]:
 
 
 @pytest.fixture(scope="session")
-def screenshots() -> Path:
+def screenshots(full: bool) -> Path | None:
+    """Where pictures are left for whoever looks at them; a hundred of whole pages, so with --full only."""
+    if not full:
+        return None
     SCREENSHOTS.mkdir(parents=True, exist_ok=True)
     return SCREENSHOTS

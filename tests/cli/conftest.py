@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
+import yaml
 
 
 @pytest.fixture(scope="session")
@@ -17,9 +19,20 @@ def matrix(servoident, tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def fit_file(servoident, matrix, tmp_path_factory) -> Path:
-    """The JSON of a fit of the simulated matrix."""
+def few(matrix, tmp_path_factory) -> Path:
+    """Every fifth run of it: enough for what is done with a fit."""
+    folder = tmp_path_factory.mktemp("few") / "matrix"
+    shutil.copytree(matrix, folder)
+    description = yaml.safe_load((folder / "matrix.yaml").read_text())
+    description["runs"] = description["runs"][::5]
+    (folder / "matrix.yaml").write_text(yaml.safe_dump(description, allow_unicode=True))
+    return folder
+
+
+@pytest.fixture(scope="session")
+def fit_file(servoident, few, tmp_path_factory) -> Path:
+    """The JSON of a fit of these."""
     file = tmp_path_factory.mktemp("fit") / "fit.json"
-    done = servoident("fit", matrix, "--json", file, "--bounds", "tau=1 ms:6 ms", "--set", "m0=4.25")
+    done = servoident("fit", few, "--json", file, "--bounds", "tau=1 ms:6 ms", "--set", "m0=4.25")
     assert done.returncode == 0, done.stderr
     return file

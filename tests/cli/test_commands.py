@@ -76,59 +76,57 @@ def test_fit_tells_a_reader_parameters_and_errors(servoident, matrix):
     assert "search" in done.stderr
 
 
-def test_compare_writes_every_figure_in_every_format(servoident, matrix, fit_file, tmp_path):
+def test_compare_writes_every_figure_in_every_format(servoident, few, fit_file, tmp_path):
     """Each figure is there as svg, png, pdf and json, and the table holds every run."""
-    done = servoident(
-        "compare", matrix, "--fit", fit_file, "--out", tmp_path / "figures", "--json", tmp_path / "c.json"
-    )
+    done = servoident("compare", few, "--fit", fit_file, "--out", tmp_path / "figures", "--json", tmp_path / "c.json")
     assert done.returncode == 0, done.stderr
     starts = {"svg": b"<svg", "png": b"\x89PNG", "pdf": b"%PDF", "json": b"{"}
     for name in ("bode", "time", "evolution", "sensitivity", "residual-map", "residual-curve"):
         for kind, start in starts.items():
             assert (tmp_path / "figures" / f"{name}.{kind}").read_bytes().startswith(start)
     compared = json.loads((tmp_path / "c.json").read_text())
-    assert len(compared["runs"]) == len(compared["bands"]["runs"]) == 84
+    assert len(compared["runs"]) == len(compared["bands"]["runs"]) == 17
     assert {"amplitude", "gain", "specimen", "direction", "speed"} <= set(compared["groups"])
     assert {"noise", "linear", "nonlinear", "bounds", "notes"} <= set(compared["budget"])
     assert "error budget" in done.stdout
     assert "m087-k36-kp6-a05" in done.stdout
 
 
-def test_report_is_one_html_file(servoident, matrix, fit_file, tmp_path):
+def test_report_is_one_html_file(servoident, few, fit_file, tmp_path):
     """It names the actuator and is written whole."""
-    done = servoident("report", matrix, "--fit", fit_file, "--out", tmp_path / "report.html")
+    done = servoident("report", few, "--fit", fit_file, "--out", tmp_path / "report.html")
     assert done.returncode == 0, done.stderr
     page = (tmp_path / "report.html").read_text()
     assert page.startswith("<!doctype html>")
     assert page.rstrip().endswith("</html>")
 
 
-def test_report_is_one_pdf_file(servoident, matrix, fit_file, tmp_path):
+def test_report_is_one_pdf_file(servoident, few, fit_file, tmp_path):
     """The ending of its name chooses the form."""
-    done = servoident("report", matrix, "--fit", fit_file, "--out", tmp_path / "report.pdf")
+    done = servoident("report", few, "--fit", fit_file, "--out", tmp_path / "report.pdf")
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF-")
 
 
-def test_compare_finds_the_errors_of_the_fit_again(servoident, matrix, fit_file):
+def test_compare_finds_the_errors_of_the_fit_again(servoident, few, fit_file):
     """What `fit` reported and what `compare` computes are the same numbers."""
-    compared = json.loads(servoident("compare", matrix, "--fit", fit_file, "--json", "-").stdout)
+    compared = json.loads(servoident("compare", few, "--fit", fit_file, "--json", "-").stdout)
     fit = json.loads(fit_file.read_text())
     for use in ("fit", "verify"):
         assert compared["error"][use] == pytest.approx(fit["error"][use], rel=1e-9)
 
 
-def test_an_own_effect_is_fitted_from_its_file(servoident, matrix, tmp_path):
+def test_an_own_effect_is_fitted_from_its_file(servoident, few, tmp_path):
     """The file's name is the effect's; the fit carries the definition, and compares without the file."""
     own, out = tmp_path / "overlap.yaml", tmp_path / "fit.json"
     own.write_text("place: spool\nequation: w - clip(w, -h, h)\nstrength: {symbol: h, unit: mm, lower: 0, upper: 1}\n")
     held = ("--set", "m0=4.25", "--set", "overlap.h=0.1 mm", "--option", "generations=1")
-    done = servoident("fit", matrix, "--custom", own, *held, "--json", out)
+    done = servoident("fit", few, "--custom", own, *held, "--json", out)
     assert done.returncode == 0, done.stderr
     found = json.loads(out.read_text())
     assert found["parameters"]["overlap.h"]["value"] == 1e-4
     own.unlink()
-    assert servoident("compare", matrix, "--fit", out, "--json", "-").returncode == 0
+    assert servoident("compare", few, "--fit", out, "--json", "-").returncode == 0
 
 
 def test_an_own_effect_with_a_mistake_is_refused_with_file_and_character(servoident, matrix, tmp_path):

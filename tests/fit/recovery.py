@@ -24,6 +24,8 @@ from tests.reference import qian_reference as linear
 NOISE = 0.005
 SECONDS = 2.0
 WANTED = 5 * NOISE  # the error that the linear model is to have
+STRENGTHS = {"dead_zone": 2.03125e-4, "coulomb_friction": 21.875, "sensor_lag": 3e-3, "null_bias": 7.1875e-4}
+"""What `strength_for` chooses with seed 1: half a dozen fits each."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +79,7 @@ def strength_for(name: str, seed: int, wanted: float = WANTED) -> float:
 @cache
 def recovery(name: str, seed: int) -> Recovery:
     """Hide the effect, fit without it and with it."""
-    truth = strength_for(name, seed)
+    truth = STRENGTHS[name] if seed == 1 and name in STRENGTHS else strength_for(name, seed)
     data = matrix(name, truth, seed)
     return Recovery(effect(name), truth, identify(data, Settings()), identify(data, Settings(effects=(name,))))
 

@@ -7,7 +7,7 @@ import pytest
 from ident.effects import EFFECTS
 from tests.fit.recovery import NOISE, recovery
 
-QUICK = {"dead_zone", "coulomb_friction", "sensor_lag", "null_bias"}
+QUICK = {"coulomb_friction", "sensor_lag"}
 SEED = 1
 
 
