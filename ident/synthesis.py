@@ -66,7 +66,7 @@ class Plan:
 
 
 def plans(small: bool = False) -> tuple[Plan, ...]:
-    """The paper's matrix: 63 runs to fit at Kp 5, 7, 10 and 21 to verify at Kp 6; 18 and 9 of them for a `small` one."""
+    """The paper's matrix: 63 runs to fit at Kp 5, 7, 10 and 21 to verify at Kp 6; of a `small` one 18 and 9 of them."""
     specimens = SMALL_SPECIMENS if small else SPECIMENS
     gains = [(gain, "fit") for gain in (SMALL_GAINS if small else FIT_GAINS)] + [(VERIFY_GAIN, "verify")]
     return tuple(Plan(s, gain, inches, use) for gain, use in gains for s in specimens for inches in AMPLITUDES)

@@ -31,7 +31,7 @@ class Example:
 
 
 SOUND = Example("SIM-0001")
-LACKING = Example("SIM-0002", {"dead_zone.half_width": 30e-6, "coulomb_friction.force": 80.0})
+LACKING = Example("SIM-0002", {"dead_zone.half_width": 4e-4, "coulomb_friction.force": 60.0})
 EXAMPLES = (SOUND, LACKING)
 
 

@@ -1,8 +1,9 @@
-"""What a new user starts with: a sound actuator, one with hidden effects, and the way from its failing fit to the noise."""
+"""What a new user starts with: a sound actuator, one with hidden effects, and the way from its failing fit to noise."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -12,10 +13,18 @@ from tests.running import Service, command, free_port
 
 
 @pytest.fixture(scope="module")
-def demo(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    """The demo in a folder of its own, as soon as it prints its address."""
-    with command("demo", "--port", free_port(), "--data", tmp_path_factory.mktemp("demo"), until="token=") as line:
-        yield Service.that_said(line)
+def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The data folder of a lab's own service."""
+    return tmp_path_factory.mktemp("lab")
+
+
+@pytest.fixture(scope="module")
+def demo(data: Path) -> Iterator[Service]:
+    """The demo of a user whose service keeps its data there, as soon as it prints its address."""
+    with pytest.MonkeyPatch.context() as own:
+        own.setenv("SERVOIDENT_DATA", str(data))
+        with command("demo", "--port", free_port(), until="token=") as line:
+            yield Service.that_said(line)
 
 
 @pytest.fixture(scope="module")
@@ -28,6 +37,13 @@ def fits(demo: Service) -> dict[str, dict[str, Any]]:
 def over_the_floor(fit: dict[str, Any], use: str) -> float:
     """The error of a fit as a multiple of its noise floor."""
     return float(fit["result"]["error"][use] / fit["result"]["noise_floor"][use])
+
+
+@pytest.mark.usefixtures("demo")
+def test_the_demo_keeps_out_of_the_data_of_the_service(data):
+    """It has a folder of its own inside."""
+    assert [path.name for path in data.iterdir()] == ["demo"]
+    assert (data / "demo" / "servoident.sqlite").exists()
 
 
 def test_the_demo_starts_with_a_sound_actuator_and_one_whose_fit_visibly_fails(demo, fits):
@@ -58,7 +74,8 @@ def test_what_was_hidden_is_named_and_once_it_is_added_the_error_is_noise(demo, 
         assert mended["result"]["parameters"][name]["value"] == pytest.approx(strength, rel=0.03)
 
 
-def test_a_second_start_adds_nothing(demo, fits, capsys):
+@pytest.mark.usefixtures("fits")
+def test_a_second_start_adds_nothing(demo, capsys):
     """The actuators are there, so nothing is simulated, stored or queued again."""
     before = demo.client.get("/jobs").json(), demo.client.get("/matrices").json()
     begin(demo.address, demo.token)
