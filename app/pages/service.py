@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
 from typing import Any
 
 from app.actuators import service as actuators
@@ -20,7 +19,7 @@ from app.pages.fit_page import FitPageView, fit_page
 from app.pages.fit_view import parameter_rows
 from app.pages.job_view import JobPageView, job_page
 from app.pages.matrix_view import counted, matrix_view
-from app.pages.next_view import Next, next_step
+from app.pages.next_steps import next_steps
 from app.pages.numbers import quantity
 from app.pages.start_view import start_view
 from app.pages.thumbnails import thumbnail
@@ -28,8 +27,7 @@ from app.parameters import service as parameters
 from app.parameters.repository import Wanted
 from ident.fit.result import FitResult
 from ident.synthesis import SIMULATED
-from schemas.fit import JobView
-from schemas.parameters import ActuatorPage, ActuatorView, ParameterSetView
+from schemas.parameters import ActuatorPage, ActuatorView
 
 __all__ = ["actuator", "actuator_list", "fit", "job_list", "matrix", "thumbnail"]
 
@@ -49,7 +47,7 @@ def actuator_list(context: Context, query: str, drifting: str, cursor: str | Non
     ]
     return {
         "rows": rows, "query": query, "drifting": drifting, "followed": followed(approved), "more": found.next,
-        "next": _next(context, found.items, newest, waiting),
+        "next": next_steps(context, found.items, newest, waiting),
         "only_simulated": not (query or cursor) and _simulated(found),
     }  # fmt: skip
 
@@ -58,23 +56,6 @@ def _simulated(found: ActuatorPage) -> bool:
     """Whether these are all the actuators there are, and none was measured: the page is a newcomer's."""
     simulated = all(each.name.startswith(SIMULATED) for each in found.items)
     return bool(found.items) and found.next is None and simulated
-
-
-def _next(
-    context: Context,
-    found: Iterable[ActuatorView],
-    newest: Mapping[str, ParameterSetView],
-    waiting: Mapping[str, JobView],
-) -> dict[str, Next]:
-    """What to do next with each of these actuators, by serial number."""
-    undecided = [one.id for one in newest.values() if not one.current]
-    yardsticks, searches = fits.yardsticks(context, undecided), diagnoses.searches(context, undecided)
-    steps = {}
-    for each in found:
-        fit, job = newest.get(each.serial), waiting.get(each.serial)
-        known = fit.id if fit else ""
-        steps[each.serial] = next_step(each, fit, job, yardsticks.get(known), searches.get(known))
-    return steps
 
 
 def actuator(context: Context, serial: str, cursor: str | None) -> Shown:
