@@ -77,6 +77,7 @@ def the_first_page_leads_to_the_comparison(page, site):
     """With the error before and after, in the line and side by side."""
     page.goto(site.address)
     mended = page.locator("tbody tr").filter(has_text=LACKING).locator(".next")
+    expect(mended.locator("xpath=..").locator(".parameters")).to_contain_text("coulomb friction Fc")
     expect(mended).to_contain_text(re.compile(r"The error fell from 1\d\.\d % to 0\.\d+ %"))
     mended.get_by_role("link", name="Compare before and after").click()
     expect(page.locator("h1")).to_have_text("Two fits side by side")
@@ -87,10 +88,13 @@ def test_a_new_user_finds_what_is_missing_adds_it_and_sees_the_error_fall(page, 
     the_first_page_says_what_to_do(page, screenshots)
     before = page.url
     card = story.search(page, screenshots / "searching.png")
-    expect(card).to_contain_text("coulomb friction")
     expect(page.locator(".verdict")).to_contain_text("The model lacks coulomb friction and dead zone")
-    assert card.locator("math").count() == 1
+    expect(card).to_contain_text("coulomb friction")
     expect(card.locator(".evidence canvas")).to_be_visible(timeout=story.LONG)
+    expect(
+        page.get_by_role("button", name="Add all 2")
+    ).to_be_in_viewport()  # the answer stays in sight as figures come
+    assert card.locator("math").count() == 1
     the_error_falls_at_each_step(page)
     page.get_by_text("others that do not help beyond chance").click()
     everywhere(page, screenshots, "missing")
@@ -101,6 +105,7 @@ def test_a_new_user_finds_what_is_missing_adds_it_and_sees_the_error_fall(page, 
     first, second = story.add(page, page.locator("#missing"), "coulomb friction, dead zone")
     assert first > 20 * NOISE
     assert second < 1.05 * NOISE
+    expect(page.locator("#before")).to_contain_text(re.compile(r"1\d\.\d %"))
     added = page.locator("table.ladder tbody tr").last.inner_text()
     assert re.search(
         r"coulomb friction, (59\.[89]|60\.[0-2])\d* ± 0\.\d+ N; dead zone, (39\d|40\d)\S* ± \S+ µm", added
