@@ -40,6 +40,10 @@ SPECIMENS = tuple(
 )  # fmt: skip  Table 3
 AMPLITUDES = (0.02, 0.05, 0.1)  # in, RMS
 FIT_GAINS, VERIFY_GAIN = (5.0, 7.0, 10.0), 6.0
+SMALL_SPECIMENS, SMALL_GAINS = (SPECIMENS[0], SPECIMENS[2], SPECIMENS[5]), (5.0, 10.0)
+"""Of a small matrix: nothing, a mass on a spring, a mass; the lowest and the highest gain."""
+SIMULATED = "simulated"
+"""How the name of every simulated actuator begins."""
 BENCH = "kononykhin"
 """The model whose set is records of a bench, of the lengths that its procedures want."""
 _INCH = 0.0254
@@ -61,10 +65,11 @@ class Plan:
         return f"m{100 * s.mass:03.0f}-k{s.stiffness / 1e3:.0f}-kp{self.gain:g}-a{100 * self.inches:02.0f}"
 
 
-def plans() -> tuple[Plan, ...]:
-    """The paper's matrix: 63 runs to fit at Kp 5, 7, 10 and 21 to verify at Kp 6."""
-    gains = [(gain, "fit") for gain in FIT_GAINS] + [(VERIFY_GAIN, "verify")]
-    return tuple(Plan(s, gain, inches, use) for gain, use in gains for s in SPECIMENS for inches in AMPLITUDES)
+def plans(small: bool = False) -> tuple[Plan, ...]:
+    """The paper's matrix: 63 runs to fit at Kp 5, 7, 10 and 21 to verify at Kp 6; of a `small` one 18 and 9 of them."""
+    specimens = SMALL_SPECIMENS if small else SPECIMENS
+    gains = [(gain, "fit") for gain in (SMALL_GAINS if small else FIT_GAINS)] + [(VERIFY_GAIN, "verify")]
+    return tuple(Plan(s, gain, inches, use) for gain, use in gains for s in specimens for inches in AMPLITUDES)
 
 
 def white_noise(length: int, rms: float, rng: np.random.Generator) -> Array:
@@ -80,6 +85,7 @@ def white_noise(length: int, rms: float, rng: np.random.Generator) -> Array:
 def simulate_matrix(
     out: Path, preset: str = "qian2014", seconds: float = 30.0, seed: int = 0, noise: float = 0.005,
     effects: Mapping[str, float] | None = None, report: Report = silent, serial: str = "SIM-0001",
+    small: bool = False,
 ) -> None:  # fmt: skip
     """Write the matrix to the folder `out`, which must not exist or be empty; `noise` is relative to each run's output.
 
@@ -94,6 +100,8 @@ def simulate_matrix(
                        "give 0.0625 to 600 seconds and noise from 0 to below 1")  # fmt: skip
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise Unusable("folder-in-use", "the folder is not empty", str(out), "name a new one")
+    if preset == BENCH and small:
+        raise Unusable("bad-option", "the set of a bench has one size", "simulate", "leave --small out")
     if preset == BENCH and effects:
         raise Unusable("effect-does-not-fit", f"the model {BENCH} takes no effect", "simulate", "leave --effect out")
     (out / "runs").mkdir(parents=True, exist_ok=True)
@@ -103,7 +111,7 @@ def simulate_matrix(
     values = {parameter.name: parameter.value for parameter in model.parameters}
     values |= {model.parameter(name).name: value for name, value in (effects or {}).items()}
     actuator, entries = Actuator(serial, piston_area=AREA), []
-    todo = plans()
+    todo = plans(small)
     for index, plan in enumerate(todo):
         report(Progress("simulate", index, len(todo)))
         rng = np.random.default_rng([seed, index])
@@ -117,7 +125,8 @@ def simulate_matrix(
     report(Progress("simulate", len(todo), len(todo)))
     what = f"seed {seed}, noise {noise:g} of each output{_listed(effects)}"
     notes = f"simulated with the model {preset}, {what}; not measured"
-    machine = {"serial": serial, "name": "simulated", "piston_area": "497 mm^2", "notes": notes}
+    name = f"{SIMULATED}, with hidden effects" if effects else SIMULATED
+    machine = {"serial": serial, "name": name, "piston_area": "497 mm^2", "notes": notes}
     described = yaml.safe_dump({"actuator": machine, "runs": entries}, sort_keys=False)
     (out / "matrix.yaml").write_text(described, encoding="utf-8")
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 from app.context import Context
 from app.diagnoses import repository
@@ -16,10 +17,18 @@ from ident.diagnosis.addition import MOST, USUAL
 from ident.errors import Unusable
 from ident.fit.identification import check_settings
 from ident.fit.result import Estimate, FitResult
-from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView
+from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView, VerdictView
 from schemas.fit import Chosen, JobView
 
 _BESIDE_A_FIT = {"fit", "seed", "max_effects", "custom"}
+
+
+@dataclass(frozen=True)
+class Search:
+    """What is known of what a fit lacks: the newest verdict, and the job of a diagnosis that has not ended."""
+
+    verdict: VerdictView | None = None
+    job: str | None = None
 
 
 def submit(context: Context, request: DiagnosisRequest, job: str) -> JobView:
@@ -95,6 +104,14 @@ def of_fit(context: Context, fit: str) -> tuple[DiagnosisView | None, JobView | 
     with context.sessions() as session:
         rows, job = repository.page(session, fit, None, 1), repository.last_job(session, fit)
     return (view(rows[0]) if rows else None), (fits.job_view(job, "") if job is not None else None)
+
+
+def searches(context: Context, fits: Sequence[str]) -> dict[str, Search]:
+    """That of each of these fits that was or is being diagnosed."""
+    with context.sessions() as session:
+        verdicts, waiting = repository.verdicts(session, fits), repository.open_jobs(session, fits)
+    found = {fit: VerdictView(**verdict) for fit, verdict in verdicts.items()}
+    return {fit: Search(found.get(fit), waiting.get(fit)) for fit in found.keys() | waiting.keys()}
 
 
 def view(row: DiagnosisRow) -> DiagnosisView:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from sqlalchemy import ColumnElement, Select, or_, select, tuple_, update
-from sqlalchemy.orm import Session
+from sqlalchemy.orm import Session, aliased
 
 from app.fits.history import packed, unpacked
 from app.tables import EvolutionRow, FitRow, JobRow, MatrixRow, ValueRow, now
@@ -101,6 +101,14 @@ def lineage(session: Session, row: FitRow) -> Sequence[FitRow]:
         found.insert(0, earlier)
         seen.add(parent)
     return found
+
+
+def floors(session: Session, fits: Sequence[str]) -> Sequence[tuple[str, str | None, float | None, Any]]:
+    """Of each of these fits: its id, the fit before it, that one's error on runs to fit, and its own noise floors."""
+    earlier = aliased(FitRow)
+    query = select(FitRow.id, FitRow.parent, earlier.error_fit, FitRow.result["noise_floor"])
+    query = query.join(earlier, earlier.id == FitRow.parent, isouter=True).where(FitRow.id.in_(fits))
+    return [(fit, parent, before, floor) for fit, parent, before, floor in session.execute(query)]
 
 
 def add_fit(session: Session, job_row: JobRow, serial: str, result: dict[str, Any]) -> FitRow:

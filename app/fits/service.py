@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from sqlalchemy.exc import IntegrityError
@@ -33,6 +33,15 @@ from schemas.fit import (
     JobView,
     ProgressView,
 )
+
+
+@dataclass(frozen=True)
+class Yardstick:
+    """What the error of a fit on runs to fit is held against: its noise floor, and the error of the fit before it."""
+
+    parent: str | None = None
+    before: float | None = None
+    floor: float | None = None
 
 
 def submit(context: Context, request: FitRequest, job: str) -> JobView:
@@ -132,6 +141,13 @@ def open_jobs(context: Context, serials: Sequence[str]) -> dict[str, JobView]:
     """The latest job of a fit that has not ended of each of these actuators that has one."""
     with context.sessions() as session:
         return {serial: job_view(row, serial) for row, serial in repository.open_jobs(session, serials)}
+
+
+def yardsticks(context: Context, fits: Sequence[str]) -> dict[str, Yardstick]:
+    """That of each of these fits."""
+    with context.sessions() as session:
+        found = repository.floors(session, fits)
+    return {fit: Yardstick(parent, before, (floor or {}).get("fit")) for fit, parent, before, floor in found}
 
 
 def cancel(context: Context, job_id: str) -> JobView:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from app.pages import numbers
+from app.pages.effect_view import title
 from app.pages.sparkline import ERROR, Drift, drift
 from ident.errors import Unusable
 from ident.presets import preset
@@ -99,9 +100,11 @@ def _parameters(shown: ParameterSetView) -> tuple[tuple[str, str], ...]:
 
 
 def _symbol(model: str, name: str) -> str:
-    """The symbol of the literature; the plain name where this version does not know the model or parameter."""
+    """The symbol of the literature, behind the name of its effect; the plain name where neither is known."""
+    effect, dot, _ = name.partition(".")
     try:
-        return numbers.symbol(name, preset(model).parameter(name).symbol)
+        symbol = numbers.symbol(name, preset(model, (effect,) if dot else ()).parameter(name).symbol)
+        return f"{title(effect)} {symbol}" if dot else symbol
     except Unusable:
         return name
 

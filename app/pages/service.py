@@ -19,13 +19,15 @@ from app.pages.fit_page import FitPageView, fit_page
 from app.pages.fit_view import parameter_rows
 from app.pages.job_view import JobPageView, job_page
 from app.pages.matrix_view import counted, matrix_view
+from app.pages.next_steps import next_steps
 from app.pages.numbers import quantity
 from app.pages.start_view import start_view
 from app.pages.thumbnails import thumbnail
 from app.parameters import service as parameters
 from app.parameters.repository import Wanted
 from ident.fit.result import FitResult
-from schemas.parameters import ActuatorView
+from ident.synthesis import SIMULATED
+from schemas.parameters import ActuatorPage, ActuatorView
 
 __all__ = ["actuator", "actuator_list", "fit", "job_list", "matrix", "thumbnail"]
 
@@ -43,7 +45,17 @@ def actuator_list(context: Context, query: str, drifting: str, cursor: str | Non
         actuator_row(each, newest.get(each.serial), waiting.get(each.serial), approved.get(each.serial, ()), drifting)
         for each in found.items
     ]
-    return {"rows": rows, "query": query, "drifting": drifting, "followed": followed(approved), "more": found.next}
+    return {
+        "rows": rows, "query": query, "drifting": drifting, "followed": followed(approved), "more": found.next,
+        "next": next_steps(context, found.items, newest, waiting),
+        "only_simulated": not (query or cursor) and _simulated(found),
+    }  # fmt: skip
+
+
+def _simulated(found: ActuatorPage) -> bool:
+    """Whether these are all the actuators there are, and none was measured: the page is a newcomer's."""
+    simulated = all(each.name.startswith(SIMULATED) for each in found.items)
+    return bool(found.items) and found.next is None and simulated
 
 
 def actuator(context: Context, serial: str, cursor: str | None) -> Shown:

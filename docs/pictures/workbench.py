@@ -1,7 +1,7 @@
-"""Remake the pictures of the workbench in README: `python -m docs.pictures.workbench` (some minutes; needs chromium).
+"""Remake the pictures of the pages in README: `python -m docs.pictures.workbench` (some minutes; needs chromium).
 
 A matrix is simulated with a dead zone and dry friction that the model does not know, and led through the pages of a
-service of its own, as the tests do it: uploaded, fitted, asked what is missing, mended.
+service of its own, as the tests do it: uploaded, fitted, asked what is missing, mended. The first page is the demo's.
 """
 
 from __future__ import annotations
@@ -10,14 +10,14 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from playwright.sync_api import Page, expect, sync_playwright
+from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 from docs.pictures.remake import packed
 from ident.synthesis import simulate_matrix
 from tests.browser import story
 from tests.browser.conftest import CHROMIUM
 from tests.browser.looks import DRAWING
-from tests.running import Service, process
+from tests.running import Service, command, free_port, process
 
 HERE = Path(__file__).parent
 HIDDEN = {"dead_zone.half_width": 6e-5, "coulomb_friction.force": 150.0}
@@ -36,7 +36,18 @@ def main() -> None:
             page.set_default_timeout(story.LONG)
             page.goto(f"{service.address}/?token={service.token}")
             photograph(page, service, archive)
+        first_page(browser, folder)
         browser.close()
+
+
+def first_page(browser: Browser, folder: Path) -> None:
+    """The demo's, once both of its actuators are identified."""
+    with command("demo", "--port", free_port(), "--data", folder / "demo", until="token=") as line:
+        service = Service.that_said(line)
+        page = browser.new_page(viewport={"width": 1280, "height": 670}, color_scheme="light")
+        page.goto(f"{service.address}/?token={service.token}")
+        page.get_by_role("link", name="Find what is missing").wait_for(timeout=story.LONG)
+        keep("first", page.screenshot())
 
 
 def photograph(page: Page, service: Service, archive: Path) -> None:

@@ -108,6 +108,13 @@ def test_the_list_of_actuators_costs_the_same_for_one_and_for_many(context: Cont
     assert states == {"BUSY": "queued", "QUIET": "succeeded"}
 
 
+def test_what_to_do_next_is_known_of_every_actuator_of_the_list(context: Context) -> None:
+    """Also where a fit of an earlier version tells no noise floor."""
+    steps = pages.actuator_list(context, "", "error", None)["next"]
+    assert {serial: step.at for serial, step in steps.items()} == {"BUSY": "/fits/busy-259", "QUIET": "/fits/quiet"}
+    assert "cannot be told" in steps["QUIET"].words
+
+
 @pytest.mark.parametrize("wanted", [{"serial": "QUIET"}, {"matrix": "m-QUIET"}])
 def test_the_jobs_of_an_actuator_or_matrix_are_found_by_index(context: Context, wanted: dict[str, str]) -> None:
     (statement, parameters), *_ = sent(context, lambda: fits.jobs(context, None, 50, **wanted))

@@ -1,9 +1,11 @@
-"""The workbench: upload, fit, find what is missing, add it, look back, approve, find by serial number."""
+"""The workbench, from the first page of the demo: find what is missing, add it, compare, approve, find by serial."""
 
 from __future__ import annotations
 
 import re
 import shutil
+from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -12,8 +14,18 @@ from playwright.sync_api import expect
 from tests.browser import story
 from tests.browser.looks import everywhere
 from tests.hidden_dead_zone import zipped
+from tests.running import Service, command, free_port
 
+SOUND, LACKING = "SIM-0001", "SIM-0002"
+NOISE = 0.5  # %, of each output of both
 SEARCH = 1_200_000  # ms, for a search on 40 000 samples
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    """The demo, as a new user starts it."""
+    with command("demo", "--port", free_port(), "--data", tmp_path_factory.mktemp("demo"), until="token=") as line:
+        yield Service.that_said(line)
 
 
 def the_next_run_is_proposed(page):
@@ -40,17 +52,50 @@ def an_own_effect_is_tried(page, watch, folder):
     everywhere(page, folder, "own")
 
 
-def test_from_upload_to_a_mended_model_in_force(page, site, watch, tmp_path, screenshots):
-    archive = tmp_path / "matrix.zip"
-    archive.write_bytes(zipped("DZ-SHOP"))
-    story.upload(page, site, archive)
-    before = story.fit(page)
+def the_first_page_says_what_to_do(page, screenshots):
+    """A line for each of the two actuators, which changes by itself when a fit ends; the page of the failing fit."""
+    sound, failing = (page.locator("tbody tr").filter(has_text=serial).locator(".next") for serial in (SOUND, LACKING))
+    expect(page.locator("#main")).to_contain_text("simulated, not measured")
+    expect(sound).to_contain_text("The model explains all but the noise", timeout=story.LONG)
+    expect(failing).to_contain_text(re.compile("The error is 2[0-9] times the noise"), timeout=story.LONG)
+    everywhere(page, screenshots, "first")
+    failing.get_by_role("link", name="Find what is missing").click()
+    expect(page.locator("h1")).to_contain_text(f"{LACKING}: ")
+    expect(page.get_by_role("button", name="Find what is missing")).to_be_in_viewport()
+
+
+def the_error_falls_at_each_step(page):
+    """Of what the search would add: from the fit as it is, with one effect, with both, which is noise."""
+    cells = page.locator("table[aria-labelledby=steps] tbody td:nth-child(2)").all_inner_texts()
+    errors = [float(cell.split()[0]) for cell in cells]
+    assert len(errors) == 3
+    assert all(after < before / 2 for before, after in pairwise(errors)), errors
+    assert errors[-1] < 1.05 * NOISE
+
+
+def the_first_page_leads_to_the_comparison(page, site):
+    """With the error before and after, in the line and side by side."""
+    page.goto(site.address)
+    mended = page.locator("tbody tr").filter(has_text=LACKING).locator(".next")
+    expect(mended.locator("xpath=..").locator(".parameters")).to_contain_text("coulomb friction Fc")
+    expect(mended).to_contain_text(re.compile(r"The error fell from 1\d\.\d % to 0\.\d+ %"))
+    mended.get_by_role("link", name="Compare before and after").click()
+    expect(page.locator("h1")).to_have_text("Two fits side by side")
+    expect(page.locator("#main")).to_contain_text("+ coulomb friction + dead zone")
+
+
+def test_a_new_user_finds_what_is_missing_adds_it_and_sees_the_error_fall(page, site, watch, screenshots):
+    the_first_page_says_what_to_do(page, screenshots)
+    before = page.url
     card = story.search(page, screenshots and screenshots / "searching.png")
-    expect(card).to_contain_text("dead zone")
-    expect(page.locator(".verdict")).to_contain_text("The model lacks dead zone")
-    assert card.locator("math").count() == 1
+    expect(page.locator(".verdict")).to_contain_text("The model lacks coulomb friction and dead zone")
+    expect(card).to_contain_text("coulomb friction")
     expect(card.locator(".evidence canvas")).to_be_visible(timeout=story.LONG)
-    assert re.search(r"80\.\d+ ± 0\.\d+ µm", card.inner_text())
+    expect(
+        page.get_by_role("button", name="Add all 2")
+    ).to_be_in_viewport()  # the answer stays in sight as figures come
+    assert card.locator("math").count() == 1
+    the_error_falls_at_each_step(page)
     page.get_by_text("others that do not help beyond chance").click()
     everywhere(page, screenshots, "missing")
     if screenshots:
@@ -58,15 +103,24 @@ def test_from_upload_to_a_mended_model_in_force(page, site, watch, tmp_path, scr
     the_next_run_is_proposed(page)
     an_own_effect_is_tried(page, watch, screenshots)
 
-    first, second = story.add(page, card, "dead zone")
-    assert second < first / 2
+    first, second = story.add(page, page.locator("#missing"), "coulomb friction, dead zone")
+    assert first > 20 * NOISE
+    assert second < 1.05 * NOISE
+    expect(page.locator("#before")).to_contain_text(re.compile(r"1\d\.\d %"))
+    added = page.locator("table.ladder tbody tr").last.inner_text()
+    assert re.search(
+        r"coulomb friction, (59\.[89]|60\.[0-2])\d* ± 0\.\d+ N; dead zone, (39\d|40\d)\S* ± \S+ µm", added
+    ), added
     page.locator("#figure-ladder").scroll_into_view_if_needed()
     expect(page.locator("#figure-ladder canvas")).to_be_visible(timeout=story.LONG)
     everywhere(page, screenshots, "mended")
     expect(page.get_by_role("link", name="Undo: back to the fit before")).to_have_attribute(
         "href", before.removeprefix(site.address).partition("#")[0]
     )
-    (found,) = story.approve(page, site, "DZ-SHOP")
+    mended = page.url
+    the_first_page_leads_to_the_comparison(page, site)
+    page.goto(mended)
+    (found,) = story.approve(page, site, LACKING)
     assert "dead_zone.half_width" in found["parameters"]
 
 

@@ -117,10 +117,3 @@ def test_a_wrong_token_is_told(service, servoident):
     assert done.returncode == 2
     assert "token" in done.stderr
     assert done.stderr.count("\n") == 1
-
-
-def test_demo_identifies_a_simulated_actuator(tmp_path):
-    """The address is printed when the identification has begun; the serial number says what it is."""
-    with command("demo", "--port", 8765, "--data", tmp_path, until="token=") as line:
-        jobs = Service.that_said(line).client.get("/jobs").json()
-    assert [job["serial"] for job in jobs["items"]] == ["DEMO-0001"]

@@ -50,5 +50,9 @@ function onSubmit(form, work) {
   });
 }
 
-// After a search the reader goes on where the answer is.
-if (location.hash === "#missing") document.querySelector("#missing-title").focus();
+// After a search the reader goes on where the answer is, not where the page was scrolled to while it was longer above.
+if (location.hash === "#missing") {
+  history.scrollRestoration = "manual";
+  document.querySelector("#missing-title").focus({ preventScroll: true });
+  document.querySelector("#missing").scrollIntoView();
+}

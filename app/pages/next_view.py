@@ -1,0 +1,81 @@
+"""What to do next with an actuator, in a line: from its first fit over what is missing to the set in force."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from urllib.parse import quote
+
+from app.diagnoses.service import Search
+from app.fits.service import Yardstick
+from app.pages import numbers
+from app.pages.effect_view import title
+from schemas.diagnosis import VerdictView
+from schemas.fit import JobView
+from schemas.parameters import ActuatorView, ParameterSetView
+
+NEAR = 1.1  # times the noise floor: a fit as near as that leaves little to find
+
+
+@dataclass(frozen=True)
+class Next:
+    """Where an actuator stands, and the link that leads on; `waits` is a job whose end changes that.
+
+    `main` marks a step that changes the model.
+    """
+
+    words: str
+    deed: str
+    at: str
+    waits: str = ""
+    main: bool = True
+
+
+def next_step(
+    actuator: ActuatorView, newest: ParameterSetView | None, job: JobView | None,
+    yardstick: Yardstick | None = None, search: Search | None = None,
+) -> Next:  # fmt: skip
+    """The line of an actuator: of a `job` that is to make a fit of it, else of its `newest` fit."""
+    if job is not None:
+        words = "It is being identified." if job.state == "running" else "It waits to be identified."
+        return Next(words, "Watch it", f"/fits/{job.id}", waits=job.id, main=False)
+    if newest is None:
+        return Next("Its runs are here, but no fit is.", "Start a fit", f"/actuators/{quote(actuator.serial)}")
+    at = f"/fits/{newest.id}"
+    if newest.current:
+        return Next("Its parameters are in force: nothing to do.", "Look at them", at, main=False)
+    search = search or Search()
+    if search.job is not None:
+        words = "It is being searched for what its model lacks."
+        return Next(words, "Watch it", f"{at}#missing", waits=search.job, main=False)
+    return _fitted(newest, yardstick or Yardstick(), search.verdict, at)
+
+
+def _fitted(newest: ParameterSetView, yardstick: Yardstick, verdict: VerdictView | None, at: str) -> Next:
+    """Of a fit that waits for its user."""
+    error, before = newest.error_fit, yardstick.before
+    if error is None or not yardstick.floor:
+        return Next("It is fitted; how much of its error is noise cannot be told.", "See where it fails", at)
+    if error > NEAR * yardstick.floor:
+        return _failing(error / yardstick.floor, verdict, f"{at}#missing")
+    if before is not None and before > NEAR * error:
+        fell = f"The error fell from {numbers.percent(before)} to {numbers.percent(error)}, which is noise."
+        return Next(fell, "Compare before and after", f"/compare?fits={yardstick.parent},{newest.id}")
+    return Next("The model explains all but the noise.", "Look and approve it", at, main=False)
+
+
+def _failing(ratio: float, verdict: VerdictView | None, at: str) -> Next:
+    """Of a fit whose error is so many times the noise."""
+    fails = f"The error is {numbers.plain(ratio, 2)} times the noise"
+    if verdict is None:
+        return Next(f"{fails}: the model lacks something.", "Find what is missing", at)
+    if verdict.effects:
+        return Next(f"The model lacks {_listed(verdict.effects)}.", "See and add", at)
+    if verdict.suspects:
+        return Next(f"{fails}; a label is doubted.", "Look and mend", at)
+    return Next(f"{fails}; no listed effect explains it.", "See what is left", at)
+
+
+def _listed(names: Sequence[str]) -> str:
+    *first, last = map(title, names)
+    return f"{', '.join(first)} and {last}" if first else last

@@ -1,0 +1,74 @@
+"""What to do next with an actuator follows from where it stands."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from app.diagnoses.service import Search
+from app.fits.service import Yardstick
+from app.pages.next_view import Next, next_step
+from schemas.diagnosis import VerdictView
+from schemas.fit import JobView, ProgressView
+from schemas.parameters import ActuatorView, ParameterSetView
+
+NOISE = 0.005
+
+
+def step(error: float | None = None, *, state: str = "", current: bool = False, **known: Any) -> Next:
+    """The line of an actuator with a fit of this error, or whose job is in this state; `known` is about the fit."""
+    actuator = ActuatorView(
+        serial="S/1 ä", name="", batch="", piston_area=None, created_at="", matrices=1, fits=1, current=None
+    )
+    job = JobView(
+        id="j", kind="fit", state=state, matrix="m", serial=actuator.serial, settings={}, progress=ProgressView(),
+        parent=None, fit=None, diagnosis=None, problem=None, created_at="", ended_at=None,
+    )  # fmt: skip
+    fit = ParameterSetView(
+        id="f", serial=actuator.serial, batch="", model="qian2014", created_at="", approved_at=None, current=current,
+        error_fit=error, error_verify=error, parameters={},
+    )  # fmt: skip
+    return next_step(actuator, None if error is None else fit, job if state else None, **known)
+
+
+def verdict(*effects: str, suspects: int = 0) -> Search:
+    """A search that found these effects and so many doubted labels."""
+    doubted = [{"run": "r"}] * suspects
+    found = {"effects": list(effects), "indistinguishable": [], "suspects": doubted, "unexplained": True, "text": ""}
+    return Search(verdict=VerdictView(**found))
+
+
+MISSING = "/fits/f#missing"
+FAR = Yardstick(floor=NOISE)
+FELL = Yardstick(parent="p", before=0.12, floor=NOISE)
+
+
+@pytest.mark.parametrize(
+    ("found", "words", "deed", "at"),
+    [
+        (step(), "no fit", "Start a fit", "/actuators/S/1%20%C3%A4"),
+        (step(state="queued"), "waits to be identified", "Watch it", "/fits/j"),
+        (step(0.1, state="running"), "is being identified", "Watch it", "/fits/j"),
+        (step(0.1, yardstick=FAR), "20 times the noise", "Find what is missing", MISSING),
+        (step(0.1, yardstick=FAR, search=Search(job="d")), "being searched", "Watch it", MISSING),
+        (step(0.1, yardstick=FAR, search=verdict("lead", "lag")), "lacks lead and lag.", "See and add", MISSING),
+        (step(0.1, yardstick=FAR, search=verdict(suspects=1)), "a label is doubted", "Look and mend", MISSING),
+        (step(0.1, yardstick=FAR, search=verdict()), "no listed effect", "See what is left", MISSING),
+        (step(0.1, yardstick=FELL), "20 times the noise", "Find what is missing", MISSING),
+        (step(NOISE, yardstick=FELL), "from 12.0 % to 0.500 %", "Compare before and after", "/compare?fits=p,f"),
+        (step(NOISE, yardstick=FAR), "all but the noise", "Look and approve it", "/fits/f"),
+        (step(NOISE), "cannot be told", "See where it fails", "/fits/f"),
+        (step(0.1, current=True, yardstick=FAR), "nothing to do", "Look at them", "/fits/f"),
+    ],
+)  # fmt: skip
+def test_the_line_says_where_it_stands_and_leads_on(found, words, deed, at):
+    """From no fit over what is missing to the set in force, one link a state."""
+    assert words in found.words
+    assert (found.deed, found.at) == (deed, at)
+
+
+def test_a_line_that_a_job_will_change_names_it():
+    """So that the page can be drawn anew when that job ends."""
+    waiting = [step(state="queued"), step(0.1, search=Search(job="d")), step(0.1, yardstick=FAR)]
+    assert [each.waits for each in waiting] == ["j", "d", ""]
