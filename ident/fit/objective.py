@@ -174,7 +174,9 @@ class Objective:
         known = [conditions(run, self.matrix.actuator) for run in runs]
         stacked = {name: np.array([entry[name] for entry in known])[:, None] for name in known[0]}
         batch = stacked | {name: value[None] for name, value in values.items()}
-        return self.preset.chain.linearise(batch, runs[0].output)
+        system = self.preset.chain.linearise(batch, runs[0].output).system
+        shape = (len(runs), len(next(iter(values.values()))))  # a model may read nothing of a run
+        return LinearModel(np.broadcast_to(system, (*system.shape[:2], *shape)))
 
     def accept(self, here: Local) -> None:
         """Nothing is to be remembered of a point."""
