@@ -11,11 +11,20 @@ from pathlib import Path
 
 import pytest
 
+from tests.rounding import rounded_otherwise
+
 ROOT = Path(__file__).resolve().parents[1]
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--full", action="store_true", help="run the acceptance tests at full length (many minutes)")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _rounding() -> Iterator[None]:
+    """Data as another processor would round them, where that is asked for: see tests/rounding.py."""
+    with rounded_otherwise():
+        yield
 
 
 @pytest.fixture(scope="session")
