@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.rounding import rounded_otherwise
+
 ROOT = Path(__file__).resolve().parents[1]
 
 
@@ -32,6 +34,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Long files go first, so that no core is left alone with one at the end."""
     place = {f"{name}.py": number for number, name in enumerate(LONGEST)}
     items.sort(key=lambda item: place.get(item.path.relative_to(ROOT / "tests").as_posix(), len(place)))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _rounding() -> Iterator[None]:
+    """Data as another processor would round them, where that is asked for: see tests/rounding.py."""
+    with rounded_otherwise():
+        yield
 
 
 @pytest.fixture(scope="session")

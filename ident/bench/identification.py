@@ -15,11 +15,13 @@ from numpy.typing import NDArray
 
 from ident.bench.analysis import Analysis, analyse
 from ident.bench.least_squares import Solution, solve
-from ident.bench.model import CONSTANTS
+from ident.bench.model import CONSTANTS, Model
 from ident.bench.outputs import model_of, noise_floor, run_errors
+from ident.bench.polish import polished, weak
 from ident.bench.records import bench_set
 from ident.bench.residual import Residual, observe
 from ident.fit import genetic
+from ident.fit.ends import distinct
 from ident.fit.evolution import GENERATIONS, cma_es, differential_evolution
 from ident.fit.result import Estimate, FitResult, Generation, RunError, Undetermined
 from ident.fit.settings import Settings
@@ -33,9 +35,7 @@ Array = NDArray[np.float64]
 State = dict[str, Any]
 OPTIONS = {**genetic.DEFAULT, "population": 80.0, "generations": 40.0, "elite": 8.0}
 _SEARCHED = 60.0  # Hz of the records during the search; the polish takes what each record needs
-_STARTS = 3  # vectors of the last generation from which the polish starts
-_POLISHED = 30  # steps at most
-_WEAK = 0.5  # relative standard error above which a value is not determined
+_STARTS = 3  # vectors of the last generation from which the polish starts, beside what the procedures found
 
 
 class BenchIdentification:
@@ -120,8 +120,7 @@ class BenchIdentification:
         """
 
         def one(point: Array) -> float:
-            values = {name: float(found[0]) for name, found in self.space.values(point[None]).items()}
-            model = model_of(values, self.bench.supply_pressure)
+            model = self._model(point)
             means = [float(np.sqrt(np.mean(observed.residual(model) ** 2))) for observed in self._coarse]
             return float(np.mean(np.sqrt(means)))
 
@@ -131,9 +130,9 @@ class BenchIdentification:
     def finish(self, state: State) -> FitResult:
         """Least squares from the best of the search, or for "gradient" the procedures' own model; what it says."""
         self.report(Progress("polish", 0, 1))
-        solution = self._by_steps() if self.settings.method == "gradient" else self._polished(state)
+        solution, notes = (self._by_steps(), []) if self.settings.method == "gradient" else self._polished(state)
         self.report(Progress("polish", 1, 1))
-        return self._result(solution, state)
+        return self._result(solution, state, notes)
 
     def _by_steps(self) -> Solution:
         steps = self.analysis.steps
@@ -143,51 +142,51 @@ class BenchIdentification:
         own = replace(steps, T=lag.gradient_T).with_values(self.space.fixed)
         return solve(Residual(own, self._fine, self.space.names), steps=0)
 
-    def _polished(self, state: State) -> Solution:
+    def _polished(self, state: State) -> tuple[Solution, list[str]]:
+        """The best of where the starts end, and what is to be said of the others."""
         points = [np.array(state["best"]), *map(np.array, state["population"])] if state["best"] else []
-        starts = [self.space.values(point[None]) for point in _distinct(points)] or [
-            self.space.values(np.empty((1, 0)))
-        ]
-        found = []
-        for values in starts:
-            model = model_of({name: float(value[0]) for name, value in values.items()}, self.bench.supply_pressure)
-            found.append(solve(Residual(model, self._fine, self.space.names), steps=_POLISHED))
-        return min(found, key=lambda solution: solution.cost)
+        starts = [self._model(point) for point in distinct(points, _STARTS) or [np.empty(0)]]
+        own = self.analysis.model
+        if own is None:
+            raise AssertionError("complete() has seen to it")
+        own = own.with_values(self.space.fixed)
+        bounds = self.space.bounds(own.values()).items()
+        allowed = all(lower <= own.values()[name] <= upper for name, (lower, upper) in bounds)
+        return polished(starts, own if allowed else None, self._fine, self.space.names)
 
-    def _result(self, solution: Solution, state: State) -> FitResult:
+    def _model(self, point: Array) -> Model:
+        values = {name: float(value[0]) for name, value in self.space.values(point[None]).items()}
+        return model_of(values, self.bench.supply_pressure)
+
+    def _result(self, solution: Solution, state: State, notes: list[str]) -> FitResult:
         values = {**self.space.fixed, **solution.values}
         runs = run_errors(self.matrix, values)
-        weak = [name for name, value in solution.values.items() if self._is_weak(name, value, solution)]
+        undetermined = weak(solution)
         seen, bounds = solution.deviations, self.space.bounds(values)
         parameters = {
-            p.name: self._estimate(p.name, values[p.name], seen.get(p.name), bounds.get(p.name), p.name in weak)
+            p.name: self._estimate(p.name, values[p.name], seen.get(p.name), bounds.get(p.name), p.name in undetermined)
             for p in self.preset.parameters
         }
         return FitResult(
             model="kononykhin", effects=(), parameters=parameters, correlation=solution.correlation, determined=(),
-            undetermined=tuple(Undetermined(name, "these records hardly depend on it") for name in weak),
+            undetermined=tuple(Undetermined(name, "these records hardly depend on it") for name in undetermined),
             error={"fit": _mean(runs, "fit", "error"), "held_out": None, "verify": _mean(runs, "verify", "error")},
             offset={"fit": _mean(runs, "fit", "offset"), "verify": _mean(runs, "verify", "offset")},
             noise_floor={use: noise_floor(self.matrix, use) for use in ("fit", "verify")}, runs=runs,
             method=self.settings.method, seed=self.settings.seed,
             evaluations=int(state["evaluations"]) + solution.evaluations, seconds=time.monotonic() - self._started,
             version=version("servoident"), data_hash=self.matrix.data_hash,
-            notes=(*self.matrix.notices, *self.analysis.notes, *_compared(self.analysis, solution)),
+            notes=(*self.matrix.notices, *self.analysis.notes, *notes, *_compared(self.analysis, solution)),
             settings=self.settings.to_json(), searched=self.space.names, evolution=self._evolution(state),
         )  # fmt: skip
 
-    def _is_weak(self, name: str, value: float, solution: Solution) -> bool:
-        size = abs(value) if name != "I0" else 1e-2
-        deviation = solution.deviations[name]
-        return not 0 < deviation < _WEAK * size
-
     def _estimate(
-        self, name: str, value: float, deviation: float | None, bounds: tuple[float, float] | None, weak: bool
+        self, name: str, value: float, deviation: float | None, bounds: tuple[float, float] | None, unsure: bool
     ) -> Estimate:
         parameter = self.preset.parameter(name)
         lower, upper = bounds or (value, value)
         at_bound = bounds is not None and not lower < value < upper
-        return Estimate(value, parameter.unit, None if weak else deviation, lower, upper, at_bound, parameter.symbol,
+        return Estimate(value, parameter.unit, None if unsure else deviation, lower, upper, at_bound, parameter.symbol,
                         parameter.meaning, fixed=bounds is None)  # fmt: skip
 
     def _evolution(self, state: State) -> tuple[Generation, ...]:
@@ -199,17 +198,6 @@ class BenchIdentification:
             rows = tuple(zip(*columns, strict=True))
             out.append(Generation(index + 1, min(errors), float(np.mean(errors)), rows, errors))
         return tuple(out)
-
-
-def _distinct(points: list[Array]) -> list[Array]:
-    """The first points that are at least a tenth of an axis apart."""
-    chosen: list[Array] = []
-    for point in points:
-        if all(np.abs(point - other).max() > 0.1 for other in chosen):
-            chosen.append(point)
-        if len(chosen) == _STARTS:
-            break
-    return chosen
 
 
 def _mean(runs: tuple[RunError, ...], use: str, what: str) -> float | None:

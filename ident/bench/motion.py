@@ -10,6 +10,7 @@ from ident.bench.records import Record
 
 Array = NDArray[np.float64]
 Groups = NDArray[np.int8]
+_NONE = 1e-6  # of a step: less is the rounding of a reading, no change of it
 _LONGER = 4.0  # times the usual time between two steps: so long a pause is a rest
 
 
@@ -23,7 +24,7 @@ def groups(record: Record) -> Groups:
     steady = np.empty(record.length)
     without_flicker(record.position, 0.75 * step, steady)
     change = np.diff(steady)
-    at = np.flatnonzero(change)
+    at = np.flatnonzero(np.abs(change) > _NONE * step)
     edges = np.zeros(record.length + 1, dtype=np.int64)
     if len(at) < 3:
         return edges[:-1].astype(np.int8)

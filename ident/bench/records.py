@@ -16,7 +16,7 @@ from ident.matrix import BENCH, Matrix, Run
 Array = NDArray[np.float64]
 _END = 0.02  # s at the same extreme reading: the actuator or its transducer is at its end
 _BRIEF, _ROUGH = 4e-3, 5e-5  # s, rated currents: beyond it means over so short a time hide what the play sees
-_FAR = 0.02  # of rated current: so far from the middle an actuator that is free moves
+_FAR = 0.02 + 1e-9  # of rated current: farther from the middle, not by rounding alone, an actuator that is free moves
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,7 @@ class Record:
 
     def reduced(self, rate: float) -> Record:
         """The record as means of blocks of samples, at `rate` or just above; unchanged where it is no faster."""
-        m = int(self.rate / rate)
+        m = int(self.rate / rate * (1 + 1e-9))  # a rate told by a clock may be short of the round one
         if m < 2 or self.length < 16 * m:
             return self
         cut = self.length // m * m
@@ -168,7 +168,7 @@ def _record(run: Run, rated: float) -> Record:
 def resolution(position: Array) -> float:
     """The smallest step of a reading, m: of a converter its last bit; 0 where the reading is not in steps."""
     changes = np.abs(np.diff(position))
-    changes = changes[changes > 1e-9 * np.ptp(position)]
+    changes = changes[changes > 1e-9 * np.max(np.abs(position))]  # below it is the rounding of the values themselves
     if not len(changes) or len(changes) > 0.9 * len(position):
         return 0.0
     return float(np.min(changes))

@@ -25,7 +25,7 @@ from ident.parallel import cores, each
 Array = NDArray[np.float64]
 IMPERFECT = 2e-3  # of a record's standard deviation
 _SETTLED = 0.25  # s at the start of a record that its unknown past may have shaped
-_MOVED = 3.0  # steps of the converter that are no accident
+_MOVED = 3.0 + 1e-6  # steps of the converter that are no accident; three of them are, however they are rounded
 _STEP = 1e-4  # relative, of a difference
 _STRIDE = {"stiction": 0.1}  # the same where a value acts in jumps, from one sample to the next
 _NOTHING = np.empty(0)

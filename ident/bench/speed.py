@@ -24,7 +24,7 @@ from ident.bench.straightness import Straightness, straightness
 from ident.errors import Unusable
 
 Array = NDArray[np.float64]
-_EVEN = 2e-3  # of rated current: within it a level is one
+_EVEN = 2e-3 + 1e-9  # of rated current: within it, rounding apart, a level is one
 _SHORTEST = 0.1  # s of a level, after it has settled
 _SURE = 0.7  # of the speed of a level: where friction takes more, the level is no point of the characteristic
 _FLOOR = 0.2  # of the speed on a curve: where friction takes more, the factor is too uncertain to divide by

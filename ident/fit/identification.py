@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -15,22 +15,22 @@ from ident.bench.identification import BenchIdentification
 from ident.custom import preset_with
 from ident.errors import Unusable
 from ident.fit import genetic
+from ident.fit.ends import distinct
 from ident.fit.evolution import GENERATIONS, cma_es, differential_evolution
-from ident.fit.objective import UNSTABLE, Local, Objective
+from ident.fit.objective import UNSTABLE, Objective
 from ident.fit.output_error import OutputError, shortened
-from ident.fit.polish import polish
+from ident.fit.polishing import Polished, polished
 from ident.fit.result import FitResult
 from ident.fit.settings import METHODS, Settings
 from ident.fit.space import search_space
 from ident.fit.summary import summarise
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
 from ident.noise import noise_floors
 from ident.progress import Progress, Report, silent
 from ident.spectra import Basis, excited_band
 
 Array = NDArray[np.float64]
 State = dict[str, Any]
-_SAME = 1e-6  # relative difference of errors that is none
 _SEARCHED = 65_536  # samples of a search with effects; the polish takes every sample
 _CANDIDATES = 5  # distinct vectors of the last generation from which the polish starts
 
@@ -59,7 +59,6 @@ class Identification:
             self.searched: Objective | OutputError = self.objective.fresh(shortened(self._runs, _SEARCHED))
         else:
             self.objective = self.searched = Objective(self.preset, matrix, self._runs, space, Basis(band))
-        self.left_out: tuple[str, ...] = ()
         self._started = time.monotonic()
         self.floors = noise_floors(matrix.runs, band)
         if space.axes:
@@ -168,65 +167,20 @@ class Identification:
         # Counted from the state, so that a search that was cut by a restart counts the same.
         objective.evaluations = int(state["evaluations"])
         objective.unstable = sum(error >= UNSTABLE for entry in state["history"] for error in entry["errors"])
-        valley = np.empty((0, len(objective.space.axes)))
+        nothing = np.empty((0, len(objective.space.axes)))
         if not objective.space.axes:
-            point, here = np.empty(0), objective.exact(np.empty(0))
+            found = Polished(np.empty(0), objective.exact(np.empty(0)), nothing)
         elif self.settings.method == "paper-ga":
             point = np.array(state["best"])
-            here = objective.exact(point)
+            found = Polished(point, objective.exact(point), nothing)
         else:
-            point, here, valley = self._polished(state)
-        self.report(Progress("uncertainty", 0, 1, here.error))
+            members = np.concatenate([np.array(state["best"])[None], np.array(state["population"])])
+            found = polished(self.searched, objective, distinct(members, _CANDIDATES), self.report)
+        self.report(Progress("uncertainty", 0, 1, found.here.error))
         seconds = time.monotonic() - self._started
-        result = summarise(
-            self.objective, self.settings, point, here, valley, state, self.floors, seconds, self.left_out
-        )
-        self.report(Progress("uncertainty", 1, 1, here.error))
+        result = summarise(objective, self.settings, found, state, self.floors, seconds)
+        self.report(Progress("uncertainty", 1, 1, found.here.error))
         return result
-
-    def _polished(self, state: State) -> tuple[Array, Local, Array]:
-        """The optimum, the objective there, and where the starts ended that found the same error."""
-        population = np.array(state["population"])
-        starts = _distinct(np.concatenate([np.array(state["best"])[None], population]))
-
-        def progress(count: int, error: float) -> None:
-            self.report(Progress("polish", count, 40, error))
-
-        ends = [polish(self.searched.approximate, start, progress, self.searched.accept) for start in starts]
-        point, best = min(ends, key=lambda end: end[1].error)
-        valley = np.array([end for end, there in ends if there.error <= best.error * (1 + _SAME)])
-        point, here = polish(self.objective.exact, point, progress, self.objective.accept)
-        if isinstance(self.objective, OutputError):
-            self.left_out = bad_runs(self.objective.runs, here)
-            if self.left_out:
-                self.objective.runs = tuple(run for run in self.objective.runs if run.id not in self.left_out)
-                point, here = polish(self.objective.exact, point, progress, self.objective.accept)
-        return point, here, valley
-
-
-def bad_runs(runs: Sequence[Run], here: Local) -> tuple[str, ...]:
-    """The ids of runs that one model cannot explain beside the others: a wrong label, a spoilt record.
-
-    Their error is more than three times the median, and beyond 5 deviations of the errors' logarithms; at most one
-    run in twenty is taken for bad, and none of fewer than five.
-    """
-    if len(runs) < 5:
-        return ()
-    errors = np.log([run.error for run in here.runs])
-    spread = 1.4826 * float(np.median(np.abs(errors - np.median(errors)))) + 1e-3
-    far = (errors - np.median(errors) > np.maximum(5 * spread, np.log(3.0))).nonzero()[0]
-    return tuple(runs[i].id for i in far) if len(far) <= max(1, len(runs) // 20) else ()
-
-
-def _distinct(points: Array) -> list[Array]:
-    """The first points that are at least a tenth of an axis apart."""
-    chosen: list[Array] = []
-    for point in points:
-        if all(np.abs(point - other).max() > 0.1 for other in chosen):
-            chosen.append(point)
-        if len(chosen) == _CANDIDATES:
-            break
-    return chosen
 
 
 def check_settings(settings: Settings) -> None:

@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 from ident.fit.objective import Local
 
 Array = NDArray[np.float64]
-_STEPS = 40
+STEPS = 200  # at most: along a curved valley it takes more than 60
 _CONVERGED = 1e-10  # relative decrease of the error that a further step promises
 
 
 def polish(
     evaluate: Callable[[Array], Local], start: Array, report: Callable[[int, float], None],
-    accept: Callable[[Local], None], converged: float = _CONVERGED, most: int = _STEPS,
+    accept: Callable[[Local], None], converged: float = _CONVERGED, most: int = STEPS,
 ) -> tuple[Array, Local]:  # fmt: skip
     """The point of the unit cube with the least error near `start`, and the objective there.
 

@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.effect import parameter_name
+from ident.fit.ends import parted
 from ident.fit.objective import UNSTABLE, Local, Objective
 from ident.fit.output_error import OutputError
+from ident.fit.polishing import Polished
 from ident.fit.record import Moments
 from ident.fit.result import Combination, Estimate, FitResult, Generation, RunError, Undetermined
 from ident.fit.settings import Settings
@@ -28,18 +30,13 @@ _SHARE_SCALE = ("c0", "Ka", "Cl")  # without a known force (m0, c0) × s and (Ka
 def summarise(
     objective: Objective | OutputError,
     settings: Settings,
-    point: Array,
-    here: Local,
-    valley: Array,
+    polished: Polished,
     state: Mapping[str, Any],
     floors: Floors,
     seconds: float,
-    left_out: tuple[str, ...] = (),
 ) -> FitResult:
-    """The result of a fit that ended at `point`, where the objective is `here`; `valley` has points as good.
-
-    `floors` are the noise floors of the runs; `left_out` names runs to fit that were not used.
-    """
+    """The result of a fit that ended as `polished` says; `floors` are the noise floors of the runs."""
+    point, here = polished.point, polished.here
     space, matrix, preset = objective.space, objective.matrix, objective.preset
     values = {name: float(found[0]) for name, found in space.values(point[None]).items()}
     verify_runs = matrix.of_use("verify")
@@ -47,7 +44,7 @@ def summarise(
     fit_runs = matrix.of_use("fit")
     own = here.runs if preset.is_linear else objective.fresh(fit_runs).exact(point, sensitivities=False).runs
     fit_errors, verify_errors = _run_errors(fit_runs, own), _run_errors(verify_runs, verify)
-    found = covariance(here, point, valley)
+    found = covariance(here, point, polished.as_good)
     strengths = {effect.symbol(p.name) for effect in preset.effects for p in effect.parameters}
     relative = {name: found.relative(_value(objective, name)) for name in space.names if name not in strengths}
     deviation = {name: values[name] * error for name, error in relative.items()}
@@ -58,6 +55,8 @@ def summarise(
     if space.convention:
         weak = [*weak, *(name for name in _SHARE_SCALE if name in relative and name not in weak), space.convention]
     label = _labels(objective)
+    known = {name: error for name, error in deviation.items() if name not in weak}
+    told = parted(polished.ends, known, {name: label[name][0] for name in known})
     return FitResult(
         model=preset.name,
         effects=settings.effects,
@@ -79,8 +78,9 @@ def summarise(
         data_hash=matrix.data_hash,
         notes=(
             *_notes(objective, floors, here),
+            *told,
             *_fast_modes(objective, point, state),
-            *_bad_runs(fit_errors, left_out),
+            *_bad_runs(fit_errors, polished.left_out),
         ),
         settings=settings.to_json(),
         searched=tuple(label[name][0] for name in space.names),

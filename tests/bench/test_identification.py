@@ -40,6 +40,7 @@ def test_search_and_procedures_agree(matrix):
     for name in ("T", "B", *true_model(TRUTH).table.names):
         assert by_search.values[name] == pytest.approx(by_steps.values[name], rel=0.01), name
     assert by_search.error["fit"] <= 1.05 * by_steps.error["fit"]
+    assert not any("No member of the search" in note for note in by_search.notes)
 
 
 def test_runs_to_verify_are_seen_by_no_fit(matrix):
@@ -49,6 +50,7 @@ def test_runs_to_verify_are_seen_by_no_fit(matrix):
         for i, run in enumerate(matrix.runs)
     )
     found = identify(replace(matrix, runs=runs), SHORT)
+    assert found.error["fit"] < 0.02
     assert found.error["verify"] == pytest.approx(found.error["fit"], rel=1.0)
     assert found.values["T"] == pytest.approx(TRUTH.T, rel=0.03)
     assert np.isfinite(found.noise_floor["verify"])

@@ -20,7 +20,9 @@ def tracked(number: int) -> Run:
     command = band_limited_noise(2048, 1e-3, np.random.default_rng([1, number]))
     pole = np.exp(-1.0 / (SAMPLE_RATE * TAU))
     measured = lfilter([0.0, GAIN * (1.0 - pole)], [1.0, -pole], command)
-    return Run(f"run {number}", "", SAMPLE_RATE, {"command": command, "displacement": measured}, hold="zoh")
+    return Run(
+        f"run {number}", "", SAMPLE_RATE, {"command": command, "displacement": measured}, hold="zoh", gain=1.0 + number
+    )
 
 
 @pytest.mark.parametrize("cores", [1, 8])

@@ -1,0 +1,48 @@
+"""Least squares from the best members of a search and from what the procedures found: where they end, and what it says.
+
+The sum of squares is not smooth where the play turns: each start ends in a fold of its own, a part of a standard error
+from the others. Ends that differ by no more than that are one optimum, and the fit is then the end that hangs on no
+search.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ident.bench.least_squares import Solution, solve
+from ident.bench.model import Model
+from ident.bench.residual import Observed, Residual
+from ident.fit.ends import End, parted
+
+_STEPS = 60  # at most: from afar it takes more than 50
+_ROUGH = 1e-4  # relative difference of sums of squares that folds make
+_FARTHER = 1.01  # times the error: so far from the records is another optimum
+_WEAK = 0.5  # relative standard error above which a value is not determined
+_ASTRAY = "No member of the search leads as near to the records as the procedures: the fit starts from their values."
+
+
+def polished(
+    searched: Sequence[Model], own: Model | None, observed: tuple[Observed, ...], names: tuple[str, ...]
+) -> tuple[Solution, list[str]]:
+    """The best end, and what is to be said of the others; `own` is the procedures' model, where the bounds allow it."""
+    starts = [*([] if own is None else [own]), *searched]
+    found = [solve(Residual(start, observed, names), steps=_STEPS if names else 0) for start in starts]
+    least = min(solution.cost for solution in found)
+    best = next(solution for solution in found if solution.cost <= (1 + _ROUGH) * least)
+    others = [_end(solution) for solution in found if solution.cost > (1 + _ROUGH) * least]
+    sure = {name: best.deviations[name] for name in names if name not in weak(best)}
+    told = list(parted([_end(best), *others], sure, {name: name for name in sure}))
+    astray = own is not None and min(_end(solution).error for solution in found[1:]) > _FARTHER * _end(found[0]).error
+    return best, [_ASTRAY, *told] if astray else told
+
+
+def weak(solution: Solution) -> list[str]:
+    """The values that the records do not determine."""
+    size = {name: abs(value) if name != "I0" else 1e-2 for name, value in solution.values.items()}
+    return [name for name, deviation in solution.deviations.items() if not 0 < deviation < _WEAK * size[name]]
+
+
+def _end(solution: Solution) -> End:
+    return End(float(np.sqrt(solution.cost)), solution.values, solution.point)

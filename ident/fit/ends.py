@@ -1,0 +1,65 @@
+"""The polish of a search's best members: where it starts, and what is said where the starts do not end together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+_APART = 0.1  # of an axis, from which on two starts are distinct
+_SAME = 1e-6  # relative difference of errors that is none
+_NEAR = 0.01  # relative difference of errors that is no reason to prefer one end to another
+
+
+@dataclass(frozen=True)
+class End:
+    """Where the polish of one start ended: the error, the values by name, the point of the search space."""
+
+    error: float
+    values: Mapping[str, float]
+    point: Array
+
+
+def distinct(points: Iterable[Array], most: int) -> list[Array]:
+    """The first points that are at least a tenth of an axis apart, at most so many."""
+    chosen: list[Array] = []
+    for point in points:
+        if all(np.abs(point - other).max() > _APART for other in chosen):
+            chosen.append(point)
+        if len(chosen) == most:
+            break
+    return chosen
+
+
+def valley(ends: Sequence[End]) -> list[Array]:
+    """The points of the ends that have the error of the first: what differs among them the data do not determine."""
+    return [end.point for end in ends if end.error <= ends[0].error * (1 + _SAME)]
+
+
+def rivals(ends: Sequence[End]) -> list[End]:
+    """The ends whose error is nearly that of the first, but not in one valley with it."""
+    return [end for end in ends if ends[0].error * (1 + _SAME) < end.error <= ends[0].error * (1 + _NEAR)]
+
+
+def parted(ends: Sequence[End], deviations: Mapping[str, float], label: Mapping[str, str]) -> Iterator[str]:
+    """In words, where other starts ended within 1 % of the first one's error, but a standard error or more from it.
+
+    `deviations` holds the standard errors of what is determined, `label` how each is called. Ends of the same error
+    are a valley, and part of the standard errors.
+    """
+    near = rivals(ends)
+    far = {
+        name: max(abs(end.values[name] - ends[0].values[name]) for end in near) / deviation
+        for name, deviation in deviations.items()
+        if near and deviation > 0
+    }
+    told = [f"{label[name]} by {far[name]:.2g}" for name in sorted(far, key=lambda name: -far[name]) if far[name] > 1]
+    if told:
+        excess = 100 * (max(end.error for end in near) / ends[0].error - 1)
+        yield (
+            f"Other members of the search end elsewhere with an error at most {excess:.2g} % larger; in standard "
+            f"errors they differ from this fit: {', '.join(told)}."
+        )

@@ -1,0 +1,90 @@
+"""From the best members of a search to the optimum on every sample, and where else the polish ends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.fit.ends import End, rivals, valley
+from ident.fit.objective import Local, Objective
+from ident.fit.output_error import OutputError
+from ident.fit.polish import STEPS, polish
+from ident.matrix import Run
+from ident.progress import Progress, Report
+
+Array = NDArray[np.float64]
+Fitness = Objective | OutputError
+_RIVALS = 2  # ends that are followed to the last sample, beside the best
+
+
+@dataclass(frozen=True)
+class Polished:
+    """The optimum and the objective there; points that are as good, (k, p); where starts ended, the optimum first.
+
+    `left_out` has the ids of runs that one model cannot explain beside the others, and that were not used.
+    """
+
+    point: Array
+    here: Local
+    as_good: Array
+    ends: tuple[End, ...] = ()
+    left_out: tuple[str, ...] = ()
+
+
+def polished(searched: Fitness, objective: Fitness, starts: Sequence[Array], report: Report) -> Polished:
+    """The optimum of `objective` near starts that the fitness `searched` chose."""
+    ends = sorted((_end(searched, start, report, searched.approximate)[0] for start in starts), key=_error)
+    first, here = _end(objective, ends[0].point, report)
+    others = [_elsewhere(objective, end, report) for end in rivals(ends)[:_RIVALS]]
+    least = min([first, *others], key=_error)
+    if least is not first:
+        others = [first, *(end for end in others if end is not least)]
+        first, here = _end(objective, least.point, report)
+    point, left_out = first.point, bad_runs(objective.runs, here) if isinstance(objective, OutputError) else ()
+    if left_out:
+        objective.runs = tuple(run for run in objective.runs if run.id not in left_out)
+        again, here = _end(objective, point, report)
+        point = again.point
+    return Polished(point, here, np.array(valley(ends)), (first, *others), left_out)
+
+
+def _end(
+    of: Fitness, start: Array, report: Report, evaluate: Callable[[Array], Local] | None = None
+) -> tuple[End, Local]:
+    """Where the polish of a start ends, and the objective there."""
+
+    def progress(count: int, error: float) -> None:
+        report(Progress("polish", count, STEPS, error))
+
+    point, here = polish(evaluate or of.exact, start, progress, of.accept)
+    values = {name: float(value[0]) for name, value in of.space.values(point[None]).items()}
+    return End(here.error, values, point), here
+
+
+def _elsewhere(objective: Fitness, rival: End, report: Report) -> End:
+    """Where a rival ends on every sample, with first states of its own."""
+    fresh = objective.fresh(objective.runs)
+    end, _ = _end(fresh, rival.point, report)
+    objective.evaluations += fresh.evaluations
+    return end
+
+
+def _error(end: End) -> float:
+    return end.error
+
+
+def bad_runs(runs: Sequence[Run], here: Local) -> tuple[str, ...]:
+    """The ids of runs that one model cannot explain beside the others: a wrong label, a spoilt record.
+
+    Their error is more than three times the median, and beyond 5 deviations of the errors' logarithms; at most one
+    run in twenty is taken for bad, and none of fewer than five.
+    """
+    if len(runs) < 5:
+        return ()
+    errors = np.log([run.error for run in here.runs])
+    spread = 1.4826 * float(np.median(np.abs(errors - np.median(errors)))) + 1e-3
+    far = (errors - np.median(errors) > np.maximum(5 * spread, np.log(3.0))).nonzero()[0]
+    return tuple(runs[i].id for i in far) if len(far) <= max(1, len(runs) // 20) else ()

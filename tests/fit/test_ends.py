@@ -1,0 +1,106 @@
+"""Where the polish of a search's best members ends, and a sentence where another end is nearly as good."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+
+from ident.fit.ends import End, distinct, parted, rivals, valley
+from ident.fit.objective import Local
+from ident.fit.polishing import polished
+from ident.fit.space import Axis, Space
+from ident.progress import silent
+
+LABEL = {"a": "a", "b": "b/A^2"}
+
+
+@dataclass
+class Wells:
+    """A fitness of one parameter with two wells, at 0.2 and 0.8; `depths` are their errors, as searched and exactly."""
+
+    depths: tuple[float, float]
+    searched: tuple[float, float]
+    space: Space = field(default_factory=lambda: Space((Axis("a", 0.0, 1.0, False),), ("a",), {}, {}))
+    runs: tuple[()] = ()
+    evaluations: int = 0
+
+    def _at(self, point: np.ndarray, depths: tuple[float, float]) -> Local:
+        place, depth = (0.2, depths[0]) if point[0] < 0.5 else (0.8, depths[1])
+        off = point - place
+        self.evaluations += 1
+        return Local(depth + 50 * float(off @ off), 100 * off, 100 * np.eye(1), ())
+
+    def exact(self, point: np.ndarray) -> Local:
+        return self._at(point, self.depths)
+
+    def approximate(self, point: np.ndarray) -> Local:
+        return self._at(point, self.searched)
+
+    def accept(self, here: Local) -> None:
+        """Nothing is to be remembered."""
+
+    def fresh(self, runs: tuple[()]) -> Wells:
+        return Wells(self.depths, self.searched, self.space, runs)
+
+
+def found(depths: tuple[float, float], searched: tuple[float, float]):
+    fitness = Wells(depths, searched)
+    return polished(fitness, fitness, [np.array([0.3]), np.array([0.7])], silent)
+
+
+def said(ends, deviation: float = 0.1) -> list[str]:
+    return list(parted(ends, {"a": deviation}, LABEL))
+
+
+def test_two_optima_of_nearly_one_error_are_told():
+    """Six standard errors apart, with 0.4 % more error: which parameter, and how far."""
+    ends = found((1.0, 1.004), (1.0, 1.004)).ends
+    assert [end.values["a"] for end in ends] == pytest.approx([0.2, 0.8])
+    assert said(ends) == [
+        "Other members of the search end elsewhere with an error at most 0.4 % larger; in standard errors they differ "
+        "from this fit: a by 6."
+    ]
+
+
+def test_optima_that_are_worse_or_within_a_standard_error_are_not_told():
+    assert said(found((1.0, 1.02), (1.0, 1.02)).ends) == []
+    assert said(found((1.0, 1.004), (1.0, 1.004)).ends, deviation=0.7) == []
+
+
+def test_optima_that_every_sample_tells_apart_are_not_told():
+    """In the search they are nearly as good; followed to the last sample, one is not."""
+    ends = found((1.0, 1.3), (1.0, 1.004)).ends
+    assert len(ends) == 2
+    assert said(ends) == []
+
+
+def test_what_is_better_on_every_sample_is_the_fit():
+    """The search preferred the other end by less than 1 %."""
+    fit = found((1.0, 0.9), (1.0, 1.004))
+    assert fit.point == pytest.approx([0.8])
+    assert fit.here.error == pytest.approx(0.9)
+
+
+def test_ends_of_one_error_are_a_valley_and_no_rivals():
+    """They widen the standard errors instead."""
+    ends = [End(error, {}, np.array([place])) for error, place in ((1.0, 0.1), (1.0 + 1e-8, 0.9), (1.001, 0.5))]
+    assert np.array(valley(ends)) == pytest.approx(np.array([[0.1], [0.9]]))
+    assert rivals(ends) == ends[2:]
+
+
+def test_every_parameter_that_differs_is_named_the_farthest_first():
+    """By the name under which it is reported; what is not determined has no standard error to count in."""
+    ends = [
+        End(1.0, {"a": 1.0, "b": 5.0, "c": 0.0}, np.zeros(1)),
+        End(1.002, {"a": 3.0, "b": 6.0, "c": 9.0}, np.ones(1)),
+    ]
+    (text,) = parted(ends, {"a": 1.0, "b": 0.1}, LABEL)
+    assert text.endswith("differ from this fit: b/A^2 by 10, a by 2.")
+
+
+def test_starts_are_distinct():
+    """A tenth of an axis apart, the best first."""
+    points = np.array([[0.5, 0.5], [0.55, 0.5], [0.5, 0.7], [0.9, 0.9]])
+    assert np.array(distinct(points, 2)) == pytest.approx(points[[0, 2]])
