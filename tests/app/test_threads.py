@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import time
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -42,7 +42,7 @@ def test_a_worker_from_its_start_to_its_end(monkeypatch: pytest.MonkeyPatch) -> 
 
     jobs = SimpleNamespace(launch=note, stop=note)
     monkeypatch.setattr(main, "make_context", lambda _: SimpleNamespace(jobs=jobs))
-    monkeypatch.setattr(time, "sleep", interrupted)
+    monkeypatch.setattr(sys.modules[worker.__module__], "time", SimpleNamespace(sleep=interrupted))
     worker("one", "postgresql://nobody@127.0.0.1:9/none")
     assert seen == [{1}, {1}, {1}]
     assert threads() == {OWN}
