@@ -15,7 +15,7 @@ import control
 import numpy as np
 
 from benchmarks.table import Table, seconds_of
-from ident.chain import conditions
+from ident.chain.chain import conditions
 from ident.effects import EFFECTS
 from ident.fit.output_error import OutputError
 from ident.fit.polish import polish
@@ -23,7 +23,7 @@ from ident.fit.settings import Settings
 from ident.fit.space import search_space
 from ident.matrix import Actuator, Matrix, Run, Specimen
 from ident.presets import Preset, preset
-from ident.simulate import Simulation
+from ident.simulation.simulate import Simulation
 from tests.reference import nonlinear_reference, qian_reference
 
 THREE = ("dead_zone", "pressure_flow", "quadratic_damping")

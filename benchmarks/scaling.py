@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.table import Table, seconds_of
-from ident.chain import conditions
+from ident.chain.chain import conditions
 from ident.effects import EFFECTS
 from ident.figures.look import LOOKS, Look
 from ident.figures.render import Chart, Panel, render
 from ident.matrix import Actuator, Run, Specimen
 from ident.parallel import cores, each
 from ident.presets import preset
-from ident.simulate import responses
+from ident.simulation.simulate import responses
 from tests.reference import qian_reference as reference
 
 BASE = {"runs": 28, "seconds": 2.0, "effects": 8, "cores": cores()}

@@ -7,9 +7,9 @@ from scipy.signal import cont2discrete, lfilter
 
 from benchmarks import material, plain_scipy
 from benchmarks.table import Table, seconds_of
-from ident.chain import conditions
+from ident.chain.chain import conditions
 from ident.presets import PRESETS
-from ident.recursion import discretise, respond
+from ident.simulation.recursion import discretise, respond
 from tests.reference import qian_reference as reference
 
 VECTORS, GOAL = 64, 1.2

@@ -16,11 +16,11 @@ CHILD = """
 import time
 import numba, numpy, scipy.linalg
 begun = time.perf_counter()
-from ident.chain import conditions
+from ident.chain.chain import conditions
 from ident.effects import EFFECTS
 from ident.matrix import Actuator, Run, Specimen
 from ident.presets import preset
-from ident.simulate import responses
+from ident.simulation.simulate import responses
 imported = time.perf_counter()
 model = preset("qian2014", tuple(effect.name for effect in EFFECTS))
 u = numpy.linspace(0.0, 1e-3, 64)

@@ -12,7 +12,7 @@ import typer
 
 from app.cli.program import program
 from ident.effects import EFFECTS
-from ident.expression import Equation
+from ident.equations.equation import Equation
 from ident.parameter import Parameter
 from ident.presets import PRESETS, Preset
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from ident import compiled
-from ident.cache import IN_USE, OLDEST, tidy
+from ident.simulation import compiled
+from ident.simulation.cache import IN_USE, OLDEST, tidy
 
 SOURCE = """from numba import njit
 

@@ -9,15 +9,15 @@ import warnings
 import numpy as np
 import pytest
 
-from ident.chain import conditions
-from ident.custom import definition_of, preset_with, read_effect
-from ident.effect import Effect
+from ident.chain.chain import conditions
+from ident.custom.definition import definition_of, preset_with, read_effect
+from ident.effects.effect import Effect
+from ident.equations.equation import Equation
+from ident.equations.grammar import parsed
 from ident.errors import Unusable
-from ident.expression import Equation
-from ident.grammar import parsed
 from ident.matrix import Actuator, Run
 from ident.presets import PRESETS
-from ident.simulate import responses
+from ident.simulation.simulate import responses
 
 GOOD = {
     "name": "overlap", "place": "spool", "equation": "w = w - clip(w, -h, h)",

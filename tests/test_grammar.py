@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from ident.grammar import tree_of
+from ident.equations.grammar import tree_of
 
 TEXT = " + ".join(f"sin(a{i} * b{i})" for i in range(80))
 

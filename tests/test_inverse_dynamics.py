@@ -10,7 +10,7 @@ import pytest
 import scipy.signal
 
 from ident.errors import Unusable
-from ident.inverse_dynamics import UNITS, regress
+from ident.fit.inverse_dynamics import UNITS, regress
 from ident.matrix import Actuator, Matrix, Run
 from ident.readers import read_matrix
 

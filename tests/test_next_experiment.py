@@ -10,19 +10,19 @@ import numpy as np
 import pytest
 import scipy.io
 
-from ident.contender import Contender
-from ident.experiment import Experiment
+from ident.design.candidate_runs import possible_runs
+from ident.design.contender import Contender
+from ident.design.experiment import Experiment
+from ident.design.next_experiment import propose, ranked
+from ident.design.rivals import floor_of, in_question, trusted
 from ident.fit.identify import identify
 from ident.fit.output_error import OutputError
 from ident.fit.polish import polish
+from ident.fit.reduction import excited_band
 from ident.fit.settings import Settings
 from ident.fit.space import search_space
-from ident.in_question import floor_of, in_question, trusted
 from ident.matrix import Matrix, Run
-from ident.next_experiment import propose, ranked
-from ident.possible_runs import possible_runs
 from ident.presets import Preset, preset
-from ident.spectra import excited_band
 from tests.fit.recovery import NOISE, matrix
 from tests.reference import nonlinear_reference as reference
 from tests.reference import qian_reference as linear

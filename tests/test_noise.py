@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ident.noise import noise_floors, repeated
-from ident.spectra import excited_band
+from ident.fit.reduction import excited_band
+from ident.noise.floor import noise_floors, repeated
 from tests.blind.machines import Machine
 from tests.blind.noises import with_noise
 from tests.reference import qian_reference as linear

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from ident.percent import percent
+from ident.words.percent import percent
 
 
 @pytest.mark.parametrize(

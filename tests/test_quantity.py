@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ident.errors import Unusable
-from ident.quantity import parameter_value, printed_notice, quantity, si_unit, unit_scale
+from ident.units.quantity import parameter_value, printed_notice, quantity, si_unit, unit_scale
 
 READ = [
     ("497 mm^2", "area", 4.97e-4),
@@ -132,7 +132,7 @@ def test_an_unknown_unit_is_answered_with_the_nearest_one():
 
 
 def test_pint_is_not_imported_before_a_unit_is_read():
-    code = "import sys, ident.quantity; assert 'pint' not in sys.modules"
+    code = "import sys, ident.units.quantity; assert 'pint' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True)
 
 

@@ -11,14 +11,14 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from ident.chain import conditions
+from ident.chain.chain import conditions
 from ident.fit import output_error
 from ident.fit.output_error import OutputError
 from ident.fit.space import Space
-from ident.kernel import Kernel
 from ident.matrix import Actuator, Matrix, Run
 from ident.presets import Preset, preset
-from ident.simulate import Simulation
+from ident.simulation.kernel import Kernel
+from ident.simulation.simulate import Simulation
 from tests.reference import measured_load_reference as reference
 from tests.reference import qian_reference as linear
 

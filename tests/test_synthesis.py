@@ -7,7 +7,7 @@ from collections import Counter
 import pytest
 
 from ident.errors import Unusable
-from ident.synthesis import BENCH, plans, simulate_matrix
+from ident.synthesis.matrix import BENCH, plans, simulate_matrix
 
 
 def test_a_small_matrix_is_part_of_the_whole_one():

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from app import environment
-from ident.cache import cache_folder
+from ident.simulation.cache import cache_folder
 from tests.conftest import ROOT
 
 

@@ -43,7 +43,7 @@ from fastapi.testclient import TestClient  # noqa: E402
 from app.cli.program import main  # noqa: E402
 from app.main import create_app  # noqa: E402
 from app.settings import Settings  # noqa: E402
-from ident.cache import cache_folder  # noqa: E402
+from ident.simulation.cache import cache_folder  # noqa: E402
 
 SMALL = ("--option", "population=20", "--option", "generations=2")
 HEADERS = {"Authorization": "Bearer token"}

@@ -6,11 +6,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from typing import Any
 
-from ident.custom import read_effect
-from ident.effect import Effect
+from ident.custom.definition import read_effect
 from ident.effects import EFFECTS
-from ident.expression import Equation
-from ident.mathml import mathml
+from ident.effects.effect import Effect
+from ident.equations.equation import Equation
+from ident.equations.mathml import mathml
 from ident.parameter import Parameter
 from ident.presets import PRESETS
 from schemas.catalogue import EffectView, EquationView, ModelView, ParameterView

@@ -54,7 +54,7 @@ def values(texts: Sequence[str], model: Preset) -> dict[str, float]:
 
 def in_si(text: str, name: str, model: Preset, where: str) -> float:
     """A value of the model's parameter `name` in SI; the printed unit of Z0 is converted with a notice."""
-    from ident.quantity import parameter_value, printed_notice
+    from ident.units.quantity import parameter_value, printed_notice
 
     if notice := printed_notice(text):
         print(f"notice: {notice}", file=sys.stderr)
@@ -63,7 +63,7 @@ def in_si(text: str, name: str, model: Preset, where: str) -> float:
 
 def definitions(files: Sequence[Path]) -> tuple[dict[str, Any], ...]:
     """The definitions of own effects in these files, each called like its file where it gives no name."""
-    from ident.custom import definition_of, read_effect
+    from ident.custom.definition import definition_of, read_effect
 
     found = tuple(definition_of(file.read_bytes(), file.stem) for file in files)
     for file, definition in zip(files, found, strict=True):

@@ -20,7 +20,7 @@ def check(
     """Say what is in a matrix, and every doubt about it. Exit status 1 where it has a fault."""
     from dataclasses import asdict
 
-    from ident.check import check as findings_of
+    from ident.checks.check import check as findings_of
     from ident.readers import read_matrix
 
     check_target(json)

@@ -29,7 +29,7 @@ def compare(
 ) -> None:
     """Compare a fitted model with every run of a matrix: error, where it fails, and what the error is made of."""
     from app.cli.where import show_survey
-    from ident.compare import compare as compared
+    from ident.comparison.compare import compare as compared
     from ident.readers import read_matrix
     from ident.residuals.survey import survey
 
@@ -71,7 +71,7 @@ def read_fit(path: Path) -> FitResult:
 def show(rows: list[tuple[str, str, float, float]], error: Any) -> None:
     """Print the error of every run and the means."""
     from app.cli.tables import output, table
-    from ident.percent import percent
+    from ident.words.percent import percent
 
     lines = [(name, use, percent(of_run), percent(offset)) for name, use, of_run, offset in rows]
     lines += [("mean", use, percent(mean), "") for use, mean in error.items() if mean is not None]

@@ -94,7 +94,7 @@ def said(added: Collection[Example], there: Collection[str]) -> str:
 
 def add(example: Example, server: str, token: str) -> None:
     """Upload the simulated matrix of an example and queue its identification."""
-    from ident.synthesis import simulate_matrix
+    from ident.synthesis.matrix import simulate_matrix
 
     with tempfile.TemporaryDirectory(prefix="servoident-") as folder:
         matrix = Path(folder) / example.serial

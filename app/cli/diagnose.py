@@ -51,9 +51,9 @@ def diagnose(
 ) -> None:
     """Find what a model lacks. Effects are ranked by their error on held-out data, and added while they help."""
     from app.cli.arguments import definitions
-    from ident.custom import read_effect, together
-    from ident.diagnose import diagnose as diagnosed
+    from ident.custom.definition import read_effect, together
     from ident.diagnosis.addition import USUAL
+    from ident.diagnosis.diagnose import diagnose as diagnosed
     from ident.readers import read_matrix
 
     check_target(json)

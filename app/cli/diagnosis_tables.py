@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from app.cli.tables import output, table
-from ident.percent import percent
+from ident.words.percent import percent
 
 if TYPE_CHECKING:
     from ident.diagnosis.result import Diagnosis, Found, Ranked

@@ -52,7 +52,7 @@ def settings(
     seed: int, option: list[str] | None, custom: list[Path] | None = None,
 ) -> Settings:  # fmt: skip
     """The library's settings from what the command line gives. Raises Unusable."""
-    from ident.custom import preset_with
+    from ident.custom.definition import preset_with
     from ident.fit.settings import Settings
 
     own = definitions(custom or [])

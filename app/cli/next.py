@@ -22,8 +22,8 @@ def next_(
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the proposal as JSON; - is stdout.")] = None,
 ) -> None:
     """Propose the next run. It is the one that best tells apart the effects that a diagnosis leaves in question."""
-    from ident.in_question import floor_of, in_question, trusted
-    from ident.next_experiment import propose
+    from ident.design.next_experiment import propose
+    from ident.design.rivals import floor_of, in_question, trusted
     from ident.readers import read_matrix
 
     check_target(json)

@@ -9,8 +9,8 @@ from contextlib import contextmanager, nullcontext
 from functools import partial
 
 from app.cli.interrupts import heed
-from ident.percent import percent
 from ident.progress import Progress, Report
+from ident.words.percent import percent
 
 SILENCE = 5.0  # s between two plain lines of one stage
 COMPILING = Progress("compiling the simulation (once)", 0, 1)
@@ -19,7 +19,7 @@ COMPILING = Progress("compiling the simulation (once)", 0, 1)
 @contextmanager
 def shown() -> Iterator[Report]:
     """A report to hand to long work, shown until the block ends; what is compiled meanwhile is reported too."""
-    from ident.compiled import watching
+    from ident.simulation.compiled import watching
 
     with bar() if sys.stderr.isatty() else nullcontext((Lines(), _plain)) as (show, say):
         told = False

@@ -58,7 +58,7 @@ def limits(texts: list[str]) -> dict[str, str]:
 def show(sets: list[dict[str, Any]]) -> None:
     """Print the sets as a table."""
     from app.cli.tables import output, table
-    from ident.percent import percent
+    from ident.words.percent import percent
 
     header = ("serial", "fit", "model", "approved", "current", "error fit", "verify", "parameters")
     rows = []

@@ -23,7 +23,7 @@ def simulate(
     small: Annotated[bool, typer.Option("--small", help="18 runs to fit and 9 to verify.")] = False,
 ) -> None:
     """Write a simulated test matrix. It holds 63 runs to fit and 21 at Kp = 6 to verify."""
-    from ident.synthesis import simulate_matrix
+    from ident.synthesis.matrix import simulate_matrix
 
     effects = effect_values(effect or [], preset)
     with shown() as report:

@@ -11,7 +11,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from ident.fit.result import Estimate, FitResult
-from ident.percent import percent
+from ident.words.percent import percent
 
 if TYPE_CHECKING:
     from ident.bench.acceptance import Line

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from app.cli.tables import output, table
-from ident.percent import percent
+from ident.words.percent import percent
 
 if TYPE_CHECKING:
     from ident.residuals.budget import Budget

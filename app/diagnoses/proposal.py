@@ -12,9 +12,9 @@ from threading import Lock
 from app.context import Context
 from app.diagnoses import service
 from app.matrices import service as matrices
-from ident.experiment import Experiment
-from ident.in_question import floor_of, in_question, trusted
-from ident.next_experiment import propose
+from ident.design.experiment import Experiment
+from ident.design.next_experiment import propose
+from ident.design.rivals import floor_of, in_question, trusted
 from schemas.diagnosis import ProposalView
 
 _KEPT = 32

@@ -11,8 +11,8 @@ from app.fits import repository as fits
 from app.steps import State, Steps
 from app.storage import Storage
 from app.tables import JobRow
-from ident.custom import read_effect
-from ident.diagnose import diagnose
+from ident.custom.definition import read_effect
+from ident.diagnosis.diagnose import diagnose
 from ident.errors import Unusable
 from ident.fit.identify import identify
 from ident.fit.result import FitResult

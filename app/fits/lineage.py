@@ -8,7 +8,7 @@ from app.context import Context
 from app.errors import Failure
 from app.fits import repository, service
 from app.tables import FitRow
-from ident.custom import definition_of, together
+from ident.custom.definition import definition_of, together
 from ident.effects import effect
 from ident.fit.settings import Settings
 from schemas.fit import EffectsRequest, JobView, LadderRung, LadderView

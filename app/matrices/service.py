@@ -19,7 +19,7 @@ from app.matrices.stored import opened, read_stored
 from app.paging import cursor, keys_of
 from app.storage import Storage
 from app.tables import MatrixRow
-from ident.check import check
+from ident.checks.check import check
 from ident.errors import Unusable
 from ident.matrix import Matrix, Run
 from ident.readers.limits import LIMITS

@@ -9,14 +9,14 @@ from itertools import pairwise
 from typing import Any
 
 from app.pages.effect_view import Member, member
-from ident.custom import preset_with, read_effect
+from ident.custom.definition import preset_with, read_effect
 from ident.effects import EFFECTS
+from ident.equations.equation import Equation
+from ident.equations.grammar import DYNAMIC
 from ident.errors import Unusable
-from ident.expression import Equation
 from ident.fit.identification import check_settings
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
-from ident.grammar import DYNAMIC
 
 _STEP, _WIDTH, _TOP, _LINE = 136, 108, 34, 15  # px of the drawing
 _LETTERS = 17  # that fit into a box

@@ -10,8 +10,8 @@ from typing import Any
 from markupsafe import Markup
 
 from app.pages import numbers
-from ident.effect import Effect
-from ident.mathml import mathml
+from ident.effects.effect import Effect
+from ident.equations.mathml import mathml
 
 
 @dataclass(frozen=True)

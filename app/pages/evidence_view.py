@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 from urllib.parse import urlencode
 
-from ident.custom import read_effect
-from ident.effect import Effect
+from ident.custom.definition import read_effect
 from ident.effects import EFFECTS
+from ident.effects.effect import Effect
 from ident.presets import preset
 from ident.residuals.views import view_of
 from schemas.diagnosis import CandidateView, DiagnosisView

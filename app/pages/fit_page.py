@@ -19,10 +19,10 @@ from app.pages.job_view import settings_facts
 from app.pages.ladder_view import Step, steps
 from app.pages.matrix_view import counted
 from app.pages.run_view import Conditions, conditions
-from ident.custom import HANDED_ON, preset_with
-from ident.expression import Equation
+from ident.custom.definition import HANDED_ON, preset_with
+from ident.equations.equation import Equation
+from ident.equations.mathml import mathml
 from ident.fit.result import FitResult, Undetermined
-from ident.mathml import mathml
 from ident.presets import Preset
 from schemas.fit import FitView, LadderView
 from schemas.matrix import MatrixView

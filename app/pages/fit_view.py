@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from markupsafe import Markup, escape
 
 from app.pages import numbers
+from ident.equations.mathml import mathml
 from ident.errors import Unusable
 from ident.fit.result import Estimate, FitResult
-from ident.mathml import mathml
 
 
 @dataclass(frozen=True)

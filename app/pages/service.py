@@ -26,7 +26,7 @@ from app.pages.thumbnails import thumbnail
 from app.parameters import service as parameters
 from app.parameters.repository import Wanted
 from ident.fit.result import FitResult
-from ident.synthesis import SIMULATED
+from ident.synthesis.matrix import SIMULATED
 from schemas.parameters import ActuatorPage, ActuatorView
 
 __all__ = ["actuator", "actuator_list", "fit", "job_list", "matrix", "thumbnail"]

@@ -6,8 +6,8 @@ from collections import Counter
 from dataclasses import dataclass
 
 from app.pages import numbers
-from ident.effect import Effect
 from ident.effects import EFFECTS
+from ident.effects.effect import Effect
 from ident.fit.settings import METHODS
 from ident.matrix import BENCH
 from ident.presets import PRESETS, Preset

@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from ident.compare import compare
+from ident.comparison.compare import compare
 from ident.errors import Unusable
 from ident.fit.identify import identify
 from ident.fit.result import FitResult

@@ -9,9 +9,9 @@ from app.pages.fit_view import combination_rows, error_rows, parameter_rows
 from app.report.blocks import Block, Facts, Figure, Formula, Heading, Report, Table, Tables, Text
 from app.report.diagnosis import Diagnosis
 from app.report.rows import budget_rows, candidate_rows, curve_rows, group_tables, trend_rows
-from ident.check import check
-from ident.compare import compare
-from ident.custom import preset_with
+from ident.checks.check import check
+from ident.comparison.compare import compare
+from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.figures import figure, ladder, look
 from ident.fit.result import FitResult

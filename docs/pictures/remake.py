@@ -15,7 +15,7 @@ from ident.figures import figure, render
 from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.readers import read_matrix
-from ident.synthesis import simulate_matrix
+from ident.synthesis.matrix import simulate_matrix
 
 HERE = Path(__file__).parent
 PICTURES = {

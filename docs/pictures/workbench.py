@@ -13,7 +13,7 @@ from pathlib import Path
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 from docs.pictures.remake import packed
-from ident.synthesis import simulate_matrix
+from ident.synthesis.matrix import simulate_matrix
 from tests.browser import story
 from tests.browser.conftest import CHROMIUM
 from tests.browser.looks import DRAWING

@@ -11,8 +11,8 @@ import numpy as np
 from ident.bench.analysis import Analysis
 from ident.bench.quantity import Found
 from ident.errors import Unusable
-from ident.quantity import quantity
 from ident.readers.strict_yaml import read_yaml
+from ident.units.quantity import quantity
 
 QUANTITIES = {
     "zero_shift": ("1", "zero shift I0, in rated currents"),

@@ -17,9 +17,9 @@ from ident.diagnosis.result import Diagnosis, Found, Ranked, Rung, Verdict
 from ident.diagnosis.words import verdict_text
 from ident.fit.result import FitResult
 from ident.matrix import Matrix
-from ident.percent import percent
 from ident.presets.kononykhin import KONONYKHIN
 from ident.progress import Progress, Report, silent
+from ident.words.percent import percent
 
 _NEAR_FLOOR = 1.25
 """Times the converter's part of the error, up to which an error is its noise: a reading that rests is off for long."""

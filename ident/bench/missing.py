@@ -19,7 +19,7 @@ from ident.bench.records import Record
 from ident.bench.residual import Observed, Residual, observe
 from ident.diagnosis.chance import Gain, gain
 from ident.diagnosis.held_out import FOLDS, HeldOut, bounded_step
-from ident.memory import independent_samples
+from ident.noise.effective_sample_size import independent_samples
 from ident.parallel import each
 
 Array = NDArray[np.float64]

@@ -19,7 +19,7 @@ from ident.bench.model import Model
 from ident.bench.records import Record
 from ident.bench.response import products, residuals
 from ident.bench.speed_table import SpeedTable
-from ident.memory import independent_samples
+from ident.noise.effective_sample_size import independent_samples
 from ident.parallel import cores, each
 
 Array = NDArray[np.float64]

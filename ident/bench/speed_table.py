@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.equations.interpolation import piece_coefficients
 from ident.errors import Unusable
-from ident.interpolation import piece_coefficients
 from ident.stages.bench import FRACTIONS, node_names
 
 Array = NDArray[np.float64]

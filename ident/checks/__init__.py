@@ -1,1 +1,1 @@
-"""Every kind of doubt about a measured matrix, a file each; :mod:`ident.check` runs them all."""
+"""Every kind of doubt about a measured matrix, a file each; :mod:`ident.checks.check` runs them all."""

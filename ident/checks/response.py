@@ -21,7 +21,7 @@ class Response:
     """Averages over Hann frames of half overlap, each frame without its mean.
 
     `frequency` (F,) in Hz (or 1/sample) without 0; power of command `uu` and output `yy`, cross power `uy`, each (F,).
-    Good enough to see a sign, a factor or a whole sample; the fit uses the exact spectra of :mod:`ident.spectra`.
+    Good enough to see a sign, a factor or a whole sample; the fit uses the exact spectra of :mod:`ident.fit.reduction`.
     """
 
     frequency: Samples

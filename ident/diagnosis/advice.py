@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ident.compare import compare
+from ident.comparison.compare import compare
+from ident.design.next_experiment import propose
+from ident.design.rivals import floor_of, in_question, trusted
 from ident.diagnosis.result import Diagnosis
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.fit.result import FitResult
-from ident.in_question import floor_of, in_question, trusted
 from ident.matrix import Matrix
-from ident.next_experiment import propose
 from ident.residuals.budget import budget
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.diagnosis.held_out import HeldOut, held_out
-from ident.effect import Effect
 from ident.effects import EFFECTS
+from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.fit.objective import Local
 from ident.fit.output_error import OutputError, shortened
@@ -19,8 +19,8 @@ from ident.fit.polish import polish
 from ident.fit.settings import Settings
 from ident.fit.space import Space, search_space
 from ident.matrix import Matrix, Run
-from ident.memory import independent_samples
-from ident.noise import Floors, noise_floors
+from ident.noise.effective_sample_size import independent_samples
+from ident.noise.floor import Floors, noise_floors
 from ident.presets import PRESETS, Preset
 
 Array = NDArray[np.float64]

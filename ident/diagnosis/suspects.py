@@ -12,11 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain import conditions
+from ident.chain.chain import conditions
 from ident.diagnosis.models import Models, Refit
 from ident.matrix import Run
 from ident.parallel import each
-from ident.simulate import Simulation
+from ident.simulation.simulate import Simulation
 
 Array = NDArray[np.float64]
 _OUTLIER = 5.0  # robust standard deviations of the runs' errors

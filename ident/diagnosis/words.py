@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 
 from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.suspects import Suspect
-from ident.effect import Effect
-from ident.percent import percent
+from ident.effects.effect import Effect
+from ident.words.percent import percent
 
 
 def why(candidate: Candidate, effect: Effect, before: float, floor: float | None, best: bool) -> str:

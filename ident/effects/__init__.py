@@ -1,6 +1,5 @@
 """The catalogue of effects, in the order in which they act within their place."""
 
-from ident.effect import Effect
 from ident.effects.acquisition_lag import ACQUISITION_LAG
 from ident.effects.backlash import BACKLASH
 from ident.effects.command_delay import COMMAND_DELAY
@@ -8,6 +7,7 @@ from ident.effects.command_limit import COMMAND_LIMIT
 from ident.effects.coulomb_friction import COULOMB_FRICTION
 from ident.effects.cubic_stiffness import CUBIC_STIFFNESS
 from ident.effects.dead_zone import DEAD_ZONE
+from ident.effects.effect import Effect
 from ident.effects.entrained_air import ENTRAINED_AIR
 from ident.effects.flow_saturation import FLOW_SATURATION
 from ident.effects.frame_compliance import FRAME_COMPLIANCE

@@ -1,6 +1,6 @@
 """The recorded displacement lags what the controller sees."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 ACQUISITION_LAG = Effect(

@@ -1,6 +1,6 @@
 """Play of half-width b between valve and spool."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 BACKLASH = Effect(

@@ -1,6 +1,6 @@
 """The command acts late, outside the loop."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 COMMAND_DELAY = Effect(

@@ -1,6 +1,6 @@
 """The drive signal is limited to 1/a."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 COMMAND_LIMIT = Effect(

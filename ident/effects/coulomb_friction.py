@@ -1,6 +1,6 @@
 """Dry friction of seals and guides, which sticks."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 COULOMB_FRICTION = Effect(

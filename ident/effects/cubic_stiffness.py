@@ -1,6 +1,6 @@
 """The specimen's spring hardens or softens."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 CUBIC_STIFFNESS = Effect(

@@ -1,6 +1,6 @@
 """The valve's lands overlap: no flow near the centre."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 DEAD_ZONE = Effect(

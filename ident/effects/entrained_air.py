@@ -1,6 +1,6 @@
 """Air in the oil makes it softer at low pressure."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 ENTRAINED_AIR = Effect(

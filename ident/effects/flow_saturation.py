@@ -1,6 +1,6 @@
 """The opening saturates."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 FLOW_SATURATION = Effect(

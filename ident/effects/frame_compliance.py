@@ -1,6 +1,6 @@
 """The transducer's frame gives way under the force on the specimen."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 FRAME_COMPLIANCE = Effect(

@@ -1,6 +1,6 @@
 """The flow gain differs between the directions, as with a single-rod cylinder."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 GAIN_ASYMMETRY = Effect(

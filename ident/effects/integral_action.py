@@ -1,6 +1,6 @@
 """The controller also integrates the error."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 INTEGRAL_ACTION = Effect(

@@ -1,6 +1,6 @@
 """The controller adds the rate of the error."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 LEAD = Effect(

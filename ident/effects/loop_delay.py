@@ -1,6 +1,6 @@
 """The controller sees the position late."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 LOOP_DELAY = Effect(

@@ -1,6 +1,6 @@
 """The spool is open at zero drive signal."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 NULL_BIAS = Effect(

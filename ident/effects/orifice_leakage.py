@@ -1,6 +1,6 @@
 """Leakage through an orifice, as the root of the pressure."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 ORIFICE_LEAKAGE = Effect(

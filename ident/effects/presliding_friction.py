@@ -1,6 +1,6 @@
 """Friction that first yields like a spring, after Dahl."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 PRESLIDING_FRICTION = Effect(

@@ -1,6 +1,6 @@
 """The load pressure is fed back to damp the oil column."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 PRESSURE_FEEDBACK = Effect(

@@ -1,6 +1,6 @@
 """The flow depends on the pressure that is left across the valve."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 PRESSURE_FLOW = Effect(

@@ -1,6 +1,6 @@
 """Damping that grows with the square of the speed."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 QUADRATIC_DAMPING = Effect(

@@ -1,6 +1,6 @@
 """The recorded displacement is scaled wrongly, outside the loop."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 SENSOR_GAIN = Effect(

@@ -1,6 +1,6 @@
 """The transducer lags, inside the loop."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 SENSOR_LAG = Effect(

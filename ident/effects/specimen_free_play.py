@@ -1,6 +1,6 @@
 """The specimen's spring has play."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 SPECIMEN_FREE_PLAY = Effect(

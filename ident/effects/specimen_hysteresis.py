@@ -1,6 +1,6 @@
 """The specimen yields and dissipates, after Bouc and Wen."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 SPECIMEN_HYSTERESIS = Effect(

@@ -1,6 +1,6 @@
 """The whole specimen sits behind a springy joint."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 SPECIMEN_JOINT = Effect(

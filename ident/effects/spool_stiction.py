@@ -1,6 +1,6 @@
 """The spool stands still until the drive signal is far enough from it."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 SPOOL_STICTION = Effect(

@@ -1,6 +1,6 @@
 """A constant force acts on the rod."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 STATIC_LOAD = Effect(

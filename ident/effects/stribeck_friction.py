@@ -1,6 +1,6 @@
 """More friction at standstill than in motion."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 STRIBECK_FRICTION = Effect(

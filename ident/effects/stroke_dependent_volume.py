@@ -1,6 +1,6 @@
 """The oil volumes change along the stroke."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 STROKE_DEPENDENT_VOLUME = Effect(

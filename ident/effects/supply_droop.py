@@ -1,6 +1,6 @@
 """The supply sags where much flow is drawn."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 SUPPLY_DROOP = Effect(

@@ -1,6 +1,6 @@
 """The valve's lands leave a gap: double flow gain near the centre."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 UNDERLAP = Effect(

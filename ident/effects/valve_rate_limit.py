@@ -1,6 +1,6 @@
 """The valve's output changes at a limited rate."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 VALVE_RATE_LIMIT = Effect(

@@ -1,6 +1,6 @@
 """The valve has two more poles behind its lag."""
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.parameter import Parameter
 
 VALVE_SECOND_ORDER = Effect(

@@ -11,7 +11,7 @@ from typing import Any
 import altair as alt
 import numpy as np
 
-from ident.compare import RunComparison
+from ident.comparison.compare import RunComparison
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.choose import by_gain, representative

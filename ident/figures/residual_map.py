@@ -8,7 +8,7 @@ from typing import Any
 
 import altair as alt
 
-from ident.compare import Comparison
+from ident.comparison.compare import Comparison
 from ident.figures import words
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, datasets

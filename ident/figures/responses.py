@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ident.compare import RunComparison
+from ident.comparison.compare import RunComparison
 from ident.figures import words
 from ident.figures.thin import Places, excited_band, significant, spread
 from ident.matrix import Run

@@ -11,8 +11,8 @@ import altair as alt
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain import linear_model
-from ident.compare import fitted, response
+from ident.chain.chain import linear_model
+from ident.comparison.compare import fitted, response
 from ident.figures import words
 from ident.figures.frame import Filled, Frame, blank, frame
 from ident.figures.look import Look

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable
 from dataclasses import dataclass, field, replace
 
-from ident.compare import Comparison, RunComparison, compare
+from ident.comparison.compare import Comparison, RunComparison, compare
 from ident.figures.selection import Band
 from ident.fit.result import FitResult
 from ident.matrix import Matrix, Run

@@ -9,7 +9,7 @@ from typing import Any
 import altair as alt
 import numpy as np
 
-from ident.compare import RunComparison
+from ident.comparison.compare import RunComparison
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.frame import Filled, Frame, blank, frame
@@ -17,9 +17,9 @@ from ident.figures.look import Look
 from ident.figures.render import Panel
 from ident.figures.selection import OPEN, Band
 from ident.figures.thin import Real, envelope, significant
+from ident.fit.reduction import within
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Matrix, Run
-from ident.spectra import within
 
 BINS = 350  # stretches of which smallest and largest sample are kept
 _DASHES = {"command": [2, 2], "measured": [1, 0], "model": [6, 3]}

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Run, Specimen
-from ident.percent import percent as in_percent
+from ident.words.percent import percent as in_percent
 
 _TIDY = {"^3": "³", "^2": "²", "*": "·"}  # a raised 4 is missing from too many fonts
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ident.bench.identification import OPTIONS as BENCH_OPTIONS
 from ident.bench.identification import BenchIdentification
-from ident.custom import preset_with
+from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.fit import genetic
 from ident.fit.ends import distinct
@@ -20,14 +20,14 @@ from ident.fit.evolution import GENERATIONS, cma_es, differential_evolution
 from ident.fit.objective import UNSTABLE, Objective
 from ident.fit.output_error import OutputError, shortened
 from ident.fit.polishing import Polished, polished
+from ident.fit.reduction import Basis, excited_band
 from ident.fit.result import FitResult
 from ident.fit.settings import METHODS, Settings
 from ident.fit.space import search_space
 from ident.fit.summary import summarise
 from ident.matrix import Matrix
-from ident.noise import noise_floors
+from ident.noise.floor import noise_floors
 from ident.progress import Progress, Report, silent
-from ident.spectra import Basis, excited_band
 
 Array = NDArray[np.float64]
 State = dict[str, Any]

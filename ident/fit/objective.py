@@ -1,6 +1,6 @@
 """Eq. (17) of a set of runs as a function of points of the search space, in two forms: fast and exact.
 
-Fast: from the reduced runs (:mod:`ident.spectra`), for whole populations. Exact: from the time domain
+Fast: from the reduced runs (:mod:`ident.fit.reduction`), for whole populations. Exact: from the time domain
 (:mod:`ident.fit.record`), for the polish and for every error that is reported.
 """
 
@@ -15,15 +15,15 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain import conditions
+from ident.chain.chain import conditions
 from ident.fit.record import Moments, moments
+from ident.fit.reduction import Basis, Spectrum, spectrum
 from ident.fit.space import Space
+from ident.fit.transfer import Pattern, values_at
 from ident.linear import LinearModel
 from ident.matrix import Matrix, Run
 from ident.parallel import cores, each
 from ident.presets import Preset
-from ident.spectra import Basis, Spectrum, spectrum
-from ident.transfer import Pattern, values_at
 
 Array = NDArray[np.float64]
 Outcome = TypeVar("Outcome")

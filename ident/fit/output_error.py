@@ -13,8 +13,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain import Chain, conditions, linear_model
-from ident.effect import Effect
+from ident.chain.chain import Chain, conditions, linear_model
+from ident.effects.effect import Effect
 from ident.fit.objective import STEP, UNSTABLE, Local, local
 from ident.fit.products import add_products, completed
 from ident.fit.record import Moments, first_state, moments_of
@@ -22,7 +22,7 @@ from ident.fit.space import Space
 from ident.matrix import Matrix, Run
 from ident.parallel import cores, each
 from ident.presets import Preset
-from ident.simulate import Simulation, rates, steps_needed
+from ident.simulation.simulate import Simulation, rates, steps_needed
 
 Array = NDArray[np.float64]
 _TOGETHER = 256  # lanes simulated in one go: memory stays small, the cores stay busy
@@ -241,7 +241,7 @@ class OutputError:
     def fastest(self, values: Mapping[str, Array]) -> Array:
         """Radians a sample of each vector's fastest mode, of the linear core and the effects at small signals.
 
-        Beyond :data:`ident.simulate.FASTEST` it is followed only roughly.
+        Beyond :data:`ident.simulation.simulate.FASTEST` it is followed only roughly.
         """
         vectors = len(next(iter(values.values())))
         fastest = np.zeros(vectors)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ident.fit.products import add_products, completed, removal, without
 from ident.linear import LinearModel
 from ident.matrix import Run
-from ident.recursion import Recursion, discretise, respond, responses
+from ident.simulation.recursion import Recursion, discretise, respond, responses
 
 Array = NDArray[np.float64]
 _BLOCKS = 32  # of a record; each is one sample of the score, long enough to hold the residual's own correlation

@@ -2,8 +2,9 @@
 
     drive_force = m₀ v′ + c₀ v + Fc sgn v − F0
 
-gives mass, viscous and dry friction and the constant force at once, see :mod:`ident.inverse_dynamics`; only the gains
-of a position loop, where there is one, are then searched. Errors are those of the simulated position, as of any fit.
+gives mass, viscous and dry friction and the constant force at once, see :mod:`ident.fit.inverse_dynamics`; only the
+gains of a position loop, where there is one, are then searched. Errors are those of the simulated position, as of any
+fit.
 """
 
 from __future__ import annotations
@@ -13,9 +14,9 @@ from typing import Any
 
 from ident.errors import Unusable
 from ident.fit.identification import Identification
+from ident.fit.inverse_dynamics import InverseDynamics, regress
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
-from ident.inverse_dynamics import InverseDynamics, regress
 from ident.matrix import Matrix
 from ident.progress import Report, silent
 

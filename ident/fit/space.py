@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain import conditions
+from ident.chain.chain import conditions
+from ident.equations.equation import Equation
 from ident.errors import Unusable
-from ident.expression import Equation
 from ident.fit.settings import Settings
 from ident.matrix import Matrix, Run
 from ident.presets import Preset

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.effect import parameter_name
+from ident.effects.effect import parameter_name
 from ident.fit.ends import parted
 from ident.fit.objective import UNSTABLE, Local, Objective
 from ident.fit.output_error import OutputError
@@ -19,9 +19,9 @@ from ident.fit.result import Combination, Estimate, FitResult, Generation, RunEr
 from ident.fit.settings import Settings
 from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
 from ident.matrix import Run
-from ident.noise import Floors
+from ident.noise.floor import Floors
 from ident.presets.preset import Combined
-from ident.simulate import FASTEST, MOST
+from ident.simulation.simulate import FASTEST, MOST
 
 Array = NDArray[np.float64]
 _SHARE_SCALE = ("c0", "Ka", "Cl")  # without a known force (m0, c0) × s and (Ka, Cl) / s change nothing

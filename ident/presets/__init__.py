@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from functools import lru_cache
 
-from ident.effect import Effect
 from ident.effects import EFFECTS, effect
+from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.presets.drive import DRIVE
 from ident.presets.first_order import FIRST_ORDER

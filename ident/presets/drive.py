@@ -1,6 +1,6 @@
 """A drive: force → mass, spring and damper, open loop or under a position loop."""
 
-from ident.chain import Chain
+from ident.chain.chain import Chain
 from ident.parameter import Parameter
 from ident.presets.preset import Combined, Preset, Scale
 from ident.stages import CASCADE, DIRECT_FORCE, DRIVEN_MASS, IDEAL_DRIVE, IDEAL_SENSOR

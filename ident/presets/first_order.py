@@ -1,6 +1,6 @@
 """The first-order closed-loop model k / (τ s + 1) of the hybrid-simulation paper: what a tracking filter follows."""
 
-from ident.chain import Chain
+from ident.chain.chain import Chain
 from ident.parameter import Parameter
 from ident.presets.preset import Preset, Scale
 from ident.stages import IDEAL_SENSOR, Quantity

@@ -1,6 +1,6 @@
 """The simplified model of an aviation servo-actuator of Kononykhin (2019), section 4, Fig. 1."""
 
-from ident.chain import Chain
+from ident.chain.chain import Chain
 from ident.parameter import Parameter
 from ident.presets.preset import Preset, Scale
 from ident.stages.bench import (

@@ -1,6 +1,6 @@
 """A valve-controlled cylinder in open loop: valve opening → load pressure."""
 
-from ident.chain import Chain
+from ident.chain.chain import Chain
 from ident.parameter import Parameter
 from ident.presets.preset import Combined, Preset, Scale
 from ident.stages import (

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from ident.chain import CONDITIONS, Chain, unfit
-from ident.effect import Effect, parameter_name
+from ident.chain.chain import CONDITIONS, Chain, unfit
+from ident.effects.effect import Effect, parameter_name
+from ident.equations.equation import Equation
 from ident.errors import Unusable
-from ident.expression import Equation
 from ident.matrix import Matrix
 from ident.parameter import Parameter
 from ident.stages import MASS_SPRING_DAMPER, MEASURED_LOAD

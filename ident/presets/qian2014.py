@@ -1,6 +1,6 @@
 """The linear servo-hydraulic actuator of Qian et al. (2014), section 2.1, Tables 2 and 4."""
 
-from ident.chain import Chain
+from ident.chain.chain import Chain
 from ident.parameter import Parameter
 from ident.presets.preset import Combined, Preset, Scale
 from ident.stages import (

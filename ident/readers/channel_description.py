@@ -8,8 +8,8 @@ from typing import Any
 
 from ident.errors import Unusable
 from ident.matrix import CHANNELS
-from ident.quantity import DIMENSIONS, Scale, parameter_value, shown, split, unit_scale
 from ident.readers.fields import Fields
+from ident.units.quantity import DIMENSIONS, Scale, parameter_value, shown, split, unit_scale
 
 PRESSURE = ("pressure",)
 KINDS_OF_UNIT: dict[str, Sequence[str]] = {

@@ -8,12 +8,12 @@ from typing import Any
 
 from ident.errors import Unusable
 from ident.matrix import Actuator, Controller
-from ident.quantity import shown
 from ident.readers.fields import Fields
 from ident.readers.limits import Limits
 from ident.readers.run_description import RunDescription, describe_run
 from ident.readers.source import DESCRIPTION, inside
 from ident.readers.strict_yaml import read_yaml
+from ident.units.quantity import shown
 
 TOP = ("actuator", "runs", "controller", "limits")
 ACTUATOR = ("serial", "name", "batch", "piston_area", "stroke", "supply_pressure", "servo_valve", "notes")

@@ -7,7 +7,7 @@ from difflib import get_close_matches
 from typing import Any
 
 from ident.errors import Unusable
-from ident.quantity import parameter_value, quantity, shown
+from ident.units.quantity import parameter_value, quantity, shown
 
 LONGEST_TEXT = 500
 

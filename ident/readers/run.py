@@ -8,10 +8,10 @@ import numpy as np
 
 from ident.errors import Unusable
 from ident.matrix import Run, Samples
-from ident.quantity import Scale, shown
 from ident.readers.clock import read_clock
 from ident.readers.run_description import RunDescription
 from ident.readers.table import Array, Table, numeric
+from ident.units.quantity import Scale, shown
 
 SHORTEST = 8  # samples; below, not even the straight line of the clock and a mean leave anything to fit
 LARGEST = 1e100  # SI; squares beyond overflow

@@ -7,10 +7,10 @@ from typing import Any
 
 from ident.errors import Unusable
 from ident.matrix import BENCH, HOLDS, KINDS, USES, Run, Specimen
-from ident.quantity import quantity, shown, split, unit_scale
 from ident.readers.channel_description import ChannelDescription, describe_channels
 from ident.readers.fields import Fields
 from ident.readers.source import inside
+from ident.units.quantity import quantity, shown, split, unit_scale
 
 RUN = (
     "id", "file", "sample_rate", "time", "specimen", "gain", "amplitude", "kind", "hold", "output", "use", "skip_rows",

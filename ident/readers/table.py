@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.errors import Unusable
-from ident.quantity import shown
+from ident.units.quantity import shown
 
 Array = NDArray[Any]
 NUMERIC = "iuf"  # dtype kinds: whole numbers and floats

@@ -14,9 +14,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from ident.errors import Unusable
-from ident.quantity import shown
 from ident.readers.limits import Limits, check_size
 from ident.readers.table import Array, Table
+from ident.units.quantity import shown
 
 DELIMITERS = ("\t", ";", ",")
 DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")

@@ -19,13 +19,13 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from ident.compare import Comparison, RunComparison
+from ident.comparison.compare import Comparison, RunComparison
 from ident.errors import Unusable
+from ident.fit.reduction import excited_band
 from ident.matrix import Run
-from ident.noise import noise_floors
+from ident.noise.floor import noise_floors
 from ident.parallel import each
 from ident.residuals.coarse import averaged, stride
-from ident.spectra import excited_band
 
 Array = NDArray[np.float64]
 _REACHES = (3, 8, 24)  # samples of the correction to either side of now; the best is taken

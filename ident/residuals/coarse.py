@@ -14,10 +14,10 @@ import scipy.linalg
 from numba import njit
 from numpy.typing import NDArray
 
+from ident.fit.reduction import excited_band
 from ident.linear import LinearModel
 from ident.matrix import Run
-from ident.recursion import discretise
-from ident.spectra import excited_band
+from ident.simulation.recursion import discretise
 
 Array = NDArray[np.float64]
 _OVER = 8.0  # samples a period of the band edge

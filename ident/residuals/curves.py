@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from ident.compare import Comparison, fitted
+from ident.comparison.compare import Comparison, fitted
 from ident.parallel import each
 from ident.residuals.normal import deviations, gauge
 from ident.residuals.settled import Settled, settle

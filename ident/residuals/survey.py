@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from ident.compare import Comparison
+from ident.comparison.compare import Comparison
 from ident.errors import Unusable
 from ident.residuals.budget import Budget, budget
 from ident.residuals.curves import Curve, curves_of, settled, traced

@@ -9,8 +9,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain import Chain, conditions
-from ident.compare import Comparison, fitted
+from ident.chain.chain import Chain, conditions
+from ident.comparison.compare import Comparison, fitted
 from ident.errors import Unusable
 from ident.fit.output_error import OutputError
 from ident.fit.record import first_state
@@ -21,7 +21,7 @@ from ident.parallel import each
 from ident.presets import Preset
 from ident.residuals.coarse import Response, averaged, stride
 from ident.residuals.views import View, injected, showing
-from ident.simulate import Simulation
+from ident.simulation.simulate import Simulation
 
 Array = NDArray[np.float64]
 Band = tuple[float | None, float | None]

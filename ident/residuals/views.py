@@ -9,9 +9,9 @@ from __future__ import annotations
 import ast
 from dataclasses import dataclass, replace
 
-from ident.chain import FORCE, INPUT, INPUT_RATE, Chain
-from ident.effect import Effect
-from ident.expression import Equation
+from ident.chain.chain import FORCE, INPUT, INPUT_RATE, Chain
+from ident.effects.effect import Effect
+from ident.equations.equation import Equation
 from ident.presets import Preset
 
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.compare import Comparison, RunComparison
+from ident.comparison.compare import Comparison, RunComparison
+from ident.fit.reduction import excited_band
 from ident.matrix import Run
-from ident.spectra import excited_band
 
 Array = NDArray[np.float64]
 _BANDS = 14

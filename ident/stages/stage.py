@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from ident.equations.equation import Equation
 from ident.errors import Unusable
-from ident.expression import Equation
 
 PLACES = ("controller", "valve", "spool", "flow", "pressure", "load", "sensor")
 """The seven places, in the order of the signal."""

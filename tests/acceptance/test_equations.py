@@ -9,10 +9,10 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from ident.chain import Chain
-from ident.expression import Equation
+from ident.chain.chain import Chain
+from ident.equations.equation import Equation
 from ident.presets import PRESETS
-from ident.recursion import discretise, respond
+from ident.simulation.recursion import discretise, respond
 from tests.reference import qian_reference as reference
 
 CHAIN = PRESETS["qian2014"].chain

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from ident.compare import modelled
+from ident.comparison.compare import modelled
 from ident.fit.identify import identify
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings

@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 from fastapi.testclient import TestClient
 
-from ident.synthesis import simulate_matrix
+from ident.synthesis.matrix import simulate_matrix
 from tests.app.conftest import files, zipped
 
 

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import pytest
 
-from ident.diagnose import diagnose
+from ident.design.rivals import in_question
+from ident.diagnosis.diagnose import diagnose
 from ident.diagnosis.result import Diagnosis
 from ident.errors import Unusable
 from ident.fit.identify import identify
 from ident.fit.settings import Settings
-from ident.in_question import in_question
 from ident.matrix import Matrix
 from tests.bench.sets import as_matrix
 from tests.reference import kononykhin_reference as reference

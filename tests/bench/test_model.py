@@ -10,15 +10,15 @@ from scipy.interpolate import PchipInterpolator
 
 from ident.bench.model import Model
 from ident.bench.speed_table import FRACTIONS, SpeedTable
-from ident.chain import Chain, conditions
+from ident.chain.chain import Chain, conditions
+from ident.equations.equation import Equation
+from ident.equations.interpolation import interpolated
+from ident.equations.mathml import mathml
 from ident.errors import Unusable
-from ident.expression import Equation
-from ident.interpolation import interpolated
-from ident.mathml import mathml
 from ident.matrix import Actuator, Run, Specimen
 from ident.presets import PRESETS, preset
 from ident.presets.kononykhin import KONONYKHIN
-from ident.simulate import responses
+from ident.simulation.simulate import responses
 from ident.stages import IDEAL_SENSOR, Quantity
 from ident.stages.bench import node_names
 from ident.stages.stage import stage

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from ident.diagnose import diagnose
+from ident.diagnosis.diagnose import diagnose
 from ident.diagnosis.result import Diagnosis
-from ident.effect import Effect
 from ident.effects import EFFECTS
+from ident.effects.effect import Effect
 from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.matrix import Matrix, Run, Specimen

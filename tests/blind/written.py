@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from ident.custom import read_effect
-from ident.effect import Effect
+from ident.custom.definition import read_effect
+from ident.effects.effect import Effect
 
 _TEXTS: dict[str, tuple[str, str, str, float]] = {
     "flow_force": ("valve", "dq = dq - s * q1 * abs(P) / 1e6 / tau", "1", 2.0),

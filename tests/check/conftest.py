@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from ident.check import check
+from ident.checks.check import check
 from ident.matrix import Actuator, Matrix, Run, Samples, Specimen
 
 RATE = 4096.0

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ident.check import check, describe
+from ident.checks.check import check, describe
 from ident.checks.delay import delay
 from ident.checks.response import respond
 from ident.matrix import Matrix

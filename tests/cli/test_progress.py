@@ -10,8 +10,8 @@ import pytest
 
 from app.cli.interrupts import heard
 from app.cli.progress import shown
-from ident import compiled
 from ident.progress import Expected, Progress
+from ident.simulation import compiled
 
 SOURCE = """from numba import njit
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ident.diagnose import diagnose
+from ident.diagnosis.diagnose import diagnose
 from ident.diagnosis.result import Diagnosis
 from ident.errors import Unusable
 from ident.fit.identify import identify

@@ -12,7 +12,7 @@ from ident.diagnosis.held_out import HeldOut, bounded_step, held_out
 from ident.fit.objective import Local, local
 from ident.fit.record import Moments, moments_of
 from ident.matrix import Run
-from ident.memory import independent_samples
+from ident.noise.effective_sample_size import independent_samples
 
 RNG = np.random.default_rng(8)
 N, BLOCKS = 512, 32

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ident.compare import compare
-from ident.diagnose import diagnose
+from ident.comparison.compare import compare
+from ident.diagnosis.diagnose import diagnose
 from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.readers import read_matrix

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from ident.expression import Equation
+from ident.equations.equation import Equation
 
 Powers = tuple[Fraction, Fraction, Fraction]
 

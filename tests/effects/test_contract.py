@@ -8,14 +8,14 @@ from functools import cache
 import numpy as np
 import pytest
 
-from ident.chain import conditions
-from ident.effect import Effect
+from ident.chain.chain import conditions
 from ident.effects import EFFECTS
+from ident.effects.effect import Effect
 from ident.matrix import Actuator, Run, Specimen
 from ident.parameter import Parameter
 from ident.presets import PRESETS, Preset, preset
-from ident.recursion import discretise, respond
-from ident.simulate import responses, steps_needed
+from ident.simulation.recursion import discretise, respond
+from ident.simulation.simulate import responses, steps_needed
 from tests.reference import nonlinear_reference as reference
 from tests.reference import qian_reference as linear
 

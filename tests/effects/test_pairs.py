@@ -7,12 +7,12 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from ident.chain import conditions
+from ident.chain.chain import conditions
 from ident.effects import EFFECTS
 from ident.matrix import Actuator, Run, Specimen
 from ident.parallel import each
 from ident.presets import preset
-from ident.simulate import responses
+from ident.simulation.simulate import responses
 from tests.effects.test_contract import CELLS, PLANT, STICKS, command, strength
 from tests.reference import nonlinear_reference as reference
 from tests.reference import qian_reference as linear

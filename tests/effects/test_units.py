@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import pytest
 
-from ident.chain import CONDITIONS, FORCE, INPUT, INPUT_RATE
-from ident.custom import read_effect
-from ident.effect import Effect
+from ident.chain.chain import CONDITIONS, FORCE, INPUT, INPUT_RATE
+from ident.custom.definition import read_effect
 from ident.effects import EFFECTS
+from ident.effects.effect import Effect
+from ident.equations.grammar import TIME
 from ident.errors import Unusable
-from ident.grammar import TIME
 from ident.presets import PRESETS, Preset
 from ident.presets.drive import UNDER_CONTROL
 from tests.effects import dimensions

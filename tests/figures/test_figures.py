@@ -7,7 +7,7 @@ import json
 import pytest
 
 import ident.figures.study
-from ident.compare import Comparison
+from ident.comparison.compare import Comparison
 from ident.errors import Unusable
 from ident.figures import FIGURES, figure, render
 from ident.figures.look import LOOKS

@@ -11,8 +11,8 @@ from functools import cache
 
 import numpy as np
 
-from ident.effect import Effect
 from ident.effects import EFFECTS, effect
+from ident.effects.effect import Effect
 from ident.fit.identify import identify
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings

@@ -7,8 +7,8 @@ import json
 import numpy as np
 import pytest
 
-from ident.compare import compare
-from ident.custom import definition_of
+from ident.comparison.compare import compare
+from ident.custom.definition import definition_of
 from ident.fit.identification import Identification
 from ident.fit.identify import identify
 from ident.fit.result import FitResult

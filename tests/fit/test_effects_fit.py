@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ident.effect import Effect
+from ident.effects.effect import Effect
 from ident.fit.identification import Identification
 from ident.fit.identify import identify
 from ident.fit.output_error import OutputError

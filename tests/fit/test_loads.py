@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ident.compare import compare, modelled
+from ident.comparison.compare import compare, modelled
 from ident.errors import Unusable
 from ident.fit.identify import identify
 from ident.fit.settings import Settings

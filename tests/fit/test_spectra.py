@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 import scipy.signal
 
+from ident.fit.reduction import Basis, power_density, spectrum
 from ident.matrix import Run
-from ident.recursion import discretise, respond, responses
-from ident.spectra import Basis, power_density, spectrum
+from ident.simulation.recursion import discretise, respond, responses
 
 RATE = 1000.0
 

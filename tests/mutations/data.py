@@ -7,9 +7,9 @@ _SAMPLES = ("tests/readers/test_samples.py",)
 _UNITS = ("tests/test_quantity.py",)
 
 DATA = (
-    Mutation("inch", "ident/unit_names.py", "inch = 0.0254 * meter", "inch = 0.025654 * meter",
+    Mutation("inch", "ident/units/names.py", "inch = 0.0254 * meter", "inch = 0.025654 * meter",
              "a factor of 1.01 in the inch", _UNITS),
-    Mutation("printed-unit", "ident/quantity.py", "PRINTED_Z0_FACTOR = 0.0254 *", "PRINTED_Z0_FACTOR = 0.3048 *",
+    Mutation("printed-unit", "ident/units/quantity.py", "PRINTED_Z0_FACTOR = 0.0254 *", "PRINTED_Z0_FACTOR = 0.3048 *",
              "feet for inches in the printed unit of Z0", _UNITS),
     Mutation("turned-offset", "ident/readers/channel_description.py", "sign * (scale.offset + offset)",
              "scale.offset + offset", "a turned channel keeps the sign of its offset",

@@ -8,11 +8,11 @@ _NOISE = ("tests/test_noise.py",)
 _PROCEDURES = ("tests/bench/test_procedures.py",)
 
 ESTIMATION = (
-    Mutation("what-no-model-explains", "ident/spectra.py", "np.sqrt(_distance(W, d, g[v]) * unit + rest)",
+    Mutation("what-no-model-explains", "ident/fit/reduction.py", "np.sqrt(_distance(W, d, g[v]) * unit + rest)",
              "np.sqrt(_distance(W, d, g[v]) * unit)", "the rest dropped from the fast eq. (17)", _FITNESS),
-    Mutation("hold-of-the-reduction", "ident/spectra.py", "discretise(basis.filters, run.sample_rate, run.hold)",
+    Mutation("hold-of-the-reduction", "ident/fit/reduction.py", "discretise(basis.filters, run.sample_rate, run.hold)",
              'discretise(basis.filters, run.sample_rate, "linear")', "a held command reduced as lines", _FITNESS),
-    Mutation("power-of-the-record", "ident/spectra.py", "mean_free = gram[columns, columns]",
+    Mutation("power-of-the-record", "ident/fit/reduction.py", "mean_free = gram[columns, columns]",
              "mean_free = 1.02 * gram[columns, columns]",
              "a factor of 1.02 in what eq. (17) divides by, 1.01 in the error", _FITNESS),
     Mutation("mean-over-runs", "ident/fit/objective.py", "by_run.mean(axis=0), UNSTABLE)",
@@ -26,11 +26,11 @@ ESTIMATION = (
     Mutation("upper-bound-of-the-polish", "ident/fit/polish.py", "np.clip(point + free_step, 0.0, 1.0)",
              "np.clip(point + free_step, 0.0, 0.5)", "a bound of the search space",
              ("tests/acceptance/test_identification.py",)),
-    Mutation("noise-of-a-difference", "ident/noise.py", "0.5 * np.var(difference) for", "np.var(difference) for",
+    Mutation("noise-of-a-difference", "ident/noise/floor.py", "0.5 * np.var(difference) for", "np.var(difference) for",
              "a difference of two records has twice the noise", _NOISE),
-    Mutation("noise-of-the-spectrum", "ident/noise.py", "np.sqrt(density * nyquist)",
+    Mutation("noise-of-the-spectrum", "ident/noise/floor.py", "np.sqrt(density * nyquist)",
              "np.sqrt(0.5 * density * nyquist)", "one side of the spectrum for two", _NOISE),
-    Mutation("repeats-of-one-gain", "ident/noise.py", "(run.use, run.specimen, run.gain, run.sample_rate)",
+    Mutation("repeats-of-one-gain", "ident/noise/floor.py", "(run.use, run.specimen, run.gain, run.sample_rate)",
              "(run.use, run.specimen, run.sample_rate)", "runs of two gains taken for repeats", _NOISE),
     Mutation("folds", "ident/diagnosis/held_out.py", "of % FOLDS != fold for of in chunks",
              "of % FOLDS == fold for of in chunks", "judged on what was fitted", _HELD_OUT),
@@ -45,7 +45,7 @@ ESTIMATION = (
              "np.arctan2(found[1], found[2])", "sine and cosine exchanged", _PROCEDURES),
     Mutation("error-budget", "ident/residuals/budget.py", "whole**2 - part**2", "whole**2 + part**2",
              "the sign in what is left of a part", ("tests/residuals/test_where.py",)),
-    Mutation("weights-of-runs", "ident/inverse_dynamics.py", "weights = 1 / np.maximum(deviation",
+    Mutation("weights-of-runs", "ident/fit/inverse_dynamics.py", "weights = 1 / np.maximum(deviation",
              "weights = 1 * np.maximum(deviation", "noisy runs weigh most", ("tests/test_inverse_dynamics.py",)),
 )  # fmt: skip
 """Defects of the estimation."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
-from ident.compare import Comparison, compare
+from ident.comparison.compare import Comparison, compare
 from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.presets import preset

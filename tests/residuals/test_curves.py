@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ident.compare import compare
+from ident.comparison.compare import compare
 from ident.effects.backlash import BACKLASH
 from ident.errors import Unusable
 from ident.figures import figure

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ident.fit.reduction import within
 from ident.residuals.curves import curves, traced
 from ident.residuals.settled import _products, _within, settle
 from ident.residuals.views import views
-from ident.spectra import within
 from tests.residuals.conftest import HIDDEN, compared
 
 RATE = 640.0

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ident.compare import compare
+from ident.comparison.compare import compare
 from ident.matrix import Matrix
 from ident.residuals.budget import budget
 from ident.residuals.survey import survey

@@ -1,0 +1,290 @@
+"""The chain: stages and effects put together into one model, and its linearisation.
+
+A chain is a set of equations. Each state has a rate, each memory and signal an expression; signals are put in an
+order in which every one is known before it is read, so that loops (feedback, pressure against flow) close through
+states only.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from graphlib import CycleError, TopologicalSorter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.effects.effect import Effect
+from ident.equations.equation import Equation
+from ident.equations.grammar import FUNCTIONS, TIME
+from ident.errors import Unusable
+from ident.linear import LinearModel
+from ident.matrix import Actuator, Run, Specimen
+from ident.stages import Quantity, Stage
+
+Array = NDArray[np.float64]
+INPUT, INPUT_RATE, FORCE, STEP = "u", "du", "fm", "dt"
+"""What drives a chain: the command, its rate, a measured force; and the step of the simulation."""
+CONDITIONS = {
+    "Kp": Quantity("Kp", "1", "gain of the position loop, a dial"),
+    "mL": Quantity("mL", "kg", "mass of the specimen"),
+    "k": Quantity("k", "N/m", "stiffness of the specimen"),
+    "cL": Quantity("cL", "N*s/m", "damping of the specimen"),
+    "A": Quantity("A", "m^2", "piston area"),
+    "Ir": Quantity("Ir", "1", "rated current, in the unit of the record"),
+    "Ps": Quantity("Ps", "Pa", "supply pressure"),
+}
+"""What an equation may read of a run and its actuator."""
+NEVER = 1e12
+"""Pa: a supply pressure that limits nothing."""
+
+
+def conditions(run: Run, actuator: Actuator) -> dict[str, float]:
+    """The values of :data:`CONDITIONS` for a run.
+
+    Without a stated area A = 1 m²: every parameter that is divided by A² in the model is then that ratio. Without a
+    stated rated current 1, without a supply pressure one that never limits.
+    """
+    specimen = run.specimen or Specimen()
+    area = 1.0 if actuator.piston_area is None else actuator.piston_area
+    return {"Kp": run.Kp, "mL": specimen.mass, "k": specimen.stiffness, "cL": specimen.damping, "A": area,
+            "Ir": run.rated_current or 1.0, "Ps": actuator.supply_pressure or NEVER}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Stages in the order of the signal, the signal that each recordable channel shows, and the effects added.
+
+    Raises Unusable where an effect finds nothing to act on, or a signal in another unit than it is made for.
+    """
+
+    stages: tuple[Stage, ...]
+    outputs: Mapping[str, str]
+    effects: tuple[Effect, ...] = ()
+
+    def __post_init__(self) -> None:
+        for effect in self.effects:
+            if not self._core & {equation.target for equation in effect.equations}:
+                raise unfit(effect)
+            for signal, unit in effect.units.items():
+                if self.units.get(signal, unit) != unit:
+                    raise of_other_unit(effect, signal, self.units[signal])
+
+    def __hash__(self) -> int:
+        return hash((self.stages, tuple(self.outputs.items()), self.effects))
+
+    def with_effects(self, effects: tuple[Effect, ...]) -> Chain:
+        """The chain with these effects instead of its own."""
+        return replace(self, effects=effects)
+
+    @cached_property
+    def _core(self) -> frozenset[str]:
+        return frozenset(equation.target for stage in self.stages for equation in stage.equations)
+
+    @cached_property
+    def units(self) -> Mapping[str, str]:
+        """The unit of each state and signal, as its stage states it."""
+        return {quantity.name: quantity.unit for stage in self.stages for quantity in stage.publishes}
+
+    @cached_property
+    def equations(self) -> tuple[Equation, ...]:
+        """Every equation, stage by stage, each with the effects of its place behind it.
+
+        A signal that effects redefine has its last definition under its own name, those before as name__0, name__1 …
+        An effect's own quantities are called effect__name, a memory's value at the start of the step name__old.
+        """
+        return tuple(self._assembled())
+
+    def _assembled(self) -> Iterator[Equation]:
+        entries: list[tuple[Effect | None, Equation]] = []
+        for stage in self.stages:
+            entries += [(None, equation) for equation in stage.equations]
+            entries += [(e, equation) for e in self.effects if e.place == stage.place for equation in e.equations]
+        total = Counter(equation.target for _, equation in entries if equation.target in self._core)
+        so_far: Counter[str] = Counter()
+
+        def version(target: str, number: int) -> str:
+            return target if number == total[target] - 1 else f"{target}__{number}"
+
+        for effect, equation in entries:
+            target, names = equation.target, {}
+            if effect is not None:
+                names = _local_names(effect, equation, self._core)
+                redefined = {e.target for e in effect.equations} & self._core
+                names |= {name: version(name, so_far[name] - 1) for name in redefined & equation.names}
+            if target in self._core:
+                if so_far[target] and (equation.is_rate or equation.is_memory):
+                    raise unfit(effect) if effect else AssertionError(target)
+                own = version(target, so_far[target])
+                so_far[target] += 1
+            else:
+                own = effect.symbol(target) if effect else target
+            yield equation.renamed(names, own)
+
+    @cached_property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states, in the order of the state vector."""
+        return tuple(equation.target for equation in self.equations if equation.is_rate)
+
+    @cached_property
+    def memories(self) -> tuple[str, ...]:
+        """Names of the memories."""
+        return tuple(equation.target for equation in self.equations if equation.is_memory)
+
+    @cached_property
+    def symbols(self) -> tuple[str, ...]:
+        """What the equations read but do not define: parameters and conditions."""
+        defined = {equation.target for equation in self.equations} | {f"{name}__old" for name in self.memories}
+        read = frozenset().union(*(equation.names for equation in self.equations))
+        return tuple(sorted(read - defined - {INPUT, INPUT_RATE, FORCE, STEP, TIME}))
+
+    @cached_property
+    def signals(self) -> tuple[Equation, ...]:
+        """The equations of signals and memories, each after those that it reads.
+
+        Raises Unusable where signals depend on each other in a circle without a state between them.
+        """
+        equations = {equation.target: equation for equation in self.equations if not equation.is_rate}
+        needs = {name: _needs(equation) & equations.keys() for name, equation in equations.items()}
+        try:
+            order = tuple(TopologicalSorter(needs).static_order())
+        except CycleError as error:
+            circle = " → ".join(error.args[1])
+            raise Unusable("algebraic-loop", f"{circle} has no state", "chain", "put a lag between them") from None
+        return tuple(equations[name] for name in order)
+
+    @cached_property
+    def exponents(self) -> tuple[str, ...]:
+        """Symbols that stand as exponents: a number there is worth code of its own."""
+        powers = (node for e in self.equations for node in ast.walk(e.tree) if isinstance(node, ast.BinOp))
+        names = {p.right.id for p in powers if isinstance(p.op, ast.Pow) and isinstance(p.right, ast.Name)}
+        return tuple(sorted(names & set(self.symbols)))
+
+    def needed(self, output: str) -> tuple[Equation, ...]:
+        """Of the signals, in order, those that the rates, the memories or the channel `output` depend on."""
+        wanted = {self.signal(output), *self.memories}
+        wanted |= frozenset().union(*(equation.names for equation in self.equations if equation.is_rate))
+        kept = []
+        for equation in reversed(self.signals):
+            if equation.target in wanted:
+                kept.append(equation)
+                wanted |= equation.names
+        return tuple(reversed(kept))
+
+    def reads(self, name: str) -> bool:
+        """Whether a rate or memory depends on a quantity, or calls a function of this name."""
+        needed = (*self.needed(next(iter(self.outputs))), *(e for e in self.equations if e.is_rate))
+        return any(name in {n.id for n in ast.walk(e.tree) if isinstance(n, ast.Name)} for e in needed)
+
+    def signal(self, output: str) -> str:
+        """The signal that the channel `output` shows; raises Unusable with the channels there are."""
+        if output not in self.outputs:
+            raise Unusable(
+                "unknown-output",
+                f"the model does not produce {output!r}",
+                "output of a run",
+                f"choose one of {', '.join(self.outputs)} or another model",
+            )
+        return self.outputs[output]
+
+    @cached_property
+    def _evaluators(self) -> dict[str, Callable[..., tuple[tuple[Any, ...], Any]]]:
+        return {}
+
+    def evaluator(self, output: str) -> Callable[..., tuple[tuple[Any, ...], Any]]:
+        """The function (u, states, values) → (rates, output), compiled once from the checked equations.
+
+        `values` maps the names in :attr:`symbols` to numbers or arrays that broadcast against the states.
+        """
+        if output not in self._evaluators:
+            needed = self.needed(output)
+            read = frozenset().union(*(e.names for e in (*needed, *(e for e in self.equations if e.is_rate))))
+            lines = [f"    {name} = values[{name!r}]" for name in self.symbols if name in read]
+            lines += [
+                f"    ({', '.join(self.states)},) = states",
+                f"    {INPUT_RATE} = {FORCE} = {STEP} = {TIME} = 0.0",
+            ]
+            lines += [f"    {name}__old = 0.0" for name in self.memories]
+            lines += [f"    {equation.target} = {_still(equation)}" for equation in needed]
+            rates = ", ".join(equation.python for equation in self.equations if equation.is_rate)
+            returned = f"    return ({rates},), {self.signal(output)}"
+            source = "\n".join(["def evaluate(u, states, values):", *lines, returned])
+            namespace: dict[str, Any] = {"__builtins__": {}, **FUNCTIONS}
+            exec(compile(source, "<chain>", "exec"), namespace)  # own text, each name checked: equations.equation
+            self._evaluators[output] = namespace["evaluate"]
+        return self._evaluators[output]
+
+    def linearise(self, values: Mapping[str, Array | float], output: str = "displacement") -> LinearModel:
+        """State matrices by applying the equations to unit vectors: exact, because the cores are linear.
+
+        `values` holds every symbol, as numbers or arrays of one broadcast shape, which is that of the batch whether the
+        equations read them all or not; `output` is a channel's name.
+        """
+        evaluate, n = self.evaluator(output), len(self.states)
+        shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
+        system = np.zeros((n + 1, n + 1, *shape))
+        for j in range(n + 1):
+            unit = [float(i == j) for i in range(n)]
+            rates, shown = evaluate(float(j == n), unit, values)
+            for i, rate in enumerate(rates):
+                system[i, j] = rate
+            system[n, j] = shown
+        return LinearModel(system)
+
+    def pattern(self, output: str) -> tuple[tuple[bool, ...], ...]:
+        """Which entries of the system matrix can be other than zero, found at generic values of every symbol."""
+        generic = {name: np.sqrt(2.0 + i) for i, name in enumerate(self.symbols)}
+        return tuple(tuple(bool(entry) for entry in row) for row in self.linearise(generic, output).system)
+
+
+def linear_model(chain: Chain, values: Mapping[str, float], run: Run, actuator: Actuator) -> LinearModel:
+    """The linearised chain under the conditions of a run, as a batch of one."""
+    known = conditions(run, actuator) | dict(values)
+    return chain.linearise({name: np.array([known[name]]) for name in chain.symbols}, run.output)
+
+
+def unfit(effect: Effect) -> Unusable:
+    """The refusal of an effect that a model has no place for."""
+    return Unusable("effect-does-not-fit", "the model has nothing that it could act on", f"effect {effect.name}",
+                    "choose another effect, or a model that has its place")  # fmt: skip
+
+
+def of_other_unit(effect: Effect, signal: str, unit: str) -> Unusable:
+    """The refusal of an effect by a model whose signal has another unit than the effect is made for."""
+    here = "a plain number" if unit == "1" else f"in {unit}"
+    return Unusable("effect-does-not-fit", f"it redefines {signal} in {effect.units[signal]}, which is {here} here",
+                    f"effect {effect.name}", "choose another effect, or another model")  # fmt: skip
+
+
+def friction(equation: Equation) -> tuple[str, str, str, str] | None:
+    """(limit, speed, acceleration, mass) where the equation is ``f = dry(...)``, else None."""
+    tree = equation.tree
+    if isinstance(tree, ast.Call) and isinstance(tree.func, ast.Name) and tree.func.id == "dry":
+        limit, speed, acceleration, mass = (ast.unparse(argument) for argument in tree.args)
+        return limit, speed, acceleration, mass
+    return None
+
+
+def _needs(equation: Equation) -> frozenset[str]:
+    """What must be known before: dry friction does not wait for the acceleration, which is found without it first."""
+    found = friction(equation)
+    return frozenset({found[0], found[3]}) if found else equation.names
+
+
+def _still(equation: Equation) -> str:
+    return "0.0" if friction(equation) else equation.python
+
+
+def _local_names(effect: Effect, equation: Equation, core: frozenset[str]) -> dict[str, str]:
+    """Names of the effect's own quantities in the equations of the chain."""
+    own = {e.target for e in effect.equations} - core
+    memories = {e.target for e in effect.equations if e.is_memory}
+    names = {name: effect.symbol(name) for name in own}
+    names |= {parameter.symbol: effect.symbol(parameter.name) for parameter in effect.parameters}
+    if equation.is_memory:
+        names |= {name: f"{effect.symbol(name)}__old" for name in memories}
+    return names

@@ -1,0 +1,1 @@
+"""Runs and a fit in, measured beside model out."""

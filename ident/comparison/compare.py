@@ -1,0 +1,161 @@
+"""A fitted model beside the measurements, run by run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.signal
+from numpy.typing import NDArray
+
+from ident.bench.outputs import outputs as bench_outputs
+from ident.chain.chain import linear_model
+from ident.custom.definition import preset_with
+from ident.effects.effect import parameter_name
+from ident.errors import Unusable
+from ident.fit.output_error import OutputError
+from ident.fit.record import output
+from ident.fit.result import FitResult
+from ident.fit.space import Space
+from ident.linear import LinearModel
+from ident.matrix import Actuator, Matrix, Run
+from ident.parallel import each
+from ident.presets import Preset
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+_WINDOW = 1.0  # s: the length of a window of the spectral estimate, and with it its resolution of 1 Hz
+
+
+@dataclass(frozen=True)
+class RunComparison:
+    """One run: eq. (17), the offset, the model's output and the frequency responses.
+
+    `modelled` (n,) is in the run's own unit, beside ``run.measured``; `linear` is None for a model with effects.
+    """
+
+    run: Run
+    linear: LinearModel | None
+    modelled: Array
+
+    @cached_property
+    def error(self) -> float:
+        """Eq. (17): std(x_m − x) / std(x_m)."""
+        return float(np.std(self.run.measured - self.modelled) / np.std(self.run.measured))
+
+    @cached_property
+    def offset(self) -> float:
+        """Difference of the means over the standard deviation."""
+        return float(np.mean(self.run.measured - self.modelled) / np.std(self.run.measured))
+
+    @cached_property
+    def frequency(self) -> Array:
+        """Frequencies of the estimates in Hz, (f,), without zero."""
+        return np.asarray(self._spectra[0])
+
+    @cached_property
+    def measured(self) -> Complex:
+        """Measured frequency response, the H1 estimate S_ux / S_uu, (f,)."""
+        _, uu, _, ux = self._spectra
+        return np.asarray(ux / uu)
+
+    @cached_property
+    def coherence(self) -> Array:
+        """|S_ux|² / (S_uu S_xx), (f,)."""
+        _, uu, xx, ux = self._spectra
+        return np.asarray(np.abs(ux) ** 2 / (uu * xx))
+
+    @cached_property
+    def model(self) -> Complex:
+        """The model's frequency response, (f,); with effects, estimated from its output as the measured one is."""
+        if self.linear is not None:
+            return np.asarray(self.linear.frequency_response(self.frequency)[0])
+        _, uu, _, ux = self._spectra_of(self.modelled)
+        return np.asarray(ux / uu)
+
+    @cached_property
+    def _spectra(self) -> tuple[Array, Array, Array, Complex]:
+        return self._spectra_of(self.run.measured)
+
+    def _spectra_of(self, output: Array) -> tuple[Array, Array, Array, Complex]:
+        run = self.run
+        segment = min(run.length // 2, max(16, round(_WINDOW * run.sample_rate))) if run.time_unit == "s" else 256
+        options = {"fs": run.sample_rate, "nperseg": min(segment, run.length), "detrend": "constant"}
+        frequency, ux = scipy.signal.csd(run.command, output, **options)
+        _, uu = scipy.signal.welch(run.command, **options)
+        _, xx = scipy.signal.welch(output, **options)
+        used = slice(1, None)
+        return frequency[used], np.maximum(uu[used], 1e-300), np.maximum(xx[used], 1e-300), ux[used]
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All runs of a matrix against one fit."""
+
+    matrix: Matrix
+    fit: FitResult
+    runs: tuple[RunComparison, ...]
+
+    @property
+    def error(self) -> dict[str, float | None]:
+        """Eq. (17) averaged over the runs of each use."""
+        return {use: self._mean(use, "error") for use in ("fit", "verify")}
+
+    @property
+    def offset(self) -> dict[str, float | None]:
+        """The offset averaged over the runs of each use."""
+        return {use: self._mean(use, "offset") for use in ("fit", "verify")}
+
+    def _mean(self, use: str, what: str) -> float | None:
+        values = [getattr(run, what) for run in self.runs if run.run.use == use]
+        return float(np.mean(values)) if values else None
+
+
+def compare(matrix: Matrix, fit: FitResult) -> Comparison:
+    """Every run of the matrix against the fitted model. Raises Unusable where the fit is of another model's data."""
+    preset, matrix, values = fitted(fit, matrix)
+    if not preset.is_linear:
+        outputs = modelled(preset, values, matrix)
+        return Comparison(matrix, fit, tuple(RunComparison(run, None, outputs[run.id]) for run in matrix.runs))
+
+    def one(run: Run) -> RunComparison:
+        model = linear_model(preset.core, values, run, matrix.actuator)
+        return RunComparison(run, model, output(run, model))
+
+    return Comparison(matrix, fit, tuple(each(one, matrix.runs)))
+
+
+def modelled(preset: Preset, values: Mapping[str, float], matrix: Matrix) -> dict[str, Array]:
+    """The output of a model with effects for every run of a matrix, by the run's id."""
+    if preset.name == "kononykhin":
+        return bench_outputs(matrix, values)
+    nothing = Space((), tuple(values), values, {})
+    return OutputError(preset, matrix, matrix.runs, nothing, 0.0).outputs(np.empty(0))
+
+
+def fitted(fit: FitResult, matrix: Matrix) -> tuple[Preset, Matrix, dict[str, float]]:
+    """The model of a fit as it suits a matrix, the matrix with what drives it, and its values by equations' names.
+
+    Raises Unusable where a value is missing.
+    """
+    named = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
+    preset, driven = named.for_matrix(matrix, str(fit.settings.get("load", "none")))
+    values = {preset.parameter(name).name: value for name, value in fit.values.items()}
+    missing = [parameter_name(p.name) for p in preset.parameters if p.name not in values]
+    if missing:
+        raise Unusable("bad-fit", f"no value of {', '.join(missing)}", "fit", f"give a fit of model {fit.model}")
+    return preset, driven, values
+
+
+def response(fit: FitResult, run: Run, actuator: Actuator, frequency: Array) -> Complex:
+    """The frequency response (f,) of the fitted model's linear core at `frequency` in Hz.
+
+    For a run of the matrix, or one whose conditions were changed.
+    """
+    preset, matrix, values = fitted(fit, Matrix(actuator, (run,)))
+    if preset.core.memories:
+        raise Unusable("no-linear-core", f"the model {preset.name} has no linear core: its play acts at any amplitude",
+                       "frequency response", "use the figures of the bench")  # fmt: skip
+    return np.asarray(linear_model(preset.core, values, matrix.runs[0], actuator).frequency_response(frequency)[0])

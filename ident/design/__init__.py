@@ -1,0 +1,1 @@
+"""Models in question in, the run that tells them apart out."""

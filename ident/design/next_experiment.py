@@ -1,0 +1,219 @@
+"""The run that the lab should add: where the models in question differ most after refitting, or teach most.
+
+With y_a, y_b the outputs of two models, J the sensitivities of b, σ the noise and H what the runs there are say of b's
+parameters, the models differ after refitting b to first order, H holding it back, by
+
+    χ² = min over δ within the bounds of |y_a − y_b − J δ|²/σ² + δᵀ H δ
+
+and √χ² is the separation in standard deviations. With G = JᵀJ/σ² a run tells
+½ ln det(I + H⁻¹G) nats of the parameters (D-optimality).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import permutations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.design.candidate_runs import possible_runs
+from ident.design.contender import PRIOR, Contender, deviation_of_noise
+from ident.design.excitation import KINDS
+from ident.design.experiment import Experiment
+from ident.diagnosis.held_out import bounded_step
+from ident.errors import Unusable
+from ident.fit.record import Moments
+from ident.fit.reduction import excited_band
+from ident.matrix import Matrix, Run
+from ident.presets import Preset
+
+Array = NDArray[np.float64]
+_TRIAL = 4096  # samples on which runs are judged
+_SURE = 1e4  # χ² beyond which a pair is apart and does not count more
+_SEPARATE = 1.0  # standard deviations below which telling models apart is hopeless, and knowledge is sought instead
+_RUNAWAY = 10.0  # times the command's size: the model does not hold there
+
+
+@dataclass(frozen=True)
+class Worth:
+    """What a run is expected to tell: χ² of each pair of models, and the Fisher information of each model's own."""
+
+    experiment: Experiment
+    pairs: Array
+    information: float
+    std_errors: Mapping[str, float]
+
+    @property
+    def separation(self) -> float | None:
+        """Standard deviations between the two models that are closest."""
+        return float(np.sqrt(self.pairs.min())) if len(self.pairs) else None
+
+    @property
+    def rank(self) -> tuple[float, float]:
+        """The larger the better: pairs told apart, each up to certainty; then by how much."""
+        return float(np.minimum(self.pairs, _SURE).sum()), float(self.pairs.sum())
+
+
+def propose(
+    models: Sequence[tuple[Preset, Mapping[str, float]]], matrix: Matrix, noise: float, seed: int = 0
+) -> Experiment:
+    """The best further run for models in question, each a preset and its values by the names of its equations, SI.
+
+    `noise` is the relative noise floor. Raises Unusable where no model is given or none can be run.
+    """
+    contenders = _contenders(models, matrix, noise)
+    worths = _judged(contenders, list(possible_runs(contenders[0].matrix, contenders[0].band, seed)))
+    if not worths:
+        raise Unusable("no-experiment", "the models are stable in no run that could be proposed", "models",
+                       "fit the models again")  # fmt: skip
+    pairs = [worth.separation or 0.0 for worth in worths]
+    so_far = _so_far(contenders)
+    tells_apart = max(pairs) >= _SEPARATE
+    best = max(worths, key=lambda w: w.rank) if tells_apart else max(worths, key=lambda w: w.information)
+    typical = float(np.median(pairs)) if len(contenders) > 1 else None
+    found = replace(
+        best.experiment, separation=best.separation, so_far=so_far, typical=typical, information=best.information,
+        std_errors=best.std_errors,
+    )  # fmt: skip
+    return replace(found, text=_text(found, contenders, tells_apart))
+
+
+def ranked(
+    models: Sequence[tuple[Preset, Mapping[str, float]]], matrix: Matrix, noise: float, seed: int = 0
+) -> list[Worth]:
+    """Every run that was weighed, the one that separates the models best first."""
+    contenders = _contenders(models, matrix, noise)
+    worths = _judged(contenders, list(possible_runs(contenders[0].matrix, contenders[0].band, seed)))
+    return sorted(worths, key=lambda worth: worth.rank, reverse=True)
+
+
+def _contenders(models: Sequence[tuple[Preset, Mapping[str, float]]], matrix: Matrix, noise: float) -> list[Contender]:
+    if not models:
+        raise Unusable("no-model", "no model is in question", "models", "give at least one fitted model")
+    if not 0 < noise < np.inf:
+        raise Unusable("bad-value", f"noise {noise:g}", "noise floor", "give a positive share of the output")
+    found = []
+    for preset, values in models:
+        suited, driven = preset.for_matrix(matrix)
+        runs = driven.of_use("fit")
+        band = excited_band(runs)
+        found.append(Contender(suited, dict(values), driven, band, deviation_of_noise(runs, band, noise)))
+    return found
+
+
+# What a run would tell --------------------------------------------------------------------------------------------
+
+
+def _judged(contenders: Sequence[Contender], experiments: Sequence[Experiment]) -> list[Worth]:
+    first = contenders[0].matrix.runs[0]
+    length = min(_TRIAL / first.sample_rate, experiments[0].seconds) if experiments else 0.0
+    runs = [_run(e.lasting(length), str(i), first) for i, e in enumerate(experiments)]
+    outputs = [contender.outputs(runs) for contender in contenders]
+    sound = [i for i, run in enumerate(runs) if all(_sound(y[run.id], run) for y in outputs)]
+    if not sound:
+        return []
+    kept = [runs[i] for i in sound]
+    pairs = _pairs(contenders, kept, outputs, experiments[0].seconds / length)
+    own = [contender.moments(_recorded(kept, y)) for contender, y in zip(contenders, outputs, strict=True)]
+    worths = []
+    for place, i in enumerate(sound):
+        tells = [_told(c, m[place], runs[i], y, experiments[i].seconds / length)
+                 for c, m, y in zip(contenders, own, outputs, strict=True)]  # fmt: skip
+        worths.append(Worth(experiments[i], pairs[place], min(t[0] for t in tells), tells[0][1]))
+    return worths
+
+
+def _run(experiment: Experiment, name: str, like: Run) -> Run:
+    """A run that was not recorded yet."""
+    command = experiment.command()
+    still = np.zeros(len(command))
+    channels = {"command": command, like.output: still, "force": still}
+    return Run(name, "", experiment.sample_rate, channels, like.units, like.time_unit, experiment.specimen,
+               experiment.gain, kind=KINDS[experiment.signal], hold=like.hold, output=like.output)  # fmt: skip
+
+
+def _sound(y: Array, run: Run) -> bool:
+    size = np.std(run.command) if run.output == "displacement" else np.inf
+    return bool(np.all(np.isfinite(y)) and 0 < np.std(y) < _RUNAWAY * size)
+
+
+def _recorded(runs: Sequence[Run], outputs: Mapping[str, Array]) -> list[Run]:
+    """The runs as if a model were the machine."""
+    return [replace(run, channels={**run.channels, run.output: outputs[run.id]}) for run in runs]
+
+
+def _pairs(
+    contenders: Sequence[Contender], runs: Sequence[Run], outputs: Sequence[Mapping[str, Array]], longer: float
+) -> Array:  # fmt: skip
+    """χ² of each run and each pair of models, (runs, pairs), the mean of both being the machine."""
+    found: dict[frozenset[int], Array] = {}
+    for a, b in permutations(range(len(contenders)), 2):
+        moments = contenders[b].moments(_recorded(runs, outputs[a]))
+        sigma = [contenders[b].deviation(float(np.std(outputs[a][run.id]))) for run in runs]
+        known, point = contenders[b].information, contenders[b].point
+        chi = [_chi_squared(longer * m.gram / s**2, known, point) for m, s in zip(moments, sigma, strict=True)]
+        key = frozenset((a, b))
+        found[key] = found.get(key, 0.0) + 0.5 * np.array(chi)
+    return np.array(list(found.values())).T.reshape(len(runs), -1)
+
+
+def _chi_squared(gram: Array, known: Array, point: Array) -> float:
+    """What is left of the products of [J, r], in units of the noise, after the refit within the bounds."""
+    if not np.all(np.isfinite(gram)):
+        return 0.0
+    H, g = gram[:-1, :-1] + known, gram[:-1, -1]
+    step = bounded_step(point, H, -g)
+    return max(0.0, float(gram[-1, -1] - 2 * g @ step + step @ H @ step))
+
+
+def _told(
+    contender: Contender, m: Moments, run: Run, outputs: Mapping[str, Array], longer: float
+) -> tuple[float, dict[str, float]]:  # fmt: skip
+    """Nats that a run tells of a model's parameters, and the share of each standard error that is left."""
+    p, sigma = len(contender.point), contender.deviation(float(np.std(outputs[run.id])))
+    gram = longer * m.gram[:p, :p] / sigma**2
+    if not np.all(np.isfinite(gram)):
+        return 0.0, {}
+    before, after = contender.information, contender.information + gram
+    nats = 0.5 * (np.linalg.slogdet(after)[1] - np.linalg.slogdet(before)[1])
+    left = np.sqrt(np.diag(np.linalg.inv(after)) / np.diag(np.linalg.inv(before)))
+    return float(nats), {name: float(share) for name, share in zip(contender.names, left, strict=True)}
+
+
+def _so_far(contenders: Sequence[Contender]) -> float | None:
+    """The separation of the closest models by the runs there are, the mean of both being the machine."""
+    if len(contenders) < 2:
+        return None
+    found: dict[frozenset[int], float] = {}
+    for (i, a), (j, b) in permutations(enumerate(contenders), 2):
+        runs = [run for run in b.runs if run.starts_at_rest]
+        outputs = a.outputs(runs) if runs else {}
+        if not runs or not all(_sound(outputs[run.id], run) for run in runs):
+            return None
+        moments = b.moments(_recorded(runs, outputs))
+        sigma = [b.deviation(float(np.std(outputs[run.id]))) for run in runs]
+        gram = np.sum([m.gram / s**2 for m, s in zip(moments, sigma, strict=True)], axis=0)
+        longer = sum(run.length for run in b.matrix.of_use("fit")) / sum(run.length for run in runs)
+        chi = _chi_squared(longer * gram, PRIOR * np.eye(len(b.point)), b.point)
+        found[frozenset((i, j))] = found.get(frozenset((i, j)), 0.0) + 0.5 * chi
+    return float(np.sqrt(min(found.values())))
+
+
+def _text(found: Experiment, contenders: Sequence[Contender], tells_apart: bool) -> str:
+    names = [" + ".join(e.name for e in c.preset.effects) or "no effect" for c in contenders]
+    if tells_apart and found.separation is not None:
+        listed = " and ".join([", ".join(names[:-1]), names[-1]])
+        said = f"After refitting, {listed} then differ by {found.separation:.3g} standard deviations"
+        said += " of the noise"
+        if found.so_far is not None:
+            said += f"; the runs so far tell them apart by {found.so_far:.3g}"
+        return f"Run a {found.conditions}. {said}, a typical other run by {found.typical or 0:.3g}."
+    best = sorted(found.std_errors.items(), key=lambda item: item[1])[:2]
+    left = " and ".join(f"that of {name} to {100 * share:.0f} %" for name, share in best)
+    why = " No run that could be made tells the models apart." if len(contenders) > 1 else ""
+    return (
+        f"Run a {found.conditions}.{why} It tells {found.information:.2g} nats of the parameters: of the standard "
+        f"errors, {left} of what it is."
+    )

@@ -1,0 +1,196 @@
+"""What is missing from a fitted model: effects ranked, added while they help, and what is left."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.bench.diagnosis import diagnose_bench
+from ident.diagnosis.addition import MOST, USUAL, Addition
+from ident.diagnosis.advice import error_budget, next_run
+from ident.diagnosis.chance import gain
+from ident.diagnosis.models import Models, Refit
+from ident.diagnosis.ranking import Candidate
+from ident.diagnosis.result import Diagnosis, Found, Ranked, Rung, Verdict
+from ident.diagnosis.suspects import Suspect, suspects
+from ident.diagnosis.words import verdict_text, why
+from ident.effects.effect import Effect, parameter_name
+from ident.errors import Unusable
+from ident.fit.identify import identify
+from ident.fit.reduction import excited_band
+from ident.fit.result import FitResult
+from ident.fit.settings import Settings
+from ident.fit.space import Space
+from ident.fit.uncertainty import covariance
+from ident.matrix import Matrix
+from ident.progress import Expected, Progress, Report, silent
+
+_NOISE_LIKE = 0.5  # correlation of neighbouring residuals that noise may have, where there is no floor
+
+
+def diagnose(
+    matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None, most: int = USUAL,
+    custom: Sequence[Effect] = (), report: Report = silent,
+) -> Diagnosis:  # fmt: skip
+    """Rank what the fitted model lacks, add what helps beyond chance, and say what is left.
+
+    Without a `fit` the model of `settings` is fitted first. `most` is the largest number of effects to add, `custom`
+    are effects beside the catalogue's. Verify runs only report. Raises Unusable where matrix, fit or settings do not
+    go together.
+    """
+    begun = time.monotonic()
+    if not 0 <= most <= MOST:
+        raise Unusable("bad-option", f"{most} effects", "max-effects", f"give 0 to {MOST}")
+    fit = fit or identify(matrix, settings or Settings(), report)
+    if fit.model == "kononykhin":
+        return diagnose_bench(matrix, fit, most, report)
+    given = replace(Settings.from_json(dict(fit.settings)), effects=()) if fit.settings else Settings(model=fit.model)
+    models = Models.of(matrix, given, excited_band(matrix.of_use("fit")), custom)
+    work = Work(models, fit, most, report)
+    found = work.diagnosis()
+    work.tell(Progress("next run", 0, 1))
+    advised = replace(found, budget=error_budget(matrix, fit), next_experiment=next_run(matrix, found, custom))
+    return replace(advised, seconds=time.monotonic() - begun)
+
+
+class Work:
+    """One diagnosis: the additions, the suspects, and what is said of them."""
+
+    def __init__(self, models: Models, fit: FitResult, most: int, report: Report) -> None:
+        self.models, self.fit, self.most, self.report = models, fit, most, report
+        self.expected: tuple[Expected, ...] = ()
+
+    def diagnosis(self) -> Diagnosis:
+        """The whole of it."""
+        addition = self._added(self.models)
+        doubted = self._doubted(addition)
+        if doubted:
+            addition = self._added(self.models.without(suspect.run for suspect in doubted))
+            doubted = self._doubted(addition)
+        ladder = self._ladder(addition)
+        floor = addition.models.floors.of_use(self.models.matrix)
+        unexplained = self._unexplained(addition)
+        groups = tuple(tuple(c.effect for c in group) for group in addition.groups.values() if len(group) > 1)
+        base = addition.base
+        text = verdict_text(addition.added, groups, doubted, unexplained, ladder[-1].error, base.error,
+                            repeats=addition.models.floors.measured)  # fmt: skip
+        return Diagnosis(
+            model=self.fit.model,
+            given=base.effects,
+            baseline={"error": dict(ladder[0].error), "offset": base.offset},
+            noise_floor=floor,
+            candidates=tuple(self._ranked(addition, floor["fit"])),
+            ladder=tuple(ladder),
+            verdict=Verdict(addition.added, groups, tuple(doubted), unexplained, text),
+            seed=self.fit.seed,
+            version=version("servoident"),
+            data_hash=self.models.matrix.data_hash,
+            settings=dict(self.fit.settings),
+        )  # fmt: skip
+
+    def _added(self, models: Models) -> Addition:
+        preset = models.model(self.fit.effects)
+        start = {preset.parameter(name).name: value for name, value in self.fit.values.items()}
+        base = models.refit(tuple(self.fit.effects), start)
+        if not base.finite:
+            raise Unusable("bad-fit", "the fitted model is unstable on a run", "fit", "fit the model to this matrix")
+        return Addition(models, base, self.most, self.tell).run()
+
+    def tell(self, progress: Progress) -> None:
+        """Report; the first sight of the fitted model stays with all that follows."""
+        self.expected = self.expected or progress.expected
+        self.report(replace(progress, expected=self.expected))
+
+    def _doubted(self, addition: Addition) -> list[Suspect]:
+        self.tell(Progress("labels", 0, 1))
+        return suspects(addition.models, addition.found, self.models.floors.by_run)
+
+    # What is said ----------------------------------------------------------------------------------------------
+
+    def _errors(self, models: Models, refit: Refit) -> dict[str, float | None]:
+        verify = models.matrix.of_use("verify")
+        on_verify = None
+        if verify:
+            here = refit.fitness.fresh(verify).exact(refit.point, sensitivities=False)
+            errors = [run.error for run in here.runs]
+            on_verify = float(np.mean(errors)) if np.all(np.isfinite(errors)) else None
+        return {"fit": refit.error, "held_out": refit.held_out.error, "verify": on_verify}
+
+    def _parameters(self, models: Models, refit: Refit) -> dict[str, Found]:
+        preset = models.model(refit.effects)
+        known = covariance(refit.here, refit.point, np.empty((0, len(refit.point))))
+        found = {}
+        for parameter in preset.parameters:
+            name = parameter.name
+            error = None
+            if name in refit.space.names:
+                error = known.deviation(partial(_value_of, refit.space, name))
+                error = error if np.isfinite(error) and error < 1e3 * max(abs(refit.values[name]), 1e-300) else None
+            found[parameter_name(name)] = Found(refit.values[name], parameter.unit, error, parameter.symbol)
+        return found
+
+    def _ranked(self, addition: Addition, floor: float | None) -> list[Ranked]:
+        base, models = addition.base, addition.models
+        alike = tuple(candidate.effect for candidate in addition.alike())
+        group = alike if len(alike) > 1 else ()
+        listed = []
+        for i, candidate in enumerate(addition.ranking):
+            refit = candidate.refit
+            errors: Mapping[str, float | None] = {"fit": None, "held_out": None, "verify": None}
+            listed.append(Ranked(
+                effect=candidate.effect,
+                error=self._errors(models, refit) if refit else errors,
+                offset=refit.held_out.offset if refit else None,
+                predicted_error=base.error * candidate.prediction.share,
+                parameters=self._parameters(models, refit) if refit else {},
+                group=group if candidate.effect in group else (),
+                evidence=_evidence(candidate, models.effects[candidate.effect]),
+                why=why(candidate, models.effects[candidate.effect], base.held_out.error, floor, i == 0),
+            ))  # fmt: skip
+        return listed
+
+    def _ladder(self, addition: Addition) -> list[Rung]:
+        rungs: list[Rung] = []
+        before: Refit | None = None
+        for added, refit in addition.ladder():
+            found = None if before is None else gain(before.held_out, refit.held_out).nats
+            rungs.append(Rung(added, self._errors(addition.models, refit), refit.held_out.offset,
+                              self._parameters(addition.models, refit), found))  # fmt: skip
+            before = refit
+        return rungs
+
+    def _unexplained(self, addition: Addition) -> bool:
+        """Whether the error is still above the noise: its floor, or where that is not known, its lack of memory."""
+        found, models = addition.found, addition.models
+        if models.floor is not None:
+            return not models.at_floor(found)
+        outputs = found.fitness.outputs(found.point)
+        residuals = [run.measured - outputs[run.id] for run in models.runs]
+        memory = [float(np.corrcoef(r[1:], r[:-1])[0, 1]) for r in residuals]
+        return bool(np.median(memory) > _NOISE_LIKE)
+
+
+def _value_of(space: Space, name: str, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    return space.values(points)[name]
+
+
+def _evidence(candidate: Candidate, effect: Effect) -> dict[str, Any]:
+    found = candidate.gain
+    return {
+        "predicted_fall": candidate.prediction.fall,
+        "confirmed": candidate.refit is not None,
+        "fall": found.share if found else None,
+        "deviations": found.deviations if found else None,
+        "nats": found.nats if found else None,
+        "nats_without_best_run": found.nats_without if found else None,
+        "offset_nats": found.offset if found else None,
+        "beyond_chance": found.beyond_chance if found else None,
+        "looks": effect.looks,
+    }

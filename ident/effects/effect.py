@@ -1,0 +1,70 @@
+"""A physical effect that a chain may lack: one strength, off at zero, at one place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from ident.equations.equation import Equation
+from ident.errors import Unusable
+from ident.parameter import Parameter
+from ident.stages import PLACES
+
+
+@dataclass(frozen=True)
+class Effect:
+    """What is added to the chain at `place`.
+
+    `strength` is the parameter with which the effect is off at 0: the chain is then exactly unchanged. `shape` are its
+    other parameters, held at their defaults unless a fit is told to free them. `equations` redefine signals of the
+    chain and give the rates and memories of the effect's own states. An equation reads a signal that its effect
+    redefines as it was left by what stands before, every other name in its final value, and a memory of the effect in
+    the equation of a memory as it was at the start of the step. `units` are those of the signals of the chain that it
+    redefines, for which its strength is made: a chain that has such a signal in another unit refuses it. `looks` says
+    what the effect looks like in data, `steps` into how many a sample has to be divided so that its kinks are met
+    closely enough, `stride` by which share of its range its strength is moved for a sensitivity: far where it acts in
+    jumps.
+
+    Raises Unusable where place or strength are not of that form.
+    """
+
+    name: str
+    place: str
+    meaning: str
+    strength: Parameter
+    texts: tuple[str, ...]
+    shape: tuple[Parameter, ...] = ()
+    looks: str = ""
+    source: str = ""
+    steps: int = 1
+    stride: float = 1e-5
+    units: Mapping[str, str] = field(default_factory=dict, hash=False)
+
+    def __post_init__(self) -> None:
+        _ = self.equations
+        if self.place not in PLACES or not self.name.isidentifier() or "__" in self.name:
+            raise Unusable("bad-effect", f"place {self.place!r}", f"effect {self.name!r}",
+                           f"choose a place from {', '.join(PLACES)} and an identifier as name")  # fmt: skip
+        if self.strength.value != 0 or not self.strength.lower <= 0 <= self.strength.upper:
+            raise Unusable("bad-effect", "0 is not in the bounds of the strength, or not its default",
+                           f"effect {self.name!r}", "let the strength be 0 where the effect is off")  # fmt: skip
+
+    @cached_property
+    def equations(self) -> tuple[Equation, ...]:
+        """The equations, parsed and checked."""
+        return tuple(Equation(text, self.place, self.meaning) for text in self.texts)
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Strength and shape."""
+        return (self.strength, *self.shape)
+
+    def symbol(self, name: str) -> str:
+        """The name of one of its parameters or own quantities in the equations of a whole chain."""
+        return f"{self.name}__{name}"
+
+
+def parameter_name(symbol: str) -> str:
+    """The name of an effect's parameter to the user: ``dead_zone__h`` → ``dead_zone.h``; others stay as they are."""
+    return symbol.replace("__", ".")

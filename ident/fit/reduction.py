@@ -1,0 +1,279 @@
+"""A run, reduced once to what eq. (17) needs of it for every linear model.
+
+The response of a stable linear chain is a combination of the responses of a fixed set of rational filters (a
+generalised orthonormal basis; Heuberger, Van den Hof, Wahlberg 2005). Each run's command is filtered once, sample by
+sample from the start of the record, so that start and end are exact and nothing is periodic or windowed. What is kept
+is a small matrix: with g = [Re G(jω_i), Im G(jω_i)] at fixed nodes ω_i,
+
+    Σ_k (x_m − x)² = |W g − d|² + rest
+
+holds for any model whose G the filters can represent; :meth:`Basis.doubt` says how far one is from that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.fft
+import scipy.signal
+from numba import njit
+from numpy.typing import NDArray
+
+from ident.linear import LinearModel
+from ident.matrix import Run
+from ident.parallel import each
+from ident.simulation.recursion import Recursion, discretise, responses
+
+Array = NDArray[np.float64]
+
+# All in units of the band edge W. Poles on a line of real part −0.12, 0.07 apart, resolve poles of the model down to a
+# damping of about 0.06 W; three real poles take the slow and the fast ends. Found by scanning random models in the
+# bounds of Table 2: error of representation 2e-5 at Table 4, below 1e-3 everywhere (docs/accuracy.md).
+_PAIR_DAMPING, _PAIR_SPACING, _PAIR_REACH = 0.12, 0.07, 1.5
+_PAIRS = np.arange(_PAIR_SPACING / 2, _PAIR_REACH, _PAIR_SPACING)
+_REAL = (0.03, 2.0, 5.0)
+_NODES, _NODE_REACH, _BEYOND_BAND = 44, 1.6, 0.1
+_CHECKS = 4
+
+
+@dataclass(frozen=True)
+class Basis:
+    """Filters and frequency nodes for commands with power up to `band` (rad/s)."""
+
+    band: float
+
+    @property
+    def pairs(self) -> int:
+        """The filters that come in pairs; they stand first."""
+        return 2 * len(_PAIRS)
+
+    @cached_property
+    def filters(self) -> LinearModel:
+        """m filters of two states: (s + σ)/D and ω/D for each pair, D = (s + σ)² + ω², and β/(s + β)."""
+        sigma = _PAIR_DAMPING * self.band
+        omega = _PAIRS * self.band
+        beta = np.array(_REAL) * self.band
+        pairs, m = self.pairs, self.pairs + len(beta)
+        A, B, C = np.zeros((m, 2, 2)), np.zeros((m, 2)), np.zeros((m, 2))
+        A[:pairs, 0, 0] = A[:pairs, 1, 1] = -sigma
+        A[:pairs, 0, 1], A[:pairs, 1, 0] = np.repeat(omega, 2), -np.repeat(omega, 2)
+        B[:pairs, 0] = self.band
+        C[0:pairs:2, 0] = C[1:pairs:2, 1] = 1.0
+        A[pairs:, 0, 0], A[pairs:, 1, 1] = -beta, -self.band
+        B[pairs:, 0], C[pairs:, 0] = beta, 1.0
+        return LinearModel.of(A, B, C, np.zeros(m))
+
+    @cached_property
+    def nodes(self) -> Array:
+        """Frequencies (rad/s) at which a model is evaluated: those that represent it, then those that check it."""
+        fit = (np.arange(_NODES) + 0.5) / _NODES * _NODE_REACH
+        check = (np.arange(_CHECKS) + 0.4) / _CHECKS
+        return np.concatenate([fit, check]) * self.band
+
+    @cached_property
+    def _at_nodes(self) -> NDArray[np.complex128]:
+        return self.filters.frequency_response(self.nodes / (2 * np.pi)).T
+
+    @cached_property
+    def expansion(self) -> Array:
+        """The filters' coefficients from the values at the nodes, (m, 2·nodes): least squares, the band counts most."""
+        weight = np.where(self.nodes[:_NODES] <= self.band, 1.0, _BEYOND_BAND)
+        F = self._at_nodes[:_NODES] * weight[:, None]
+        inverse = np.linalg.pinv(np.vstack([F.real, F.imag]), rcond=1e-8) * np.tile(weight, 2)
+        full = np.zeros((len(inverse), 2, len(self.nodes)))
+        full[:, :, :_NODES] = inverse.reshape(-1, 2, _NODES)
+        return full.reshape(len(inverse), -1)
+
+    @cached_property
+    def check(self) -> Array:
+        """Rows that tell how far a model is from being represented, (2·checks, 2·nodes).
+
+        Values of the expansion at the checking nodes minus the model's own: zero for a model it can represent.
+        """
+        F = self._at_nodes[_NODES:]
+        total = len(self.nodes)
+        residual = np.vstack([F.real, F.imag]) @ self.expansion
+        rows = np.arange(_CHECKS)
+        residual[rows, _NODES + rows] -= 1.0
+        residual[_CHECKS + rows, total + _NODES + rows] -= 1.0
+        return residual
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """One run, reduced: W (r, 2·nodes), d (r,), `rest` and `total` = Σ (x_m − mean)², in the output's unit squared."""
+
+    W: Array
+    d: Array
+    rest: float
+    total: float
+
+    def errors(self, g: Array, basis: Basis) -> tuple[Array, Array]:
+        """Eq. (17) of models given by their values at the nodes, (v, 2·nodes) → (v,), and their doubt.
+
+        The doubt is how far a model is from being represented by the basis, relative to its size.
+        """
+        errors, doubt = np.empty(len(g)), np.empty(len(g))
+        _reduce(g, self.W, self.d, self.rest / self.total, 1.0 / self.total, basis.check, errors, doubt)
+        return errors, doubt
+
+
+@njit(cache=True, fastmath=True, nogil=True)
+def _reduce(g, W, d, rest, unit, check, errors, doubt):  # type: ignore[no-untyped-def]
+    outputs, misfits = np.dot(g, W.T), np.dot(g, check.T)
+    half, checks = g.shape[1] // 2, len(check)
+    for v in range(len(g)):
+        distance, misfit, size = 0.0, 0.0, 1e-300
+        for row in range(len(d)):
+            distance += (outputs[v, row] - d[row]) ** 2
+        for row in range(checks):
+            misfit += misfits[v, row] ** 2
+        for k in range(checks // 2):  # the checking nodes stand last, real parts and imaginary parts
+            size += g[v, half - 1 - k] ** 2 + g[v, 2 * half - 1 - k] ** 2
+        errors[v] = np.sqrt(distance * unit + rest)
+        doubt[v] = np.sqrt(misfit / size)
+
+
+def excited_band(runs: Sequence[Run]) -> float:
+    """The angular frequency (rad/s) up to which the commands excite the machine.
+
+    1.25 times that below which every command has 99 % of its power: the rest may be the recorder's own noise, spread
+    over all frequencies, and must not stretch the basis.
+    """
+
+    def edge(run: Run) -> float:
+        segment = min(run.length, max(256, run.length // 4), 16384)
+        frequency, power = power_density(run.command, run.sample_rate, segment)
+        share = np.cumsum(power)
+        return float(frequency[max(1, np.searchsorted(share, 0.99 * share[-1]))])
+
+    edges = each(edge, runs)
+    nyquist = max(run.sample_rate for run in runs) / 2
+    return 2 * np.pi * min(1.25 * max(edges), 0.9 * nyquist)
+
+
+def spectrum(run: Run, basis: Basis) -> Spectrum:
+    """Reduce a run. What no model of the command can explain is projected out first: the mean and, in a record that
+    starts moving, the decay of whatever state it started in."""
+    columns, (gram, rounding) = len(basis.filters.D), _gram(run, basis)
+    kept, nuisance = slice(0, columns + 1), slice(columns + 1, None)
+    values, vectors = np.linalg.eigh(gram[nuisance, nuisance])
+    sound = values > 1e-12 * values[-1]
+    projection = gram[kept, nuisance] @ (vectors[:, sound] / np.sqrt(values[sound]))
+    mean_free = gram[columns, columns] - gram[columns, -1] ** 2 / gram[-1, -1]
+    gram = gram[kept, kept] - projection @ projection.T
+    values, vectors = np.linalg.eigh(gram[:columns, :columns])
+    sound = values > max(1e-13, rounding) * values[-1]
+    root = np.sqrt(values[sound])
+    d = (vectors[:, sound].T @ gram[:columns, columns]) / root
+    # Rows of W that no model of ordinary size can make felt are dropped: their share of d is part of the rest.
+    left, strength, right = np.linalg.svd((vectors[:, sound] * root).T @ basis.expansion, full_matrices=False)
+    felt = strength > 1e-6 * strength[0]
+    d = left[:, felt].T @ d
+    W = strength[felt, None] * right[felt]
+    return Spectrum(W, d, max(float(gram[columns, columns] - d @ d), 0.0), float(mean_free))
+
+
+def _gram(run: Run, basis: Basis) -> tuple[Array, float]:
+    """Sums of products of [filtered command, record, decays from a moving start, 1], (q, q), and their relative error.
+
+    Only the products of the filters with command, record and 1 are summed sample by sample; see :func:`_products`.
+    """
+    filters = discretise(basis.filters, run.sample_rate, run.hold)
+    systems = filters if run.starts_at_rest else filters.beside(_decays(filters))
+    # The mean of a record would cost digits in the sums of squares, so it goes first; the model is blind to it anyway.
+    measured = run.measured - run.measured.mean()
+    now, then = np.append(run.command[:-1], 0.0), np.append(run.command[1:], 0.0)
+    beside = np.column_stack([now, then, measured, np.ones(run.length)])
+    sums, last = np.zeros((len(systems.D), 4)), np.zeros(len(systems.D))
+    for rows, begin, end in responses(systems, run.command):
+        sums += (rows.T @ beside[begin:end])[: len(sums)]
+        last = rows[-1, : len(sums)].copy()
+    record = beside.T @ beside
+    gram = np.block(
+        [[_products(systems, sums, last, record, basis.pairs), sums[:, 2:]], [sums[:, 2:].T, record[2:, 2:]]]
+    )
+    columns, count = len(filters.D), len(systems.D)
+    order = [*range(columns), count, *range(columns, count), count + 1]
+    slowest = float(1.0 - np.abs(systems.phi[:, 0, 0]).max() ** 2)  # a filter's sums are divided by this
+    return gram[np.ix_(order, order)], np.finfo(float).eps / slowest
+
+
+def _products(systems: Recursion, sums: Array, last: Array, record: Array, pairs: int) -> Array:
+    """Σ_k x_i[k] x_j[k] of n filters over a record of N samples in closed form, (n, n).
+
+    Each is x = Re c of a complex filter of first order, c[k+1] = φ c[k] + γ0 u[k] + γ1 u[k+1]: in a pair x_i is the
+    real part of one and its partner the imaginary part, with a sign. The recursion, multiplied by that of another
+    filter and summed over the samples, gives S = Σ c_i c_j from what is known:
+
+        (1 − φi φj) S = ci[0] cj[0] − φi φj ci[N−1] cj[N−1] + φi Σ c_i w_j + φj Σ w_i c_j + Σ w_i w_j,
+
+    w[k] = γ0 u[k] + γ1 u[k+1]; the last three sums go to N − 2. Likewise with c_j conjugate; half the sum of both is
+    the product of the real parts. `sums` (n, ≥2) are those of x with u[k] and u[k+1], `record` (≥2, ≥2) those of the
+    command with itself.
+    """
+
+    def with_partner(x: Array) -> NDArray[np.complex128]:
+        partner = np.zeros_like(x)
+        for start in range(0, len(x), pairs + len(_REAL)):  # the filters, then their decays
+            even, odd = x[start : start + pairs : 2], x[start + 1 : start + pairs : 2]
+            partner[start : start + pairs : 2], partner[start + 1 : start + pairs : 2] = -odd, even
+        return x + 1j * partner
+
+    def shown(states: Array) -> NDArray[np.complex128]:
+        return with_partner(np.einsum("in,in->i", systems.C, states))
+
+    pole = systems.phi[:, 0, 0] - 1j * systems.phi[:, 1, 0]
+    drive = np.stack([shown(systems.gamma0), shown(systems.gamma1)], axis=1)
+    start, end, driven = shown(systems.start), with_partner(last), with_partner(sums[:, :2])
+    total = np.zeros((len(pole), len(pole)))
+    for conjugate in (False, True):
+        other = np.conj if conjugate else np.asarray
+        through = np.outer(pole, other(pole))
+        inputs = drive @ record[:2, :2] @ other(drive).T
+        mixed = pole[:, None] * (driven @ other(drive).T) + other(pole) * (drive @ other(driven).T)
+        known = np.outer(start, other(start)) - through * np.outer(end, other(end)) + mixed + inputs
+        total += 0.5 * (known / (1.0 - through)).real
+    return total
+
+
+def _decays(filters: Recursion) -> Recursion:
+    """The filters without input, released from their first state."""
+    start = np.zeros_like(filters.start)
+    start[:, 0] = 1.0
+    still = np.zeros_like(filters.gamma0)
+    return Recursion(filters.phi, still, still, filters.C, filters.D, start)
+
+
+def power_density(signal: Array, sample_rate: float, segment: int) -> tuple[Array, Array]:
+    """One-sided power density of a signal by Welch's method: frequencies in Hz, density in the signal's unit² per Hz.
+
+    Hann windows of `segment` samples, each overlapping the next by half, each without its own mean (Welch 1967). As
+    :func:`scipy.signal.welch`, segment by segment in memory that stays in the cache.
+    """
+    window, starts = (
+        scipy.signal.get_window("hann", segment),
+        range(0, len(signal) - segment + 1, segment - segment // 2),
+    )
+    part, power = np.empty(segment), np.zeros(segment // 2 + 1)
+    for first in starts:
+        piece = signal[first : first + segment]
+        np.subtract(piece, piece.mean(), out=part)
+        part *= window
+        found = scipy.fft.rfft(part)
+        power += found.real**2 + found.imag**2
+    power[1 : len(power) - (segment + 1) % 2] *= 2.0  # all but zero and, where it is there, the Nyquist frequency
+    scale = sample_rate * np.sum(window**2) * len(starts)
+    frequency = np.arange(len(power)) * (sample_rate / segment)
+    return np.asarray(frequency, dtype=np.float64), np.asarray(power / scale, dtype=np.float64)
+
+
+def within(signal: Array, sample_rate: float, low: float | None, high: float | None) -> Array:
+    """What a signal (n, ...) has between two frequencies in Hz, along its first axis, without any lag."""
+    spectrum = scipy.fft.rfft(signal, axis=0)
+    frequency = np.fft.rfftfreq(len(signal), 1 / sample_rate)
+    spectrum[(frequency < (low or 0.0)) | (frequency > (np.inf if high is None else high))] = 0.0
+    return np.asarray(scipy.fft.irfft(spectrum, len(signal), axis=0))

@@ -1,0 +1,1 @@
+"""Runs in, how much of them is noise out."""

@@ -1,0 +1,141 @@
+"""The noise floor: how small eq. (17) can become on a run.
+
+Where a command was measured twice, noise is what does not repeat. Without repeats it is read off the record where the
+command has no power.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.fit.reduction import power_density
+from ident.matrix import USES, Matrix, Run
+from ident.noise.effective_sample_size import independent_samples
+from ident.parallel import each
+
+Array = NDArray[np.float64]
+_CLEAR = 1.6  # times the band edge: beyond it a Hann window lets less than 1e-6 of the band's power through
+_LEAST = 0.2  # of the Nyquist frequency must be left above that, to average over
+_UPPER_HALF = 0.5  # of the spectrum shows the noise
+_SAME = 1e-3  # relative difference of two commands that are one
+_GLANCE = 64  # samples that show most commands to be different
+_SETTLED = 0.1  # of a record, in which the states that it begins with die away
+_FEW, _OF_ONE_SIZE = 3, 0.02  # records, and their spread in logarithms, from which nothing is told of the noise's size
+
+
+def noise_floor(run: Run, band: float) -> float | None:
+    """Standard deviation of white measurement noise over that of the measured output; None where it cannot be told.
+
+    The power density of the record above `band` (rad/s, where the command ends) is taken for the noise's at all
+    frequencies: exact for white noise, a lower bound for noise that lives in the band.
+    """
+    nyquist, clear = run.sample_rate / 2, _CLEAR * band / (2 * np.pi)
+    if clear > (1 - _LEAST) * nyquist or run.length < 256:
+        return None
+    segment = min(run.length, 8192)
+    frequency, power = power_density(run.measured, run.sample_rate, segment)
+    # Kinks of friction and dead zones reach far beyond the command's band; half-way up they are gone.
+    density = float(np.mean(power[(frequency > max(clear, nyquist / 2)) & (frequency < 0.98 * nyquist)]))
+    return float(np.sqrt(density * nyquist) / np.std(run.measured))
+
+
+def by_spectrum(runs: Sequence[Run], band: float) -> list[float | None]:
+    """The noise floor that the spectrum of each run tells."""
+    return each(lambda run: noise_floor(run, band), runs)
+
+
+@dataclass(frozen=True)
+class Floors:
+    """The noise floor of each run by its id, as a fraction like eq. (17), and how well it is known.
+
+    `told_by` is the number of independent samples that tell it, `fresh` the share of a run's samples that are
+    independent where there is nothing but noise; `measured` is true where repeats tell it, not the spectra.
+    """
+
+    by_run: Mapping[str, float | None]
+    told_by: float
+    fresh: float = 1.0
+    measured: bool = False
+
+    def of_use(self, matrix: Matrix) -> Mapping[str, float | None]:
+        """Averaged over the runs of each use; None where it cannot be told of every run."""
+        return {use: self.mean(matrix.of_use(use)) for use in USES}
+
+    def mean(self, runs: Sequence[Run]) -> float | None:
+        """Averaged over runs; None where it cannot be told of every one."""
+        known = [floor for run in runs if (floor := self.by_run[run.id]) is not None]
+        return float(np.mean(known)) if known and len(known) == len(runs) else None
+
+    def spread(self, samples: int) -> float:
+        """The relative standard deviation of noise over so many samples about its floor."""
+        return float(np.sqrt(0.5 / (self.fresh * samples) + 0.5 / self.told_by))
+
+
+def noise_floors(runs: Sequence[Run], band: float, left_out: Collection[str] = ()) -> Floors:
+    """The noise floors of runs whose command ends at `band` (rad/s); `left_out` are ids that are not trusted.
+
+    From repeats: half the power of their difference, the median over the pairs, for all runs; in the unit of the
+    displacement or in proportion to it, as the pairs say, or where these are few, the spectra.
+    """
+    pairs = repeated([run for run in runs if run.id not in left_out])
+    if not pairs:
+        told_by = _UPPER_HALF * sum(run.length for run in runs if run.use == "fit")
+        seen = zip(runs, by_spectrum(runs, band), strict=True)
+        return Floors({run.id: floor for run, floor in seen}, max(told_by, 1.0))
+    differences = [_settled(a.measured, b) - _settled(b.measured, a) for a, b in pairs]
+    told_by = sum(independent_samples(difference) for difference in differences)
+    powers = np.array([0.5 * np.var(difference) for difference in differences])
+    shares = powers / [0.5 * (np.var(a.measured) + np.var(b.measured)) for a, b in pairs]
+    sizes = np.array([np.std(run.measured) for run in runs])
+    steady = like_transducer(np.sqrt(powers / shares), list(np.sqrt(shares)))
+    if steady is None:
+        steady = like_transducer(sizes, by_spectrum(runs, band))
+    floors = np.full(len(runs), np.sqrt(np.median(shares))) if steady is False else np.sqrt(np.median(powers)) / sizes
+    by_run = {run.id: float(floor) for run, floor in zip(runs, floors, strict=True)}
+    return Floors(by_run, told_by, told_by / sum(map(len, differences)), measured=True)
+
+
+def repeated(runs: Sequence[Run]) -> list[tuple[Run, Run]]:
+    """Pairs of runs of one use, specimen, gain and command: not the same record under two names.
+
+    A run to verify is not taken for a repeat of one to fit: something was changed on purpose, such as an added load.
+    Neither are runs of which nothing is stated: what changed between them is not known.
+    """
+    groups: dict[object, list[Run]] = {}
+    for run in runs:
+        if run.specimen is not None or run.gain is not None:
+            groups.setdefault((run.use, run.specimen, run.gain, run.sample_rate), []).append(run)
+    return [pair for members in groups.values() for pair in combinations(members, 2) if _same(*pair)]
+
+
+def like_transducer(sizes: Array, floors: Sequence[float | None]) -> bool | None:
+    """Whether the noise is as large on every record, or in proportion to its size: whichever varies less.
+
+    `sizes` are standard deviations, `floors` those of the noise over them. None where that cannot be told.
+    """
+    known = np.array([np.nan if floor is None else floor for floor in floors])
+    if len(sizes) < _FEW or not np.all(known > 0) or np.std(np.log(sizes)) < _OF_ONE_SIZE:
+        return None
+    return bool(np.std(np.log(known * sizes)) < np.std(np.log(known)))
+
+
+def _same(a: Run, b: Run) -> bool:
+    if abs(a.length - b.length) > 0.1 * a.length:
+        return False
+    u, v = _settled(a.command, b), _settled(b.command, a)
+    thin = slice(None, None, 1 + len(u) // _GLANCE)
+    if np.std(u[thin] - v[thin]) > 3.0 * _SAME * np.std(u[thin]):  # most pairs differ at a glance
+        return False
+    different = not np.array_equal(_settled(a.measured, b), _settled(b.measured, a))
+    return different and bool(np.std(u - v) < _SAME * np.std(u))
+
+
+def _settled(samples: Array, other: Run) -> Array:
+    """What two records have in common once they have settled."""
+    count = min(len(samples), other.length)
+    return samples[int(_SETTLED * count) : count]

@@ -1,0 +1,1 @@
+"""A chain, values and runs in, outputs out."""

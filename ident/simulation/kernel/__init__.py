@@ -1,0 +1,26 @@
+"""The compiled simulation of a chain with its effects: generated from the equations, one vector a SIMD lane.
+
+Classical Runge-Kutta steps of order 4, sixteen systems side by side. What an equation writes with `lag`, `lag2` and
+`delay` is advanced exactly over each stage for an input that is a parabola through its values every half step, so that
+a time constant may go to zero without making the equations stiff, and is an exact identity there. Dry friction is a
+force held over a step: what would stop the mass at its end, at most the limit; so it sticks.
+
+One flat buffer holds everything at constant offsets, and comparisons stand for min, max, abs and sgn: only so does the
+compiler see that nothing overlaps and put the lanes side by side.
+"""
+
+from functools import lru_cache
+
+from ident.chain.chain import Chain
+from ident.simulation.kernel.layout import HELD, LANES, SHARE, Filter, Kernel
+from ident.simulation.kernel.source import constant
+from ident.simulation.kernel.writer import Writer
+
+
+@lru_cache(maxsize=64)
+def kernel(chain: Chain, output: str, plain: frozenset[tuple[str, float]] = frozenset()) -> Kernel:
+    """The kernel of a chain for one output; `plain` are symbols that stand as numbers in the code."""
+    return Writer(chain, output, dict(plain)).kernel()
+
+
+__all__ = ["HELD", "LANES", "SHARE", "Filter", "Kernel", "constant", "kernel"]

@@ -1,0 +1,56 @@
+"""Where things are in a kernel's buffer: rows of lanes."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from ident.chain.chain import Chain
+from ident.simulation.compiled import function
+
+LANES = 16
+HELD, SHARE = "held", "share"
+"""Rows that the packing fills: 1 where a lane's command is held between samples; the delay's fraction of a step."""
+
+
+@dataclass(frozen=True)
+class Filter:
+    """One `lag` or `lag2` of the equations: its order, its input, its coefficients, and where its rows begin."""
+
+    order: int
+    input: ast.expr
+    coefficients: tuple[ast.expr, ...]  # T, or a1 and a2: expressions of symbols only
+    first: int  # of the rows that it has in the buffer
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """The generated kernel of a chain and one output, and where things are in its buffer (rows of lanes).
+
+    `advance(b, commands, forces, command_at, force_at, first, last, every, out, stride)` takes the buffer b over the
+    steps first to last − 1 and writes the output of every `every`-th of them to the flat array out, rows `stride`
+    apart. Step k of a lane begins at commands[command_at[lane] + k], which its delay shifts, and at
+    forces[force_at[lane] + k], and reads up to the next value.
+    """
+
+    chain: Chain
+    output: str
+    source: str
+    rows: int
+    constants: tuple[tuple[int, ast.expr], ...]
+    filters: tuple[Filter, ...]
+    states: Mapping[str, int]
+    memories: Mapping[str, int]
+    inputs: Mapping[str, int]  # the rows previous, current, next begin here, one triple an input
+    shift: ast.expr | None  # delay of the command
+
+    @property
+    def advance(self) -> Callable[..., None]:
+        """The compiled function."""
+        return function("advance", self.source)
+
+
+def filter_rows(order: int) -> int:
+    """Rows of a filter in the buffer: states, its input half a step ago, gains of start, half and whole step."""
+    return order + 1 + 3 * order * (order + 3)

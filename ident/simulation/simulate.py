@@ -1,0 +1,328 @@
+"""Chains with effects and runs in, outputs out: what a kernel of :mod:`ident.simulation.kernel` needs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from ident.chain.chain import FORCE, INPUT, INPUT_RATE, STEP, Chain, friction
+from ident.effects.effect import Effect
+from ident.equations.grammar import TIME
+from ident.matrix import Run
+from ident.simulation.kernel import HELD, LANES, SHARE, Filter, Kernel, constant, kernel
+
+Array = NDArray[np.float64]
+FINE = 0.4  # radians or time constants a step: the largest eigenvalue times the step, above which steps are divided
+MOST = 32  # steps a sample
+FASTEST = FINE * MOST  # radians a sample of the fastest mode that is followed closely; one beyond is said
+_SMALL = 1e-9  # of a unit: where small-signal behaviour is taken
+
+
+@dataclass(frozen=True)
+class _Input:
+    """One input of every run at the fine steps, one run after the other, (m,).
+
+    `begin` is where each lane begins in it, `delay` the fine steps by which it is late, both (lanes,).
+    """
+
+    record: Array
+    begin: NDArray[np.int64]
+    delay: Array
+
+    @property
+    def first(self) -> Array:
+        """The value with which each lane begins."""
+        return np.asarray(self.record[self.begin])
+
+    @property
+    def share(self) -> Array:
+        """The fraction of a step in each delay."""
+        return np.maximum(self.delay - _whole(self.delay), 0.0)
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """Runs of one length and sample rate, each with `v` parameter vectors, side by side.
+
+    `values` maps every symbol of the chain to an array that broadcasts to (runs, v); `start` holds the states at the
+    first sample, (runs, v, n), zero where None; `steps` divides the sample time.
+    """
+
+    chain: Chain
+    runs: tuple[Run, ...]
+    values: Mapping[str, Array]
+    steps: int = 1
+    start: Array | None = None
+
+    @cached_property
+    def shape(self) -> tuple[int, int]:
+        """(runs, vectors)."""
+        wide = np.broadcast_shapes((len(self.runs), 1), *(np.shape(value) for value in self.values.values()))
+        return int(wide[0]), int(wide[1])
+
+    def outputs(self, length: int = 4096) -> Iterator[tuple[Array, int, int]]:
+        """The outputs in blocks of at most `length` samples: ((samples, runs, vectors), first, last)."""
+        (count, vectors), samples = self.shape, self.runs[0].length
+        lanes = -(-count * vectors // LANES) * LANES
+        built = self._kernel()
+        lane_values = self._lanes(lanes)
+        inputs = {name: self._input(lanes, name, built, lane_values) for name in built.inputs}
+        command, force = inputs[INPUT], inputs.get(FORCE, inputs[INPUT])
+        lane_values |= {HELD: self._held(lanes), SHARE: command.share}
+        buffers = self._packed(built, lane_values, lanes, inputs)
+        for first in range(0, samples, length):
+            last = min(first + length, samples)
+            out = np.empty((last - first) * lanes)
+            for i, buffer in enumerate(buffers):
+                group = slice(i * LANES, (i + 1) * LANES)
+                driven = buffer, command.record, force.record, command.begin[group], force.begin[group]
+                ends = first * self.steps, (last - 1) * self.steps + 1
+                built.advance(*driven, *ends, self.steps, out[i * LANES :], lanes)
+                if last < samples:  # on to the first step of the next block
+                    rest = ends[1], last * self.steps
+                    built.advance(*driven, *rest, 1 << 40, np.empty(LANES), LANES)
+            yield out.reshape(last - first, lanes)[:, : count * vectors].reshape(-1, count, vectors), first, last
+
+    def _kernel(self) -> Kernel:
+        exponents = {
+            (name, float(np.ravel(self.values[name])[0]))
+            for name in self.chain.exponents
+            if np.ptp(self.values[name]) == 0
+        }
+        return kernel(self.chain, self.runs[0].output, frozenset(exponents))
+
+    def _lanes(self, lanes: int) -> dict[str, Array]:
+        """Every symbol lane by lane, the spare lanes repeating the last."""
+        known = {name: self.values[name] for name in self.chain.symbols}
+        known[STEP] = np.array(1.0 / (self.runs[0].sample_rate * self.steps))
+        wide = np.empty((len(known), *self.shape))
+        for row, value in zip(wide, known.values(), strict=True):
+            row[...] = value
+        flat = wide.reshape(len(known), -1)
+        spare = np.repeat(flat[:, -1:], lanes - flat.shape[1], axis=1)
+        return dict(zip(known, np.concatenate([flat, spare], axis=1), strict=True))
+
+    def _held(self, lanes: int) -> Array:
+        held = np.array([[float(run.hold == "zoh")] for run in self.runs])
+        return _filled(np.broadcast_to(held, self.shape).ravel(), lanes)
+
+    def _input(self, lanes: int, name: str, built: Kernel, values: Mapping[str, Array]) -> _Input:
+        """One input of every run at the fine steps; a delay shifts the command alone."""
+        delay = np.zeros(lanes)
+        if name == INPUT and built.shift is not None:
+            delay = np.broadcast_to(constant(built.shift, values) / values[STEP], (lanes,))
+        whole = _whole(delay)
+        before = int(whole.max()) + 2
+        records = [_fine(run, name, self.steps, before) for run in self.runs]
+        starts = np.cumsum([0, *(len(record) for record in records[:-1])]) + before
+        begin = _filled(np.repeat(starts, self.shape[1]).astype(float), lanes).astype(np.int64)
+        return _Input(np.concatenate(records), begin - whole, delay)
+
+    def _packed(
+        self, built: Kernel, values: Mapping[str, Array], lanes: int, inputs: Mapping[str, _Input]
+    ) -> list[Array]:
+        rows = np.zeros((built.rows, lanes))
+        for row, node in built.constants:
+            rows[row] = constant(node, values)
+        for known in built.filters:
+            _pack_filter(rows, known, values)
+        for name, first in built.inputs.items():
+            # The first value did not jump there: what the command did before the record is not known.
+            rows[first] = rows[first + 1] = inputs[name].first
+            if name == INPUT and built.shift is not None:
+                late = _begun_late(inputs[name], values[HELD])
+                rows[first], rows[first + 1] = np.where(inputs[name].delay > 0, late, rows[first])
+        if self.start is not None:
+            for i, name in enumerate(self.chain.states):
+                rows[built.states[name]] = _filled(self.start[..., i].ravel(), lanes)
+            self._settle(rows, built, values, inputs[INPUT].first)
+        return [np.ascontiguousarray(rows[:, i : i + LANES]).ravel() for i in range(0, lanes, LANES)]
+
+    def _settle(self, rows: Array, built: Kernel, values: Mapping[str, Array], command: Array) -> None:
+        """What remembers, as if the machine had stood where it starts."""
+        known = dict(values) | {name: rows[row] for name, row in built.states.items()}
+        known |= {INPUT: command, "du": np.zeros_like(command), FORCE: np.zeros_like(command), TIME: 0.0}
+        found = _at_rest(self.chain, known)
+        for name, row in built.memories.items():
+            rows[row] = found[name]
+        for known_filter in built.filters:
+            rows[known_filter.first] = rows[known_filter.first + known_filter.order] = constant(
+                known_filter.input, found
+            )
+
+
+def _at_rest(chain: Chain, known: Mapping[str, Any]) -> dict[str, Any]:
+    """Every signal where nothing moves; a memory that copies a signal has always held it, others were at zero."""
+    copies = {equation.target for equation in chain.equations if equation.is_memory and not _reads_old(equation.names)}
+    values = dict(known) | {f"{name}__old": 0.0 for name in chain.memories}
+    for _ in range(2):
+        for equation in chain.signals:
+            values[equation.target] = 0.0 if friction(equation) else equation.value(values)
+        values |= {f"{name}__old": values[name] for name in copies}
+    return values
+
+
+def _reads_old(names: frozenset[str]) -> bool:
+    return any(name.endswith("__old") for name in names)
+
+
+def _whole(delay: Array) -> NDArray[np.int64]:
+    """The whole steps in a delay of fine steps."""
+    return np.asarray(np.floor(delay + 1e-9).astype(np.int64))
+
+
+def _filled(values: Array, lanes: int) -> Array:
+    return np.concatenate([values, np.full(lanes - len(values), values[-1])])
+
+
+def _fine(run: Run, channel: str, steps: int, before: int) -> Array:
+    """An input at the fine steps, with `before` steps in front and two behind.
+
+    Before the record it is zero where the run starts at rest, and its first value where the run is cut out of a
+    longer test.
+    """
+    samples = run.command if channel == INPUT else run.channels["force"]
+    if steps > 1 and run.hold == "zoh" and channel == INPUT:
+        fine = np.repeat(samples, steps)
+    elif steps > 1:
+        fine = np.interp(np.arange((len(samples) - 1) * steps + 1) / steps, np.arange(len(samples)), samples)
+    else:
+        fine = samples
+    front = np.full(before, 0.0 if channel == INPUT and run.starts_at_rest else fine[0])
+    if run.hold == "linear":
+        front[-1] -= _jump_share(np.array(2.0)) * (fine[0] - front[-1])
+    return np.concatenate([front, fine, np.full(steps + 2, fine[-1])])
+
+
+def _begun_late(command: _Input, held: Array) -> Array:
+    """A late command before and at the first fine step, (2, lanes)."""
+    record, begin, whole = command.record, command.begin, _whole(command.delay)
+    start = begin + whole
+    front, jump = record[start - 2], record[start] - record[start - 2]
+    last = front - _jump_share(np.maximum(command.delay, 1e-9)) * jump
+    drawn = held == 0
+    before = np.where(drawn & (whole == 0), last, record[begin - 1])
+    return np.array(
+        [np.where(drawn & (whole == 1), front, before), np.where(drawn & (whole == 1), last, record[begin])]
+    )
+
+
+def _jump_share(delay: Array) -> Array:
+    """How far the value one step before a jump goes the other way, in jumps, (lanes,); `delay` in steps.
+
+    The record is drawn in lines: then those to and from it have, as far as the simulation sees them, which begins
+    `delay` before the jump, the area of the jump.
+    """
+    return np.where(delay < 1, 2 / delay - 1, 1 / (1 + (np.minimum(delay, 2) - 1) * (3 - np.minimum(delay, 2))))
+
+
+# Filters ----------------------------------------------------------------------------------------------------------
+
+
+def _pack_filter(rows: Array, known: Filter, values: Mapping[str, Array]) -> None:
+    """The gains of a filter over half a step and a whole step, exactly for an input that is a parabola.
+
+    Rows of a block: for each state, the gains of the states at the start, then of three inputs half a step apart, the
+    last where the block ends. A filter without any time constant passes its input on.
+    """
+    order, lanes = known.order, rows.shape[1]
+    entries = np.empty((lanes, order + 1))
+    for i, node in enumerate(known.coefficients):
+        entries[:, i] = constant(node, values)
+    entries[:, order] = values[STEP]
+    same = np.all(entries == entries[0])
+    numbers: dict[tuple[float, ...], int] = {}  # of the lanes' different cases
+    case = [numbers.setdefault(tuple(entry), len(numbers)) for entry in (entries[:1] if same else entries).tolist()]
+    block = order * (order + 3)
+    gains = np.array([_gains(entry[:-1], entry[-1]) for entry in numbers])  # (cases, 3 blocks)
+    first = known.first + order + 1
+    rows[first : first + 3 * block] = gains[case].T  # one case serves every lane
+
+
+@lru_cache(4096)
+def _gains(of: tuple[float, ...], step: float) -> Array:
+    """The three blocks for one filter: start, half step, whole step; flat."""
+    coefficients, order = np.array(of), len(of)
+    start, half, whole = (np.zeros((order, order + 3)) for _ in range(3))
+    if not np.any(coefficients > 0):
+        start[0, order] = half[0, order + 2] = whole[0, order + 2] = 1.0
+        return np.concatenate([start.ravel(), half.ravel(), whole.ravel()])
+    start[:, :order] = np.eye(order)
+    phi, constant_, ramp, parabola = _responses(coefficients, step / 2)
+    # x₋, x0, x1 at −1, 0, 1: x = x0 + (x1 − x₋) σ/2 + (x1 − 2 x0 + x₋) σ²/2
+    half[:, :order] = phi
+    half[:, order] = (parabola - ramp) / 2
+    half[:, order + 1] = constant_ - parabola
+    half[:, order + 2] = (parabola + ramp) / 2
+    phi, constant_, ramp, parabola = _responses(coefficients, step)
+    whole[:, :order] = phi
+    # x0, xm, x1 at 0, ½, 1: x = x0 + (−3 x0 + 4 xm − x1) σ + (2 x0 − 4 xm + 2 x1) σ²
+    whole[:, order] = constant_ - 3 * ramp + 2 * parabola
+    whole[:, order + 1] = 4 * ramp - 4 * parabola
+    whole[:, order + 2] = 2 * parabola - ramp
+    return np.concatenate([start.ravel(), half.ravel(), whole.ravel()])
+
+
+def _responses(coefficients: Array, duration: float) -> tuple[Array, Array, Array, Array]:
+    """Transition matrix over `duration`, and the states' responses to the inputs 1, σ and σ², σ = t/duration."""
+    order = len(coefficients)
+    if order == 1:
+        system, drive = np.array([[-duration / coefficients[0]]]), np.array([duration / coefficients[0]])
+    else:
+        a1, a2 = coefficients[0], max(coefficients[1], (1e-3 * duration) ** 2)
+        system = np.array([[0.0, duration], [-duration / a2, -duration * a1 / a2]])
+        drive = np.array([0.0, duration / a2])
+    augmented = np.zeros((order + 3, order + 3))
+    augmented[:order, :order], augmented[:order, order] = system, drive
+    augmented[order, order + 1] = augmented[order + 1, order + 2] = 1.0
+    if order == 2:  # the second state is a rate: taken in units of the duration it is of the size of the first
+        scale = np.ones(order + 3)
+        scale[1] = duration
+        augmented = augmented * scale[:, None] / scale
+    phi = scipy.linalg.expm(augmented)
+    if order == 2:
+        phi = phi / scale[:, None] * scale
+    return phi[:order, :order], phi[:order, order], phi[:order, order + 1], 2.0 * phi[:order, order + 2]
+
+
+# Steps ------------------------------------------------------------------------------------------------------------
+
+
+def rates(chain: Chain, values: Mapping[str, Any], output: str) -> Array:
+    """The largest eigenvalue of the chain's small-signal behaviour in magnitude, 1/s, for a batch of values."""
+    evaluate, n = chain.evaluator(output), len(chain.states)
+    shape = np.broadcast_shapes(*(np.shape(values[name]) for name in chain.symbols))
+    rest = evaluate(0.0, [0.0] * n, values)[0]
+    jacobian = np.zeros((*shape, n, n))
+    for j in range(n):
+        moved = evaluate(0.0, [_SMALL * (i == j) for i in range(n)], values)[0]
+        for i in range(n):
+            jacobian[..., i, j] = (moved[i] - rest[i]) / _SMALL
+    jacobian = np.where(np.isfinite(jacobian), jacobian, 0.0)
+    return np.asarray(np.abs(np.linalg.eigvals(jacobian)).max(axis=-1))
+
+
+def steps_needed(chain: Chain, fastest: Array, hold: str, on: Sequence[Effect]) -> NDArray[np.int64]:
+    """Steps a sample, a power of two up to :data:`MOST`, for eigenvalues `fastest` (radians a sample).
+
+    Kinks of effects that are on ask for more, and so does a held command whose jumps act at once or between the
+    samples.
+    """
+    least = max((effect.steps for effect in on), default=1)
+    if hold == "zoh" and any(chain.reads(name) for name in (INPUT_RATE, "delay")):
+        least = max(least, 2)
+    ratio = np.maximum(fastest / FINE, least)
+    return np.asarray(np.minimum(2 ** np.ceil(np.log2(ratio)), MOST).astype(np.int64))
+
+
+def responses(
+    chain: Chain, runs: Sequence[Run], values: Mapping[str, Array], steps: int = 1, start: Array | None = None
+) -> Array:
+    """The whole outputs of runs of one length: (samples, runs, vectors)."""
+    return np.concatenate([rows for rows, _, _ in Simulation(chain, tuple(runs), values, steps, start).outputs()])

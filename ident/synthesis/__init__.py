@@ -1,0 +1,1 @@
+"""A model, values and noise in, a simulated test matrix out."""

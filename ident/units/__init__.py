@@ -1,0 +1,1 @@
+"""A number with a unit in, the same in SI out; and back."""

@@ -1,0 +1,68 @@
+"""The grammar of a unit: names and ``1`` joined by ``*``, ``/`` or a space, with whole powers and brackets."""
+
+from __future__ import annotations
+
+import re
+
+from ident.units.names import SPELLINGS
+
+Powers = dict[str, float]
+
+TOKEN = re.compile(r"\s*(\*\*|[*/^()·⋅×]|[+-]?[0-9]+|[^\W\d]+(?:_[^\W\d]+)*|[%°″\"][CF]?)")
+SIGNS = {"·": "*", "⋅": "*", "×": "*", "**": "^"}
+SUPERSCRIPTS = str.maketrans({"²": "^2", "³": "^3", "⁴": "^4", "⁻": "^-", "¹": "1", "−": "-"})
+POWER = re.compile(r"[+-]?[0-9]{1,2}")
+DEEPEST = 5
+
+
+def powers_of(unit: str) -> Powers | None:
+    """The power of each name: ``N*s/m`` → {N: 1, s: 1, m: -1}, "1" → {}; None where the text is not a unit."""
+    tokens = tokens_of(unit.translate(SUPERSCRIPTS).strip())
+    if not tokens:
+        return None
+    powers, after = product(tokens, 0, DEEPEST)
+    return {name: power for name, power in powers.items() if power} if after == len(tokens) else None
+
+
+def tokens_of(text: str) -> list[str]:
+    """The text cut into names, numbers and signs; empty where something else stands in it."""
+    tokens: list[str] = []
+    position = 0
+    while position < len(text):
+        found = TOKEN.match(text, position)
+        if found is None:
+            return []
+        tokens.append(SIGNS.get(found[1], found[1]))
+        position = found.end()
+    return tokens
+
+
+def product(tokens: list[str], at: int, depth: int) -> tuple[Powers, int]:
+    """Factors from `at` on, and the index of what follows them; index -1 where a factor is missing."""
+    powers, at = factor(tokens, at, depth)
+    while 0 < at < len(tokens) and tokens[at] != ")":
+        sign = -1.0 if tokens[at] == "/" else 1.0
+        more, at = factor(tokens, at + (tokens[at] in ("*", "/")), depth)
+        for name, power in more.items():
+            powers[name] = powers.get(name, 0.0) + sign * power
+    return powers, at
+
+
+def factor(tokens: list[str], at: int, depth: int) -> tuple[Powers, int]:
+    """One name, ``1`` or bracket with its power, and the index of what follows; index -1 where there is none."""
+    token = tokens[at] if at < len(tokens) else ""
+    powers: Powers = {}
+    if token == "(" and depth:
+        powers, at = product(tokens, at + 1, depth - 1)
+        if not 0 < at < len(tokens):
+            return {}, -1
+    elif token and (token[0].isalpha() or token[0] in '%°″"'):
+        powers[SPELLINGS.get(token, token)] = 1.0
+    elif token != "1":
+        return {}, -1
+    at += 1
+    if at < len(tokens) and tokens[at] == "^":
+        if at + 1 == len(tokens) or not POWER.fullmatch(tokens[at + 1]):
+            return {}, -1
+        powers, at = {name: own * int(tokens[at + 1]) for name, own in powers.items()}, at + 2
+    return powers, at

@@ -1,0 +1,1 @@
+"""A number in, the words for it out."""
