@@ -18,7 +18,8 @@ from ident.bench.model import CONSTANTS, Model
 from ident.bench.records import Record
 from ident.bench.residual import Observed, Residual, observe
 from ident.diagnosis.chance import Gain, gain
-from ident.diagnosis.held_out import FOLDS, HeldOut, bounded_step
+from ident.diagnosis.held_out import FOLDS, HeldOut
+from ident.fit.bounded_step import bounded_step
 from ident.noise.effective_sample_size import independent_samples
 from ident.parallel import each
 

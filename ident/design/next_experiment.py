@@ -22,8 +22,8 @@ from ident.design.candidate_runs import possible_runs
 from ident.design.contender import PRIOR, Contender, deviation_of_noise
 from ident.design.excitation import KINDS
 from ident.design.experiment import Experiment
-from ident.diagnosis.held_out import bounded_step
 from ident.errors import Unusable
+from ident.fit.bounded_step import bounded_step
 from ident.fit.record import Moments
 from ident.fit.reduction import excited_band
 from ident.matrix import Matrix, Run

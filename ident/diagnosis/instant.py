@@ -16,8 +16,9 @@ from itertools import chain, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.held_out import bounded_step, scored, weight_of_offsets
+from ident.diagnosis.held_out import scored, weight_of_offsets
 from ident.diagnosis.models import Models, Refit
+from ident.fit.bounded_step import bounded_step
 from ident.fit.objective import STEP
 from ident.fit.output_error import OutputError
 from ident.fit.responses import Responses, Sensitivities

@@ -13,9 +13,9 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.fit.reduction import power_density
 from ident.matrix import USES, Matrix, Run
 from ident.noise.effective_sample_size import independent_samples
+from ident.noise.power_density import power_density
 from ident.parallel import each
 
 Array = NDArray[np.float64]

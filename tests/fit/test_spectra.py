@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 import scipy.signal
 
-from ident.fit.reduction import Basis, power_density, spectrum
+from ident.fit.reduction import Basis, spectrum
 from ident.matrix import Run
+from ident.noise.power_density import power_density
 from ident.simulation.recursion import discretise, respond, responses
 
 RATE = 1000.0

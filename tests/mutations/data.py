@@ -2,9 +2,9 @@
 
 from tests.mutations.mutation import Mutation
 
-_CHECK = ("tests/check/test_check.py",)
+_CHECK = ("tests/checks/test_check.py",)
 _SAMPLES = ("tests/readers/test_samples.py",)
-_UNITS = ("tests/test_quantity.py",)
+_UNITS = ("tests/units/test_quantity.py",)
 
 DATA = (
     Mutation("inch", "ident/units/names.py", "inch = 0.0254 * meter", "inch = 0.025654 * meter",

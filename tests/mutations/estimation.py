@@ -4,12 +4,12 @@ from tests.mutations.mutation import Mutation
 
 _FITNESS = ("tests/acceptance/test_fitness.py",)
 _HELD_OUT = ("tests/diagnosis/test_held_out.py",)
-_NOISE = ("tests/test_noise.py",)
+_NOISE = ("tests/noise/test_noise.py",)
 _PROCEDURES = ("tests/bench/test_procedures.py",)
 
 ESTIMATION = (
-    Mutation("what-no-model-explains", "ident/fit/reduction.py", "np.sqrt(_distance(W, d, g[v]) * unit + rest)",
-             "np.sqrt(_distance(W, d, g[v]) * unit)", "the rest dropped from the fast eq. (17)", _FITNESS),
+    Mutation("what-no-model-explains", "ident/fit/reduction.py", "np.sqrt(distance * unit + rest)",
+             "np.sqrt(distance * unit)", "the rest dropped from the fast eq. (17)", _FITNESS),
     Mutation("hold-of-the-reduction", "ident/fit/reduction.py", "discretise(basis.filters, run.sample_rate, run.hold)",
              'discretise(basis.filters, run.sample_rate, "linear")', "a held command reduced as lines", _FITNESS),
     Mutation("power-of-the-record", "ident/fit/reduction.py", "mean_free = gram[columns, columns]",
@@ -46,6 +46,6 @@ ESTIMATION = (
     Mutation("error-budget", "ident/residuals/budget.py", "whole**2 - part**2", "whole**2 + part**2",
              "the sign in what is left of a part", ("tests/residuals/test_where.py",)),
     Mutation("weights-of-runs", "ident/fit/inverse_dynamics.py", "weights = 1 / np.maximum(deviation",
-             "weights = 1 * np.maximum(deviation", "noisy runs weigh most", ("tests/test_inverse_dynamics.py",)),
+             "weights = 1 * np.maximum(deviation", "noisy runs weigh most", ("tests/fit/test_inverse_dynamics.py",)),
 )  # fmt: skip
 """Defects of the estimation."""

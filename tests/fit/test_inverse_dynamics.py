@@ -14,7 +14,7 @@ from ident.fit.inverse_dynamics import UNITS, regress
 from ident.matrix import Actuator, Matrix, Run
 from ident.readers import read_matrix
 
-EMPS = Path(__file__).parents[2] / "shared" / "data" / "emps"
+EMPS = Path(__file__).parents[3] / "shared" / "data" / "emps"
 PUBLISHED = {"mass": 95.0, "viscous": 203.0, "coulomb": 20.4, "offset": -3.2}
 KNOWN = {"mass": 5.0, "viscous": 12.0, "coulomb": 3.0, "offset": 0.7}
 RATE, STEPS = 1000, 10  # samples a second, steps a sample
