@@ -18,8 +18,10 @@ BENCH = ("static", "frequency", "speed-levels", "speed-continuous")
 """Kinds of records of a bench, whose input is a current."""
 HOLDS = ("linear", "zoh")
 USES = ("fit", "verify")
+MOTIONS = ("displacement", "velocity")
+"""Channels that may be imposed on a machine that answers with a force, such as a damper."""
 CHANNELS = (
-    "command", "displacement", "force", "drive_force", "load_pressure", "pressure_a", "pressure_b",
+    "command", "displacement", "velocity", "force", "drive_force", "load_pressure", "pressure_a", "pressure_b",
     "supply_pressure", "spool", "current", "temperature",
 )  # fmt: skip
 

@@ -27,7 +27,7 @@ FIRST_ORDER = Preset(
     ),
     chain=Chain(
         stages=(TRACKING_LAG, IDEAL_SENSOR),
-        outputs={"displacement": "y", "load_pressure": "y", "force": "y"},
+        outputs={"displacement": "y", "velocity": "y", "load_pressure": "y", "force": "y"},
     ),
     parameters=(
         Parameter("gain", "kyr", "1", 1e-2, 1e2, 1.0, "static gain from command to output"),

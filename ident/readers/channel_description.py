@@ -14,7 +14,8 @@ from ident.units.quantity import DIMENSIONS, Scale, parameter_value, shown, spli
 PRESSURE = ("pressure",)
 KINDS_OF_UNIT: dict[str, Sequence[str]] = {
     "command": ("length", "current", "voltage", "force", "pressure"),
-    "displacement": ("length",), "force": ("force",), "drive_force": ("force",), "load_pressure": PRESSURE,
+    "displacement": ("length",), "velocity": ("velocity", "angular velocity"),
+    "force": ("force",), "drive_force": ("force",), "load_pressure": PRESSURE,
     "pressure_a": PRESSURE, "pressure_b": PRESSURE, "supply_pressure": PRESSURE,
     "spool": ("length", "voltage", "current"), "current": ("current", "voltage"), "temperature": ("temperature",),
 }  # fmt: skip

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ident.errors import Unusable
-from ident.matrix import BENCH, HOLDS, KINDS, USES, Run, Specimen
+from ident.matrix import BENCH, HOLDS, KINDS, MOTIONS, USES, Run, Specimen
 from ident.readers.channel_description import ChannelDescription, describe_channels
 from ident.readers.fields import Fields
 from ident.readers.source import inside
@@ -86,14 +86,15 @@ def describe_id(fields: Fields) -> str:
 
 
 def describe_output(fields: Fields, kind: str, channels: dict[str, ChannelDescription]) -> str:
-    """The channel that a model must reproduce; it and a command must be described."""
+    """The channel that a model must reproduce; it and a command, or what else drives, must be described."""
     output = fields.text("output", "displacement")
     if output not in channels:
         remedy = "set output to one of " + ", ".join(channels)
         raise Unusable(
             "unknown-output", f"{shown(output)!r} is not a channel of this run", fields.place("output"), remedy
         )
-    if "command" not in channels and not (kind in BENCH and "current" in channels):
+    moved = output == "force" and channels.keys() & set(MOTIONS)
+    if "command" not in channels and not moved and not (kind in BENCH and "current" in channels):
         raise Unusable("missing-command", "there is no command", fields.place("channels"), "describe the command")
     if output == "command":
         raise Unusable("unknown-output", "the command cannot be the output", fields.place("output"), "name a response")

@@ -20,7 +20,8 @@ from ident.units.names import ANGLES, BASE, DERIVED, PREFIXES
 
 DIMENSIONS = {
     "length": "m", "area": "m^2", "volume": "m^3", "mass": "kg", "time": "s", "frequency": "1/s", "velocity": "m/s",
-    "acceleration": "m/s^2", "force": "N", "pressure": "Pa", "stiffness": "N/m", "damping": "N*s/m", "current": "A",
+    "angular velocity": "rad/s",
+       "acceleration": "m/s^2", "force": "N", "pressure": "Pa", "stiffness": "N/m", "damping": "N*s/m", "current": "A",
     "voltage": "V", "temperature": "K", "flow": "m^3/s", "dimensionless": "1", "per sample": "1/sample",
 }  # fmt: skip
 """Dimension by name to its SI unit; an SI unit (``m^4/s``) may stand wherever a dimension's name may."""
@@ -114,7 +115,8 @@ def unit_scale(unit: str, dimension: str, where: str) -> Scale:
     if dimension == "acceleration" and unit in ("g", "G"):
         unit = "g_n"  # gram has no business here
     powers = known_powers(unit, where)
-    if shape(powers, where) != shape(known_powers(target, where), where) or (target == "1/s" and ANGLES & set(powers)):
+    turns = target in ("1/s", "rad/s") and bool(ANGLES & set(powers)) != (target == "rad/s")  # pint calls both 1/s
+    if turns or shape(powers, where) != shape(known_powers(target, where), where):
         what = f"{unit!r} is not a unit of {described(dimension)}"
         raise Unusable("wrong-dimension", what, where, remedy(unit, target))
     return Scale(*factor_and_offset(powers, where), target)
