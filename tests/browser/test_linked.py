@@ -166,7 +166,7 @@ def test_two_fits_stand_side_by_side(page, site, fitted, second, screenshots):
             if screenshots:
                 page.screenshot(path=screenshots / f"compare-{width}-{theme}.png", full_page=True)
     page.goto(f"{site.address}/fits/{second}")
-    page.get_by_role("link", name="side by side").click()
+    page.get_by_role("link", name="side by side", exact=True).click()
     expect(page.locator("h1")).to_have_text("Two fits side by side")
 
 
