@@ -47,13 +47,13 @@ def by_bench(values) -> Model:
 
 @pytest.mark.parametrize("shift", [0.0, 0.013])
 def test_the_fast_simulation_is_that_of_the_equations(shift):
-    """Position within 1e-5 of its deviation, pressure within 1e-3: its corners lie between the samples."""
+    """Position within 1e-5 of its deviation; the pressure, which no integration enters, within 1e-6."""
     values = {**MIDDLE, "I0": shift}
     answer = by_bench(values).answer(CURRENT, 1000.0, steps=4)
     position = by_chain(values, CURRENT)
     assert np.std(position - answer.position) < 1e-5 * np.std(position)
     pressure = by_chain(values, CURRENT, "load_pressure")
-    assert np.sqrt(np.mean((pressure - answer.pressure)[1:] ** 2)) < 1e-2 * np.std(pressure)
+    assert np.sqrt(np.mean((pressure - answer.pressure)[1:] ** 2)) < 1e-6 * np.std(pressure)
 
 
 def test_the_fast_simulation_is_that_of_the_reference():

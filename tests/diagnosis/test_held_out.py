@@ -14,16 +14,21 @@ from ident.fit.record import Moments, moments_of
 from ident.matrix import Run
 from ident.noise.effective_sample_size import independent_samples
 
-RNG = np.random.default_rng(8)
 N, BLOCKS = 512, 32
 
 
-def records(count: int) -> list[tuple[Run, np.ndarray]]:
+@pytest.fixture
+def rng() -> np.random.Generator:
+    """Each test draws for itself, so that its data do not hang on which tests ran before it."""
+    return np.random.default_rng(8)
+
+
+def records(rng: np.random.Generator, count: int) -> list[tuple[Run, np.ndarray]]:
     """Runs whose output is a line in two parameters, with noise, and the sensitivities."""
     found = []
     for i in range(count):
-        J = RNG.standard_normal((N, 2))
-        y = J @ [0.3, -0.2] + 0.5 * RNG.standard_normal(N) + 0.1
+        J = rng.standard_normal((N, 2))
+        y = J @ [0.3, -0.2] + 0.5 * rng.standard_normal(N) + 0.1
         found.append((Run(f"r{i}", "", 1.0, {"command": y, "displacement": y}), J))
     return found
 
@@ -48,9 +53,9 @@ def weighted_optimum(data, used: np.ndarray, weights: np.ndarray) -> np.ndarray:
     return np.linalg.solve(A, b)
 
 
-def test_held_out_errors_of_a_line_are_those_of_fits_without_each_fold():
+def test_held_out_errors_of_a_line_are_those_of_fits_without_each_fold(rng):
     """One step from the optimum of everything is exact: the same as solving without the fold."""
-    data = records(9)
+    data = records(rng, 9)
     point = np.array([0.8, 0.3])
     for _ in range(6):
         here = objective(data, point)
@@ -68,9 +73,9 @@ def test_held_out_errors_of_a_line_are_those_of_fits_without_each_fold():
             assert found.squares[i, fold::4] == pytest.approx(expected, rel=1e-6)
 
 
-def test_at_the_edge_of_what_is_stable_the_linearisation_judges():
+def test_at_the_edge_of_what_is_stable_the_linearisation_judges(rng):
     """Where the model itself cannot be run again, the held-out errors are those of one step."""
-    data, point = records(9), np.array([0.7, 0.4])
+    data, point = records(rng, 9), np.array([0.7, 0.4])
     here = objective(data, point)
     empty = tuple(replace(run, gram=np.zeros((1, 1)), blocks=np.zeros((0, 0, 0))) for run in here.runs)
     unstable = replace(here, error=np.inf, gradient=np.zeros(2), curvature=np.zeros((2, 2)), runs=empty)
@@ -79,12 +84,12 @@ def test_at_the_edge_of_what_is_stable_the_linearisation_judges():
     assert stepped.squares == pytest.approx(refitted.squares, rel=1e-3)
 
 
-def test_a_useless_parameter_makes_held_out_data_worse():
+def test_a_useless_parameter_makes_held_out_data_worse(rng):
     """Of a hundred columns of noise, fitted, hardly any lowers the held-out error, and none beyond chance."""
-    data = records(9)
+    data = records(rng, 9)
     lower = 0
     for _ in range(30):
-        noisy = [(run, np.column_stack([J[:, 0], RNG.standard_normal(N)])) for run, J in data]
+        noisy = [(run, np.column_stack([J[:, 0], rng.standard_normal(N)])) for run, J in data]
         known = [(Run(r.id, "", 1.0, {"command": r.command, "displacement": r.measured - J @ [0.3, -0.2]}), K)
                  for (r, J), (_, K) in zip(data, noisy, strict=True)]  # fmt: skip
         without, point = objective(known, np.full(2, 0.5)), np.full(2, 0.5)
@@ -105,9 +110,9 @@ def _plain(here: Local) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return squares, np.array([run.total for run in here.runs]), np.zeros(len(here.runs))
 
 
-def test_what_one_run_alone_asks_for_is_not_beyond_chance():
+def test_what_one_run_alone_asks_for_is_not_beyond_chance(rng):
     """The error falls by a tenth in all, but in one run only: a doubt about that run."""
-    squares = 100.0 + RNG.standard_normal((20, 8))
+    squares = 100.0 + rng.standard_normal((20, 8))
     better = squares.copy()
     better[3] *= 0.1
     before, after = (HeldOut(s, np.full(20, 1e6), np.zeros(20), 20_000, 20_000.0) for s in (squares, better))
@@ -117,8 +122,8 @@ def test_what_one_run_alone_asks_for_is_not_beyond_chance():
     assert gain(before, HeldOut(better, np.full(20, 1e6), np.zeros(20), 20_000, 20_000.0)).beyond_chance
 
 
-def test_white_noise_is_all_new_and_a_slow_one_is_not():
-    white = RNG.standard_normal(4096)
+def test_white_noise_is_all_new_and_a_slow_one_is_not(rng):
+    white = rng.standard_normal(4096)
     assert independent_samples(white) > 2000
     assert independent_samples(np.convolve(white, np.ones(32) / 32, "same")) < 400
 

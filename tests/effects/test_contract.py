@@ -24,6 +24,8 @@ CELLS = (linear.Cell(0.98, 67.6e3, 150.0, 7.0), linear.Cell(0.0, 0.0, 0.0, 10.0)
 STICKS = {"coulomb_friction", "stribeck_friction", "spool_stiction"}  # in both, in the reference with located events
 SHARE = {"command_limit": 0.5, "specimen_free_play": 0.25}  # of the largest strength, at which little would be left
 SAMPLES = 2048
+SEEN = {"spool_stiction": 1.5, "stroke_dependent_volume": 1.1}
+"""What makes the comparison fail where 1 % does not: these change the short runs by less than 2 %, and no others."""
 
 
 def by_name(effect: Effect) -> str:
@@ -33,7 +35,7 @@ def by_name(effect: Effect) -> str:
 
 def tolerance(effect: Effect) -> float:
     """Of the output's standard deviation."""
-    return 1e-3 if effect.name in STICKS else 1e-4
+    return 1e-3 if effect.name in STICKS else 2e-6 if effect.name == "stroke_dependent_volume" else 1e-4
 
 
 def command(seed: int) -> np.ndarray:
@@ -95,10 +97,9 @@ def test_the_kernel_agrees_with_the_reference(effect):
 
 @pytest.mark.parametrize("effect", EFFECTS, ids=by_name)
 def test_one_percent_of_its_strength_is_seen(effect):
-    """The comparison above is not blind: one coefficient of the kernel 1 % off makes it fail, where it acts at all."""
-    if max(acts for _, acts in deviations(effect)) < 0.02:
-        pytest.skip("the effect changes these short runs by less than 2 %, so 1 % of it is below the tolerance")
-    assert max(miss for miss, _ in deviations(effect, factor=1.01)) > tolerance(effect)
+    """The comparison above is not blind: one coefficient of the kernel 1 % off makes it fail, or what `SEEN` says."""
+    assert (max(acts for _, acts in deviations(effect)) < 0.02) is (effect.name in SEEN)
+    assert max(miss for miss, _ in deviations(effect, factor=SEEN.get(effect.name, 1.01))) > tolerance(effect)
 
 
 @pytest.mark.parametrize("samples", [0.3, 1.0, 1.0127, 1.9, 2.4])

@@ -9,8 +9,6 @@ import sys
 from dataclasses import dataclass
 from functools import cache
 
-import numpy as np
-
 from ident.effects import EFFECTS, effect
 from ident.effects.effect import Effect
 from ident.fit.identify import identify
@@ -43,14 +41,14 @@ class Recovery:
         return self.fit.values[f"{self.effect.name}.{self.effect.strength.name}"]
 
     @property
-    def std_error(self) -> float:
-        """Its standard error; infinite where the data do not determine it."""
-        return self.fit.parameters[f"{self.effect.name}.{self.effect.strength.name}"].std_error or np.inf
+    def std_error(self) -> float | None:
+        """Its standard error; None where the fit says that the data do not determine it."""
+        return self.fit.parameters[f"{self.effect.name}.{self.effect.strength.name}"].std_error
 
     @property
     def recovered(self) -> bool:
-        """Within 3 %, or within 3 standard errors."""
-        return abs(self.found - self.truth) <= max(0.03 * abs(self.truth), 3 * self.std_error)
+        """Within 3 %, or within 3 standard errors of a strength that is determined."""
+        return abs(self.found - self.truth) <= max(0.03 * abs(self.truth), 3 * (self.std_error or 0.0))
 
 
 def matrix(name: str, strength: float, seed: int, seconds: float = SECONDS, every: int = 1) -> Matrix:
@@ -90,9 +88,9 @@ def line(found: Recovery) -> str:
     miss = 100 * (found.found / found.truth - 1)
     errors = f"{100 * (found.linear.error['fit'] or 0):.2f} | {100 * (found.fit.error['fit'] or 0):.3f} | "
     errors += f"{100 * (found.fit.error['verify'] or 0):.3f}"
-    share = 100 * found.std_error / abs(found.truth)
+    share = "none" if found.std_error is None else f"{100 * found.std_error / abs(found.truth):.2f}"
     outcome = "yes" if found.recovered else "NO"
-    return f"| {e.name} | {found.truth:.3g} {e.strength.unit} | {errors} | {miss:+.2f} | {share:.2f} | {outcome} |"
+    return f"| {e.name} | {found.truth:.3g} {e.strength.unit} | {errors} | {miss:+.2f} | {share} | {outcome} |"
 
 
 if __name__ == "__main__":
