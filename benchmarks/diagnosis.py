@@ -17,8 +17,8 @@ INSTANT, CONFIRMED, FIRST, MEMORY = 1.0, 15.0, 35.0, 2e9  # s, s, s, bytes
 HIDDEN = {"dead_zone": 1e-4, "coulomb_friction": 60.0, "loop_delay": 8e-4}
 CHILD = """
 import json, resource, sys, time
-from ident.diagnosis.diagnose import diagnose
-from ident.fit.identify import identify
+from ident.workflows import diagnose
+from ident.workflows import identify
 from ident.fit.settings import Settings
 from tests.blind.machines import Machine
 from tests.reference.qian_reference import Plant

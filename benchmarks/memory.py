@@ -15,7 +15,7 @@ _CHILD = """
 import sys
 from pathlib import Path
 from benchmarks import material
-from ident.fit.identify import identify
+from ident.workflows import identify
 from ident.fit.settings import Settings
 
 def resident(entry):

@@ -47,6 +47,13 @@ class LinearModel:
         """Feed-through (...)."""
         return np.asarray(self.system[-1, -1])
 
+    def of_states(self, states: tuple[int, ...]) -> LinearModel:
+        """The model of some states alone, by their places: of those that the output depends on it is the same."""
+        last = len(self.system) - 1
+        if len(states) == last:
+            return self
+        return LinearModel(self.system[np.ix_((*states, last), (*states, last))])
+
     def frequency_response(self, frequency: Array) -> NDArray[np.complex128]:
         """G(jω) = C (jωI − A)⁻¹ B + D at `frequency` in Hz, shape (f,) → (..., f).
 

@@ -1,17 +1,110 @@
-"""The whole story: a matrix in, what is doubtful about it, an identified actuator, and how well it agrees."""
+"""The face: a matrix in; what is doubtful about it, an identified actuator, how well it agrees, and what it lacks.
+
+Who serves which kind of model stands in one table here; the rooms below take a fitter or a simulator as an argument.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+from ident import figures
+from ident.bench.diagnosis import diagnose_bench
+from ident.bench.identification import BenchIdentification
+from ident.bench.outputs import outputs as bench_outputs
 from ident.checks.check import Finding, check
-from ident.comparison.compare import Comparison, compare
-from ident.fit.identify import identify
+from ident.comparison import compare as comparison
+from ident.comparison.compare import Comparison, Simulator
+from ident.custom.definition import preset_with
+from ident.diagnosis import diagnose as diagnosis
+from ident.diagnosis.addition import MOST, USUAL
+from ident.diagnosis.result import Diagnosis
+from ident.effects.effect import Effect
+from ident.errors import Unusable
+from ident.figures import Chart, Study
+from ident.fit.identification import Identification, StepwiseFit, check_settings, completed
+from ident.fit.regressed import RegressedIdentification
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
+from ident.matrix import Matrix
+from ident.presets.preset import Kind
 from ident.progress import Report, silent
 from ident.readers import read_matrix
+
+Fitter = Callable[[Matrix, Settings, Report], StepwiseFit]
+Diagnoser = Callable[[Matrix, FitResult, int, Sequence[Effect], Report], Diagnosis]
+
+
+@dataclass(frozen=True)
+class Served:
+    """Who serves a kind of model: its fitter, those of methods of their own, its simulator and its diagnoser."""
+
+    fitter: Fitter
+    simulator: Simulator
+    diagnoser: Diagnoser
+    by_method: Mapping[str, Fitter]
+
+
+SERVED: Mapping[Kind, Served] = {
+    "chain": Served(
+        Identification, comparison.modelled, diagnosis.diagnose, {"inverse-dynamics": RegressedIdentification}
+    ),
+    "bench": Served(BenchIdentification, bench_outputs, diagnose_bench, {}),
+}
+
+
+def _served(model: str) -> Served:
+    return SERVED[preset_with(model).kind]
+
+
+def identification(matrix: Matrix, settings: Settings, report: Report = silent) -> StepwiseFit:
+    """The steps of a fit: of test runs, of the records of a bench, or by regression.
+
+    Raises Unusable for settings that no matrix could be fitted with, and where the matrix does not allow the fit.
+    """
+    check_settings(settings)
+    served = _served(settings.model)
+    return served.by_method.get(settings.method, served.fitter)(matrix, settings, report)
+
+
+def identify(matrix: Matrix, settings: Settings | None = None, report: Report = silent) -> FitResult:
+    """The whole fit in one call. Raises Unusable as :func:`identification`."""
+    return completed(identification(matrix, settings or Settings(), report))
+
+
+def compare(matrix: Matrix, fit: FitResult) -> Comparison:
+    """Every run of the matrix against the fitted model. Raises Unusable where the fit is of another model's data."""
+    return comparison.compare(matrix, fit, _served(fit.model).simulator)
+
+
+def study(matrix: Matrix, fit: FitResult) -> Study:
+    """A fit beside its data, for figures one after the other."""
+    return Study(matrix, fit, _served(fit.model).simulator)
+
+
+def figure(
+    name: str, matrix: Matrix, fit: FitResult, theme: str = "light", share: float = 1.0, **options: Any
+) -> Chart:  # fmt: skip
+    """The figure of that name: see :func:`ident.figures.figure` for its options, and :func:`study` for several."""
+    return figures.figure(name, study(matrix, fit), theme, share, **options)
+
+
+def diagnose(
+    matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None, most: int = USUAL,
+    custom: Sequence[Effect] = (), report: Report = silent,
+) -> Diagnosis:  # fmt: skip
+    """Rank what the fitted model lacks, add what helps beyond chance, and say what is left.
+
+    Without a `fit` the model of `settings` is fitted first. `most` is the largest number of effects to add, `custom`
+    are effects beside the catalogue's. Verify runs only report. Raises Unusable where matrix, fit or settings do not
+    go together.
+    """
+    if not 0 <= most <= MOST:
+        raise Unusable("bad-option", f"{most} effects", "max-effects", f"give 0 to {MOST}")
+    fit = fit or identify(matrix, settings, report)
+    return _served(fit.model).diagnoser(matrix, fit, most, custom, report)
 
 
 @dataclass(frozen=True)
@@ -27,5 +120,5 @@ def run(path: Path, settings: Settings | None = None, report: Report = silent) -
     """Read, check, fit and compare. Raises Unusable where the input cannot be used."""
     matrix = read_matrix(path)
     findings = check(matrix)
-    fit = identify(matrix, settings or Settings(), report)
+    fit = identify(matrix, settings, report)
     return Story(findings, fit, compare(matrix, fit))

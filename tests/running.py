@@ -16,6 +16,7 @@ from typing import Any
 
 import httpx
 
+CHROMIUM = "/usr/bin/chromium"
 TOKEN = "a-token-for-tests"
 WAIT = 240  # s, for a machine that is busy with other things
 ENDED = ("succeeded", "failed", "cancelled")

@@ -29,9 +29,9 @@ def compare(
 ) -> None:
     """Compare a fitted model with every run of a matrix: error, where it fails, and what the error is made of."""
     from app.cli.where import show_survey
-    from ident.comparison.compare import compare as compared
     from ident.readers import read_matrix
     from ident.residuals.survey import survey
+    from ident.workflows import compare as compared
 
     check_target(json)
     result, other = read_fit(fit), None if candidate is None else read_fit(candidate)
@@ -80,7 +80,8 @@ def show(rows: list[tuple[str, str, float, float]], error: Any) -> None:
 
 def draw(matrix: Matrix, fit: FitResult, out: Path, candidate: FitResult | None = None) -> None:
     """Write every figure in every format to the folder `out`; curves also as `candidate` predicts them."""
-    from ident.figures import figure, figures_of, render
+    from ident.figures import figures_of, render
+    from ident.workflows import figure
 
     out.mkdir(parents=True, exist_ok=True)
     for name in figures_of(fit):

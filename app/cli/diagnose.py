@@ -53,8 +53,8 @@ def diagnose(
     from app.cli.arguments import definitions
     from ident.custom.definition import read_effect, together
     from ident.diagnosis.addition import USUAL
-    from ident.diagnosis.diagnose import diagnose as diagnosed
     from ident.readers import read_matrix
+    from ident.workflows import diagnose as diagnosed
 
     check_target(json)
     chosen = settings(model, effect, method, bounds, set_, load, seed, option)

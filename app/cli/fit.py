@@ -38,8 +38,8 @@ def fit(
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the fit as JSON; - is stdout.")] = None,
 ) -> None:
     """Identify the parameters of a model. With standard errors, and the error on runs that no fit saw."""
-    from ident.fit.identify import identify
     from ident.readers import read_matrix
+    from ident.workflows import identify
 
     check_target(json)
     chosen = settings(model, effect, method, bounds, set_, load, seed, option, custom)

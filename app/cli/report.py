@@ -30,9 +30,9 @@ def report(
     from app.cli.progress import shown
     from app.report.diagnosis import read_diagnosis
     from app.report.document import document
-    from ident.fit.identify import identify
     from ident.fit.settings import Settings
     from ident.readers import read_matrix
+    from ident.workflows import identify
 
     found = None if diagnosis is None else read_diagnosis(diagnosis)
     read = read_matrix(matrix)

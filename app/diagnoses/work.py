@@ -12,11 +12,10 @@ from app.steps import State, Steps
 from app.storage import Storage
 from app.tables import JobRow
 from ident.custom.definition import read_effect
-from ident.diagnosis.diagnose import diagnose
 from ident.errors import Unusable
-from ident.fit.identify import identify
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
+from ident.workflows import diagnose, identify
 
 OWN = ("max_effects", "reseed")
 """What the settings of a diagnosis hold beside those of its fit."""

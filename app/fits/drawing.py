@@ -12,6 +12,7 @@ from app.errors import Failure
 from app.fits import lineage, service
 from app.kept import Kept
 from app.matrices import service as matrices
+from ident import workflows
 from ident.errors import Unusable
 from ident.figures import MEDIA, Study, figure, ladder, look, render
 from ident.figures.ladder import Step
@@ -51,7 +52,7 @@ def _drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[st
         options["candidate"] = _candidate(context, fit, str(options["candidate"]))
     else:
         options.pop("candidate", None)
-    return render(figure(name, matrix, fit, theme, share, study=study, **options), kind, live=live)
+    return render(figure(name, study, theme, share, **options), kind, live=live)
 
 
 def _study(context: Context, fit_id: str) -> Study:
@@ -59,7 +60,7 @@ def _study(context: Context, fit_id: str) -> Study:
 
     def made() -> Study:
         row, result = service.whole(context, fit_id)
-        return Study(matrices.load(context, row.matrix), FitResult.from_json(result))
+        return workflows.study(matrices.load(context, row.matrix), FitResult.from_json(result))
 
     return _studies.get((str(context.storage.folder), fit_id), made)
 

@@ -14,7 +14,6 @@ from app.fits import repository
 from app.matrices import service as matrices
 from app.paging import cursor, keys_of
 from app.tables import FitRow, JobRow, now
-from ident.comparison.compare import compare
 from ident.custom.definition import definition_of, preset_with
 from ident.fit.identification import check_settings
 from ident.fit.result import FitResult
@@ -22,6 +21,7 @@ from ident.fit.settings import Settings
 from ident.residuals.budget import budget
 from ident.residuals.survey import survey
 from ident.units.quantity import parameter_value
+from ident.workflows import compare
 from schemas.fit import (
     Chosen,
     ComparedRun,

@@ -8,12 +8,10 @@ from app.fits import repository
 from app.steps import State, Steps
 from app.storage import Storage
 from app.tables import JobRow
-from ident.bench.identification import BenchIdentification
-from ident.fit.identification import Identification
-from ident.fit.identify import identification
+from ident.fit.identification import StepwiseFit
 from ident.fit.settings import Settings
+from ident.workflows import identification
 
-Work = Identification | BenchIdentification
 GENERATIONS = 5  # in a step: what at most is done again after a kill
 
 
@@ -22,7 +20,7 @@ class FitWork:
 
     def __init__(self, sessions: sessionmaker[Session], storage: Storage) -> None:
         self.steps = Steps("fit", sessions, storage)
-        self._prepared: tuple[str, Work] | None = None
+        self._prepared: tuple[str, StepwiseFit] | None = None
 
     def begin(self, job: str) -> State:
         """Load the matrix, prepare the runs, draw the first population."""
@@ -41,7 +39,7 @@ class FitWork:
         self._prepared = None
         self.steps.store(job, last, _keep)
 
-    def _identification(self, job: str) -> Work:
+    def _identification(self, job: str) -> StepwiseFit:
         if self._prepared is None or self._prepared[0] != job:
             row, matrix = self.steps.recorded(job)
             settings = Settings.from_json(row.settings)

@@ -23,7 +23,7 @@ from ident.custom.definition import HANDED_ON, preset_with
 from ident.equations.equation import Equation
 from ident.equations.mathml import mathml
 from ident.fit.result import FitResult, Undetermined
-from ident.presets import Preset
+from ident.presets import PRESETS, Preset
 from schemas.fit import FitView, LadderView
 from schemas.matrix import MatrixView
 from schemas.parameters import ParameterSetView
@@ -125,7 +125,7 @@ def fit_page(
         worst="fault" if any(entry.severity == "fault" for entry in serious) else "doubt",
         others=tuple((other.id, _other(other)) for other in others if other.id != stored.id),
         again=json.dumps(fit_request(fit, stored.id)),
-        on_bench=fit.model == "kononykhin",
+        on_bench=PRESETS[fit.model].kind == "bench",
     )
 
 

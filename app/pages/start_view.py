@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from app.pages import numbers
 from ident.effects import EFFECTS
 from ident.effects.effect import Effect
-from ident.fit.settings import METHODS
+from ident.fit.settings import METHODS, Settings
 from ident.matrix import BENCH
 from ident.presets import PRESETS, Preset
 from ident.stages import PLACES
@@ -59,9 +59,12 @@ def _counted(runs: int) -> str:
 
 def _proposed(matrix: MatrixView) -> str:
     """A bench's records want the bench's model, a measured drive force the drive's."""
-    if any(run.kind in BENCH for run in matrix.runs):
-        return "kononykhin"
-    return "drive" if all("drive_force" in run.channels for run in matrix.runs) else "qian2014"
+    of_bench = any(run.kind in BENCH for run in matrix.runs)
+    for model in PRESETS.values():
+        driven = model.driven_by != "command" and all(model.driven_by in run.channels for run in matrix.runs)
+        if (model.kind == "bench") is of_bench and (driven or of_bench):
+            return model.name
+    return Settings().model
 
 
 def _model(preset: Preset) -> ModelChoice:

@@ -7,13 +7,12 @@ import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from ident.comparison.compare import compare
 from ident.errors import Unusable
-from ident.fit.identify import identify
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.progress import Report
+from ident.workflows import compare, identify
 
 
 @dataclass(frozen=True)

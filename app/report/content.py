@@ -10,14 +10,14 @@ from app.report.blocks import Block, Facts, Figure, Formula, Heading, Report, Ta
 from app.report.diagnosis import Diagnosis
 from app.report.rows import budget_rows, candidate_rows, curve_rows, group_tables, trend_rows
 from ident.checks.check import check
-from ident.comparison.compare import compare
 from ident.custom.definition import preset_with
 from ident.errors import Unusable
-from ident.figures import figure, ladder, look
+from ident.figures import ladder, look
 from ident.fit.result import FitResult
 from ident.matrix import Matrix
 from ident.residuals.budget import Budget
 from ident.residuals.survey import Survey, survey
+from ident.workflows import compare, figure
 
 CAPTIONS = {
     "bode": "Frequency response, measured and model",

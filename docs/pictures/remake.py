@@ -11,11 +11,11 @@ from pathlib import Path
 
 from PIL import Image
 
-from ident.figures import figure, render
-from ident.fit.identify import identify
+from ident.figures import render
 from ident.fit.settings import Settings
 from ident.readers import read_matrix
 from ident.synthesis.matrix import simulate_matrix
+from ident.workflows import figure, identify
 
 HERE = Path(__file__).parent
 PICTURES = {

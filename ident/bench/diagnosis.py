@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from typing import Any
 
@@ -15,9 +15,10 @@ from ident.bench.records import Record, bench_set
 from ident.diagnosis.chance import gain
 from ident.diagnosis.result import Diagnosis, Found, Ranked, Rung, Verdict
 from ident.diagnosis.words import verdict_text
+from ident.effects.effect import Effect
 from ident.fit.result import FitResult
 from ident.matrix import Matrix
-from ident.presets.kononykhin import KONONYKHIN
+from ident.presets import preset
 from ident.progress import Progress, Report, silent
 from ident.words.percent import percent
 
@@ -25,7 +26,9 @@ _NEAR_FLOOR = 1.25
 """Times the converter's part of the error, up to which an error is its noise: a reading that rests is off for long."""
 
 
-def diagnose_bench(matrix: Matrix, fit: FitResult, most: int, report: Report = silent) -> Diagnosis:
+def diagnose_bench(
+    matrix: Matrix, fit: FitResult, most: int, _custom: Sequence[Effect] = (), report: Report = silent
+) -> Diagnosis:
     """Rank the four effects, add what helps beyond chance on held-out data, and say what is left."""
     return BenchWork(matrix, fit, most, report).diagnosis()
 
@@ -93,7 +96,7 @@ class BenchWork:
         return self._mean(refit, self.records["fit"], "offset") or 0.0
 
     def _parameters(self, refit: Refit) -> dict[str, Found]:
-        known, deviations = {p.name: p for p in KONONYKHIN.parameters}, refit.solution.deviations
+        known, deviations = {p.name: p for p in preset(self.fit.model).parameters}, refit.solution.deviations
         out = {}
         for name, value in refit.solution.values.items():
             effect = LACKING.get(name)

@@ -8,7 +8,6 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 from importlib.metadata import version
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,10 +19,9 @@ from ident.bench.outputs import model_of, noise_floor, run_errors
 from ident.bench.polish import polished, weak
 from ident.bench.records import bench_set
 from ident.bench.residual import Residual, observe
-from ident.fit import genetic
 from ident.fit.ends import distinct
-from ident.fit.evolution import GENERATIONS, cma_es, differential_evolution
-from ident.fit.result import Estimate, FitResult, Generation, RunError, Undetermined
+from ident.fit.result import Estimate, FitResult, RunError, Undetermined
+from ident.fit.search import Search, State, evolution, options_of
 from ident.fit.settings import Settings
 from ident.fit.space import Axis, Space
 from ident.matrix import Matrix
@@ -32,8 +30,6 @@ from ident.presets import preset as preset_called
 from ident.progress import Progress, Report, silent
 
 Array = NDArray[np.float64]
-State = dict[str, Any]
-OPTIONS = {**genetic.DEFAULT, "population": 80.0, "generations": 40.0, "elite": 8.0}
 _SEARCHED = 60.0  # Hz of the records during the search; the polish takes what each record needs
 _STARTS = 3  # vectors of the last generation from which the polish starts, beside what the procedures found
 
@@ -43,10 +39,11 @@ class BenchIdentification:
 
     def __init__(self, matrix: Matrix, settings: Settings, report: Report = silent) -> None:
         self.matrix, self.settings, self.report = matrix, settings, report
-        self.preset = preset_called("kononykhin")
+        self.preset = preset_called(settings.model)
         self.bench = bench_set(matrix, "fit")
-        self.options = {**self._defaults(), **settings.options}
         self.space = self._space()
+        options = options_of(settings, self.preset)
+        self.search = Search(len(self.space.axes), settings.method, options, settings.seed, self.errors, report)
         self._started = time.monotonic()
         report(Progress("prepare", 0, 1))
         self.analysis = analyse(self.bench).complete()
@@ -54,9 +51,6 @@ class BenchIdentification:
         coarse = [record.reduced(max(_SEARCHED, 40.0 * (record.frequency or 0.0))) for record in self.bench.records]
         self._coarse = observe(coarse, rate=1e9)
         report(Progress("prepare", 1, 1))
-
-    def _defaults(self) -> dict[str, float]:
-        return dict({"ga": OPTIONS, "paper-ga": genetic.PAPER}.get(self.settings.method, {}))
 
     def _space(self) -> Space:
         """The parameters' bounds, or the user's; every quantity in SI."""
@@ -73,18 +67,11 @@ class BenchIdentification:
     @property
     def generations(self) -> int:
         """Upper bound of the search's generations."""
-        if not self.space.axes or self.settings.method == "gradient":
-            return 0
-        if self.settings.method == "paper-ga":
-            shrink = self.options["survivors"] / self.options["population"]
-            return int(np.ceil(np.log(shrink) / np.log(self.options["keep"]))) + 2
-        return int(self.options.get("generations", GENERATIONS.get(self.settings.method, 0)))
+        return self.search.generations
 
     def start(self) -> State:
         """The state before the first generation."""
-        options = self.options if "population" in self.options else {"population": 1.0}
-        state = genetic.begin(len(self.space.axes), self.settings.seed, options)
-        return state | {"done": self.generations == 0}
+        return self.search.start()
 
     def finished(self, state: State) -> bool:
         """True when the search is over and only :meth:`finish` remains."""
@@ -92,26 +79,7 @@ class BenchIdentification:
 
     def advance(self, state: State, generations: int) -> State:
         """The state after at most `generations` more; the library searches run to their end at once."""
-        if self.settings.method in GENERATIONS and not state["done"]:
-            return self._evolved(state)
-        step = genetic.paper_step if self.settings.method == "paper-ga" else genetic.default_step
-        for _ in range(generations):
-            if state["done"]:
-                break
-            state = step(state, self.errors, self.options)
-            done, best = len(state["history"]), min(state["history"][-1]["errors"])
-            self.report(Progress("search", done, self.generations, best))
-        return state
-
-    def _evolved(self, state: State) -> State:
-        search = differential_evolution if self.settings.method == "differential-evolution" else cma_es
-        history = search(len(self.space.axes), self.settings.seed, self.errors)
-        entries = [{"population": points.tolist(), "errors": cost.tolist()} for points, cost in history]
-        population, cost = min(history, key=lambda entry: float(entry[1].min()))
-        order = np.argsort(cost, kind="stable")
-        evaluated = sum(len(points) for points, _ in history)
-        return state | {"population": population[order].tolist(), "best": population[order[0]].tolist(),
-                        "history": entries, "evaluations": evaluated, "done": True}  # fmt: skip
+        return self.search.advance(state, generations)
 
     def errors(self, points: Array) -> Array:
         """The search's target at points of the unit cube: the mean over records of the scaled residual's RMS.
@@ -168,7 +136,7 @@ class BenchIdentification:
             for p in self.preset.parameters
         }
         return FitResult(
-            model="kononykhin", effects=(), parameters=parameters, correlation=solution.correlation, determined=(),
+            model=self.preset.name, effects=(), parameters=parameters, correlation=solution.correlation, determined=(),
             undetermined=tuple(Undetermined(name, "these records hardly depend on it") for name in undetermined),
             error={"fit": _mean(runs, "fit", "error"), "held_out": None, "verify": _mean(runs, "verify", "error")},
             offset={"fit": _mean(runs, "fit", "offset"), "verify": _mean(runs, "verify", "offset")},
@@ -177,7 +145,7 @@ class BenchIdentification:
             evaluations=int(state["evaluations"]) + solution.evaluations, seconds=time.monotonic() - self._started,
             version=version("servoident"), data_hash=self.matrix.data_hash,
             notes=(*self.matrix.notices, *self.analysis.notes, *notes, *_compared(self.analysis, solution)),
-            settings=self.settings.to_json(), searched=self.space.names, evolution=self._evolution(state),
+            settings=self.settings.to_json(), searched=self.space.names, evolution=evolution(self.space, state),
         )  # fmt: skip
 
     def _estimate(
@@ -188,16 +156,6 @@ class BenchIdentification:
         at_bound = bounds is not None and not lower < value < upper
         return Estimate(value, parameter.unit, None if unsure else deviation, lower, upper, at_bound, parameter.symbol,
                         parameter.meaning, fixed=bounds is None)  # fmt: skip
-
-    def _evolution(self, state: State) -> tuple[Generation, ...]:
-        out = []
-        for index, entry in enumerate(state["history"]):
-            values = self.space.values(np.array(entry["population"]))
-            columns = [[float(f"{v:.5g}") for v in values[name]] for name in self.space.names]
-            errors = tuple(float(f"{e:.6g}") for e in entry["errors"])
-            rows = tuple(zip(*columns, strict=True))
-            out.append(Generation(index + 1, min(errors), float(np.mean(errors)), rows, errors))
-        return tuple(out)
 
 
 def _mean(runs: tuple[RunError, ...], use: str, what: str) -> float | None:

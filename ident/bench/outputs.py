@@ -12,6 +12,7 @@ from ident.bench.records import Record, bench_set
 from ident.bench.speed_table import SpeedTable
 from ident.fit.result import RunError
 from ident.matrix import Matrix
+from ident.presets import Preset
 
 Array = NDArray[np.float64]
 
@@ -22,8 +23,11 @@ def model_of(values: Mapping[str, float], supply: float) -> Model:
     return Model(values["T"], values["B"], values["I0"], values["kp"], values["dPfr"], table, supply)
 
 
-def outputs(matrix: Matrix, values: Mapping[str, float]) -> dict[str, Array]:
-    """The position of each bench record's run, from where the record begins."""
+def outputs(_preset: Preset, values: Mapping[str, float], matrix: Matrix) -> dict[str, Array]:
+    """The position of each bench record's run, from where the record begins; the model's equations are all one's own.
+
+    A simulator of its own, exact between the corners of play and table: see docs/bench.md for what it saves.
+    """
     bench = bench_set(matrix)
     model = model_of(values, bench.supply_pressure)
     return {

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ident.bench.laws import CONTINUOUS, FREQUENCY, LEVELS, STATIC, driven
 from ident.bench.model import Model
 from ident.bench.outputs import model_of
-from ident.presets.kononykhin import KONONYKHIN
+from ident.presets import Preset
 from ident.progress import Progress, Report, silent
 
 Array = NDArray[np.float64]
@@ -102,13 +102,15 @@ def prepared(plan: Plan, model: Model) -> Plan:
     return replace(plan, settings=settings, start=0.5 * STROKE - float(middle - position[-period]))
 
 
-def write_bench(out: Path, seed: int, noise: float, report: Report = silent, serial: str = "SIM-BENCH-0001") -> None:
+def write_bench(
+    out: Path, preset: Preset, seed: int, noise: float, report: Report = silent, serial: str = "SIM-BENCH-0001"
+) -> None:
     """Write a full set to the folder `out`, which is there and empty: matrix.yaml, limits.yaml, runs/.
 
     `noise` is white on the position, relative to each record's deviation, before the converter of 12 bits; the gauges
     of the cavities have 0.2 MPa RMS at the default of 0.005, and in proportion else.
     """
-    model = model_of({p.name: p.value for p in KONONYKHIN.parameters}, SUPPLY)
+    model = model_of({p.name: p.value for p in preset.parameters}, SUPPLY)
     todo, entries = list(plans(0.1)), []
     for index, plan in enumerate(todo):
         report(Progress("simulate", index, len(todo)))

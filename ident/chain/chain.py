@@ -10,6 +10,7 @@ from __future__ import annotations
 import ast
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from functools import cached_property
 from graphlib import CycleError, TopologicalSorter
@@ -239,6 +240,19 @@ class Chain:
         """Which entries of the system matrix can be other than zero, found at generic values of every symbol."""
         generic = {name: np.sqrt(2.0 + i) for i, name in enumerate(self.symbols)}
         return tuple(tuple(bool(entry) for entry in row) for row in self.linearise(generic, output).system)
+
+    def observed(self, output: str, zeros: AbstractSet[str]) -> tuple[int, ...]:
+        """The states that an output depends on, by their places, where the symbols `zeros` are 0.
+
+        Without a spring a pressure knows no position: that state integrates beside the rest of the machine.
+        """
+        values = {name: 0.0 if name in zeros else np.sqrt(2.0 + i) for i, name in enumerate(self.symbols)}
+        reads = self.linearise(values, output).system != 0
+        states = len(self.states)
+        found = {j for j in range(states) if reads[states, j]}
+        while more := {j for i in found for j in range(states) if reads[i, j]} - found:
+            found |= more
+        return tuple(sorted(found))
 
 
 def linear_model(chain: Chain, values: Mapping[str, float], run: Run, actuator: Actuator) -> LinearModel:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,7 +10,6 @@ import numpy as np
 import scipy.signal
 from numpy.typing import NDArray
 
-from ident.bench.outputs import outputs as bench_outputs
 from ident.chain.chain import linear_model
 from ident.custom.definition import preset_with
 from ident.effects.effect import parameter_name
@@ -26,6 +25,8 @@ from ident.presets import Preset
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+Simulator = Callable[[Preset, Mapping[str, float], Matrix], dict[str, Array]]
+"""A model, its values by the equations' names and a matrix in; the output of every run out, by the run's id."""
 _WINDOW = 1.0  # s: the length of a window of the spectral estimate, and with it its resolution of 1 Hz
 
 
@@ -113,11 +114,20 @@ class Comparison:
         return float(np.mean(values)) if values else None
 
 
-def compare(matrix: Matrix, fit: FitResult) -> Comparison:
-    """Every run of the matrix against the fitted model. Raises Unusable where the fit is of another model's data."""
+def modelled(preset: Preset, values: Mapping[str, float], matrix: Matrix) -> dict[str, Array]:
+    """The output of a model with effects for every run of a matrix, by the run's id."""
+    nothing = Space((), tuple(values), values, {})
+    return OutputError(preset, matrix, matrix.runs, nothing, 0.0).outputs(np.empty(0))
+
+
+def compare(matrix: Matrix, fit: FitResult, simulator: Simulator = modelled) -> Comparison:
+    """Every run of the matrix against the fitted model; `simulator` runs a model that is not linear.
+
+    Raises Unusable where the fit is of another model's data.
+    """
     preset, matrix, values = fitted(fit, matrix)
     if not preset.is_linear:
-        outputs = modelled(preset, values, matrix)
+        outputs = simulator(preset, values, matrix)
         return Comparison(matrix, fit, tuple(RunComparison(run, None, outputs[run.id]) for run in matrix.runs))
 
     def one(run: Run) -> RunComparison:
@@ -125,14 +135,6 @@ def compare(matrix: Matrix, fit: FitResult) -> Comparison:
         return RunComparison(run, model, output(run, model))
 
     return Comparison(matrix, fit, tuple(each(one, matrix.runs)))
-
-
-def modelled(preset: Preset, values: Mapping[str, float], matrix: Matrix) -> dict[str, Array]:
-    """The output of a model with effects for every run of a matrix, by the run's id."""
-    if preset.name == "kononykhin":
-        return bench_outputs(matrix, values)
-    nothing = Space((), tuple(values), values, {})
-    return OutputError(preset, matrix, matrix.runs, nothing, 0.0).outputs(np.empty(0))
 
 
 def fitted(fit: FitResult, matrix: Matrix) -> tuple[Preset, Matrix, dict[str, float]]:

@@ -12,7 +12,7 @@ from ident.effects import EFFECTS
 from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.matrix import Matrix
-from ident.presets import Preset
+from ident.presets import PRESETS, Preset
 from ident.presets import preset as preset_called
 
 Model = tuple[Preset, dict[str, float]]
@@ -27,8 +27,9 @@ def in_question(diagnosis: Mapping[str, Any], custom: Sequence[Effect] = ()) -> 
     Where it settled on nothing, and something is left, it is the best candidates. `custom` are effects of one's own
     that its settings do not define. Raises Unusable for JSON of another form.
     """
-    if diagnosis.get("model") == "kononykhin":
-        raise Unusable("no-experiment", "no run is proposed for the records of a bench", "model kononykhin",
+    model = diagnosis.get("model")
+    if model in PRESETS and PRESETS[model].kind == "bench":
+        raise Unusable("no-experiment", "no run is proposed for the records of a bench", f"model {model}",
                        "repeat the records on which the effects differ")  # fmt: skip
     try:
         found = _chosen(diagnosis)

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.bench.diagnosis import diagnose_bench
-from ident.diagnosis.addition import MOST, USUAL, Addition
+from ident.diagnosis.addition import Addition
 from ident.diagnosis.advice import error_budget, next_run
 from ident.diagnosis.chance import gain
 from ident.diagnosis.models import Models, Refit
@@ -23,7 +22,6 @@ from ident.diagnosis.suspects import Suspect, suspects
 from ident.diagnosis.words import verdict_text, why
 from ident.effects.effect import Effect, parameter_name
 from ident.errors import Unusable
-from ident.fit.identify import identify
 from ident.fit.reduction import excited_band
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
@@ -36,21 +34,14 @@ _NOISE_LIKE = 0.5  # correlation of neighbouring residuals that noise may have, 
 
 
 def diagnose(
-    matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None, most: int = USUAL,
-    custom: Sequence[Effect] = (), report: Report = silent,
-) -> Diagnosis:  # fmt: skip
+    matrix: Matrix, fit: FitResult, most: int, custom: Sequence[Effect] = (), report: Report = silent
+) -> Diagnosis:
     """Rank what the fitted model lacks, add what helps beyond chance, and say what is left.
 
-    Without a `fit` the model of `settings` is fitted first. `most` is the largest number of effects to add, `custom`
-    are effects beside the catalogue's. Verify runs only report. Raises Unusable where matrix, fit or settings do not
-    go together.
+    `most` is the largest number of effects to add, `custom` are effects beside the catalogue's. Verify runs only
+    report. Raises Unusable where matrix and fit do not go together.
     """
     begun = time.monotonic()
-    if not 0 <= most <= MOST:
-        raise Unusable("bad-option", f"{most} effects", "max-effects", f"give 0 to {MOST}")
-    fit = fit or identify(matrix, settings or Settings(), report)
-    if fit.model == "kononykhin":
-        return diagnose_bench(matrix, fit, most, report)
     given = replace(Settings.from_json(dict(fit.settings)), effects=()) if fit.settings else Settings(model=fit.model)
     models = Models.of(matrix, given, excited_band(matrix.of_use("fit")), custom)
     work = Work(models, fit, most, report)

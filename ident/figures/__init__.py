@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
+from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.bench import BENCH_FIGURES
@@ -28,19 +29,10 @@ from ident.matrix import Matrix, Run
 __all__ = ["BENCH_FIGURES", "FIGURES", "MEDIA", "Chart", "Study", "figure", "figures_of", "ladder", "look", "render"]
 
 
-def figure(
-    name: str,
-    matrix: Matrix,
-    fit: FitResult,
-    theme: str = "light",
-    share: float = 1.0,
-    *,
-    study: Study | None = None,
-    **options: Any,
-) -> Chart:
+def figure(name: str, study: Study, theme: str = "light", share: float = 1.0, **options: Any) -> Chart:
     """The chart of that name, "light" or "dark", `share` as wide as usual; only what it shows is computed.
 
-    `study` is what earlier figures of this fit have computed.
+    `study` is a fit beside its data, with what earlier figures of it have computed.
 
     Options, all optional: bode takes run, kp, amplitude, specimen, use, low, high, axis, candidate; time takes run,
     start, seconds, low, high; evolution takes x, y, generations; sensitivity takes run; residual-map takes what bode
@@ -49,9 +41,10 @@ def figure(
 
     Raises Unusable for an unknown name, theme or option.
     """
-    if name not in figures_of(fit):
-        raise Unusable("unknown-figure", f"no figure {name!r}", "figure", f"use one of {', '.join(figures_of(fit))}")
-    draw, known = _drawing(name, study or Study(matrix, fit))
+    names = figures_of(study.fit)
+    if name not in names:
+        raise Unusable("unknown-figure", f"no figure {name!r}", "figure", f"use one of {', '.join(names)}")
+    draw, known = _drawing(name, study)
     for option in options:
         if option not in known:
             raise Unusable("unknown-option", f"no option {option!r}", f"figure {name}", f"use {', '.join(known)}")
@@ -74,7 +67,7 @@ def _bode(study: Study, of: Look, options: Mapping[str, Any]) -> Chart:
     return bode(
         study.compared(runs).runs, study.matrix.actuator, study.fit, of,
         axis=options.get("axis") or "log", candidates=len(candidates), band=band_of(options),
-        others=Study(study.matrix, other).compared(runs).runs if other else (), other_name=_name(other, study.fit),
+        others=study.beside(other).compared(runs).runs if other else (), other_name=_name(other, study.fit),
     )  # fmt: skip
 
 
@@ -147,9 +140,9 @@ FIGURES: Mapping[str, tuple[Callable[[Study, Look, Mapping[str, Any]], Chart], t
 
 def figures_of(fit: FitResult) -> tuple[str, ...]:
     """Names of the figures that a fit has: a bench's model has no linear core, and figures of its own."""
-    if fit.model != "kononykhin":
-        return tuple(FIGURES)
-    return ("time", *(("evolution",) if fit.evolution else ()), *BENCH_FIGURES)
+    names = preset_with(fit.model).figures or tuple(FIGURES)
+    drawn_always = preset_with(fit.model).kind == "chain"
+    return tuple(name for name in names if drawn_always or fit.evolution or name != "evolution")
 
 
 def _one(matrix: Matrix, options: Mapping[str, Any]) -> Run | None:

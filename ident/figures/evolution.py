@@ -9,6 +9,7 @@ from typing import Any
 
 import altair as alt
 
+from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.choose import Option
@@ -18,7 +19,6 @@ from ident.figures.thin import significant
 from ident.fit.result import FitResult, Generation
 from ident.matrix import Actuator
 
-DEFAULT_PAIR = ("Z0", "c0")
 DEFAULT_GENERATIONS = (1, 4, 8)
 _DECADES = 30.0  # ratio of the ends above which an axis is logarithmic
 
@@ -73,7 +73,9 @@ def _pair(fit: FitResult, x: str | None, y: str | None) -> tuple[str, str] | Non
             raise Unusable(
                 "not-searched", f"{name!r} was not searched", "figure option", f"use {', '.join(fit.searched)}"
             )
-    usual = [name for wanted in DEFAULT_PAIR for name in fit.searched if name.split("/")[0] == wanted]  # Z0, Z0/A^2
+    usual = [
+        name for wanted in preset_with(fit.model).shown for name in fit.searched if name.split("/")[0] == wanted
+    ]  # Z0, Z0/A^2
     preferred = [*usual, *fit.searched]
     first = x or next((name for name in preferred if name != y), None)
     second = y or next((name for name in preferred if name != first), None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable
 from dataclasses import dataclass, field, replace
 
-from ident.comparison.compare import Comparison, RunComparison, compare
+from ident.comparison.compare import Comparison, RunComparison, Simulator, compare, modelled
 from ident.figures.selection import Band
 from ident.fit.result import FitResult
 from ident.matrix import Matrix, Run
@@ -25,15 +25,20 @@ class Study:
 
     matrix: Matrix
     fit: FitResult
+    simulator: Simulator = modelled
     _runs: dict[str, RunComparison] = field(default_factory=dict)
     _settled: tuple[tuple[str, ...], Traces, dict[str | None, tuple[Settled, ...]]] | None = None
     _curves: dict[Hashable, tuple[Curve, ...]] = field(default_factory=dict)
+
+    def beside(self, other: FitResult) -> Study:
+        """Another fit beside the same data."""
+        return Study(self.matrix, other, self.simulator)
 
     def compared(self, runs: tuple[Run, ...]) -> Comparison:
         """Some runs against the model."""
         missing = tuple(run for run in runs if run.id not in self._runs)
         if missing:
-            found = compare(replace(self.matrix, runs=missing), self.fit)
+            found = compare(replace(self.matrix, runs=missing), self.fit, self.simulator)
             self._runs.update({each.run.id: each for each in found.runs})
         return Comparison(replace(self.matrix, runs=runs), self.fit, tuple(self._runs[run.id] for run in runs))
 
@@ -55,7 +60,7 @@ class Study:
         other: FitResult | None,
     ) -> tuple[Curve, ...]:  # fmt: skip
         if other is not None:
-            return curves(self.compared(runs), Study(self.matrix, other).compared(runs), view=view, band=ends)
+            return curves(self.compared(runs), self.beside(other).compared(runs), view=view, band=ends)
         names, kept = tuple(run.id for run in runs), self._settled
         if kept is None or kept[0] != names:
             kept = self._settled = names, traced(self.compared(runs)), {}

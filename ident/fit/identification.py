@@ -5,32 +5,30 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.bench.identification import OPTIONS as BENCH_OPTIONS
-from ident.bench.identification import BenchIdentification
 from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.fit import genetic
 from ident.fit.ends import distinct
-from ident.fit.evolution import GENERATIONS, cma_es, differential_evolution
 from ident.fit.objective import UNSTABLE, Objective
 from ident.fit.output_error import OutputError, shortened
 from ident.fit.polishing import Polished, polished
 from ident.fit.reduction import Basis, excited_band
 from ident.fit.result import FitResult
-from ident.fit.settings import METHODS, Settings
+from ident.fit.search import Search, State, options_of
+from ident.fit.settings import GENERAL, Settings
 from ident.fit.space import search_space
 from ident.fit.summary import summarise
 from ident.matrix import Matrix
 from ident.noise.floor import noise_floors
+from ident.presets import PRESETS
 from ident.progress import Progress, Report, silent
 
 Array = NDArray[np.float64]
-State = dict[str, Any]
 _SEARCHED = 65_536  # samples of a search with effects; the polish takes every sample
 _CANDIDATES = 5  # distinct vectors of the last generation from which the polish starts
 
@@ -50,7 +48,6 @@ class Identification:
         self.preset, self.matrix = named.for_matrix(matrix, settings.load)
         matrix = self.matrix
         self._runs = matrix.of_use("fit")
-        self.options = _options(settings)
         band = excited_band(self._runs)
         space = search_space(self.preset, matrix, settings, band)
         self.objective: Objective | OutputError
@@ -59,6 +56,8 @@ class Identification:
             self.searched: Objective | OutputError = self.objective.fresh(shortened(self._runs, _SEARCHED))
         else:
             self.objective = self.searched = Objective(self.preset, matrix, self._runs, space, Basis(band))
+        options = options_of(settings, self.preset)
+        self.search = Search(len(space.axes), settings.method, options, settings.seed, self.searched.errors, report)
         self._started = time.monotonic()
         self.floors = noise_floors(matrix.runs, band)
         if space.axes:
@@ -69,26 +68,17 @@ class Identification:
     @property
     def generations(self) -> int:
         """Upper bound of the search's generations."""
-        if not self.objective.space.axes:
-            return 0
-        if self.settings.method == "paper-ga":
-            shrink = self.options["survivors"] / self.options["population"]
-            return int(np.ceil(np.log(shrink) / np.log(self.options["keep"]))) + 2
-        if self.settings.method == "ga":
-            return int(self.options["generations"])
-        return GENERATIONS[self.settings.method]
+        return self.search.generations
 
     def start(self) -> State:
         """The state before the first generation."""
-        axes = len(self.objective.space.axes)
-        options = self.options if self.settings.method in ("ga", "paper-ga") else {"population": 1.0}
-        state = genetic.begin(axes, self.settings.seed, options)
-        if self.preset.effects and axes:
+        state, space = self.search.start(), self.objective.space
+        if self.preset.effects and space.axes:
             state["linear"] = self._linear_values()
             if self.settings.method == "ga" and self.settings.load == "none":
-                centre = self.objective.space.point({**self.objective.space.fixed, **state["linear"]})
+                centre = space.point({**space.fixed, **state["linear"]})
                 state = genetic.around(state, centre, self._of_effects)
-        return state | {"done": not axes, "best": [] if not axes else None}
+        return state
 
     @property
     def _of_effects(self) -> Array:
@@ -126,39 +116,8 @@ class Identification:
 
     def advance(self, state: State, generations: int) -> State:
         """The state after at most `generations` more; the library searches run to their end at once."""
-        if self.settings.method in GENERATIONS and not state["done"]:
-            self._take_up(state)
-            return self._evolved(state)
         self._take_up(state)
-        step = genetic.paper_step if self.settings.method == "paper-ga" else genetic.default_step
-        for _ in range(generations):
-            if state["done"]:
-                break
-            state = step(state, self.searched.errors, self.options)
-            done = len(state["history"])
-            self.report(Progress("search", done, self.generations, min(state["history"][-1]["errors"])))
-        return state
-
-    def _evolved(self, state: State) -> State:
-        count = 0
-
-        def errors(points: Array) -> Array:
-            nonlocal count
-            cost = self.searched.errors(points)
-            count += 1
-            self.report(Progress("search", min(count, self.generations), self.generations, float(cost.min())))
-            return cost
-
-        search = differential_evolution if self.settings.method == "differential-evolution" else cma_es
-        history = search(len(self.objective.space.axes), self.settings.seed, errors)
-        entries = [{"population": points.tolist(), "errors": cost.tolist()} for points, cost in history]
-        population, cost = min(history, key=lambda entry: float(entry[1].min()))
-        order = np.argsort(cost, kind="stable")
-        evaluated = sum(len(points) for points, _ in history)
-        return state | {
-            "population": population[order].tolist(), "best": population[order[0]].tolist(), "history": entries,
-            "evaluations": evaluated, "done": True,
-        }  # fmt: skip
+        return self.search.advance(state, generations)
 
     def finish(self, state: State) -> FitResult:
         """Polish (all methods but the paper's), errors of every run, uncertainty."""
@@ -186,40 +145,28 @@ class Identification:
 def check_settings(settings: Settings) -> None:
     """Raise Unusable for settings that no matrix could be fitted with."""
     preset = preset_with(settings.model, settings.effects, settings.custom)
-    if settings.model == "kononykhin" and (settings.effects or settings.load != "none"):
-        raise Unusable("effect-does-not-fit", "the model kononykhin takes no effect and no measured load", "fit",
+    if not preset.takes_effects and (settings.effects or settings.load != "none"):
+        raise Unusable("effect-does-not-fit", f"the model {settings.model} takes no effect and no measured load", "fit",
                        "leave --effect and --load out")  # fmt: skip
-    if settings.method not in METHODS:
-        remedy = f"choose from {', '.join(METHODS)}"
-        raise Unusable("unknown-method", f"no method {settings.method!r}", "method", remedy)
-    if settings.method == "inverse-dynamics" and settings.model != "drive":
-        raise Unusable("unknown-method", "inverse dynamics is of a drive", "method", "use it with model drive")
-    if settings.method == "gradient" and settings.model != "kononykhin":
-        remedy = "use ga, or the model kononykhin"
-        raise Unusable("unknown-method", "gradient is the way of the bench's procedures", "method", remedy)
+    if settings.method not in (*GENERAL, *preset.methods):
+        raise _not_a_method(settings)
     if settings.load not in ("none", "force"):
         raise Unusable("unknown-load", f"load {settings.load!r} is not known", "load", "use force or none")
     for name in (*settings.bounds, *settings.fixed):
         preset.parameter(name)
-    _options(settings)
+    options_of(settings, preset)
 
 
-def _options(settings: Settings) -> dict[str, float]:
-    """The method's options, those of the user over the defaults."""
-    simulated = settings.effects or settings.load == "force"
-    default = genetic.WITH_EFFECTS if simulated else genetic.DEFAULT
-    if settings.model == "kononykhin":
-        default = BENCH_OPTIONS
-    known = {"ga": default, "paper-ga": genetic.PAPER}.get(settings.method, {})
-    for name, value in settings.options.items():
-        if name not in known:
-            remedy = f"choose from {', '.join(known) or 'none'}"
-            raise Unusable("unknown-option", f"method {settings.method} has no option {name!r}", "options", remedy)
-        lower, upper = genetic.RANGES[name]
-        if not lower <= value <= upper:
-            remedy = f"give {lower:g} to {upper:g}"
-            raise Unusable("bad-option", f"{name} = {value:g}", "options", remedy)
-    return {**known, **settings.options}
+def _not_a_method(settings: Settings) -> Unusable:
+    """What is said of a method that a model cannot be fitted by."""
+    others = [known.name for known in PRESETS.values() if settings.method in known.methods]
+    if not others:
+        methods = (*GENERAL, *preset_with(settings.model).methods)
+        return Unusable(
+            "unknown-method", f"no method {settings.method!r}", "method", f"choose from {', '.join(methods)}"
+        )
+    what = f"{settings.method} is a method of the model {' and '.join(others)}"
+    return Unusable("unknown-method", what, "method", f"use it with that model, or use {GENERAL[0]}")
 
 
 def _refuse(matrix: Matrix) -> None:
@@ -231,7 +178,32 @@ def _refuse(matrix: Matrix) -> None:
             raise Unusable("missing-channel", "no command channel", f"run {run.id}", "name the column of the command")
 
 
-def completed(work: Identification | BenchIdentification) -> FitResult:
+class StepwiseFit(Protocol):
+    """A fit a step at a time: a job can be cancelled, or cut off and taken up again, between two of them."""
+
+    @property
+    def generations(self) -> int:
+        """Upper bound of the search's generations."""
+        ...
+
+    def start(self) -> State:
+        """The state before the first generation."""
+        ...
+
+    def finished(self, state: State) -> bool:
+        """True when the search is over and only :meth:`finish` remains."""
+        ...
+
+    def advance(self, state: State, generations: int) -> State:
+        """The state after at most `generations` more."""
+        ...
+
+    def finish(self, state: State) -> FitResult:
+        """What was found."""
+        ...
+
+
+def completed(work: StepwiseFit) -> FitResult:
     """The whole of a fit, without a break."""
     state = work.start()
     while not work.finished(state):

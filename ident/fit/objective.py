@@ -6,7 +6,7 @@ Fast: from the reduced runs (:mod:`ident.fit.reduction`), for whole populations.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain
@@ -110,6 +110,7 @@ class Objective:
     evaluations: int = 0
     unstable: int = 0
     _spectra: list[Spectrum] = field(default_factory=list)
+    _known: dict[tuple[str, frozenset[str]], tuple[tuple[int, ...], Pattern]] = field(default_factory=dict)
 
     def prepare(self) -> None:
         """Reduce every run; once."""
@@ -159,9 +160,9 @@ class Objective:
 
         def of_share(share: tuple[Sequence[int], ...]) -> list[tuple[int, Outcome]]:
             first = [self.runs[alike[0]] for alike in share]
-            reduced = values_at(
-                self._models(first, values), self._patterns[first[0].output], self.basis.nodes, self.basis.band
-            )
+            states, pattern = self._observed(first[0])
+            models = self._models(first, values).of_states(states)
+            reduced = values_at(models, pattern, self.basis.nodes, self.basis.band)
             return [
                 (run, measure(run, g, stable))
                 for alike, (g, stable) in zip(share, reduced, strict=True)
@@ -173,14 +174,14 @@ class Objective:
 
     @cached_property
     def _shares(self) -> list[tuple[Sequence[int], ...]]:
-        """The runs as groups of one output and equal conditions, (runs alike, …), shared out to the cores."""
-        groups: dict[str, dict[tuple[float, ...], list[int]]] = {}
+        """The runs as groups of equal conditions, of one output and the same states behind it, shared out to cores."""
+        groups: dict[Hashable, dict[tuple[float, ...], list[int]]] = {}
         for i, run in enumerate(self.runs):
             known = tuple(conditions(run, self.matrix.actuator).values())
-            groups.setdefault(run.output, {}).setdefault(known, []).append(i)
+            groups.setdefault((run.output, self._observed(run)), {}).setdefault(known, []).append(i)
         return [
             tuple(alike[core :: cores()])
-            for alike in (list(of_output.values()) for of_output in groups.values())
+            for alike in (list(of_kind.values()) for of_kind in groups.values())
             for core in range(min(cores(), len(alike)))
         ]
 
@@ -203,9 +204,16 @@ class Objective:
         """The same for other runs."""
         return replace(self, runs=runs, evaluations=0, unstable=0, _spectra=[])
 
-    @cached_property
-    def _patterns(self) -> dict[str, Pattern]:
-        return {run.output: self.preset.chain.pattern(run.output) for run in self.runs}
+    def _observed(self, run: Run) -> tuple[tuple[int, ...], Pattern]:
+        """The states that a run's output depends on under its conditions, and the pattern of the model of those."""
+        zeros = frozenset(name for name, value in conditions(run, self.matrix.actuator).items() if value == 0)
+        if (run.output, zeros) not in self._known:
+            model = self.preset.chain
+            states, whole = model.observed(run.output, zeros), model.pattern(run.output)
+            kept = (*states, len(model.states))
+            pattern = tuple(tuple(whole[i][j] for j in kept) for i in kept)
+            self._known[run.output, zeros] = states, pattern
+        return self._known[run.output, zeros]
 
     def approximate(self, point: Array) -> Local:
         """The objective at one point from the reduced runs, with sensitivities by differences."""

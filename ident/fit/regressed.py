@@ -26,12 +26,12 @@ _SLACK = 1e-6  # N/m: the regression knows no spring
 
 
 class RegressedIdentification(Identification):
-    """One fit of the model `drive`. Raises Unusable for another model, with effects of its own, or without a force."""
+    """One fit of the model `drive`. Raises Unusable with effects of its own, or without a force."""
 
     def __init__(self, matrix: Matrix, settings: Settings, report: Report = silent) -> None:
-        if settings.model != "drive" or set(settings.effects) - set(EFFECTS):
+        if set(settings.effects) - set(EFFECTS):
             raise Unusable("method-does-not-fit", f"{NAME} finds mass, friction and a constant force", "method",
-                           f"use it with --model drive and no effect but {' and '.join(EFFECTS)}")  # fmt: skip
+                           f"use it with no effect but {' and '.join(EFFECTS)}")  # fmt: skip
         self.asked, self.regression = settings, regress(matrix)
         fixed = {**_values(self.regression), "k0": _SLACK, **settings.fixed}
         super().__init__(matrix, replace(settings, method="ga", effects=EFFECTS, fixed=fixed), report)

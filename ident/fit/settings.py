@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-METHODS = ("ga", "paper-ga", "differential-evolution", "cma-es", "gradient", "inverse-dynamics")
+GENERAL = ("ga", "paper-ga", "differential-evolution", "cma-es")
+"""Methods of any model; a preset may name more of its own."""
+METHODS = (*GENERAL, "gradient", "inverse-dynamics")
 
 
 @dataclass(frozen=True)

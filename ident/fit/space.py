@@ -115,8 +115,9 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     convention = None
     forced = preset.driven_by != "command" or settings.load == "force"
     free = {scale.name for scale in preset.scales} - fixed.keys() - given.keys()
-    if "m0" in free and not (same or forced or _loaded(runs)):
-        convention, fixed["m0"] = "m0", typical["mL"]
+    if free & set(preset.share_force[:1]) and not (same or forced or _loaded(runs)):
+        convention = preset.share_force[0]
+        fixed[convention] = typical["mL"]
     axes = []
     for scale in preset.scales:
         if scale.name in fixed:

@@ -15,7 +15,8 @@ from ident.fit.objective import UNSTABLE, Local, Objective
 from ident.fit.output_error import OutputError
 from ident.fit.polishing import Polished
 from ident.fit.record import Moments
-from ident.fit.result import Combination, Estimate, FitResult, Generation, RunError, Undetermined
+from ident.fit.result import Combination, Estimate, FitResult, RunError, Undetermined
+from ident.fit.search import evolution
 from ident.fit.settings import Settings
 from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
 from ident.matrix import Run
@@ -24,7 +25,6 @@ from ident.presets.preset import Combined
 from ident.simulation.simulate import FASTEST, MOST
 
 Array = NDArray[np.float64]
-_SHARE_SCALE = ("c0", "Ka", "Cl")  # without a known force (m0, c0) × s and (Ka, Cl) / s change nothing
 
 
 def summarise(
@@ -53,7 +53,11 @@ def summarise(
     weak = [name for name in relative if relative[name] > DETERMINED]
     weak += [name for name in deviation if name in strengths and deviation[name] > DETERMINED * ranges[name]]
     if space.convention:
-        weak = [*weak, *(name for name in _SHARE_SCALE if name in relative and name not in weak), space.convention]
+        weak = [
+            *weak,
+            *(name for name in preset.share_force if name in relative and name not in weak),
+            space.convention,
+        ]
     label = _labels(objective)
     known = {name: error for name, error in deviation.items() if name not in weak}
     told = parted(polished.ends, known, {name: label[name][0] for name in known})
@@ -84,7 +88,7 @@ def summarise(
         ),
         settings=settings.to_json(),
         searched=tuple(label[name][0] for name in space.names),
-        evolution=_evolution(objective, state),
+        evolution=evolution(objective.space, state),
     )
 
 
@@ -135,7 +139,7 @@ def _determined(
     """Where a parameter is not determined: the parameters and combinations that are."""
     label, space = _labels(objective), objective.space
     for name, error in relative.items():
-        if error <= DETERMINED and not (space.convention and name in _SHARE_SCALE):
+        if error <= DETERMINED and not (space.convention and name in objective.preset.share_force):
             yield Combination(label[name][0], values[name], label[name][1], values[name] * error)
     for combined in objective.preset.combinations:
         names = combined.equation.names - values.keys()
@@ -153,7 +157,7 @@ def _determined(
 def _reason(objective: Objective | OutputError, name: str, relative: Mapping[str, float]) -> str:
     if name == objective.space.convention:
         return "no specimen of known mass, stiffness or damping gives forces a scale; held at 1 kg by convention"
-    if objective.space.convention and name in _SHARE_SCALE:
+    if objective.space.convention and name in objective.preset.share_force:
         return "known at best as a ratio to the moving mass, which is a convention here"
     if name not in relative:
         return "any strength in its bounds explains these runs as well"
@@ -208,16 +212,3 @@ def _bad_runs(errors: Sequence[RunError], left_out: tuple[str, ...]) -> Iterator
                 f"Run {run.id} was left out of the fit: its error is {100 * run.error:.3g} %, that of the others "
                 f"typically {100 * typical:.3g} %. Look at its labels and its record."
             )
-
-
-def _evolution(objective: Objective | OutputError, state: Mapping[str, Any]) -> tuple[Generation, ...]:
-    """The generations with their populations in SI, to five digits: enough to draw."""
-    out = []
-    for index, entry in enumerate(state["history"]):
-        values = objective.space.values(np.array(entry["population"]))
-        columns = [[float(f"{v:.5g}") for v in values[name]] for name in objective.space.names]
-        errors = tuple(float(f"{e:.6g}") for e in entry["errors"])
-        stable = [error for error in errors if error < UNSTABLE] or [UNSTABLE]
-        mean = float(np.mean(stable))
-        out.append(Generation(index + 1, min(errors), mean, tuple(zip(*columns, strict=True)), errors))
-    return tuple(out)

@@ -12,6 +12,7 @@ MOVED = (
     Parameter("k0", "k₀", "N/m", 1e-6, 1e9, 1.0, "stiffness of the spring to the ground", SOURCE),
 )
 OUTPUTS = {"displacement": "y", "force": "F"}
+FORCE_SCALE = "(c0 + m0*W)*W*X"
 CITATION = (
     "A. Janot, M. Gautier, M. Brunot: data set and reference models of EMPS. "
     "Workshop on Nonlinear System Identification Benchmarks (2019)."
@@ -34,6 +35,8 @@ UNDER_CONTROL = Preset(
         Scale("c0", "m0 * W", 1e-4, 1e3),
         Scale("k0", "m0 * W**2", 1e-6, 1e2),
     ),
+    force_scale=FORCE_SCALE,
+    share_force=("m0", "c0", "k0", "kv"),
     combinations=(
         Combined("kp*kv / m0", "1/s^2", "stiffness of the position loop over the mass"),
         Combined("(kv + c0) / m0", "1/s", "damping of the loop over the mass"),
@@ -53,5 +56,7 @@ DRIVE = Preset(
         Scale("k0", "U / X", 1e-6, 1e2),
     ),
     driven_by="drive_force",
+    force_scale=FORCE_SCALE,
+    methods=("inverse-dynamics",),
     under_control=UNDER_CONTROL,
 )

@@ -66,6 +66,18 @@ KONONYKHIN = Preset(
         *(Scale(p.name, "1", p.lower, p.upper, logarithmic=False) for p in _speeds()),
     ),
     driven_by="current",
+    kind="bench",
+    takes_effects=False,
+    methods=("gradient",),
+    search={"population": 80.0, "generations": 40.0, "elite": 8.0},
+    figures=(
+        "time",
+        "evolution",
+        "pressure-loop",
+        "frequency-characteristics",
+        "speed-characteristic",
+        "acceptance-sheet",
+    ),
     notes=(
         "The second derivative in the printed formula of block a is a misprint: the text says an aperiodic link, "
         "T I' + I = Iin. Currents are in rated currents; Ps is the supply pressure of the actuator.",

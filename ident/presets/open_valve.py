@@ -50,6 +50,7 @@ OPEN_VALVE = Preset(
         Scale("Cl", "Ka * W", 1e-5, 1e1),
         Scale("Z0", "A**3 * X / (m0 * W * U)", -3e1, 3e1, logarithmic=False),
     ),
+    force_scale="A*X",
     without_area={"Z0": ("Z0/A^3", "1/(m^2*s)"), "Ka": ("Ka/A^2", "m/N"), "Cl": ("Cl/A^2", "m/(N*s)"),
                   "m0": ("m0/A^2", "kg/m^4")},
     combinations=(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Literal
 
 from ident.chain.chain import CONDITIONS, Chain, unfit
 from ident.effects.effect import Effect, parameter_name
@@ -12,6 +13,9 @@ from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.parameter import Parameter
 from ident.stages import MASS_SPRING_DAMPER, MEASURED_LOAD
+
+Kind = Literal["chain", "bench"]
+"""Who serves a model: what fits chains to test runs, or Kononykhin's procedures for the records of a bench."""
 
 
 @dataclass(frozen=True)
@@ -55,8 +59,13 @@ class Preset:
     `bounds_hold_for` is the piston area (m²) of the machine that the parameters' bounds were stated for; another
     machine is searched over `scales`. `without_area` gives the name and unit of what a parameter becomes when the
     area is unknown. `driven_by` is the channel that drives the model, the command where a run has none of that name;
-    `under_control` the model of the same machine under a controller. Raises Unusable where an equation reads what is
-    neither a parameter nor a condition.
+    `under_control` the model of the same machine under a controller. `methods` are fitting methods of this model
+    alone, `search` the options of its genetic search that differ from the usual ones, `figures` those that it has,
+    every figure of test runs where there are none. `force_scale` is the size of its forces in the words of a scale.
+    Multiplied or divided by one factor, the parameters `share_force` change nothing as long as no force is known: the
+    first is then held by convention. `shown` are the two whose search is drawn.
+
+    Raises Unusable where an equation reads what is neither a parameter nor a condition.
     """
 
     name: str
@@ -72,6 +81,14 @@ class Preset:
     effects: tuple[Effect, ...] = ()
     driven_by: str = "command"
     under_control: Preset | None = None
+    kind: Kind = "chain"
+    takes_effects: bool = True
+    methods: tuple[str, ...] = ()
+    search: Mapping[str, float] = field(default_factory=dict)
+    figures: tuple[str, ...] = ()
+    force_scale: str = ""
+    share_force: tuple[str, ...] = ()
+    shown: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         known = {parameter.name for parameter in self.parameters} | CONDITIONS.keys()
@@ -104,7 +121,10 @@ class Preset:
             self,
             chain=self.chain.with_effects(effects),
             parameters=(*self.parameters, *added),
-            scales=(*self.scales, *(scale_of(effect, p) for effect in effects for p in effect.parameters)),
+            scales=(
+                *self.scales,
+                *(scale_of(effect, p, self.force_scale) for effect in effects for p in effect.parameters),
+            ),
             effects=effects,
         )
 
@@ -171,22 +191,30 @@ class Preset:
         )
 
 
-_FORCE = "(c0 + m0*W)*W*X"
+_OWN = ("1", None)
 _SCALES = {
-    "1": ("1", None), "s": ("1/W", 3.0), "1/s": ("W", 1.0), "m": ("Kp*X", 0.5), "1/m": ("1/(Kp*X)", 3.0),
-    "s/m": ("1/(Kp*X*W)", 5.0), "N": (_FORCE, 0.3), "N/m^3": (f"{_FORCE}/X**3", 0.3),
-    "N*s^2/m^2": ("(c0 + m0*W)/(W*X)", 1.0), "m/Pa": (f"Kp*X*A/({_FORCE})", 1.0), "1/Pa": (f"A/({_FORCE})", 1.0),
-    "s/m^3": ("1/(A*W*X)", 1.0), "m^3/(s*Pa^0.5)": (f"A*W*X/sqrt({_FORCE}/A)", 1.0), "1/m^2": ("1/X**2", 1.0),
-    "m/N": (f"X/({_FORCE})", 1.0),
+    "1": _OWN, "Pa": _OWN, "m/s": _OWN, "s": ("1/W", 3.0), "1/s": ("W", 1.0), "m": ("Kp*X", 0.5),
+    "1/m": ("1/(Kp*X)", 3.0), "s/m": ("1/(Kp*X*W)", 5.0), "N": ("F", 0.3), "N/m^3": ("F/X**3", 0.3),
+    "N*s^2/m^2": ("F/(W*X)**2", 1.0), "m/Pa": ("Kp*X*A/F", 1.0), "1/Pa": ("A/F", 1.0), "s/m^3": ("1/(A*W*X)", 1.0),
+    "m^3/(s*Pa^0.5)": ("A*W*X/sqrt(F/A)", 1.0), "1/m^2": ("1/X**2", 1.0), "m/N": ("X/F", 1.0),
 }  # fmt: skip
-"""For a machine of unknown size: what a strength of each unit is measured by, and how much of it is searched."""
+"""For a machine of unknown size: what a strength of each unit is measured by, and how much of it is searched.
+
+F stands for the preset's force scale. `_OWN`: within the bounds that it has.
+"""
 
 
-def scale_of(effect: Effect, parameter: Parameter) -> Scale:
-    """How to search an effect's parameter for a machine of another size than its bounds were stated for."""
-    text, reach = _SCALES.get(parameter.unit, ("1", None))
+def scale_of(effect: Effect, parameter: Parameter, force: str) -> Scale:
+    """How to search an effect's parameter for a machine of another size than its bounds were stated for.
+
+    A user's effect may have a unit of its own: there its own bounds hold. So they do where the model has no force.
+    """
+    text, reach = _SCALES.get(parameter.unit, _OWN)
     if effect.place not in ("valve", "spool") and parameter.unit == "m":
         text = "X"
+    if "F" in text and not force:
+        reach = None
+    text = text.replace("F", f"({force})")
     if reach is None:
         return Scale(effect.symbol(parameter.name), "1", parameter.lower, parameter.upper, logarithmic=False)
     lower = -reach if parameter.lower < 0 else 0.0

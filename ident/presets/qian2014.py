@@ -51,6 +51,9 @@ QIAN2014 = Preset(
         Scale("Cl", "A**2 / c0", 1e-5, 1e1),
     ),
     bounds_hold_for=4.97e-4,
+    force_scale="(c0 + m0*W)*W*X",
+    share_force=("m0", "c0", "Ka", "Cl"),
+    shown=("Z0", "c0"),
     without_area={"Z0": ("Z0/A^2", "1/s"), "Ka": ("Ka/A^2", "m/N"), "Cl": ("Cl/A^2", "m/(N*s)")},
     combinations=(
         Combined("Z0 / (A**2 + Cl*c0)", "1/s", "speed gain of the loop, for Kp = 1 and no specimen"),

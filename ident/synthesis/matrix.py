@@ -19,7 +19,7 @@ from ident.comparison.compare import modelled
 from ident.errors import Unusable
 from ident.fit.record import output
 from ident.matrix import Actuator, Matrix, Run, Specimen
-from ident.presets import Preset
+from ident.presets import PRESETS, Preset
 from ident.presets import preset as preset_called
 from ident.progress import Progress, Report, silent
 
@@ -44,8 +44,6 @@ SMALL_SPECIMENS, SMALL_GAINS = (SPECIMENS[0], SPECIMENS[2], SPECIMENS[5]), (5.0,
 """Of a small matrix: nothing, a mass on a spring, a mass; the lowest and the highest gain."""
 SIMULATED = "simulated"
 """How the name of every simulated actuator begins."""
-BENCH = "kononykhin"
-"""The model whose set is records of a bench, of the lengths that its procedures want."""
 _INCH = 0.0254
 
 
@@ -92,21 +90,23 @@ def simulate_matrix(
     Raises Unusable where the folder is in use, the model cannot follow a test matrix, or a number makes no sense.
     """
     model = preset_called(preset, tuple(name.partition(".")[0] for name in effects or {}))
-    if model.bounds_hold_for is None and preset != BENCH:
-        remedy = f"use qian2014 or {BENCH}"
+    on_bench = model.kind == "bench"
+    if model.bounds_hold_for is None and not on_bench:
+        able = [name for name, p in PRESETS.items() if p.bounds_hold_for is not None or p.kind == "bench"]
+        remedy = f"use {' or '.join(able)}"
         raise Unusable("cannot-simulate", f"model {preset} has no test matrix of its own", "simulate", remedy)
     if not (1 / 16 <= seconds <= 600 and 0 <= noise < 1):
         raise Unusable("bad-value", f"{seconds:g} s with noise {noise:g}", "simulate",
                        "give 0.0625 to 600 seconds and noise from 0 to below 1")  # fmt: skip
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise Unusable("folder-in-use", "the folder is not empty", str(out), "name a new one")
-    if preset == BENCH and small:
+    if on_bench and small:
         raise Unusable("bad-option", "the set of a bench has one size", "simulate", "leave --small out")
-    if preset == BENCH and effects:
-        raise Unusable("effect-does-not-fit", f"the model {BENCH} takes no effect", "simulate", "leave --effect out")
+    if on_bench and effects:
+        raise Unusable("effect-does-not-fit", f"the model {preset} takes no effect", "simulate", "leave --effect out")
     (out / "runs").mkdir(parents=True, exist_ok=True)
-    if preset == BENCH:
-        write_bench(out, seed, noise, report)
+    if on_bench:
+        write_bench(out, model, seed, noise, report)
         return
     values = {parameter.name: parameter.value for parameter in model.parameters}
     values |= {model.parameter(name).name: value for name, value in (effects or {}).items()}

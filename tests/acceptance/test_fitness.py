@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from ident.fit.identification import Identification
-from ident.fit.identify import identify
 from ident.fit.objective import UNSTABLE
 from ident.fit.settings import Settings
+from ident.workflows import identify
 from tests.acceptance.matrices import as_matrix, records_of
 from tests.reference import qian_reference as reference
 

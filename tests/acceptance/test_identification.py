@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 
 from ident.fit.identification import Identification
-from ident.fit.identify import identify
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.readers import read_matrix
+from ident.workflows import identify
 from tests.acceptance.matrices import NOISE, as_matrix, records_of
 from tests.reference import qian_reference as reference
 
@@ -133,7 +133,7 @@ from dataclasses import replace
 from pathlib import Path
 cores = set(json.loads(sys.argv[2]))
 os.sched_setaffinity(0, cores)
-from ident.fit.identify import identify
+from ident.workflows import identify
 from ident.fit.settings import Settings
 from ident.readers import read_matrix
 fit = replace(identify(read_matrix(Path(sys.argv[1])), Settings(seed=3)), seconds=0.0)

@@ -12,10 +12,10 @@ from typing import Any
 
 import pytest
 
-from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.presets import PRESETS
 from ident.readers import read_matrix
+from ident.workflows import identify
 from tests.running import process
 
 ROOT = Path(__file__).parents[2]

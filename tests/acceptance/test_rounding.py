@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from ident.comparison.compare import modelled
-from ident.fit.identify import identify
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Controller, Matrix, Run, Specimen
 from ident.presets import PRESETS
+from ident.workflows import identify
 from tests.bench import sets
 from tests.fit.recovery import matrix as with_hidden
 from tests.reference import kononykhin_reference

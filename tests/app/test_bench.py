@@ -13,6 +13,7 @@ from fastapi.testclient import TestClient
 
 from ident.bench.synthesis import write_bench
 from ident.figures import BENCH_FIGURES
+from ident.presets import PRESETS
 
 API = "/api/v1"
 OPTIONS = {"population": 16, "generations": 2, "elite": 3}
@@ -32,7 +33,7 @@ def fit(service: TestClient, tmp_path_factory: pytest.TempPathFactory) -> str:
     """A fit of an uploaded set."""
     folder = Path(tmp_path_factory.mktemp("bench"))
     (folder / "runs").mkdir()
-    write_bench(folder, seed=5, noise=0.005)
+    write_bench(folder, PRESETS["kononykhin"], seed=5, noise=0.005)
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w") as archive:
         for path in sorted(folder.rglob("*.*")):

@@ -7,12 +7,11 @@ from dataclasses import replace
 import pytest
 
 from ident.design.rivals import in_question
-from ident.diagnosis.diagnose import diagnose
 from ident.diagnosis.result import Diagnosis
 from ident.errors import Unusable
-from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
+from ident.workflows import diagnose, identify
 from tests.bench.sets import as_matrix
 from tests.reference import kononykhin_reference as reference
 

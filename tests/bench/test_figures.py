@@ -10,10 +10,10 @@ from ident.bench.acceptance import sheet
 from ident.bench.analysis import analyse
 from ident.bench.records import bench_set
 from ident.errors import Unusable
-from ident.figures import BENCH_FIGURES, figure, figures_of, render
+from ident.figures import BENCH_FIGURES, figures_of, render
 from ident.figures.acceptance_sheet import acceptance_sheet
-from ident.fit.identify import identify
 from ident.fit.settings import Settings
+from ident.workflows import figure, identify
 from tests.bench.sets import as_matrix
 from tests.reference import kononykhin_reference as reference
 

@@ -10,8 +10,8 @@ import pytest
 
 from ident.bench.identification import BenchIdentification
 from ident.errors import Unusable
-from ident.fit.identify import identification, identify
 from ident.fit.settings import Settings
+from ident.workflows import identification, identify
 from tests.bench.sets import as_matrix, true_model
 from tests.reference import kononykhin_reference as reference
 

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ident.effects import effect
-from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.workflows import identify
 from tests.reference import nonlinear_reference as reference
 from tests.reference import qian_reference as linear
 

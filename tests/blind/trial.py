@@ -8,13 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from ident.diagnosis.diagnose import diagnose
 from ident.diagnosis.result import Diagnosis
 from ident.effects import EFFECTS
 from ident.effects.effect import Effect
-from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.matrix import Matrix, Run, Specimen
+from ident.workflows import diagnose, identify
 from tests.blind.machines import OFFSET, Machine, as_fit, drawn_plant, matrix_of, offset_strength, strength_for
 from tests.blind.noises import NOISES, with_noise
 from tests.blind.written import written

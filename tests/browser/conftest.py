@@ -10,9 +10,8 @@ from pathlib import Path
 import pytest
 
 from tests.app.conftest import zipped
-from tests.running import Service, process
+from tests.running import CHROMIUM, Service, process
 
-CHROMIUM = "/usr/bin/chromium"
 HERE = Path(__file__).resolve().parent
 SCREENSHOTS = HERE.parents[1] / "build" / "screenshots"
 

@@ -15,7 +15,6 @@ from ident.design.contender import Contender
 from ident.design.experiment import Experiment
 from ident.design.next_experiment import propose, ranked
 from ident.design.rivals import floor_of, in_question, trusted
-from ident.fit.identify import identify
 from ident.fit.output_error import OutputError
 from ident.fit.polish import polish
 from ident.fit.reduction import excited_band
@@ -23,6 +22,7 @@ from ident.fit.settings import Settings
 from ident.fit.space import search_space
 from ident.matrix import Matrix, Run
 from ident.presets import Preset, preset
+from ident.workflows import identify
 from tests.fit.recovery import NOISE, matrix
 from tests.reference import nonlinear_reference as reference
 from tests.reference import qian_reference as linear

@@ -7,12 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ident.diagnosis.diagnose import diagnose
 from ident.diagnosis.result import Diagnosis
 from ident.errors import Unusable
-from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
+from ident.workflows import diagnose, identify
 from tests.blind.machines import Machine, matrix_of
 from tests.blind.noises import with_noise
 from tests.reference import outside_reference as outside

@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from ident.comparison.compare import compare
-from ident.diagnosis.diagnose import diagnose
-from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.readers import read_matrix
+from ident.workflows import diagnose, identify
 
 DRY = {"coulomb_friction", "presliding_friction", "stribeck_friction"}
 

@@ -9,8 +9,9 @@ import pytest
 import ident.figures.study
 from ident.comparison.compare import Comparison
 from ident.errors import Unusable
-from ident.figures import FIGURES, figure, render
+from ident.figures import FIGURES, render
 from ident.figures.look import LOOKS
+from ident.workflows import figure
 from tests.figures.conftest import make_comparison
 
 
@@ -18,7 +19,7 @@ from tests.figures.conftest import make_comparison
 def hand_made(monkeypatch: pytest.MonkeyPatch) -> None:
     """Responses in closed form instead of the compared fit."""
 
-    def compare(matrix, fit):
+    def compare(matrix, fit, _simulator):
         return Comparison(matrix, fit, tuple(map(make_comparison, matrix.runs)))
 
     monkeypatch.setattr(ident.figures.study, "compare", compare)

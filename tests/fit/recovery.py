@@ -11,10 +11,10 @@ from functools import cache
 
 from ident.effects import EFFECTS, effect
 from ident.effects.effect import Effect
-from ident.fit.identify import identify
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
+from ident.workflows import identify
 from tests.blind.machines import matrix_of
 from tests.reference import nonlinear_reference as reference
 from tests.reference import qian_reference as linear

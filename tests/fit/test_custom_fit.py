@@ -10,10 +10,10 @@ import pytest
 from ident.comparison.compare import compare
 from ident.custom.definition import definition_of
 from ident.fit.identification import Identification
-from ident.fit.identify import identify
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.workflows import identify
 from tests.fit.recovery import NOISE, matrix
 from tests.reference import drifting_reference, qian_reference
 

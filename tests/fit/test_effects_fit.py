@@ -10,7 +10,6 @@ import pytest
 
 from ident.effects.effect import Effect
 from ident.fit.identification import Identification
-from ident.fit.identify import identify
 from ident.fit.output_error import OutputError
 from ident.fit.polish import polish
 from ident.fit.settings import Settings
@@ -18,6 +17,7 @@ from ident.fit.space import search_space
 from ident.matrix import Matrix, Specimen
 from ident.parameter import Parameter
 from ident.presets import PRESETS
+from ident.workflows import identify
 from tests.fit.recovery import NOISE, matrix
 
 SETTINGS = Settings(effects=("dead_zone",), seed=4)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run
+from ident.workflows import identify
 from tests.reference import measured_load_reference as reference
 from tests.reference.qian_reference import Plant
 

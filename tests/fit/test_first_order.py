@@ -7,9 +7,9 @@ import pytest
 from scipy.signal import lfilter
 
 from ident.fit import objective
-from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run
+from ident.workflows import identify
 from tests.reference.qian_reference import SAMPLE_RATE, band_limited_noise
 
 TAU, GAIN = 5e-3, 0.9

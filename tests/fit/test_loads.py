@@ -10,11 +10,11 @@ import pytest
 
 from ident.comparison.compare import compare, modelled
 from ident.errors import Unusable
-from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run, Specimen
 from ident.presets import PRESETS
 from ident.readers import read_matrix
+from ident.workflows import identify
 from tests.reference import nonlinear_reference as reference
 from tests.reference import qian_reference as linear
 
@@ -78,5 +78,5 @@ def test_inverse_dynamics_is_a_method_of_the_drive():
 
 
 def test_inverse_dynamics_of_an_actuator_is_refused():
-    with pytest.raises(Unusable, match="of a drive"):
+    with pytest.raises(Unusable, match="of the model drive"):
         identify(loaded(Specimen()), Settings(method="inverse-dynamics"))

@@ -6,9 +6,9 @@ from dataclasses import replace
 from functools import cache
 
 from ident.comparison.compare import Comparison, compare
-from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.presets import preset
+from ident.workflows import identify
 from tests.fit.recovery import matrix
 
 HIDDEN = {

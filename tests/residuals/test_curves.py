@@ -8,14 +8,13 @@ import pytest
 from ident.comparison.compare import compare
 from ident.effects.backlash import BACKLASH
 from ident.errors import Unusable
-from ident.figures import figure
-from ident.fit.identify import identify
 from ident.fit.settings import Settings
 from ident.presets import preset
 from ident.residuals.coarse import Response
 from ident.residuals.curves import curves
 from ident.residuals.traces import traces
 from ident.residuals.views import VIEWS, injected, showing, view_of
+from ident.workflows import figure, identify
 from tests.residuals.conftest import HIDDEN, TRUE, compared
 
 PLACES = {
