@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from ident.presets import PRESETS
+
 ROOT = Path(__file__).resolve().parents[1]
 OWN = {"ident", "app", "schemas", "migrations", "tests", "benchmarks"}
 STANDARD = set(sys.stdlib_module_names) | {"__future__"}
@@ -82,6 +84,61 @@ def test_the_rooms_of_the_library_stand_in_one_order():
             if within(module, {"ident"}) and ROOMS.index(room(module)) > ROOMS.index(own):
                 upwards.setdefault((own, room(module)), []).append(f"{file.relative_to(ROOT)} imports {module}")
     assert not upwards
+
+
+def test_nothing_outside_the_presets_knows_a_model_by_its_name():
+    """A fact about a model stands with its preset: no comparison with a name, no table by names, no constant for one."""
+    places = files("ident/**/*.py", "app/**/*.py", "schemas/**/*.py")
+    found = [
+        f"{file.relative_to(ROOT)}:{line}"
+        for file in places
+        if ROOT / "ident" / "presets" not in file.parents
+        for line in chosen_by_name(ast.parse(file.read_text(encoding="utf-8")), set(PRESETS))
+    ]
+    assert not found
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        'if model == "drive": pass', 'if "drive" != model: pass', 'if model in ("x", "drive"): pass',
+        'NAME = "drive"\nif model == NAME: pass', 'NAMES = ("drive",)\nif model in NAMES: pass',
+        'TABLE = {"drive": 1}', 'x = table["drive"]', 'x = table.get("drive")', 'match model:\n  case "drive": pass',
+    ],
+)  # fmt: skip
+def test_a_choice_by_the_name_of_a_model_is_seen(code):
+    assert list(chosen_by_name(ast.parse(code), {"drive"}))
+    assert not list(chosen_by_name(ast.parse('def fit(model: str = "drive"): pass'), {"drive"}))
+
+
+def chosen_by_name(tree: ast.Module, names: set[str]) -> Iterator[int]:
+    """The lines that compare with a name, key a table by it or match it, in words or by a constant that holds it."""
+    constants: set[str] = set()
+
+    def held(node: ast.AST | None) -> bool:
+        if isinstance(node, ast.Tuple | ast.List | ast.Set):
+            return any(map(held, node.elts))
+        if isinstance(node, ast.Name):
+            return node.id in constants
+        return isinstance(node, ast.Constant) and node.value in names
+
+    for node in tree.body:
+        if isinstance(node, ast.Assign) and held(node.value):
+            constants |= {target.id for target in node.targets if isinstance(target, ast.Name)}
+    for node in ast.walk(tree):
+        by: list[ast.AST | None] = []
+        if isinstance(node, ast.Compare):
+            by = [node.left, *node.comparators]
+        elif isinstance(node, ast.Dict):
+            by = list(node.keys)
+        elif isinstance(node, ast.Subscript):
+            by = [node.slice]
+        elif isinstance(node, ast.MatchValue):
+            by = [node.value]
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "get":
+            by = list(node.args[:1])
+        if any(map(held, by)):
+            yield node.lineno
 
 
 def test_there_is_no_loose_file_but_the_basic_words_and_the_workflows():
