@@ -5,7 +5,7 @@ from __future__ import annotations
 import statistics
 import time
 
-from benchmarks import machine
+from benchmarks import simulation
 from benchmarks.table import Table
 from ident.bench.analysis import analyse
 from tests.bench.sets import as_set
@@ -29,7 +29,7 @@ def measure() -> Table:
         analyse(bench)
         clock.append(time.perf_counter() - began[0])
         processor.append(time.process_time() - began[1])
-    goal = GOAL * machine.slowness()
+    goal = GOAL * simulation.slowness()
     samples = sum(record.length for record in sets[0].records)
     rows = [(f"{statistics.median(times):.2f} s", f"{min(times):.2f} s", what)
             for what, times in (("by the clock", clock), ("of processor", processor))]  # fmt: skip
@@ -40,6 +40,6 @@ def measure() -> Table:
         "other work shares the machine the clock also counts that.",
         ("time", "what", "median", "best"),
         [("analysis", what, median, best) for median, best, what in rows],
-        f"{goal:.2f} s by the clock (median; {GOAL} s where `lfilter` takes {machine.LFILTER} ns a sample)",
+        f"{goal:.2f} s by the clock (median; {GOAL} s where `lfilter` takes {simulation.LFILTER} ns a sample)",
         statistics.median(clock) <= goal,
     )

@@ -7,14 +7,14 @@ import time
 
 import numpy as np
 
-from benchmarks import machine, material
+from benchmarks import material, simulation
 from benchmarks.table import Table
 from ident.fit.identification import Identification
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.parallel import cores
 
-GOAL = 1.5  # s, for each of the two parts, where `lfilter` is as quick as :data:`benchmarks.machine.LFILTER`
+GOAL = 1.5  # s, for each of the two parts, where `lfilter` is as quick as :data:`benchmarks.simulation.LFILTER`
 PARTS = ("spectra", "search", "polish, errors of 84 runs, uncertainty")
 SEEDS = range(7)
 
@@ -44,7 +44,7 @@ def measure() -> Table:
     found = [timed(matrix, seed) for seed in SEEDS]
     times, error = np.array([taken for taken, _ in found]), statistics.median(error for _, error in found)
     times = np.concatenate([times, times[:, :, 1:].sum(axis=2, keepdims=True)], axis=2)
-    median, best, goal = np.median(times, axis=0), times.min(axis=0), GOAL * machine.slowness()
+    median, best, goal = np.median(times, axis=0), times.min(axis=0), GOAL * simulation.slowness()
     rows = [
         (part, f"{median[0, i]:.2f} s", f"{best[0, i]:.2f} s", f"{median[1, i]:.2f} s")
         for i, part in enumerate((*PARTS, "search to result"))
@@ -57,6 +57,6 @@ def measure() -> Table:
         ("part", "median", "best", "processor time / cores, median"),
         rows,
         f"spectra in {goal:.2f} s, then the result in {goal:.2f} s (medians; {GOAL} s where `lfilter` takes "
-        f"{machine.LFILTER} ns a sample)",
+        f"{simulation.LFILTER} ns a sample)",
         bool(median[0, 0] <= goal and median[0, 3] <= goal),
     )

@@ -17,9 +17,9 @@ import numpy as np
 from benchmarks.table import Table, seconds_of
 from ident.chain.chain import conditions
 from ident.effects import EFFECTS
-from ident.fit.output_error import OutputError
-from ident.fit.polish import polish
+from ident.fit.levenberg_marquardt import polish
 from ident.fit.settings import Settings
+from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import search_space
 from ident.matrix import Actuator, Matrix, Run, Specimen
 from ident.presets import Preset, preset
@@ -114,7 +114,7 @@ def gauss_newton() -> tuple[float, int]:
     matrix = Matrix(Actuator("", piston_area=PLANT.A), runs)
     model = preset("qian2014", ("dead_zone", "quadratic_damping"))
     space = search_space(model, matrix, Settings(effects=("dead_zone", "quadratic_damping")), 500.0)
-    fitness = OutputError(model, matrix, runs, space, 500.0)
+    fitness = SimulatedFitness(model, matrix, runs, space, 500.0)
     truth = PLANT._asdict() | {"dead_zone__half_width": 2e-4, "quadratic_damping__coefficient": 2e3}
     start = space.point({name: value * 1.03 for name, value in truth.items()} | dict(space.fixed))
     fitness.exact(start)  # compiles

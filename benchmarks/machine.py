@@ -9,10 +9,7 @@ import time
 from pathlib import Path
 
 import numpy as np
-from scipy.signal import lfilter
 
-LFILTER = 16.5
-"""ns a sample of a fourth-order `lfilter` into fresh memory, on the machine for which goals in seconds are set."""
 _FEATURES = ("avx", "avx2", "fma", "avx512f")
 _FRESH = 64 * 2**20  # bytes
 
@@ -39,19 +36,6 @@ def touch() -> tuple[float, float]:
         del block
     fresh, again = (statistics.median(float(taken[i]) for taken in times) for i in range(2))
     return fresh, again
-
-
-def slowness() -> float:
-    """How much slower this machine is than the one for which goals in seconds are set: by `lfilter`, median of nine."""
-    command = np.random.default_rng(0).standard_normal(122_880)
-    b, a = [1e-6, 1e-5, 2e-5, 1e-5, 1e-6], [1.0, -3.6, 4.9, -3.0, 0.70001]
-    times = []
-    for _ in range(9):
-        began = time.perf_counter()
-        outputs = [lfilter(b, a, command) for _ in range(16)]
-        times.append((time.perf_counter() - began) / len(outputs) / len(command))
-        del outputs
-    return statistics.median(times) * 1e9 / LFILTER
 
 
 def _processor() -> tuple[str, str]:

@@ -19,8 +19,8 @@ from ident.comparison import compare as comparison
 from ident.comparison.compare import Comparison, Simulator
 from ident.custom.definition import preset_with
 from ident.diagnosis import diagnose as diagnosis
-from ident.diagnosis.addition import MOST, USUAL
 from ident.diagnosis.result import Diagnosis
+from ident.diagnosis.stepwise import MOST, USUAL
 from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.figures import Chart, Study

@@ -61,7 +61,7 @@ def rounded_otherwise() -> Iterator[None]:
 
 def _move_all(patch: pytest.MonkeyPatch, seed: int) -> None:
     from ident.bench import records
-    from ident.diagnosis.models import Models
+    from ident.diagnosis.family import Models
     from ident.fit.identification import Identification
 
     make, begin, of = records._record, Identification.__init__, Models.of.__func__

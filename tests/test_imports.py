@@ -87,7 +87,7 @@ def test_the_rooms_of_the_library_stand_in_one_order():
 
 
 def test_nothing_outside_the_presets_knows_a_model_by_its_name():
-    """A fact about a model stands with its preset: no comparison with a name, no table by names, no constant for one."""
+    """A fact about a model stands with its preset: it is not compared with, nor keyed by, a name."""
     places = files("ident/**/*.py", "app/**/*.py", "schemas/**/*.py")
     found = [
         f"{file.relative_to(ROOT)}:{line}"

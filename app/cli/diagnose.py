@@ -52,7 +52,7 @@ def diagnose(
     """Find what a model lacks. Effects are ranked by their error on held-out data, and added while they help."""
     from app.cli.arguments import definitions
     from ident.custom.definition import read_effect, together
-    from ident.diagnosis.addition import USUAL
+    from ident.diagnosis.stepwise import USUAL
     from ident.readers import read_matrix
     from ident.workflows import diagnose as diagnosed
 

@@ -22,13 +22,13 @@ def next_(
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the proposal as JSON; - is stdout.")] = None,
 ) -> None:
     """Propose the next run. It is the one that best tells apart the effects that a diagnosis leaves in question."""
-    from ident.design.next_experiment import propose
-    from ident.design.rivals import floor_of, in_question, trusted
+    from ident.design.proposal import propose
+    from ident.design.rivals import floor_of, rivals, trusted
     from ident.readers import read_matrix
 
     check_target(json)
     found = read_diagnosis(diagnosis)
-    proposal = propose(in_question(found), trusted(found, read_matrix(matrix)), floor_of(found), seed)
+    proposal = propose(rivals(found), trusted(found, read_matrix(matrix)), floor_of(found), seed)
     proposal.write(out)
     if json is not None:
         write_json(proposal.to_json(), json)

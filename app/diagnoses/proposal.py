@@ -13,8 +13,8 @@ from app.context import Context
 from app.diagnoses import service
 from app.matrices import service as matrices
 from ident.design.experiment import Experiment
-from ident.design.next_experiment import propose
-from ident.design.rivals import floor_of, in_question, trusted
+from ident.design.proposal import propose
+from ident.design.rivals import floor_of, rivals, trusted
 from schemas.diagnosis import ProposalView
 
 _KEPT = 32
@@ -47,7 +47,7 @@ def _experiment(context: Context, diagnosis: str, seed: int) -> Experiment:
     stored = service.get(context, diagnosis)
     data = stored.model_dump()
     matrix = trusted(data, matrices.load(context, stored.matrix))
-    found = propose(in_question(data), matrix, floor_of(data), seed)
+    found = propose(rivals(data), matrix, floor_of(data), seed)
     with _lock:
         _known[key] = found
         while len(_known) > _KEPT:

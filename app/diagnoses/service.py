@@ -13,7 +13,7 @@ from app.matrices import service as matrices
 from app.paging import cursor, keys_of
 from app.tables import DiagnosisRow
 from ident.custom.definition import definition_of, read_effect, together
-from ident.diagnosis.addition import MOST, USUAL
+from ident.diagnosis.stepwise import MOST, USUAL
 from ident.errors import Unusable
 from ident.fit.identification import check_settings
 from ident.fit.result import Estimate, FitResult

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 from app.pages import numbers
 from app.report.diagnosis import Diagnosis
+from ident.residuals.breakdown import Breakdown, Group
 from ident.residuals.budget import Budget
 from ident.residuals.curves import Curve
 from ident.residuals.trends import Trend
-from ident.residuals.where import Group, Where
 
 Row = tuple[str, ...]
 _MEANS = {
@@ -31,7 +31,7 @@ def budget_rows(budget: Budget | None) -> tuple[Row, ...]:
     )  # fmt: skip
 
 
-def group_tables(found: Where) -> dict[str, list[Group]]:
+def group_tables(found: Breakdown) -> dict[str, list[Group]]:
     """The groups by what they have in common."""
     tables: dict[str, list[Group]] = {}
     for group in found.groups:

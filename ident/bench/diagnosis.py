@@ -12,8 +12,8 @@ import numpy as np
 from ident.bench.missing import LACKING, Candidate, Refit, Refitter
 from ident.bench.outputs import errors_of, model_of, noise_floor
 from ident.bench.records import Record, bench_set
-from ident.diagnosis.chance import gain
 from ident.diagnosis.result import Diagnosis, Found, Ranked, Rung, Verdict
+from ident.diagnosis.significance import improvement
 from ident.diagnosis.words import verdict_text
 from ident.effects.effect import Effect
 from ident.fit.result import FitResult
@@ -30,10 +30,10 @@ def diagnose_bench(
     matrix: Matrix, fit: FitResult, most: int, _custom: Sequence[Effect] = (), report: Report = silent
 ) -> Diagnosis:
     """Rank the four effects, add what helps beyond chance on held-out data, and say what is left."""
-    return BenchWork(matrix, fit, most, report).diagnosis()
+    return BenchDiagnoser(matrix, fit, most, report).diagnosis()
 
 
-class BenchWork:
+class BenchDiagnoser:
     """One diagnosis of bench records."""
 
     def __init__(self, matrix: Matrix, fit: FitResult, most: int, report: Report) -> None:
@@ -116,7 +116,7 @@ class BenchWork:
         )  # fmt: skip
 
     def _rung(self, step: Refit, before: Refit | None) -> Rung:
-        nats = None if before is None else gain(before.held_out, step.held_out).nats
+        nats = None if before is None else improvement(before.held_out, step.held_out).nats
         added = None if before is None else step.effects[-1]
         return Rung(added, self._errors(step), self._offset(step), self._parameters(step), nats)
 
@@ -126,7 +126,7 @@ def _alike(ranking: list[Candidate]) -> tuple[str, ...]:
     if not ranking or not ranking[0].gain.beyond_chance:
         return ()
     best = ranking[0].refit.held_out
-    return tuple(c.effect for c in ranking if c is ranking[0] or gain(c.refit.held_out, best).within_chance)
+    return tuple(c.effect for c in ranking if c is ranking[0] or improvement(c.refit.held_out, best).within_chance)
 
 
 def _evidence(candidate: Candidate) -> Mapping[str, Any]:

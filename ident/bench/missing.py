@@ -1,7 +1,7 @@
 """What the four blocks lack, ranked: each of four effects is refitted with every value of the model to every record.
 
 The catalogue's effects belong to a chain with a controller; the bench drives its actuator by a current, so that these
-four are its own. What is better beyond chance is judged as for any model, see :mod:`ident.diagnosis.chance`.
+four are its own. What is better beyond chance is judged as for any model, see :mod:`ident.diagnosis.significance`.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from ident.bench.least_squares import Solution, solve
 from ident.bench.model import CONSTANTS, Model
 from ident.bench.records import Record
 from ident.bench.residual import Observed, Residual, observe
-from ident.diagnosis.chance import Gain, gain
-from ident.diagnosis.held_out import FOLDS, HeldOut
+from ident.diagnosis.cross_validation import FOLDS, CrossValidation
+from ident.diagnosis.significance import Improvement, improvement
 from ident.fit.bounded_step import bounded_step
 from ident.noise.effective_sample_size import independent_samples
 from ident.parallel import each
@@ -70,7 +70,7 @@ class Refit:
     solution: Solution
     error: float
     held_out_error: float
-    held_out: HeldOut
+    held_out: CrossValidation
 
     @property
     def model(self) -> Model:
@@ -85,7 +85,7 @@ class Candidate:
     effect: str
     predicted: float
     refit: Refit
-    gain: Gain
+    gain: Improvement
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +139,7 @@ class Refitter:
         tried = [solve(Residual(start, self._coarse, names), steps=_STEPS) for start in _starts(base.model, name)]
         best = min(tried, key=lambda solution: solution.cost)
         refit = self._refit((*base.effects, name), best.model)
-        return Candidate(name, self._error(best.model), refit, gain(base.held_out, refit.held_out))
+        return Candidate(name, self._error(best.model), refit, improvement(base.held_out, refit.held_out))
 
     def _refit(self, effects: tuple[str, ...], start: Model) -> Refit:
         names = (*CONSTANTS, *start.table.names, *effects)
@@ -151,7 +151,7 @@ class Refitter:
         lengths = np.array([len(r) for r in residual])
         sizes = np.array([one.power for one in self._shown])
         held = np.sqrt(squares.sum(axis=1) / lengths / sizes)
-        judged = HeldOut(squares, self._left * lengths, np.zeros(len(lengths)), int(lengths.sum()),
+        judged = CrossValidation(squares, self._left * lengths, np.zeros(len(lengths)), int(lengths.sum()),
                          sum(independent_samples(r) for r in residual))  # fmt: skip
         return Refit(effects, solution, self._error(solution.model), float(held.mean()), judged)
 

@@ -14,9 +14,9 @@ from ident.chain.chain import linear_model
 from ident.custom.definition import preset_with
 from ident.effects.effect import parameter_name
 from ident.errors import Unusable
-from ident.fit.output_error import OutputError
-from ident.fit.record import output
+from ident.fit.normal_matrices import output
 from ident.fit.result import FitResult
+from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import Space
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Matrix, Run
@@ -117,7 +117,7 @@ class Comparison:
 def modelled(preset: Preset, values: Mapping[str, float], matrix: Matrix) -> dict[str, Array]:
     """The output of a model with effects for every run of a matrix, by the run's id."""
     nothing = Space((), tuple(values), values, {})
-    return OutputError(preset, matrix, matrix.runs, nothing, 0.0).outputs(np.empty(0))
+    return SimulatedFitness(preset, matrix, matrix.runs, nothing, 0.0).outputs(np.empty(0))
 
 
 def compare(matrix: Matrix, fit: FitResult, simulator: Simulator = modelled) -> Comparison:

@@ -19,7 +19,7 @@ _SHARES = (1 / 30, 1 / 8, 1 / 3)  # of the band, where sines and saw-teeth are t
 _LONGEST = {"s": 60.0, "sample": 65536.0}
 
 
-def possible_runs(matrix: Matrix, band: float, seed: int = 0) -> Iterator[Experiment]:
+def candidate_runs(matrix: Matrix, band: float, seed: int = 0) -> Iterator[Experiment]:
     """The runs that the lab could add: specimens of the matrix, gains and amplitudes of it and between, four signals.
 
     No gain beyond those of the matrix, no amplitude above 1.5 times its largest nor beyond the stroke.

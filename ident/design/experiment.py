@@ -21,8 +21,8 @@ Array = NDArray[np.float64]
 class Experiment:
     """One run. `amplitude` is the command's RMS in m, `frequency` that of a sine or saw-tooth, else the upper edge.
 
-    `separation` are the standard deviations of the noise by which the contenders are expected to differ after
-    refitting, `so_far` the same for the runs there are, `typical` for a run chosen at random; None for one contender.
+    `separation` are the standard deviations of the noise by which the rivals are expected to differ after
+    refitting, `so_far` the same for the runs there are, `typical` for a run chosen at random; None for one rival.
     `information` is the expected gain in nats of the joint knowledge of the parameters, `std_errors` the share of each
     standard error that is expected to be left.
     """

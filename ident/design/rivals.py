@@ -21,7 +21,7 @@ NOISE = 0.005
 """The relative noise floor that stands where a diagnosis could not tell it."""
 
 
-def in_question(diagnosis: Mapping[str, Any], custom: Sequence[Effect] = ()) -> list[Model]:
+def rivals(diagnosis: Mapping[str, Any], custom: Sequence[Effect] = ()) -> list[Model]:
     """Presets and their values by the equations' names: what the verdict cannot tell apart, else what it settled on.
 
     Where it settled on nothing, and something is left, it is the best candidates. `custom` are effects of one's own

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from ident.comparison.compare import compare
-from ident.design.next_experiment import propose
-from ident.design.rivals import floor_of, in_question, trusted
+from ident.design.proposal import propose
+from ident.design.rivals import floor_of, rivals, trusted
 from ident.diagnosis.result import Diagnosis
 from ident.effects.effect import Effect
 from ident.errors import Unusable
@@ -30,7 +30,7 @@ def next_run(matrix: Matrix, found: Diagnosis, custom: Sequence[Effect] = ()) ->
     """The run that tells most of what a diagnosis leaves in question; empty where no run can be proposed."""
     data = found.to_json()
     try:
-        proposal = propose(in_question(data, custom), trusted(data, matrix), floor_of(data), found.seed)
+        proposal = propose(rivals(data, custom), trusted(data, matrix), floor_of(data), found.seed)
     except Unusable as error:
         if error.code not in ("no-experiment", "bad-diagnosis"):
             raise

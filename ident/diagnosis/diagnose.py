@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.addition import Addition
 from ident.diagnosis.advice import error_budget, next_run
-from ident.diagnosis.chance import gain
-from ident.diagnosis.models import Models, Refit
+from ident.diagnosis.family import ModelFamily, Refit
 from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.result import Diagnosis, Found, Ranked, Rung, Verdict
+from ident.diagnosis.significance import improvement
+from ident.diagnosis.stepwise import StepwiseSelection
 from ident.diagnosis.suspects import Suspect, suspects
 from ident.diagnosis.words import verdict_text, why
 from ident.effects.effect import Effect, parameter_name
@@ -43,18 +43,18 @@ def diagnose(
     """
     begun = time.monotonic()
     given = replace(Settings.from_json(dict(fit.settings)), effects=()) if fit.settings else Settings(model=fit.model)
-    models = Models.of(matrix, given, excited_band(matrix.of_use("fit")), custom)
-    work = Work(models, fit, most, report)
+    models = ModelFamily.of(matrix, given, excited_band(matrix.of_use("fit")), custom)
+    work = Diagnoser(models, fit, most, report)
     found = work.diagnosis()
     work.tell(Progress("next run", 0, 1))
     advised = replace(found, budget=error_budget(matrix, fit), next_experiment=next_run(matrix, found, custom))
     return replace(advised, seconds=time.monotonic() - begun)
 
 
-class Work:
+class Diagnoser:
     """One diagnosis: the additions, the suspects, and what is said of them."""
 
-    def __init__(self, models: Models, fit: FitResult, most: int, report: Report) -> None:
+    def __init__(self, models: ModelFamily, fit: FitResult, most: int, report: Report) -> None:
         self.models, self.fit, self.most, self.report = models, fit, most, report
         self.expected: tuple[Expected, ...] = ()
 
@@ -86,26 +86,26 @@ class Work:
             settings=dict(self.fit.settings),
         )  # fmt: skip
 
-    def _added(self, models: Models) -> Addition:
+    def _added(self, models: ModelFamily) -> StepwiseSelection:
         preset = models.model(self.fit.effects)
         start = {preset.parameter(name).name: value for name, value in self.fit.values.items()}
         base = models.refit(tuple(self.fit.effects), start)
         if not base.finite:
             raise Unusable("bad-fit", "the fitted model is unstable on a run", "fit", "fit the model to this matrix")
-        return Addition(models, base, self.most, self.tell).run()
+        return StepwiseSelection(models, base, self.most, self.tell).run()
 
     def tell(self, progress: Progress) -> None:
         """Report; the first sight of the fitted model stays with all that follows."""
         self.expected = self.expected or progress.expected
         self.report(replace(progress, expected=self.expected))
 
-    def _doubted(self, addition: Addition) -> list[Suspect]:
+    def _doubted(self, addition: StepwiseSelection) -> list[Suspect]:
         self.tell(Progress("labels", 0, 1))
         return suspects(addition.models, addition.found, self.models.floors.by_run)
 
     # What is said ----------------------------------------------------------------------------------------------
 
-    def _errors(self, models: Models, refit: Refit) -> dict[str, float | None]:
+    def _errors(self, models: ModelFamily, refit: Refit) -> dict[str, float | None]:
         verify = models.matrix.of_use("verify")
         on_verify = None
         if verify:
@@ -114,7 +114,7 @@ class Work:
             on_verify = float(np.mean(errors)) if np.all(np.isfinite(errors)) else None
         return {"fit": refit.error, "held_out": refit.held_out.error, "verify": on_verify}
 
-    def _parameters(self, models: Models, refit: Refit) -> dict[str, Found]:
+    def _parameters(self, models: ModelFamily, refit: Refit) -> dict[str, Found]:
         preset = models.model(refit.effects)
         known = covariance(refit.here, refit.point, np.empty((0, len(refit.point))))
         found = {}
@@ -127,7 +127,7 @@ class Work:
             found[parameter_name(name)] = Found(refit.values[name], parameter.unit, error, parameter.symbol)
         return found
 
-    def _ranked(self, addition: Addition, floor: float | None) -> list[Ranked]:
+    def _ranked(self, addition: StepwiseSelection, floor: float | None) -> list[Ranked]:
         base, models = addition.base, addition.models
         alike = tuple(candidate.effect for candidate in addition.alike())
         group = alike if len(alike) > 1 else ()
@@ -147,17 +147,17 @@ class Work:
             ))  # fmt: skip
         return listed
 
-    def _ladder(self, addition: Addition) -> list[Rung]:
+    def _ladder(self, addition: StepwiseSelection) -> list[Rung]:
         rungs: list[Rung] = []
         before: Refit | None = None
         for added, refit in addition.ladder():
-            found = None if before is None else gain(before.held_out, refit.held_out).nats
+            found = None if before is None else improvement(before.held_out, refit.held_out).nats
             rungs.append(Rung(added, self._errors(addition.models, refit), refit.held_out.offset,
                               self._parameters(addition.models, refit), found))  # fmt: skip
             before = refit
         return rungs
 
-    def _unexplained(self, addition: Addition) -> bool:
+    def _unexplained(self, addition: StepwiseSelection) -> bool:
         """Whether the error is still above the noise: its floor, or where that is not known, its lack of memory."""
         found, models = addition.found, addition.models
         if models.floor is not None:

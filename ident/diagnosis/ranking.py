@@ -6,9 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 
-from ident.diagnosis.chance import VISIBLE, WORTHWHILE, Gain, gain
-from ident.diagnosis.instant import Prediction, predict
-from ident.diagnosis.models import Models, Refit
+from ident.diagnosis.family import ModelFamily, Refit
+from ident.diagnosis.screening import Prediction, predict
+from ident.diagnosis.significance import VISIBLE, WORTHWHILE, Improvement, improvement
 from ident.parallel import each
 from ident.progress import Expected, Progress, Report
 
@@ -31,7 +31,7 @@ class Candidate:
     prediction: Prediction
     trial: Refit | None = None
     refit: Refit | None = None
-    gain: Gain | None = None
+    gain: Improvement | None = None
 
     @property
     def effect(self) -> str:
@@ -52,11 +52,11 @@ class Candidate:
 
     def refitted(self, base: Refit, refit: Refit) -> Candidate:
         """The candidate with a refit on all records, and what that gains over the model without the effect."""
-        return replace(self, refit=refit, gain=gain(base.held_out, refit.held_out))
+        return replace(self, refit=refit, gain=improvement(base.held_out, refit.held_out))
 
 
 def rank(
-    models: Models, base: Refit, names: Iterable[str], report: Report, thorough: bool = True, strong: bool = False
+    models: ModelFamily, base: Refit, names: Iterable[str], report: Report, thorough: bool = True, strong: bool = False
 ) -> list[Candidate]:
     """The candidates, best first.
 
@@ -106,7 +106,7 @@ def rank(
     return sorted(rest, key=lambda candidate: candidate.score)
 
 
-def _elsewhere(models: Models, base: Refit, candidate: Candidate) -> Candidate:
+def _elsewhere(models: ModelFamily, base: Refit, candidate: Candidate) -> Candidate:
     """The candidate, refitted from strong effects too where its error stays above the noise: there are local optima."""
     refit = candidate.refit
     if refit is None or models.at_floor(refit):
@@ -115,7 +115,7 @@ def _elsewhere(models: Models, base: Refit, candidate: Candidate) -> Candidate:
     return candidate if other is None else candidate.refitted(base, other)
 
 
-def _strong(models: Models, base: Refit, refit: Refit) -> list[dict[str, float]]:
+def _strong(models: ModelFamily, base: Refit, refit: Refit) -> list[dict[str, float]]:
     """The model without the effect that a refit added, and that effect at large strengths of the refit's sign."""
     symbol = models.strength(refit.effects[-1])
     lower, upper = refit.fitness.space.bounds(refit.values)[symbol]

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.chain.chain import conditions
-from ident.diagnosis.models import Models, Refit
+from ident.diagnosis.family import ModelFamily, Refit
 from ident.matrix import Run
 from ident.parallel import each
 from ident.simulation.simulate import Simulation
@@ -69,7 +69,7 @@ class Suspect:
         }  # fmt: skip
 
 
-def suspects(models: Models, fitted: Refit, floors: Mapping[str, float | None]) -> list[Suspect]:
+def suspects(models: ModelFamily, fitted: Refit, floors: Mapping[str, float | None]) -> list[Suspect]:
     """The runs of the matrix that are to be fitted whose labels are doubted, worst first.
 
     `floors` is the noise floor of each run, as a fraction like eq. (17); the usual error of a run is in proportion.
@@ -99,7 +99,7 @@ def suspects(models: Models, fitted: Refit, floors: Mapping[str, float | None]) 
     return sorted(found, key=lambda s: s.usual / s.error)
 
 
-def _doubt(models: Models, fitted: Refit, run: Run, usual: float, error: float) -> Suspect | None:
+def _doubt(models: ModelFamily, fitted: Refit, run: Run, usual: float, error: float) -> Suspect | None:
     """The change of a label that explains most of a run's excess, if one explains enough."""
     changes = [_label(models, fitted, run, what) for what in _LABELS] + _of_channel(models, fitted, run)
     what, stated, found, mended = min(changes, key=lambda change: change[3])
@@ -108,7 +108,7 @@ def _doubt(models: Models, fitted: Refit, run: Run, usual: float, error: float) 
     return Suspect(run.id, what, stated, found, _UNITS.get(what, "s" if what == "delay" else "1"), error, usual, mended)
 
 
-def _label(models: Models, fitted: Refit, run: Run, what: str) -> tuple[str, float, float, float]:
+def _label(models: ModelFamily, fitted: Refit, run: Run, what: str) -> tuple[str, float, float, float]:
     """The best value of one label: what, as stated, as found, the error with it."""
     name = _LABELS[what]
     stated = conditions(run, models.matrix.actuator)[name]
@@ -130,7 +130,7 @@ def _label(models: Models, fitted: Refit, run: Run, what: str) -> tuple[str, flo
     return what, stated, found, least
 
 
-def _of_channel(models: Models, fitted: Refit, run: Run) -> list[tuple[str, float, float, float]]:
+def _of_channel(models: ModelFamily, fitted: Refit, run: Run) -> list[tuple[str, float, float, float]]:
     """What a turned, scaled or shifted displacement would explain."""
     y = _outputs(models, fitted, run, {})[:, 0]
     measured = run.measured - run.measured.mean()
@@ -150,7 +150,7 @@ def _of_channel(models: Models, fitted: Refit, run: Run) -> list[tuple[str, floa
     return [scaled, late]
 
 
-def _errors(models: Models, fitted: Refit, run: Run, changed: Mapping[str, Array]) -> Array:
+def _errors(models: ModelFamily, fitted: Refit, run: Run, changed: Mapping[str, Array]) -> Array:
     """Eq. (17) of a run for each value of a changed label, (v,)."""
     with np.errstate(over="ignore", invalid="ignore"):
         residual = run.measured[:, None] - _outputs(models, fitted, run, changed)
@@ -158,7 +158,7 @@ def _errors(models: Models, fitted: Refit, run: Run, changed: Mapping[str, Array
     return np.where(np.isfinite(errors), errors, np.inf)
 
 
-def _outputs(models: Models, fitted: Refit, run: Run, changed: Mapping[str, Array]) -> Array:
+def _outputs(models: ModelFamily, fitted: Refit, run: Run, changed: Mapping[str, Array]) -> Array:
     """The model's outputs for a run with changed labels, (n, v)."""
     fitness = fitted.fitness
     known = {name: np.array([[value]]) for name, value in conditions(run, models.matrix.actuator).items()}

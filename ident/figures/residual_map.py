@@ -16,7 +16,7 @@ from ident.figures.selection import HIGH, LOW, OPEN, RUN, Band, band_params, bru
 from ident.figures.thin import decade_ticks
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Run
-from ident.residuals.where import Where, stated_amplitude, where
+from ident.residuals.breakdown import Breakdown, breakdown, stated_amplitude
 
 MOST = 100  # rows
 _ROW = 9  # pixels
@@ -30,7 +30,7 @@ def residual_map(
     The squares of a row add up to the square of its error, on the right. Of more than a hundred runs the worst are
     shown. `run` and `band` are marked.
     """
-    found = where(compared)
+    found = breakdown(compared)
     worst = {each.id for each in sorted(found.runs, key=lambda each: -each.error)[:MOST]}
     runs = {each.run.id: each.run for each in compared.runs if each.run.id in worst}
     order = sorted(runs, key=lambda name: _place(runs[name]))
@@ -62,7 +62,7 @@ def _place(run: Run) -> tuple[Any, ...]:
     return (stated_amplitude(run), run.Kp, *((specimen.stiffness, specimen.mass) if specimen else (0.0, 0.0)), run.id)
 
 
-def _ends(found: Where) -> list[tuple[float, float]]:
+def _ends(found: Breakdown) -> list[tuple[float, float]]:
     """Where each band is drawn: the first and the last one as wide as their neighbours."""
     edges = list(found.edges)
     ratio = (edges[-2] / edges[1]) ** (1 / max(len(edges) - 3, 1)) if len(edges) > 3 else 2.0
@@ -70,7 +70,7 @@ def _ends(found: Where) -> list[tuple[float, float]]:
     return list(pairwise(edges))
 
 
-def _cells(found: Where, runs: Mapping[str, Run], ends: Sequence[tuple[float, float]]) -> list[dict[str, Any]]:
+def _cells(found: Breakdown, runs: Mapping[str, Run], ends: Sequence[tuple[float, float]]) -> list[dict[str, Any]]:
     """r run, f and g ends of the band, e error in per cent."""
     return [
         {"r": run.id, "f": _short(f), "g": _short(g), "e": _short(100 * error)}
@@ -81,7 +81,7 @@ def _cells(found: Where, runs: Mapping[str, Run], ends: Sequence[tuple[float, fl
     ]
 
 
-def _errors(found: Where, runs: Mapping[str, Run]) -> list[dict[str, Any]]:
+def _errors(found: Breakdown, runs: Mapping[str, Run]) -> list[dict[str, Any]]:
     return [
         {"r": run.id, "e": _short(100 * run.error), "u": run.use, "d": words.describe(runs[run.id])}
         for run in found.runs

@@ -9,8 +9,8 @@ from ident.comparison.compare import Comparison, RunComparison, Simulator, compa
 from ident.figures.selection import Band
 from ident.fit.result import FitResult
 from ident.matrix import Matrix, Run
-from ident.residuals.curves import Curve, curves, curves_of, settled, traced
-from ident.residuals.settled import Settled
+from ident.residuals.curve_fit import CurveFit
+from ident.residuals.curves import Curve, curve_fits, curves, curves_of, traced
 from ident.residuals.traces import Traces
 
 _MOST = 64  # sets of curves, some kB each
@@ -27,7 +27,7 @@ class Study:
     fit: FitResult
     simulator: Simulator = modelled
     _runs: dict[str, RunComparison] = field(default_factory=dict)
-    _settled: tuple[tuple[str, ...], Traces, dict[str | None, tuple[Settled, ...]]] | None = None
+    _settled: tuple[tuple[str, ...], Traces, dict[str | None, tuple[CurveFit, ...]]] | None = None
     _curves: dict[Hashable, tuple[Curve, ...]] = field(default_factory=dict)
 
     def beside(self, other: FitResult) -> Study:
@@ -66,5 +66,5 @@ class Study:
             kept = self._settled = names, traced(self.compared(runs)), {}
         _, found, known = kept
         if view not in known:  # the figure of a card asks for one view, and need not wait for the others
-            known[view] = settled(found, view)
+            known[view] = curve_fits(found, view)
         return curves_of(found, known[view], ends)

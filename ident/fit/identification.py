@@ -14,13 +14,14 @@ from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.fit import genetic
 from ident.fit.ends import distinct
-from ident.fit.objective import UNSTABLE, Objective
-from ident.fit.output_error import OutputError, shortened
-from ident.fit.polishing import Polished, polished
+from ident.fit.fitness import UNSTABLE, Fitness
+from ident.fit.linear_fitness import LinearFitness
+from ident.fit.multistart import Optimum, multistart
 from ident.fit.reduction import Basis, excited_band
 from ident.fit.result import FitResult
 from ident.fit.search import Search, State, options_of
 from ident.fit.settings import GENERAL, Settings
+from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.space import search_space
 from ident.fit.summary import summarise
 from ident.matrix import Matrix
@@ -50,12 +51,12 @@ class Identification:
         self._runs = matrix.of_use("fit")
         band = excited_band(self._runs)
         space = search_space(self.preset, matrix, settings, band)
-        self.objective: Objective | OutputError
+        self.objective: Fitness
         if not self.preset.is_linear:
-            self.objective = OutputError(self.preset, matrix, self._runs, space, band)
-            self.searched: Objective | OutputError = self.objective.fresh(shortened(self._runs, _SEARCHED))
+            self.objective = SimulatedFitness(self.preset, matrix, self._runs, space, band)
+            self.searched: Fitness = self.objective.fresh(shortened(self._runs, _SEARCHED))
         else:
-            self.objective = self.searched = Objective(self.preset, matrix, self._runs, space, Basis(band))
+            self.objective = self.searched = LinearFitness(self.preset, matrix, self._runs, space, Basis(band))
         options = options_of(settings, self.preset)
         self.search = Search(len(space.axes), settings.method, options, settings.seed, self.searched.errors, report)
         self._started = time.monotonic()
@@ -107,7 +108,7 @@ class Identification:
 
     def _take_up(self, state: State) -> None:
         """What every process has to know of a search that may have begun in another."""
-        if isinstance(self.searched, OutputError) and "linear" in state:
+        if isinstance(self.searched, SimulatedFitness) and "linear" in state:
             self.searched.begin(state["linear"])
 
     def finished(self, state: State) -> bool:
@@ -128,16 +129,16 @@ class Identification:
         objective.unstable = sum(error >= UNSTABLE for entry in state["history"] for error in entry["errors"])
         nothing = np.empty((0, len(objective.space.axes)))
         if not objective.space.axes:
-            found = Polished(np.empty(0), objective.exact(np.empty(0)), nothing)
+            found = Optimum(objective, np.empty(0), objective.exact(np.empty(0)), nothing)
         elif self.settings.method == "paper-ga":
             point = np.array(state["best"])
-            found = Polished(point, objective.exact(point), nothing)
+            found = Optimum(objective, point, objective.exact(point), nothing)
         else:
             members = np.concatenate([np.array(state["best"])[None], np.array(state["population"])])
-            found = polished(self.searched, objective, distinct(members, _CANDIDATES), self.report)
+            found = multistart(self.searched, objective, distinct(members, _CANDIDATES), self.report)
         self.report(Progress("uncertainty", 0, 1, found.here.error))
         seconds = time.monotonic() - self._started
-        result = summarise(objective, self.settings, found, state, self.floors, seconds)
+        result = summarise(self.settings, found, state, self.floors, seconds)
         self.report(Progress("uncertainty", 1, 1, found.here.error))
         return result
 

@@ -104,7 +104,7 @@ class Basis:
 
 
 @dataclass(frozen=True)
-class Spectrum:
+class ReducedRun:
     """One run, reduced: W (r, 2·nodes), d (r,), `rest` and `total` = Σ (x_m − mean)², in the output's unit squared."""
 
     W: Array
@@ -156,7 +156,7 @@ def excited_band(runs: Sequence[Run]) -> float:
     return 2 * np.pi * min(1.25 * max(edges), 0.9 * nyquist)
 
 
-def spectrum(run: Run, basis: Basis) -> Spectrum:
+def reduced(run: Run, basis: Basis) -> ReducedRun:
     """Reduce a run. What no model of the command can explain is projected out first: the mean and, in a record that
     starts moving, the decay of whatever state it started in."""
     columns, (gram, rounding) = len(basis.filters.D), _gram(run, basis)
@@ -175,7 +175,7 @@ def spectrum(run: Run, basis: Basis) -> Spectrum:
     felt = strength > 1e-6 * strength[0]
     d = left[:, felt].T @ d
     W = strength[felt, None] * right[felt]
-    return Spectrum(W, d, max(float(gram[columns, columns] - d @ d), 0.0), float(mean_free))
+    return ReducedRun(W, d, max(float(gram[columns, columns] - d @ d), 0.0), float(mean_free))
 
 
 def _gram(run: Run, basis: Basis) -> tuple[Array, float]:

@@ -13,8 +13,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ident.fit.output_error import OutputError
 from ident.fit.products import CHUNK, removal, shares_of, without
+from ident.fit.simulated_fitness import SimulatedFitness
 from ident.matrix import Run
 from ident.parallel import each
 
@@ -52,13 +52,13 @@ class Sensitivities:
     are met at whole samples: for a first sight only.
     """
 
-    fitness: OutputError
+    fitness: SimulatedFitness
     values: Mapping[str, Array]
     strides: Array
     columns: Mapping[str, _Columns]
 
     @classmethod
-    def of(cls, fitness: OutputError, values: Mapping[str, Array], strides: Array) -> Sensitivities:
+    def of(cls, fitness: SimulatedFitness, values: Mapping[str, Array], strides: Array) -> Sensitivities:
         """Simulate the model and its neighbours; begins the fitness's first states."""
         steps = int(fitness.steps(values, kinks=False).max())
         fitness.begin({name: float(value[0]) for name, value in values.items()})

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from ident.effects.effect import parameter_name
 from ident.fit.ends import parted
-from ident.fit.objective import UNSTABLE, Local, Objective
-from ident.fit.output_error import OutputError
-from ident.fit.polishing import Polished
-from ident.fit.record import Moments
+from ident.fit.fitness import UNSTABLE, Fitness, Local
+from ident.fit.multistart import Optimum
+from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.result import Combination, Estimate, FitResult, RunError, Undetermined
 from ident.fit.search import evolution
 from ident.fit.settings import Settings
+from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
 from ident.matrix import Run
 from ident.noise.floor import Floors
@@ -28,15 +28,10 @@ Array = NDArray[np.float64]
 
 
 def summarise(
-    objective: Objective | OutputError,
-    settings: Settings,
-    polished: Polished,
-    state: Mapping[str, Any],
-    floors: Floors,
-    seconds: float,
+    settings: Settings, optimum: Optimum, state: Mapping[str, Any], floors: Floors, seconds: float
 ) -> FitResult:
-    """The result of a fit that ended as `polished` says; `floors` are the noise floors of the runs."""
-    point, here = polished.point, polished.here
+    """The result of a fit that ended at an optimum; `floors` are the noise floors of the runs."""
+    objective, point, here = optimum.fitness, optimum.point, optimum.here
     space, matrix, preset = objective.space, objective.matrix, objective.preset
     values = {name: float(found[0]) for name, found in space.values(point[None]).items()}
     verify_runs = matrix.of_use("verify")
@@ -44,7 +39,7 @@ def summarise(
     fit_runs = matrix.of_use("fit")
     own = here.runs if preset.is_linear else objective.fresh(fit_runs).exact(point, sensitivities=False).runs
     fit_errors, verify_errors = _run_errors(fit_runs, own), _run_errors(verify_runs, verify)
-    found = covariance(here, point, polished.as_good)
+    found = covariance(here, point, optimum.as_good)
     strengths = {effect.symbol(p.name) for effect in preset.effects for p in effect.parameters}
     relative = {name: found.relative(_value(objective, name)) for name in space.names if name not in strengths}
     deviation = {name: values[name] * error for name, error in relative.items()}
@@ -60,7 +55,7 @@ def summarise(
         ]
     label = _labels(objective)
     known = {name: error for name, error in deviation.items() if name not in weak}
-    told = parted(polished.ends, known, {name: label[name][0] for name in known})
+    told = parted(optimum.ends, known, {name: label[name][0] for name in known})
     return FitResult(
         model=preset.name,
         effects=settings.effects,
@@ -84,7 +79,7 @@ def summarise(
             *_notes(objective, floors, here),
             *told,
             *_fast_modes(objective, point, state),
-            *_bad_runs(fit_errors, polished.left_out),
+            *_bad_runs(fit_errors, optimum.left_out),
         ),
         settings=settings.to_json(),
         searched=tuple(label[name][0] for name in space.names),
@@ -92,7 +87,7 @@ def summarise(
     )
 
 
-def _run_errors(runs: Sequence[Run], found: Sequence[Moments]) -> tuple[RunError, ...]:
+def _run_errors(runs: Sequence[Run], found: Sequence[NormalMatrices]) -> tuple[RunError, ...]:
     return tuple(
         RunError(run.id, run.use, min(m.error, UNSTABLE), float(np.clip(m.offset, -UNSTABLE, UNSTABLE)))
         for run, m in zip(runs, found, strict=True)
@@ -103,19 +98,19 @@ def _mean(runs: Sequence[RunError], what: str) -> float | None:
     return float(np.mean([getattr(run, what) for run in runs])) if runs else None
 
 
-def _labels(objective: Objective | OutputError) -> dict[str, tuple[str, str]]:
+def _labels(objective: Fitness) -> dict[str, tuple[str, str]]:
     """Name and unit under which a parameter is reported: a ratio to the area where the area is unknown."""
     plain = {p.name: (parameter_name(p.name), p.unit) for p in objective.preset.parameters}
     known = objective.matrix.actuator.piston_area is not None
     return plain if known else plain | dict(objective.preset.without_area or {})
 
 
-def _value(objective: Objective | OutputError, name: str) -> Callable[[Array], Array]:
+def _value(objective: Fitness, name: str) -> Callable[[Array], Array]:
     return lambda points: objective.space.values(points)[name]
 
 
 def _estimate(
-    objective: Objective | OutputError,
+    objective: Fitness,
     name: str,
     values: Mapping[str, float],
     deviation: Mapping[str, float],
@@ -134,7 +129,10 @@ def _estimate(
 
 
 def _determined(
-    objective: Objective | OutputError, found: Covariance, relative: Mapping[str, float], values: Mapping[str, float]
+    objective: Fitness,
+    found: Covariance,
+    relative: Mapping[str, float],
+    values: Mapping[str, float],
 ) -> Iterator[Combination]:
     """Where a parameter is not determined: the parameters and combinations that are."""
     label, space = _labels(objective), objective.space
@@ -154,7 +152,7 @@ def _determined(
             yield Combination(combined.text.replace("**", "^"), value, combined.unit, value * error)
 
 
-def _reason(objective: Objective | OutputError, name: str, relative: Mapping[str, float]) -> str:
+def _reason(objective: Fitness, name: str, relative: Mapping[str, float]) -> str:
     if name == objective.space.convention:
         return "no specimen of known mass, stiffness or damping gives forces a scale; held at 1 kg by convention"
     if objective.space.convention and name in objective.preset.share_force:
@@ -165,7 +163,7 @@ def _reason(objective: Objective | OutputError, name: str, relative: Mapping[str
     return f"{size}; other parameters make up for it (see what is determined)"
 
 
-def _notes(objective: Objective | OutputError, floors: Floors, here: Local) -> list[str]:
+def _notes(objective: Fitness, floors: Floors, here: Local) -> list[str]:
     notes = list(objective.matrix.notices)
     if objective.space.scale_free and objective.space.axes:
         notes.append(
@@ -190,9 +188,9 @@ def _notes(objective: Objective | OutputError, floors: Floors, here: Local) -> l
     return notes
 
 
-def _fast_modes(objective: Objective | OutputError, point: Array, state: Mapping[str, Any]) -> Iterator[str]:
+def _fast_modes(objective: Fitness, point: Array, state: Mapping[str, Any]) -> Iterator[str]:
     """What is followed only roughly: vectors of the search, the model that was found."""
-    if not isinstance(objective, OutputError):
+    if not isinstance(objective, SimulatedFitness):
         return
     roughly = f"beyond {FASTEST:.3g} radians a sample it is followed only roughly, with {MOST} steps a sample."
     tried = (objective.space.values(np.array(entry["population"])) for entry in state["history"])

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.fit.objective import Local, weight_of
+from ident.fit.fitness import Local, weight_of
 
 Array = NDArray[np.float64]
 _LOST = 1e-9  # relative to the largest eigenvalue of the scaled H: below it a direction is not determined at all

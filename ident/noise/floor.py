@@ -53,13 +53,14 @@ def by_spectrum(runs: Sequence[Run], band: float) -> list[float | None]:
 class Floors:
     """The noise floor of each run by its id, as a fraction like eq. (17), and how well it is known.
 
-    `told_by` is the number of independent samples that tell it, `fresh` the share of a run's samples that are
-    independent where there is nothing but noise; `measured` is true where repeats tell it, not the spectra.
+    `degrees_of_freedom` is the number of independent samples that tell it, `independent_share` the share of a run's
+    samples that are independent where there is nothing but noise; `measured` is true where repeats tell it, not the
+    spectra.
     """
 
     by_run: Mapping[str, float | None]
-    told_by: float
-    fresh: float = 1.0
+    degrees_of_freedom: float
+    independent_share: float = 1.0
     measured: bool = False
 
     def of_use(self, matrix: Matrix) -> Mapping[str, float | None]:
@@ -73,7 +74,7 @@ class Floors:
 
     def spread(self, samples: int) -> float:
         """The relative standard deviation of noise over so many samples about its floor."""
-        return float(np.sqrt(0.5 / (self.fresh * samples) + 0.5 / self.told_by))
+        return float(np.sqrt(0.5 / (self.independent_share * samples) + 0.5 / self.degrees_of_freedom))
 
 
 def noise_floors(runs: Sequence[Run], band: float, left_out: Collection[str] = ()) -> Floors:
@@ -84,11 +85,11 @@ def noise_floors(runs: Sequence[Run], band: float, left_out: Collection[str] = (
     """
     pairs = repeated([run for run in runs if run.id not in left_out])
     if not pairs:
-        told_by = _UPPER_HALF * sum(run.length for run in runs if run.use == "fit")
+        degrees_of_freedom = _UPPER_HALF * sum(run.length for run in runs if run.use == "fit")
         seen = zip(runs, by_spectrum(runs, band), strict=True)
-        return Floors({run.id: floor for run, floor in seen}, max(told_by, 1.0))
+        return Floors({run.id: floor for run, floor in seen}, max(degrees_of_freedom, 1.0))
     differences = [_settled(a.measured, b) - _settled(b.measured, a) for a, b in pairs]
-    told_by = sum(independent_samples(difference) for difference in differences)
+    degrees_of_freedom = sum(independent_samples(difference) for difference in differences)
     powers = np.array([0.5 * np.var(difference) for difference in differences])
     shares = powers / [0.5 * (np.var(a.measured) + np.var(b.measured)) for a, b in pairs]
     sizes = np.array([np.std(run.measured) for run in runs])
@@ -97,7 +98,7 @@ def noise_floors(runs: Sequence[Run], band: float, left_out: Collection[str] = (
         steady = like_transducer(sizes, by_spectrum(runs, band))
     floors = np.full(len(runs), np.sqrt(np.median(shares))) if steady is False else np.sqrt(np.median(powers)) / sizes
     by_run = {run.id: float(floor) for run, floor in zip(runs, floors, strict=True)}
-    return Floors(by_run, told_by, told_by / sum(map(len, differences)), measured=True)
+    return Floors(by_run, degrees_of_freedom, degrees_of_freedom / sum(map(len, differences)), measured=True)
 
 
 def repeated(runs: Sequence[Run]) -> list[tuple[Run, Run]]:

@@ -25,7 +25,7 @@ from ident.fit.reduction import excited_band
 from ident.matrix import Run
 from ident.noise.floor import noise_floors
 from ident.parallel import each
-from ident.residuals.coarse import averaged, stride
+from ident.residuals.decimation import averaged, stride
 
 Array = NDArray[np.float64]
 _REACHES = (3, 8, 24)  # samples of the correction to either side of now; the best is taken

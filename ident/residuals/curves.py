@@ -6,8 +6,8 @@ parameters, φ = Σ θ_b h_b a broken line through knots (h_b hat functions),
     r = T * φ(s) + J δ + noise                       least squares for θ and δ, each run weighted by its residual
 
 so that nothing is inverted and noise is not amplified: T * h_b are simulated, with s as φ and δ make it
-(:mod:`ident.residuals.settled`). Bands are 95 % from the scores of separate stretches of the records, which holds for
-residuals of any colour (:mod:`ident.residuals.normal`).
+(:mod:`ident.residuals.curve_fit`). Bands are 95 % from the scores of separate stretches of the records, which holds for
+residuals of any colour (:mod:`ident.residuals.normal_equations`).
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from typing import Any
 
 from ident.comparison.compare import Comparison, fitted
 from ident.parallel import each
-from ident.residuals.normal import deviations, gauge
-from ident.residuals.settled import Settled, settle
+from ident.residuals.curve_fit import CurveFit, settle
+from ident.residuals.normal_equations import deviations, gauge
 from ident.residuals.traces import Band, Traces, traces
 from ident.residuals.views import unit, views
 
@@ -59,7 +59,7 @@ def curves(
     With `band` (Hz), from what the residual has within it.
     """
     found = traced(comparison, of)
-    return curves_of(found, settled(found, view), band)
+    return curves_of(found, curve_fits(found, view), band)
 
 
 def traced(comparison: Comparison, of: Comparison | None = None) -> Traces:
@@ -69,19 +69,19 @@ def traced(comparison: Comparison, of: Comparison | None = None) -> Traces:
     return traces(comparison, signals, None if of is None else {run.run.id: run.modelled for run in of.runs})
 
 
-def settled(found: Traces, view: str | None = None) -> tuple[Settled, ...]:
+def curve_fits(found: Traces, view: str | None = None) -> tuple[CurveFit, ...]:
     """Every view that the model has the signals for, or one: what takes long, and no band changes."""
     known = views(found.preset)
     wanted = [one for one in known if one.name == view] or known  # an unknown name is refused by who draws
     return tuple(one for one in each(lambda view: settle(found, view), wanted) if one is not None)
 
 
-def curves_of(found: Traces, of: Sequence[Settled], band: Band | None = None) -> tuple[Curve, ...]:
+def curves_of(found: Traces, of: Sequence[CurveFit], band: Band | None = None) -> tuple[Curve, ...]:
     """The curve of each view, those that explain most first."""
     return tuple(sorted((_curve(found, one, band) for one in of), key=lambda c: -c.explained))
 
 
-def _curve(found: Traces, settled: Settled, band: Band | None) -> Curve:
+def _curve(found: Traces, settled: CurveFit, band: Band | None) -> Curve:
     view, knots, normal = settled.view, settled.knots, settled.within(band)
     free, solution = gauge(normal, knots)
     deviation = deviations(normal, free)

@@ -7,17 +7,17 @@ from typing import Any
 
 from ident.comparison.compare import Comparison
 from ident.errors import Unusable
+from ident.residuals.breakdown import Breakdown, breakdown
 from ident.residuals.budget import Budget, budget
-from ident.residuals.curves import Curve, curves_of, settled, traced
+from ident.residuals.curves import Curve, curve_fits, curves_of, traced
 from ident.residuals.trends import Trend, trends
-from ident.residuals.where import Where, where
 
 
 @dataclass(frozen=True)
 class Survey:
     """Errors by condition, the curves that explain most first, parameters that follow a condition, the budget."""
 
-    where: Where
+    where: Breakdown
     curves: tuple[Curve, ...]
     trends: tuple[Trend, ...]
     budget: Budget | None
@@ -38,10 +38,10 @@ class Survey:
 
 def survey(comparison: Comparison) -> Survey:
     """Where the model fails on the runs that it is stable at."""
-    shown = where(comparison)
+    shown = breakdown(comparison)
     try:
         found = traced(comparison)
-        return Survey(shown, curves_of(found, settled(found)), trends(found), budget(comparison))
+        return Survey(shown, curves_of(found, curve_fits(found)), trends(found), budget(comparison))
     except Unusable as error:
         if error.code != "unstable-model":
             raise

@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 from ident.chain.chain import Chain, conditions
 from ident.comparison.compare import Comparison, fitted
 from ident.errors import Unusable
-from ident.fit.output_error import OutputError
-from ident.fit.record import first_state
+from ident.fit.normal_matrices import first_state
+from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import Space
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Run
 from ident.parallel import each
 from ident.presets import Preset
-from ident.residuals.coarse import Response, averaged, stride
+from ident.residuals.decimation import Response, averaged, stride
 from ident.residuals.views import View, injected, showing
 from ident.simulation.simulate import Simulation
 
@@ -185,7 +185,7 @@ def _simulated(
 ) -> dict[str, dict[str, Array]]:
     """The internal signals of a model with effects, from its compiled kernel: name, then run."""
     _, matrix, values = fitted(comparison.fit, replace(comparison.matrix, runs=tuple(runs)))
-    error = OutputError(preset, matrix, matrix.runs, Space((), tuple(values), values, {}), 0.0)
+    error = SimulatedFitness(preset, matrix, matrix.runs, Space((), tuple(values), values, {}), 0.0)
     error.exact(np.empty(0), sensitivities=False)
     chain = showing(preset.chain, signals)
     steps = int(error.steps(error.space.values(np.empty((1, 0)))).max())

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.matrix import Run
+from ident.residuals.breakdown import stated_amplitude
 from ident.residuals.traces import Trace, Traces
-from ident.residuals.where import stated_amplitude
 
 Array = NDArray[np.float64]
 _PERMUTATIONS = 1999

@@ -17,7 +17,7 @@ from ident.bench.synthesis import write_bench
 from ident.chain.chain import linear_model
 from ident.comparison.compare import modelled
 from ident.errors import Unusable
-from ident.fit.record import output
+from ident.fit.normal_matrices import output
 from ident.matrix import Actuator, Matrix, Run, Specimen
 from ident.presets import PRESETS, Preset
 from ident.presets import preset as preset_called

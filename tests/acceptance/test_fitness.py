@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ident.fit.fitness import UNSTABLE
 from ident.fit.identification import Identification
-from ident.fit.objective import UNSTABLE
 from ident.fit.settings import Settings
 from ident.workflows import identify
 from tests.acceptance.matrices import as_matrix, records_of

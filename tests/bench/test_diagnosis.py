@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from ident.design.rivals import in_question
+from ident.design.rivals import rivals
 from ident.diagnosis.result import Diagnosis
 from ident.errors import Unusable
 from ident.fit.settings import Settings
@@ -66,4 +66,4 @@ def test_runs_to_verify_report_only():
 
 def test_no_run_is_proposed_for_a_bench():
     with pytest.raises(Unusable, match="bench"):
-        in_question({"model": "kononykhin", "candidates": [], "verdict": {}})
+        rivals({"model": "kononykhin", "candidates": [], "verdict": {}})

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from ident.design.rivals import in_question
+from ident.design.rivals import rivals
 from ident.errors import Unusable
 from ident.figures import figures_of
 from ident.fit.settings import Settings
 from ident.presets import PRESETS
 from ident.workflows import compare, diagnose, identify
 from tests.bench.sets import as_matrix
-from tests.mutations.runner import copied, tested
+from tests.mutations import runner
 from tests.reference import kononykhin_reference as reference
 
 OTHER = "aviation"
@@ -38,14 +38,14 @@ def test_under_another_name_the_model_is_fitted_compared_drawn_and_diagnosed_ali
     found = [diagnose(matrix, fit, most=0).candidates for fit in fits]
     assert found[0] == found[1]
     with pytest.raises(Unusable, match="bench"):
-        in_question({"model": renamed, "candidates": [], "verdict": {}})
+        rivals({"model": renamed, "candidates": [], "verdict": {}})
 
 
 def test_under_another_name_the_preset_passes_its_tests(tmp_path, full):
     """In a copy in which the preset and its tests say another name, and nothing else was changed."""
     if not full:
         pytest.skip("the tests of the bench once more, a minute long: run with --full")
-    copy = copied(tmp_path)
+    copy = runner.copied(tmp_path)
     here = Path(__file__).name
     for file in (copy / "ident/presets/kononykhin.py", *(copy / "tests/bench").glob("*.py")):
         if file.name == here:
@@ -53,4 +53,4 @@ def test_under_another_name_the_preset_passes_its_tests(tmp_path, full):
             continue
         text = file.read_text(encoding="utf-8")
         file.write_text(text.replace('"kononykhin"', f'"{OTHER}"'), encoding="utf-8")
-    assert tested(copy, ("tests/bench",)) == (0, "")
+    assert runner.tested(copy, ("tests/bench",)) == (0, "")

@@ -10,9 +10,9 @@ import pytest
 
 from ident.effects.effect import Effect
 from ident.fit.identification import Identification
-from ident.fit.output_error import OutputError
-from ident.fit.polish import polish
+from ident.fit.levenberg_marquardt import levenberg_marquardt
 from ident.fit.settings import Settings
+from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import search_space
 from ident.matrix import Matrix, Specimen
 from ident.parameter import Parameter
@@ -70,8 +70,8 @@ def test_an_effect_defined_here_is_fitted(data):
     )  # fmt: skip
     model = PRESETS["qian2014"].with_effects((own,))
     space = search_space(model, data, Settings(), 500.0)
-    fitness = OutputError(model, data, data.of_use("fit"), space, 500.0)
+    fitness = SimulatedFitness(model, data, data.of_use("fit"), space, 500.0)
     start = space.point({p.name: p.value for p in model.parameters} | {"overlap__width": 1e-4})
-    point, here = polish(fitness.exact, start, lambda _count, _error: None, fitness.accept)
+    point, here = levenberg_marquardt(fitness.exact, start, lambda _count, _error: None, fitness.accept)
     assert float(space.values(point[None])["overlap__width"][0]) == pytest.approx(2e-4, rel=0.01)
     assert np.mean([run.error for run in here.runs]) < 1.05 * NOISE

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from ident.fit.ends import End, distinct, parted, rivals, valley
-from ident.fit.objective import Local
-from ident.fit.polishing import polished
+from ident.fit.fitness import Local
+from ident.fit.multistart import multistart
 from ident.fit.space import Axis, Space
 from ident.progress import silent
 
@@ -47,7 +47,7 @@ class Wells:
 
 def found(depths: tuple[float, float], searched: tuple[float, float]):
     fitness = Wells(depths, searched)
-    return polished(fitness, fitness, [np.array([0.3]), np.array([0.7])], silent)
+    return multistart(fitness, fitness, [np.array([0.3]), np.array([0.7])], silent)
 
 
 def said(ends, deviation: float = 0.1) -> list[str]:

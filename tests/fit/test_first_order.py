@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from ident.fit import objective
+from ident.fit import linear_fitness
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run
 from ident.workflows import identify
@@ -28,7 +28,7 @@ def tracked(number: int) -> Run:
 @pytest.mark.parametrize("cores", [1, 8])
 def test_several_runs_of_a_lag_are_fitted_on_any_number_of_cores(monkeypatch, cores):
     """Five runs on one core, and each on its own: the lag and its gain."""
-    monkeypatch.setattr(objective, "cores", lambda: cores)
+    monkeypatch.setattr(linear_fitness, "cores", lambda: cores)
     settings = Settings(model="first_order", options={"population": 20, "generations": 3, "elite": 2})
     found = identify(Matrix(Actuator("A"), tuple(map(tracked, range(5)))), settings)
     assert found.values["tau"] == pytest.approx(TAU, rel=1e-3)

@@ -3,7 +3,7 @@
 from tests.mutations.mutation import Mutation
 
 _FITNESS = ("tests/acceptance/test_fitness.py",)
-_HELD_OUT = ("tests/diagnosis/test_held_out.py",)
+_HELD_OUT = ("tests/diagnosis/test_cross_validation.py",)
 _NOISE = ("tests/noise/test_noise.py",)
 _PROCEDURES = ("tests/bench/test_procedures.py",)
 
@@ -15,15 +15,15 @@ ESTIMATION = (
     Mutation("power-of-the-record", "ident/fit/reduction.py", "mean_free = gram[columns, columns]",
              "mean_free = 1.02 * gram[columns, columns]",
              "a factor of 1.02 in what eq. (17) divides by, 1.01 in the error", _FITNESS),
-    Mutation("mean-over-runs", "ident/fit/objective.py", "by_run.mean(axis=0), UNSTABLE)",
+    Mutation("mean-over-runs", "ident/fit/linear_fitness.py", "by_run.mean(axis=0), UNSTABLE)",
              "np.median(by_run, axis=0), UNSTABLE)", "eq. (17) averaged by the median", _FITNESS),
-    Mutation("exact-error", "ident/fit/record.py", "(run.measured - mean) ** 2) for run",
+    Mutation("exact-error", "ident/fit/normal_matrices.py", "(run.measured - mean) ** 2) for run",
              "(run.measured - 0.99 * mean) ** 2) for run", "the record's mean left in its power",
              ("tests/acceptance/test_fitness.py", "tests/acceptance/test_identification.py")),
     Mutation("scatter-of-the-score", "ident/fit/uncertainty.py", "S += weight**2 * run.scores.T @ run.scores",
              "S += weight * run.scores.T @ run.scores", "runs weighed once where twice is due",
              ("tests/acceptance/test_identification.py",)),
-    Mutation("upper-bound-of-the-polish", "ident/fit/polish.py", "np.clip(point + free_step, 0.0, 1.0)",
+    Mutation("upper-bound-of-the-polish", "ident/fit/levenberg_marquardt.py", "np.clip(point + free_step, 0.0, 1.0)",
              "np.clip(point + free_step, 0.0, 0.5)", "a bound of the search space",
              ("tests/acceptance/test_identification.py",)),
     Mutation("noise-of-a-difference", "ident/noise/floor.py", "0.5 * np.var(difference) for", "np.var(difference) for",
@@ -32,11 +32,11 @@ ESTIMATION = (
              "np.sqrt(0.5 * density * nyquist)", "one side of the spectrum for two", _NOISE),
     Mutation("repeats-of-one-gain", "ident/noise/floor.py", "(run.use, run.specimen, run.gain, run.sample_rate)",
              "(run.use, run.specimen, run.sample_rate)", "runs of two gains taken for repeats", _NOISE),
-    Mutation("folds", "ident/diagnosis/held_out.py", "of % FOLDS != fold for of in chunks",
+    Mutation("folds", "ident/diagnosis/cross_validation.py", "of % FOLDS != fold for of in chunks",
              "of % FOLDS == fold for of in chunks", "judged on what was fitted", _HELD_OUT),
-    Mutation("step-of-a-fold", "ident/diagnosis/held_out.py", "np.append(-step, 1.0)", "np.append(step, 1.0)",
+    Mutation("step-of-a-fold", "ident/diagnosis/cross_validation.py", "np.append(-step, 1.0)", "np.append(step, 1.0)",
              "the sign of the step to the fit without a fold", _HELD_OUT),
-    Mutation("one-run-alone", "ident/diagnosis/chance.py",
+    Mutation("one-run-alone", "ident/diagnosis/significance.py",
              "self.deviations > _STEADY and self.deviations_without > _SINGLE_STEADY",
              "self.deviations > _STEADY or self.nats > BEYOND_CHANCE", "what one run asks for alone", _HELD_OUT),
     Mutation("two-lags", "ident/bench/missing.py", "if second > model.T else model", "if second < model.T else model",
@@ -44,7 +44,7 @@ ESTIMATION = (
     Mutation("phase-of-a-sine", "ident/bench/sine_fit.py", "np.arctan2(found[2], found[1])",
              "np.arctan2(found[1], found[2])", "sine and cosine exchanged", _PROCEDURES),
     Mutation("error-budget", "ident/residuals/budget.py", "whole**2 - part**2", "whole**2 + part**2",
-             "the sign in what is left of a part", ("tests/residuals/test_where.py",)),
+             "the sign in what is left of a part", ("tests/residuals/test_breakdown.py",)),
     Mutation("weights-of-runs", "ident/fit/inverse_dynamics.py", "weights = 1 / np.maximum(deviation",
              "weights = 1 * np.maximum(deviation", "noisy runs weigh most", ("tests/fit/test_inverse_dynamics.py",)),
 )  # fmt: skip

@@ -66,9 +66,9 @@ def test_floors_from_a_repeat_scatter_as_they_say(clean, kind):
     for seed in range(40):
         matrix = with_noise(clean, kind, SHARE, seed, repeats=1)
         found = noise_floors(matrix.runs, excited_band(matrix.of_use("fit")))
-        off.append((found.by_run[matrix.runs[0].id] / SHARE - 1.0) / np.sqrt(0.5 / found.told_by))
+        off.append((found.by_run[matrix.runs[0].id] / SHARE - 1.0) / np.sqrt(0.5 / found.degrees_of_freedom))
     assert np.std(off) == pytest.approx(0.9, abs=0.5)
-    assert found.spread(10_000) > np.sqrt(0.5 / found.told_by)
+    assert found.spread(10_000) > np.sqrt(0.5 / found.degrees_of_freedom)
 
 
 def test_a_pair_with_a_run_that_is_not_trusted_tells_nothing(clean):

@@ -10,8 +10,8 @@ from ident.effects.backlash import BACKLASH
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.presets import preset
-from ident.residuals.coarse import Response
 from ident.residuals.curves import curves
+from ident.residuals.decimation import Response
 from ident.residuals.traces import traces
 from ident.residuals.views import VIEWS, injected, showing, view_of
 from ident.workflows import figure, identify

@@ -12,8 +12,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from ident.chain.chain import conditions
-from ident.fit import output_error
-from ident.fit.output_error import OutputError
+from ident.fit import simulated_fitness
+from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import Space
 from ident.matrix import Actuator, Matrix, Run
 from ident.presets import Preset, preset
@@ -109,13 +109,13 @@ def test_runs_with_a_measured_force_are_what_each_is_alone_and_what_the_referenc
 @pytest.mark.parametrize("cores", [1, 2, 5])
 def test_the_error_of_runs_with_a_measured_force_does_not_hang_on_the_number_of_cores(monkeypatch, cores):
     """The right delay leaves nothing of any run; a wrong one leaves what it leaves of each run alone."""
-    monkeypatch.setattr(output_error, "cores", lambda: cores)
+    monkeypatch.setattr(simulated_fitness, "cores", lambda: cores)
     runs = tuple(loaded(number, "zoh") for number in range(4))
     used = model("command_delay")
     values = {p.name: p.value for p in used.parameters}
 
     def errors(*chosen: Run) -> np.ndarray:
-        fitness = OutputError(used, Matrix(ACTUATOR, chosen), chosen, Space((), tuple(values), values, {}), 0.0)
+        fitness = SimulatedFitness(used, Matrix(ACTUATOR, chosen), chosen, Space((), tuple(values), values, {}), 0.0)
         batch = {name: np.full(2, value) for name, value in values.items()}
         return fitness._errors(batch | {"command_delay__delay": np.array([1e-3, 3e-3])}, 2, 4)
 

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ident.diagnosis.chance import gain
-from ident.diagnosis.held_out import HeldOut, bounded_step, held_out
-from ident.fit.objective import Local, local
-from ident.fit.record import Moments, moments_of
+from ident.diagnosis.cross_validation import CrossValidation, bounded_step, cross_validated
+from ident.diagnosis.significance import improvement
+from ident.fit.fitness import Local, local
+from ident.fit.normal_matrices import NormalMatrices, normal_matrices_of
 from ident.matrix import Run
 from ident.noise.effective_sample_size import independent_samples
 
@@ -35,11 +35,11 @@ def records(rng: np.random.Generator, count: int) -> list[tuple[Run, np.ndarray]
 
 def objective(data, point: np.ndarray) -> Local:
     """The objective of the line at a point of the unit cube, values = point − 0.5."""
-    runs: list[Moments] = []
+    runs: list[NormalMatrices] = []
     for run, J in data:
         residual = run.measured - run.measured.mean() - J @ (point - 0.5)
         z = np.column_stack([J, np.ones(N), residual]).reshape(BLOCKS, -1, 4)
-        runs += moments_of([run], np.einsum("bni,bnj->bij", z, z)[None], 2)
+        runs += normal_matrices_of([run], np.einsum("bni,bnj->bij", z, z)[None], 2)
     return local(runs)
 
 
@@ -61,7 +61,7 @@ def test_held_out_errors_of_a_line_are_those_of_fits_without_each_fold(rng):
         here = objective(data, point)
         point = point - np.linalg.solve(here.curvature, here.gradient)
     here = objective(data, point)
-    found = held_out(point, here, lambda p: objective(data, p), 1.0)
+    found = cross_validated(point, here, lambda p: objective(data, p), 1.0)
     weights = np.array([1 / np.sqrt(run.gram[-1, -1] * run.total) for run in here.runs])
     for fold in range(4):
         chunk = np.arange(N) * 8 // N
@@ -79,8 +79,8 @@ def test_at_the_edge_of_what_is_stable_the_linearisation_judges(rng):
     here = objective(data, point)
     empty = tuple(replace(run, gram=np.zeros((1, 1)), blocks=np.zeros((0, 0, 0))) for run in here.runs)
     unstable = replace(here, error=np.inf, gradient=np.zeros(2), curvature=np.zeros((2, 2)), runs=empty)
-    stepped = held_out(point, here, lambda _: unstable, 1.0)
-    refitted = held_out(point, here, lambda p: objective(data, p), 1.0)
+    stepped = cross_validated(point, here, lambda _: unstable, 1.0)
+    refitted = cross_validated(point, here, lambda p: objective(data, p), 1.0)
     assert stepped.squares == pytest.approx(refitted.squares, rel=1e-3)
 
 
@@ -97,9 +97,9 @@ def test_a_useless_parameter_makes_held_out_data_worse(rng):
         for _ in range(4):
             point = point - np.linalg.solve(here.curvature, here.gradient)
             here = objective(known, point)
-        before = HeldOut(*_plain(without), sum(r.length for r, _ in known), 9.0 * N)
-        after = held_out(point, here, lambda p, known=known: objective(known, p), 9.0 * N)
-        found = gain(before, after)
+        before = CrossValidation(*_plain(without), sum(r.length for r, _ in known), 9.0 * N)
+        after = cross_validated(point, here, lambda p, known=known: objective(known, p), 9.0 * N)
+        found = improvement(before, after)
         lower += found.share > 0
         assert not found.beyond_chance
     assert lower < 15
@@ -115,11 +115,11 @@ def test_what_one_run_alone_asks_for_is_not_beyond_chance(rng):
     squares = 100.0 + rng.standard_normal((20, 8))
     better = squares.copy()
     better[3] *= 0.1
-    before, after = (HeldOut(s, np.full(20, 1e6), np.zeros(20), 20_000, 20_000.0) for s in (squares, better))
-    assert gain(before, after).share > 0.03
-    assert not gain(before, after).beyond_chance
+    before, after = (CrossValidation(s, np.full(20, 1e6), np.zeros(20), 20_000, 20_000.0) for s in (squares, better))
+    assert improvement(before, after).share > 0.03
+    assert not improvement(before, after).beyond_chance
     better = 0.9 * squares
-    assert gain(before, HeldOut(better, np.full(20, 1e6), np.zeros(20), 20_000, 20_000.0)).beyond_chance
+    assert improvement(before, CrossValidation(better, np.full(20, 1e6), np.zeros(20), 20_000, 20_000.0)).beyond_chance
 
 
 def test_white_noise_is_all_new_and_a_slow_one_is_not(rng):

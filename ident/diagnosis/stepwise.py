@@ -12,9 +12,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import combinations
 
-from ident.diagnosis.chance import gain
-from ident.diagnosis.models import Models, Refit
+from ident.diagnosis.family import ModelFamily, Refit
 from ident.diagnosis.ranking import Candidate, rank
+from ident.diagnosis.significance import improvement
 from ident.progress import Progress, Report
 
 MOST = 6  # effects that are added
@@ -26,14 +26,14 @@ _SHARES = (1.0, 0.3, 0.03)  # of the second's strength alone
 
 
 @dataclass
-class Addition:
+class StepwiseSelection:
     """The way from the fitted model to the one that explains the data.
 
     `steps` are the refits, the fitted model first; `ranking` the first ranking; `groups` for each added effect the
     effects that the data cannot tell from it, itself included, best first.
     """
 
-    models: Models
+    models: ModelFamily
     base: Refit
     most: int
     report: Report
@@ -51,7 +51,7 @@ class Addition:
         """The effects that the last step has over the fitted model."""
         return tuple(name for name in self.found.effects if name not in self.base.effects)
 
-    def run(self) -> Addition:
+    def run(self) -> StepwiseSelection:
         """Add, take out, replace, until nothing helps; where the noise is not reached, look farther and go on."""
         self.steps = [self.base]
         self._rounds()
@@ -84,7 +84,7 @@ class Addition:
         best = self.ranking[0].refit if self.ranking else None
         if best is None or not self.ranking[0].helps:
             return []
-        return [c for c in self.ranking if c.refit and gain(c.refit.held_out, best.held_out).within_chance]
+        return [c for c in self.ranking if c.refit and improvement(c.refit.held_out, best.held_out).within_chance]
 
     def ladder(self) -> list[tuple[str | None, Refit]]:
         """From the fitted model to the last, one effect a step, without the detours: what was added, and the refit."""
@@ -152,7 +152,7 @@ class Addition:
         if not best.here.error < self.models.tried(self.found):
             return False
         refit = self.models.refit(best.effects, best.values)
-        if not refit.finite or not gain(self.found.held_out, refit.held_out).beyond_chance:
+        if not refit.finite or not improvement(self.found.held_out, refit.held_out).beyond_chance:
             return False
         self.steps.append(refit)
         return True
@@ -177,7 +177,7 @@ class Addition:
             here = self.found
             effects = tuple(e for e in here.effects if e != name)
             less = self.models.refit(effects, _without(here.values, name))
-            if less.finite and not gain(less.held_out, here.held_out).beyond_chance:
+            if less.finite and not improvement(less.held_out, here.held_out).beyond_chance:
                 known = [i for i, step in enumerate(self.steps) if set(step.effects) == set(effects)]
                 self.steps.append(less)
                 if known:
@@ -194,7 +194,7 @@ class Addition:
             best = next((c for c in ranking if c.refit is not None), None)
             if best is None or best.refit is None:
                 continue
-            if best.effect != name and gain(here.held_out, best.refit.held_out).beyond_chance:
+            if best.effect != name and improvement(here.held_out, best.refit.held_out).beyond_chance:
                 self.steps.append(best.refit)
                 self._backward(best.effect)
                 return True
@@ -218,5 +218,5 @@ def _group(name: str, here: Refit, ranking: list[Candidate]) -> list[Candidate]:
     """The candidates that are no worse than the best but by chance, the effect itself first where it is among them."""
     refits = [c for c in ranking if c.refit is not None]
     best = min([here, *(c.refit for c in refits if c.refit)], key=lambda r: r.held_out.score)
-    alike = [c for c in refits if c.refit and gain(c.refit.held_out, best.held_out).within_chance]
+    alike = [c for c in refits if c.refit and improvement(c.refit.held_out, best.held_out).within_chance]
     return sorted(alike, key=lambda c: (c.effect != name, c.score))

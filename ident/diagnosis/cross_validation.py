@@ -20,10 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.fit.bounded_step import bounded_step
-from ident.fit.objective import Local, local, weight_of
-from ident.fit.polish import polish
+from ident.fit.fitness import Local, local, weight_of
+from ident.fit.levenberg_marquardt import levenberg_marquardt
+from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.products import without
-from ident.fit.record import Moments
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -36,7 +36,7 @@ _ENOUGH = 1e-5  # relative promise of a further step below which the fit without
 
 
 @dataclass(frozen=True)
-class HeldOut:
+class CrossValidation:
     """Σ of squared residuals of each run and chunk, (runs, chunks), and the power of each record, (runs,).
 
     `means` (runs,) are the runs' offsets over their standard deviations, less what they have in common: the zero of
@@ -76,11 +76,13 @@ def weight_of_offsets(runs: int, samples: int) -> float:
 
 
 def scored(error: float, offset: float, weight: float) -> float:
-    """Error and offsets in one number, as in :func:`ident.fit.objective.local`: least for the most likely model."""
+    """Error and offsets in one number, least for the most likely model."""
     return error * (1.0 + weight * float(np.log(max(offset, 1e-9))))
 
 
-def held_out(point: Array, here: Local, evaluate: Callable[[Array], Local], independent: float) -> HeldOut:
+def cross_validated(
+    point: Array, here: Local, evaluate: Callable[[Array], Local], independent: float
+) -> CrossValidation:
     """The held-out errors at the optimum `point` of the unit cube; `evaluate` is the objective."""
     few = len(here.runs) < CHUNKS
     count = min(_FINER, *(len(run.blocks) for run in here.runs)) if few else CHUNKS
@@ -94,7 +96,7 @@ def held_out(point: Array, here: Local, evaluate: Callable[[Array], Local], inde
             squares[i, inside] = _by_chunk(run, of, count, step)[inside]
     means = np.array([run.offset for run in here.runs])
     totals = np.array([run.total for run in here.runs])
-    return HeldOut(squares, totals, means - means.mean(), sum(run.length for run in here.runs), independent)
+    return CrossValidation(squares, totals, means - means.mean(), sum(run.length for run in here.runs), independent)
 
 
 def _without(point: Array, here: Local, used: list[Mask], evaluate: Callable[[Array], Local]) -> tuple[Local, Array]:
@@ -106,7 +108,7 @@ def _without(point: Array, here: Local, used: list[Mask], evaluate: Callable[[Ar
     def of_used(trial: Array) -> Local:
         return _partly(evaluate(trial), used)
 
-    end, _ = polish(of_used, point, lambda _count, _error: None, lambda _local: None, _ENOUGH, _STEPS)
+    end, _ = levenberg_marquardt(of_used, point, lambda _count, _error: None, lambda _local: None, _ENOUGH, _STEPS)
     there = evaluate(end)
     if not np.isfinite(there.error):  # the point lies at the edge of what is stable: judged by its linearisation
         return here, step
@@ -118,17 +120,17 @@ def _partly(here: Local, used: list[Mask]) -> Local:
     if not np.isfinite(here.error):
         return here
     return local([
-        Moments(_projected(run, of), run.scores[:0], run.total, run.offset, run.release, run.means, run.length)
+        NormalMatrices(_projected(run, of), run.scores[:0], run.total, run.offset, run.release, run.means, run.length)
         for run, of in zip(here.runs, used, strict=True)
     ])  # fmt: skip
 
 
-def _chunk_of(run: Moments, count: int) -> Indices:
+def _chunk_of(run: NormalMatrices, count: int) -> Indices:
     """For each block of a run the chunk that it is in."""
     return np.asarray(np.arange(len(run.blocks)) * count // len(run.blocks), dtype=np.intp)
 
 
-def _projected(run: Moments, used: Mask) -> Array:
+def _projected(run: NormalMatrices, used: Mask) -> Array:
     """[J, r] products of the used blocks less what is free in a record, (p+1, p+1).
 
     The record's mean and first state are taken from all of it: a first state shows in its first block alone.
@@ -136,7 +138,7 @@ def _projected(run: Moments, used: Mask) -> Array:
     return without(run.remove, run.blocks[used].sum(axis=0))
 
 
-def _by_chunk(run: Moments, chunks: Indices, count: int, step: Array) -> Array:
+def _by_chunk(run: NormalMatrices, chunks: Indices, count: int, step: Array) -> Array:
     """Σ of squares of r − Jδ − Nν over each chunk, (count,)."""
     direction = run.remove @ np.append(-step, 1.0)
     by_block = np.einsum("i,bij,j->b", direction, run.blocks, direction)

@@ -16,12 +16,12 @@ from itertools import chain, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.held_out import scored, weight_of_offsets
-from ident.diagnosis.models import Models, Refit
+from ident.diagnosis.cross_validation import scored, weight_of_offsets
+from ident.diagnosis.family import ModelFamily, Refit
 from ident.fit.bounded_step import bounded_step
-from ident.fit.objective import STEP
-from ident.fit.output_error import OutputError
+from ident.fit.fitness import STEP
 from ident.fit.responses import Responses, Sensitivities
+from ident.fit.simulated_fitness import SimulatedFitness
 from ident.parallel import each
 
 Array = NDArray[np.float64]
@@ -78,7 +78,7 @@ class Prediction:
         return self.runs * float(np.log(self.before.offset / self.after.offset))
 
 
-def predict(models: Models, base: Refit, names: Sequence[str]) -> list[Prediction]:
+def predict(models: ModelFamily, base: Refit, names: Sequence[str]) -> list[Prediction]:
     """What adding each effect to the refitted model promises, in the order of the names."""
     if models.fit_together:
         return _predicted(models, models.fitness((*base.effects, *names), SAMPLES, whole=True), base, names)
@@ -89,11 +89,11 @@ def predict(models: Models, base: Refit, names: Sequence[str]) -> list[Predictio
     return list(chain.from_iterable(each(of_one, names)))
 
 
-def _predicted(models: Models, fitness: OutputError, base: Refit, names: Sequence[str]) -> list[Prediction]:
+def _predicted(models: ModelFamily, fitness: SimulatedFitness, base: Refit, names: Sequence[str]) -> list[Prediction]:
     """The predictions of effects that one chain holds; strengths are added where a threshold was jumped over."""
     off = {symbol: value for symbol, value in models.off.items() if symbol not in base.values}
     known = {name: value for name, value in {**off, **base.values}.items() if name in fitness.space.order}
-    sight = _Sight.of(models, fitness, base, known)
+    sight = _Sensitivities.of(models, fitness, base, known)
     trials = [(name, strength) for name in names for strength in _strengths(fitness, models.strength(name), known)]
     found = sight.at(trials)
     between = found.thresholds()
@@ -110,14 +110,14 @@ def _predicted(models: Models, fitness: OutputError, base: Refit, names: Sequenc
 
 
 @dataclass(frozen=True)
-class _Sight:
+class _Sensitivities:
     """A fitted model's sensitivities and residual at each run, beside which effects are set.
 
     `known` are its values with every effect off by the equations' names; `gram` (runs, p+1, p+1) and `means` (runs,
     p+1) of the p parameters and the residual.
     """
 
-    models: Models
+    models: ModelFamily
     point: Array
     known: Mapping[str, float]
     sensitivities: Sensitivities
@@ -126,7 +126,9 @@ class _Sight:
     records: _Records
 
     @classmethod
-    def of(cls, models: Models, fitness: OutputError, base: Refit, known: Mapping[str, float]) -> _Sight:
+    def of(
+        cls, models: ModelFamily, fitness: SimulatedFitness, base: Refit, known: Mapping[str, float]
+    ) -> _Sensitivities:
         """Simulate the model with each parameter moved."""
         signs = np.where(base.point + STEP > 1.0, -1.0, 1.0)
         moved = base.space.values(np.concatenate([base.point[None], base.point + np.diag(STEP * signs)]))
@@ -154,7 +156,7 @@ class _Sight:
 class _Seen:
     """The responses of a fitted model to effects of some strengths."""
 
-    sight: _Sight
+    sight: _Sensitivities
     trials: list[tuple[str, float]]
     responses: Responses
 
@@ -186,7 +188,7 @@ class _Seen:
         return _after(gram[:, order][:, :, order], means[:, order], sight.records, sight.point, p)
 
 
-def _starts(models: Models, base: Refit, name: str, step: Array, strength: float) -> tuple[dict[str, float], ...]:
+def _starts(models: ModelFamily, base: Refit, name: str, step: Array, strength: float) -> tuple[dict[str, float], ...]:
     """The values from which to refit with the effect: parts of the way to the prediction, and of the way back."""
     p, symbol = len(base.point), models.strength(name)
     moved = np.clip(step[:p], -_FAR, _FAR)
@@ -201,7 +203,7 @@ def _starts(models: Models, base: Refit, name: str, step: Array, strength: float
     return (*parts, *(at(1.0, scaled**share * strength) for share in _BACK)) if scaled else tuple(parts)
 
 
-def _strengths(fitness: OutputError, symbol: str, values: Mapping[str, float]) -> list[float]:
+def _strengths(fitness: SimulatedFitness, symbol: str, values: Mapping[str, float]) -> list[float]:
     """The strengths to try, SI: shares of the way from off to each bound."""
     lower, upper = fitness.space.bounds(values)[symbol]
     ends = [end for end in (upper, lower) if end]

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 import scipy.io
 
-from ident.design.candidate_runs import possible_runs
-from ident.design.contender import Contender
+from ident.design.candidate_runs import candidate_runs
 from ident.design.experiment import Experiment
-from ident.design.next_experiment import propose, ranked
-from ident.design.rivals import floor_of, in_question, trusted
-from ident.fit.output_error import OutputError
-from ident.fit.polish import polish
+from ident.design.proposal import propose, ranked
+from ident.design.rival import Rival
+from ident.design.rivals import floor_of, rivals, trusted
+from ident.fit.levenberg_marquardt import levenberg_marquardt
 from ident.fit.reduction import excited_band
 from ident.fit.settings import Settings
+from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import search_space
 from ident.matrix import Matrix, Run
 from ident.presets import Preset, preset
@@ -61,8 +61,10 @@ def apart(*added: Run) -> float:
     left = []
     for model, values in models:
         space = search_space(model, more, Settings(), excited_band(more.runs))
-        fitness = OutputError(model, more, more.runs, space, 500.0)
-        _, here = polish(fitness.exact, space.point(values), lambda _count, _error: None, fitness.accept, 1e-6)
+        fitness = SimulatedFitness(model, more, more.runs, space, 500.0)
+        _, here = levenberg_marquardt(
+            fitness.exact, space.point(values), lambda _count, _error: None, fitness.accept, 1e-6
+        )
         left.append(
             sum(m.gram[-1, -1] / (NOISE * r.measured.std()) ** 2 for m, r in zip(here.runs, more.runs, strict=True))
         )
@@ -106,8 +108,8 @@ def test_no_command_leaves_the_stroke():
     """A short stroke takes the large amplitudes away."""
     few, _ = confused()
     short = replace(few, actuator=replace(few.actuator, stroke=0.01))
-    peaks = [np.abs(e.command()).max() for e in possible_runs(short, 500.0)]
-    free = [np.abs(e.command()).max() for e in possible_runs(few, 500.0)]
+    peaks = [np.abs(e.command()).max() for e in candidate_runs(short, 500.0)]
+    free = [np.abs(e.command()).max() for e in candidate_runs(few, 500.0)]
     assert peaks
     assert max(peaks) <= 0.0045 < max(free)
 
@@ -120,7 +122,7 @@ def test_with_one_model_the_run_teaches_the_parameters():
     assert proposal.information == pytest.approx(max(w.information for w in ranked(models[:1], few, NOISE)))
     more = replace(few, runs=(*few.runs, recorded(proposal, 3)))
     before, after = (
-        np.sqrt(np.diag(np.linalg.inv(Contender(model, values, data, 500.0, lambda size: NOISE * size).information)))
+        np.sqrt(np.diag(np.linalg.inv(Rival(model, values, data, 500.0, lambda size: NOISE * size).information)))
         for data in (few, more)
     )
     promised = np.array(list(proposal.std_errors.values()))
@@ -144,7 +146,7 @@ def diagnosis() -> dict:
 
 def test_a_diagnosis_says_what_is_in_question(diagnosis):
     """The group that it cannot tell apart, with its values; its noise floor."""
-    again = in_question(json.loads(json.dumps(diagnosis)))
+    again = rivals(json.loads(json.dumps(diagnosis)))
     _, models = confused()
     assert [(m.effects, v) for m, v in again] == [(m.effects, v) for m, v in models]
     assert floor_of(diagnosis) == NOISE
@@ -154,7 +156,7 @@ def test_what_a_diagnosis_settled_on_is_not_in_question(diagnosis):
     """Then the next run is to teach the parameters of the last step."""
     step = {"added": diagnosis["candidates"][0]["effect"], "parameters": diagnosis["candidates"][0]["parameters"]}
     verdict = {"effects": [step["added"]], "indistinguishable": [], "unexplained": False}
-    again = in_question(diagnosis | {"ladder": [step], "verdict": verdict})
+    again = rivals(diagnosis | {"ladder": [step], "verdict": verdict})
     assert [model.effects[0].name for model, _ in again] == [step["added"]]
 
 

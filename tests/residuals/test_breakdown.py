@@ -9,15 +9,15 @@ import pytest
 
 from ident.comparison.compare import compare
 from ident.matrix import Matrix
+from ident.residuals.breakdown import breakdown
 from ident.residuals.budget import budget
 from ident.residuals.survey import survey
-from ident.residuals.where import where
 from tests.residuals.conftest import compared
 
 
 def test_the_bands_of_a_run_add_up_to_its_error():
     """Quadratically, and every run has as many bands."""
-    found = where(compared("dead_zone"))
+    found = breakdown(compared("dead_zone"))
     for run in found.runs:
         assert len(run.bands) == len(found.edges) - 1
         assert np.sqrt(sum(band**2 for band in run.bands if band)) == pytest.approx(run.error, rel=1e-3)
@@ -25,14 +25,14 @@ def test_the_bands_of_a_run_add_up_to_its_error():
 
 def test_a_dead_zone_shows_at_small_amplitudes():
     """The error of the smallest amplitude is the largest."""
-    errors = [group.error for group in where(compared("dead_zone")).groups if group.by == "amplitude"]
+    errors = [group.error for group in breakdown(compared("dead_zone")).groups if group.by == "amplitude"]
     assert len(errors) == 3
     assert errors[0] > 2 * errors[-1]
 
 
 def test_an_asymmetry_shows_in_the_direction_of_motion():
     """The mean residual has opposite signs in the two directions, or the parts differ."""
-    found = {group.label: group for group in where(compared("coulomb_friction")).groups if group.by == "direction"}
+    found = {group.label: group for group in breakdown(compared("coulomb_friction")).groups if group.by == "direction"}
     assert found["positive"].mean < -0.003 < 0.003 < found["negative"].mean
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import scipy.signal
 
-from ident.fit.reduction import Basis, spectrum
+from ident.fit.reduction import Basis, reduced
 from ident.matrix import Run
 from ident.noise.power_density import power_density
 from ident.simulation.recursion import discretise, respond, responses
@@ -31,7 +31,7 @@ def test_a_reduced_run_has_the_error_that_its_filters_have_sample_by_sample(hold
     run = run.part(700, 3700) if moving else run
     assert run.starts_at_rest is not moving
     basis = Basis(2 * np.pi * 120)
-    reduced = spectrum(run, basis)
+    found = reduced(run, basis)
     g = np.random.default_rng(2).standard_normal(2 * len(basis.nodes))
     filters = discretise(basis.filters, run.sample_rate, run.hold)
     model = (basis.expansion @ g) @ respond(filters, run.command)
@@ -44,8 +44,8 @@ def test_a_reduced_run_has_the_error_that_its_filters_have_sample_by_sample(hold
     residual = run.measured - model
     residual = residual - basis_of_nuisances @ (basis_of_nuisances.T @ residual)
     expected = np.sqrt(np.sum(residual**2) / np.sum((run.measured - run.measured.mean()) ** 2))
-    found = reduced.errors(g[None], basis)[0][0]
-    assert found == pytest.approx(expected, rel=1e-6 if not moving else 1e-4)
+    error = found.errors(g[None], basis)[0][0]
+    assert error == pytest.approx(expected, rel=1e-6 if not moving else 1e-4)
 
 
 @pytest.mark.parametrize("segment", [256, 255, 1000])

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.held_out import HeldOut
+from ident.diagnosis.cross_validation import CrossValidation
 
 Array = NDArray[np.float64]
 BEYOND_CHANCE = 10.0  # nats: one in 20,000 by chance, if only the best of a large number could tell
@@ -35,7 +35,7 @@ _LOST = 0.1  # of what these few gain that the rest may lose: more, and it is th
 
 
 @dataclass(frozen=True)
-class Gain:
+class Improvement:
     """How much better one refit is than another on data that neither saw.
 
     `share` is the relative fall of the error, `nats` by how much the data become more likely, `deviations` the mean
@@ -69,7 +69,7 @@ class Gain:
         return same_errors and (self.offset < _OFFSET_ALIKE or not self.visible)
 
 
-def gain(before: HeldOut, after: HeldOut) -> Gain:
+def improvement(before: CrossValidation, after: CrossValidation) -> Improvement:
     """What `after` gains over `before`."""
     weights = 1.0 / (np.maximum(np.minimum(before.errors, after.errors), 1e-12) * before.totals)
     difference = (before.squares - after.squares) * weights[:, None]
@@ -83,7 +83,7 @@ def gain(before: HeldOut, after: HeldOut) -> Gain:
     share = 1.0 - after.error / before.error if before.error > 0 else 0.0
     visible = max(before.offset, after.offset) > VISIBLE
     everything = np.zeros(difference.shape, dtype=bool)
-    return Gain(
+    return Improvement(
         share,
         _nats(before, after, everything),
         _nats(before, after, best),
@@ -95,7 +95,7 @@ def gain(before: HeldOut, after: HeldOut) -> Gain:
     )
 
 
-def _nats(before: HeldOut, after: HeldOut, but: NDArray[np.bool_]) -> float:
+def _nats(before: CrossValidation, after: CrossValidation, but: NDArray[np.bool_]) -> float:
     """By how much the held-out data, without some chunks, become more likely."""
     errors = [
         float(np.mean(np.sqrt(np.where(but, 0.0, side.squares).sum(axis=1) / side.totals))) for side in (before, after)

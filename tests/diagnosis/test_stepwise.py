@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from ident.diagnosis import addition
-from ident.diagnosis.addition import Addition
+from ident.diagnosis import stepwise
+from ident.diagnosis.stepwise import StepwiseSelection
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class Judged:
 
         return sorted(map(judged, names), key=lambda candidate: candidate.score)
 
-    def gain(self, less, more):
+    def improvement(self, less, more):
         """Whether an effect that only one of them has was needed, or the other does better by far."""
         needed = bool((more.effects - less.effects) & self.needed) or more.score < 0.3 * less.score
         return SimpleNamespace(beyond_chance=needed, within_chance=False)
@@ -84,11 +84,11 @@ class Judged:
 def searched(monkeypatch):
     """The additions for given scores and needs."""
 
-    def of(scores: dict[str, float], needed: set[str], far: str = "", late: str = "") -> Addition:
+    def of(scores: dict[str, float], needed: set[str], far: str = "", late: str = "") -> StepwiseSelection:
         judged = Judged(scores, needed, far, late)
-        monkeypatch.setattr(addition, "rank", judged.rank)
-        monkeypatch.setattr(addition, "gain", judged.gain)
-        return Addition(judged, judged.refit((), {}), 2, lambda *_: None).run()  # type: ignore[arg-type]
+        monkeypatch.setattr(stepwise, "rank", judged.rank)
+        monkeypatch.setattr(stepwise, "improvement", judged.improvement)
+        return StepwiseSelection(judged, judged.refit((), {}), 2, lambda *_: None).run()  # type: ignore[arg-type]
 
     return of
 

@@ -1,7 +1,7 @@
 """Eq. (17) of a set of runs as a function of points of the search space, in two forms: fast and exact.
 
 Fast: from the reduced runs (:mod:`ident.fit.reduction`), for whole populations. Exact: from the time domain
-(:mod:`ident.fit.record`), for the polish and for every error that is reported.
+(:mod:`ident.fit.normal_matrices`), for the polish and for every error that is reported.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.chain.chain import conditions
-from ident.fit.record import Moments, moments
-from ident.fit.reduction import Basis, Spectrum, spectrum
+from ident.fit.fitness import STEP, UNSTABLE, Local, local
+from ident.fit.normal_matrices import NormalMatrices, normal_matrices
+from ident.fit.reduction import Basis, ReducedRun, reduced
 from ident.fit.space import Space
 from ident.fit.transfer import Pattern, values_at
 from ident.linear import LinearModel
@@ -27,76 +28,12 @@ from ident.presets import Preset
 
 Array = NDArray[np.float64]
 Outcome = TypeVar("Outcome")
-UNSTABLE = 1e3  # the error of a model that is unstable at some run: a cost, not a failure
 _TRUSTED = 0.05  # of the error: a doubt below this moves the error by less than 0.13 %
 _WRONG = 0.2  # beyond it the fast error can be off by more than half a percent
-STEP = 1e-5  # of an axis, for sensitivities by differences
-
-
-@dataclass(frozen=True)
-class Local:
-    """The objective and its local shape at one point: the error, its gradient and Gauss-Newton matrix, (p,), (p, p)."""
-
-    error: float
-    gradient: Array
-    curvature: Array
-    runs: tuple[Moments, ...]
-    means: Moments | None = None
-
-    @property
-    def terms(self) -> tuple[Moments, ...]:
-        """All that the data say: the runs, and their means where these count."""
-        return self.runs if self.means is None else (*self.runs, self.means)
-
-
-def local(runs: Sequence[Moments], with_means: bool = False) -> Local:
-    """Mean over runs of |r| / |x_m|: gradient −Jᵀr/(|r| |x_m|), curvature JᵀJ/(|r| |x_m|), averaged.
-
-    `with_means`: the runs' means count too, see :func:`means_of`.
-    """
-    p = len(runs[0].gram) - 1
-    gradient, curvature = np.zeros(p), np.zeros((p, p))
-    if not all(np.isfinite(run.error) for run in runs):
-        return Local(np.inf, gradient, curvature, tuple(runs))
-    error = float(np.mean([run.error for run in runs]))
-    means = means_of(runs, error) if with_means else None
-    here = Local(error, gradient, curvature, tuple(runs), means)
-    for run in here.terms:
-        weight = weight_of(run) / len(runs)
-        gradient -= weight * run.gram[:p, p]
-        curvature += weight * run.gram[:p, :p]
-    if means is None:
-        return here
-    share = len(runs) / sum(run.length for run in runs)
-    return replace(here, error=error * (1.0 + share * np.log(np.sqrt(means.gram[p, p] / runs[0].total))))
-
-
-def means_of(runs: Sequence[Moments], error: float) -> Moments | None:
-    """The means of the runs as one more record, a run a sample, with the transducer's zero as its nuisance.
-
-    Eq. (17) is blind to them, but a bias shows in nothing else: it moves them in proportion to 1/Kp. They enter as
-    log |r̄|, with as many observations as there are runs: the likelihood of means whose scatter is not known. Two
-    runs, or runs of one gain, tell nothing beside the zero: then there is nothing to add.
-    """
-    if len(runs) < 3:
-        return None
-    z = np.array([run.means for run in runs])
-    z = z - z.mean(axis=0)
-    least = 1e-14 * runs[0].total / runs[0].length
-    gram = z.T @ z
-    gram[-1, -1] += least
-    samples = sum(run.length for run in runs) / len(runs)
-    weight = samples / (max(error, 1e-12) * len(runs))  # of the record's norm, so that weight_of gives its due
-    return Moments(gram, z[:, :-1] * z[:, -1:], float(gram[-1, -1] * weight**2), 0.0)
-
-
-def weight_of(run: Moments) -> float:
-    """1 / (|r| |x_m|): with it the sum of |r| / |x_m| has the gradient of a weighted least-squares problem."""
-    return float(1.0 / np.sqrt(max(run.gram[-1, -1], 1e-24 * run.total) * run.total))
 
 
 @dataclass
-class Objective:
+class LinearFitness:
     """The fitness of one preset on the runs of one use, over a search space.
 
     `evaluations` counts parameter vectors, `unstable` those that were unstable at some run.
@@ -109,14 +46,14 @@ class Objective:
     basis: Basis
     evaluations: int = 0
     unstable: int = 0
-    _spectra: list[Spectrum] = field(default_factory=list)
+    _reduced: list[ReducedRun] = field(default_factory=list)
     _known: dict[tuple[str, frozenset[str]], tuple[tuple[int, ...], Pattern]] = field(default_factory=dict)
 
     def prepare(self) -> None:
         """Reduce every run; once."""
-        if not self._spectra:
+        if not self._reduced:
             each(lambda basis: (basis.expansion, basis.check), [self.basis])  # on one thread too
-            self._spectra = each(lambda run: spectrum(run, self.basis), self.runs)
+            self._reduced = each(lambda run: reduced(run, self.basis), self.runs)
 
     def errors(self, points: Array) -> Array:
         """Eq. (17) averaged over runs at points of the space, (v, p) → (v,), fast.
@@ -142,7 +79,7 @@ class Objective:
         """Errors averaged over runs, and the largest doubt of a run."""
 
         def measures(run: int, g: Array, stable: NDArray[np.bool_]) -> tuple[Array, Array]:
-            errors, doubt = self._spectra[run].errors(g, self.basis)
+            errors, doubt = self._reduced[run].errors(g, self.basis)
             return np.where(stable, errors, np.inf), doubt
 
         found = self._over_runs(points, measures)
@@ -200,9 +137,9 @@ class Objective:
         """Angular frequency up to which the command excites the machine, rad/s."""
         return self.basis.band
 
-    def fresh(self, runs: tuple[Run, ...]) -> Objective:
+    def fresh(self, runs: tuple[Run, ...]) -> LinearFitness:
         """The same for other runs."""
-        return replace(self, runs=runs, evaluations=0, unstable=0, _spectra=[])
+        return replace(self, runs=runs, evaluations=0, unstable=0, _reduced=[])
 
     def _observed(self, run: Run) -> tuple[tuple[int, ...], Pattern]:
         """The states that a run's output depends on under its conditions, and the pattern of the model of those."""
@@ -221,15 +158,15 @@ class Objective:
         signs = np.where(point + STEP > 1.0, -1.0, 1.0)
         self.evaluations += p + 1
 
-        def measure(run: int, g: Array, stable: NDArray[np.bool_]) -> Moments:
+        def measure(run: int, g: Array, stable: NDArray[np.bool_]) -> NormalMatrices:
             if not stable[0]:
-                return Moments(np.full((p + 1, p + 1), np.inf), np.zeros((0, p)), 1.0, 0.0)
-            reduced = self._spectra[run]
+                return NormalMatrices(np.full((p + 1, p + 1), np.inf), np.zeros((0, p)), 1.0, 0.0)
+            reduced = self._reduced[run]
             y = g @ reduced.W.T
             z = np.vstack([(y[1:] - y[:1]) / (STEP * signs)[:, None], reduced.d - y[:1]])
             gram = z @ z.T
             gram[-1, -1] += reduced.rest
-            return Moments(gram, np.zeros((0, p)), reduced.total, 0.0)
+            return NormalMatrices(gram, np.zeros((0, p)), reduced.total, 0.0)
 
         return local(self._over_runs(np.concatenate([point[None], point + STEP * np.diag(signs)]), measure))
 
@@ -241,8 +178,8 @@ class Objective:
         values = self.space.values(np.concatenate([point[None], moved]))
         self.evaluations += 1 + len(strides)
 
-        def one(run: Run) -> Moments:
+        def one(run: Run) -> NormalMatrices:
             model = self._models([run], values)
-            return moments(run, LinearModel(model.system[:, :, 0]), strides)
+            return normal_matrices(run, LinearModel(model.system[:, :, 0]), strides)
 
         return local(each(one, self.runs))

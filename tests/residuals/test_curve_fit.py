@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from ident.fit.reduction import within
+from ident.residuals.curve_fit import _products, _within, settle
 from ident.residuals.curves import curves, traced
-from ident.residuals.settled import _products, _within, settle
 from ident.residuals.views import views
 from tests.residuals.conftest import HIDDEN, compared
 

@@ -25,7 +25,7 @@ _ESCAPED = 1e12  # times the record's power: the model has run away, and its nui
 
 
 @dataclass(frozen=True)
-class Moments:
+class NormalMatrices:
     """Σ of products of [J, r] with the nuisances projected out, (p+1, p+1), and the score JᵀR of each block, (b, p).
 
     `total` is Σ (x_m − mean)²; `offset` the difference of means over the standard deviation; `release` how much of
@@ -51,15 +51,15 @@ class Moments:
         return value if np.isfinite(value) else np.inf
 
 
-def moments(run: Run, model: LinearModel, strides: Array) -> Moments:
+def normal_matrices(run: Run, model: LinearModel, strides: Array) -> NormalMatrices:
     """The moments of a run for a batch of models (1 + p,): the model, and p neighbours, each a stride (p,) away."""
     systems = discretise(model, run.sample_rate, run.hold)
     if not run.starts_at_rest:
         systems = _with_releases(systems)
-    return moments_of([run], _products(run, systems, strides)[None], len(strides))[0]
+    return normal_matrices_of([run], _products(run, systems, strides)[None], len(strides))[0]
 
 
-def moments_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Moments]:
+def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[NormalMatrices]:
     """The moments of runs from sums of products of [J, N, 1, r] of each block, (runs, b, q, q), of mean-free runs."""
     means = np.array([run.measured.mean() for run in runs])
     totals = np.array([np.sum((run.measured - mean) ** 2) for run, mean in zip(runs, means, strict=True)])
@@ -74,7 +74,7 @@ def moments_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Moments]:
     return [
         _escaped(p, blocks.shape[1])
         if not sound[i]
-        else Moments(
+        else NormalMatrices(
             projected[i], scores[i], float(totals[i]), float(release[i, -1, -1] / np.sqrt(totals[i] / run.length)),
             release[i, :-1, -1], release[i, -1], run.length, blocks[i], remove[i],
         )
@@ -82,9 +82,9 @@ def moments_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Moments]:
     ]  # fmt: skip
 
 
-def _escaped(p: int, blocks: int) -> Moments:
+def _escaped(p: int, blocks: int) -> NormalMatrices:
     """Of a model that ran away."""
-    return Moments(np.full((p + 1, p + 1), np.inf), np.zeros((blocks, p)), 1.0, np.inf)
+    return NormalMatrices(np.full((p + 1, p + 1), np.inf), np.zeros((blocks, p)), 1.0, np.inf)
 
 
 def first_state(run: Run, model: LinearModel) -> Array:
@@ -92,7 +92,7 @@ def first_state(run: Run, model: LinearModel) -> Array:
     if run.starts_at_rest:
         return np.zeros(len(model.B[0]))
     systems = _with_releases(discretise(model, run.sample_rate, run.hold))
-    released = moments_of([run], _products(run, systems, np.empty(0))[None], 0)[0].release
+    released = normal_matrices_of([run], _products(run, systems, np.empty(0))[None], 0)[0].release
     if not len(released):  # unstable: no state fits
         return np.zeros(len(model.B[0]))
     return np.asarray(np.diag(systems.start[1:]) * released)

@@ -18,13 +18,13 @@ from itertools import permutations
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.design.candidate_runs import possible_runs
-from ident.design.contender import PRIOR, Contender, deviation_of_noise
+from ident.design.candidate_runs import candidate_runs
 from ident.design.excitation import KINDS
 from ident.design.experiment import Experiment
+from ident.design.rival import PRIOR, Rival, deviation_of_noise
 from ident.errors import Unusable
 from ident.fit.bounded_step import bounded_step
-from ident.fit.record import Moments
+from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.reduction import excited_band
 from ident.matrix import Matrix, Run
 from ident.presets import Preset
@@ -63,33 +63,33 @@ def propose(
 
     `noise` is the relative noise floor. Raises Unusable where no model is given or none can be run.
     """
-    contenders = _contenders(models, matrix, noise)
-    worths = _judged(contenders, list(possible_runs(contenders[0].matrix, contenders[0].band, seed)))
+    rivals = _rivals(models, matrix, noise)
+    worths = _judged(rivals, list(candidate_runs(rivals[0].matrix, rivals[0].band, seed)))
     if not worths:
         raise Unusable("no-experiment", "the models are stable in no run that could be proposed", "models",
                        "fit the models again")  # fmt: skip
     pairs = [worth.separation or 0.0 for worth in worths]
-    so_far = _so_far(contenders)
+    so_far = _so_far(rivals)
     tells_apart = max(pairs) >= _SEPARATE
     best = max(worths, key=lambda w: w.rank) if tells_apart else max(worths, key=lambda w: w.information)
-    typical = float(np.median(pairs)) if len(contenders) > 1 else None
+    typical = float(np.median(pairs)) if len(rivals) > 1 else None
     found = replace(
         best.experiment, separation=best.separation, so_far=so_far, typical=typical, information=best.information,
         std_errors=best.std_errors,
     )  # fmt: skip
-    return replace(found, text=_text(found, contenders, tells_apart))
+    return replace(found, text=_text(found, rivals, tells_apart))
 
 
 def ranked(
     models: Sequence[tuple[Preset, Mapping[str, float]]], matrix: Matrix, noise: float, seed: int = 0
 ) -> list[Worth]:
     """Every run that was weighed, the one that separates the models best first."""
-    contenders = _contenders(models, matrix, noise)
-    worths = _judged(contenders, list(possible_runs(contenders[0].matrix, contenders[0].band, seed)))
+    rivals = _rivals(models, matrix, noise)
+    worths = _judged(rivals, list(candidate_runs(rivals[0].matrix, rivals[0].band, seed)))
     return sorted(worths, key=lambda worth: worth.rank, reverse=True)
 
 
-def _contenders(models: Sequence[tuple[Preset, Mapping[str, float]]], matrix: Matrix, noise: float) -> list[Contender]:
+def _rivals(models: Sequence[tuple[Preset, Mapping[str, float]]], matrix: Matrix, noise: float) -> list[Rival]:
     if not models:
         raise Unusable("no-model", "no model is in question", "models", "give at least one fitted model")
     if not 0 < noise < np.inf:
@@ -99,28 +99,28 @@ def _contenders(models: Sequence[tuple[Preset, Mapping[str, float]]], matrix: Ma
         suited, driven = preset.for_matrix(matrix)
         runs = driven.of_use("fit")
         band = excited_band(runs)
-        found.append(Contender(suited, dict(values), driven, band, deviation_of_noise(runs, band, noise)))
+        found.append(Rival(suited, dict(values), driven, band, deviation_of_noise(runs, band, noise)))
     return found
 
 
 # What a run would tell --------------------------------------------------------------------------------------------
 
 
-def _judged(contenders: Sequence[Contender], experiments: Sequence[Experiment]) -> list[Worth]:
-    first = contenders[0].matrix.runs[0]
+def _judged(rivals: Sequence[Rival], experiments: Sequence[Experiment]) -> list[Worth]:
+    first = rivals[0].matrix.runs[0]
     length = min(_TRIAL / first.sample_rate, experiments[0].seconds) if experiments else 0.0
     runs = [_run(e.lasting(length), str(i), first) for i, e in enumerate(experiments)]
-    outputs = [contender.outputs(runs) for contender in contenders]
+    outputs = [rival.outputs(runs) for rival in rivals]
     sound = [i for i, run in enumerate(runs) if all(_sound(y[run.id], run) for y in outputs)]
     if not sound:
         return []
     kept = [runs[i] for i in sound]
-    pairs = _pairs(contenders, kept, outputs, experiments[0].seconds / length)
-    own = [contender.moments(_recorded(kept, y)) for contender, y in zip(contenders, outputs, strict=True)]
+    pairs = _pairs(rivals, kept, outputs, experiments[0].seconds / length)
+    own = [rival.normal_matrices(_recorded(kept, y)) for rival, y in zip(rivals, outputs, strict=True)]
     worths = []
     for place, i in enumerate(sound):
         tells = [_told(c, m[place], runs[i], y, experiments[i].seconds / length)
-                 for c, m, y in zip(contenders, own, outputs, strict=True)]  # fmt: skip
+                 for c, m, y in zip(rivals, own, outputs, strict=True)]  # fmt: skip
         worths.append(Worth(experiments[i], pairs[place], min(t[0] for t in tells), tells[0][1]))
     return worths
 
@@ -145,14 +145,14 @@ def _recorded(runs: Sequence[Run], outputs: Mapping[str, Array]) -> list[Run]:
 
 
 def _pairs(
-    contenders: Sequence[Contender], runs: Sequence[Run], outputs: Sequence[Mapping[str, Array]], longer: float
+    rivals: Sequence[Rival], runs: Sequence[Run], outputs: Sequence[Mapping[str, Array]], longer: float
 ) -> Array:  # fmt: skip
     """χ² of each run and each pair of models, (runs, pairs), the mean of both being the machine."""
     found: dict[frozenset[int], Array] = {}
-    for a, b in permutations(range(len(contenders)), 2):
-        moments = contenders[b].moments(_recorded(runs, outputs[a]))
-        sigma = [contenders[b].deviation(float(np.std(outputs[a][run.id]))) for run in runs]
-        known, point = contenders[b].information, contenders[b].point
+    for a, b in permutations(range(len(rivals)), 2):
+        moments = rivals[b].normal_matrices(_recorded(runs, outputs[a]))
+        sigma = [rivals[b].deviation(float(np.std(outputs[a][run.id]))) for run in runs]
+        known, point = rivals[b].information, rivals[b].point
         chi = [_chi_squared(longer * m.gram / s**2, known, point) for m, s in zip(moments, sigma, strict=True)]
         key = frozenset((a, b))
         found[key] = found.get(key, 0.0) + 0.5 * np.array(chi)
@@ -169,30 +169,30 @@ def _chi_squared(gram: Array, known: Array, point: Array) -> float:
 
 
 def _told(
-    contender: Contender, m: Moments, run: Run, outputs: Mapping[str, Array], longer: float
+    rival: Rival, m: NormalMatrices, run: Run, outputs: Mapping[str, Array], longer: float
 ) -> tuple[float, dict[str, float]]:  # fmt: skip
     """Nats that a run tells of a model's parameters, and the share of each standard error that is left."""
-    p, sigma = len(contender.point), contender.deviation(float(np.std(outputs[run.id])))
+    p, sigma = len(rival.point), rival.deviation(float(np.std(outputs[run.id])))
     gram = longer * m.gram[:p, :p] / sigma**2
     if not np.all(np.isfinite(gram)):
         return 0.0, {}
-    before, after = contender.information, contender.information + gram
+    before, after = rival.information, rival.information + gram
     nats = 0.5 * (np.linalg.slogdet(after)[1] - np.linalg.slogdet(before)[1])
     left = np.sqrt(np.diag(np.linalg.inv(after)) / np.diag(np.linalg.inv(before)))
-    return float(nats), {name: float(share) for name, share in zip(contender.names, left, strict=True)}
+    return float(nats), {name: float(share) for name, share in zip(rival.names, left, strict=True)}
 
 
-def _so_far(contenders: Sequence[Contender]) -> float | None:
+def _so_far(rivals: Sequence[Rival]) -> float | None:
     """The separation of the closest models by the runs there are, the mean of both being the machine."""
-    if len(contenders) < 2:
+    if len(rivals) < 2:
         return None
     found: dict[frozenset[int], float] = {}
-    for (i, a), (j, b) in permutations(enumerate(contenders), 2):
+    for (i, a), (j, b) in permutations(enumerate(rivals), 2):
         runs = [run for run in b.runs if run.starts_at_rest]
         outputs = a.outputs(runs) if runs else {}
         if not runs or not all(_sound(outputs[run.id], run) for run in runs):
             return None
-        moments = b.moments(_recorded(runs, outputs))
+        moments = b.normal_matrices(_recorded(runs, outputs))
         sigma = [b.deviation(float(np.std(outputs[run.id]))) for run in runs]
         gram = np.sum([m.gram / s**2 for m, s in zip(moments, sigma, strict=True)], axis=0)
         longer = sum(run.length for run in b.matrix.of_use("fit")) / sum(run.length for run in runs)
@@ -201,8 +201,8 @@ def _so_far(contenders: Sequence[Contender]) -> float | None:
     return float(np.sqrt(min(found.values())))
 
 
-def _text(found: Experiment, contenders: Sequence[Contender], tells_apart: bool) -> str:
-    names = [" + ".join(e.name for e in c.preset.effects) or "no effect" for c in contenders]
+def _text(found: Experiment, rivals: Sequence[Rival], tells_apart: bool) -> str:
+    names = [" + ".join(e.name for e in c.preset.effects) or "no effect" for c in rivals]
     if tells_apart and found.separation is not None:
         listed = " and ".join([", ".join(names[:-1]), names[-1]])
         said = f"After refitting, {listed} then differ by {found.separation:.3g} standard deviations"
@@ -212,7 +212,7 @@ def _text(found: Experiment, contenders: Sequence[Contender], tells_apart: bool)
         return f"Run a {found.conditions}. {said}, a typical other run by {found.typical or 0:.3g}."
     best = sorted(found.std_errors.items(), key=lambda item: item[1])[:2]
     left = " and ".join(f"that of {name} to {100 * share:.0f} %" for name, share in best)
-    why = " No run that could be made tells the models apart." if len(contenders) > 1 else ""
+    why = " No run that could be made tells the models apart." if len(rivals) > 1 else ""
     return (
         f"Run a {found.conditions}.{why} It tells {found.information:.2g} nats of the parameters: of the standard "
         f"errors, {left} of what it is."

@@ -3,30 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.fit.ends import End, rivals, valley
-from ident.fit.objective import Local, Objective
-from ident.fit.output_error import OutputError
-from ident.fit.polish import STEPS, polish
+from ident.fit.fitness import Fitness, Local
+from ident.fit.levenberg_marquardt import STEPS, levenberg_marquardt
+from ident.fit.simulated_fitness import SimulatedFitness
 from ident.matrix import Run
 from ident.progress import Progress, Report
 
 Array = NDArray[np.float64]
-Fitness = Objective | OutputError
 _RIVALS = 2  # ends that are followed to the last sample, beside the best
 
 
 @dataclass(frozen=True)
-class Polished:
-    """The optimum and the objective there; points that are as good, (k, p); where starts ended, the optimum first.
+class Optimum:
+    """The optimum of a fitness, and the fitness there; points that are as good, (k, p); where starts ended.
 
-    `left_out` has the ids of runs that one model cannot explain beside the others, and that were not used.
+    The optimum is the first of the ends. `left_out` has the ids of runs that one model cannot explain beside the
+    others: `fitness` is that of the runs without them.
     """
 
+    fitness: Fitness
     point: Array
     here: Local
     as_good: Array
@@ -34,7 +35,7 @@ class Polished:
     left_out: tuple[str, ...] = ()
 
 
-def polished(searched: Fitness, objective: Fitness, starts: Sequence[Array], report: Report) -> Polished:
+def multistart(searched: Fitness, objective: Fitness, starts: Sequence[Array], report: Report) -> Optimum:
     """The optimum of `objective` near starts that the fitness `searched` chose."""
     ends = sorted((_end(searched, start, report, searched.approximate)[0] for start in starts), key=_error)
     first, here = _end(objective, ends[0].point, report)
@@ -43,12 +44,12 @@ def polished(searched: Fitness, objective: Fitness, starts: Sequence[Array], rep
     if least is not first:
         others = [first, *(end for end in others if end is not least)]
         first, here = _end(objective, least.point, report)
-    point, left_out = first.point, bad_runs(objective.runs, here) if isinstance(objective, OutputError) else ()
-    if left_out:
-        objective.runs = tuple(run for run in objective.runs if run.id not in left_out)
+    point, left_out = first.point, tuple[str, ...]()
+    if isinstance(objective, SimulatedFitness) and (left_out := bad_runs(objective.runs, here)):
+        objective = replace(objective, runs=tuple(run for run in objective.runs if run.id not in left_out))
         again, here = _end(objective, point, report)
         point = again.point
-    return Polished(point, here, np.array(valley(ends)), (first, *others), left_out)
+    return Optimum(objective, point, here, np.array(valley(ends)), (first, *others), left_out)
 
 
 def _end(
@@ -59,7 +60,7 @@ def _end(
     def progress(count: int, error: float) -> None:
         report(Progress("polish", count, STEPS, error))
 
-    point, here = polish(evaluate or of.exact, start, progress, of.accept)
+    point, here = levenberg_marquardt(evaluate or of.exact, start, progress, of.accept)
     values = {name: float(value[0]) for name, value in of.space.values(point[None]).items()}
     return End(here.error, values, point), here
 

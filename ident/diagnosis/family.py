@@ -9,14 +9,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.held_out import HeldOut, held_out
+from ident.diagnosis.cross_validation import CrossValidation, cross_validated
 from ident.effects import EFFECTS
 from ident.effects.effect import Effect
 from ident.errors import Unusable
-from ident.fit.objective import Local
-from ident.fit.output_error import OutputError, shortened
-from ident.fit.polish import polish
+from ident.fit.fitness import Local
+from ident.fit.levenberg_marquardt import levenberg_marquardt
 from ident.fit.settings import Settings
+from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.space import Space, search_space
 from ident.matrix import Matrix, Run
 from ident.noise.effective_sample_size import independent_samples
@@ -42,14 +42,14 @@ class Refit:
     space: Space
     point: Array
     here: Local
-    fitness: OutputError = field(repr=False)
+    fitness: SimulatedFitness = field(repr=False)
 
     @cached_property
-    def held_out(self) -> HeldOut:
+    def held_out(self) -> CrossValidation:
         """Its errors on blocks that were left out in turn."""
         outputs = self.fitness.outputs(self.point)
         independent = sum(independent_samples(run.measured - outputs[run.id]) for run in self.fitness.runs)
-        return held_out(self.point, self.here, self.fitness.exact, independent)
+        return cross_validated(self.point, self.here, self.fitness.exact, independent)
 
     @property
     def finite(self) -> bool:
@@ -68,7 +68,7 @@ class Refit:
 
 
 @dataclass
-class Models:
+class ModelFamily:
     """The models of a preset for the fit runs of a matrix, with effects of the catalogue and of the user.
 
     `given` are what the user holds fixed or bounds; `left_out` the ids of runs that are not fitted.
@@ -80,10 +80,10 @@ class Models:
     band: float
     effects: Mapping[str, Effect]
     left_out: frozenset[str] = frozenset()
-    _known: dict[tuple[tuple[str, ...], int, bool], OutputError] = field(default_factory=dict)
+    _known: dict[tuple[tuple[str, ...], int, bool], SimulatedFitness] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, matrix: Matrix, given: Settings, band: float, custom: Iterable[Effect] = ()) -> Models:
+    def of(cls, matrix: Matrix, given: Settings, band: float, custom: Iterable[Effect] = ()) -> ModelFamily:
         """The models of the settings' preset with every effect that it has a place for."""
         preset, matrix = PRESETS[given.model].for_matrix(matrix, given.load)
         known = {effect.name: effect for effect in (*EFFECTS, *custom) if _fits(preset, effect)}
@@ -94,7 +94,7 @@ class Models:
         """The runs that are fitted."""
         return tuple(run for run in self.matrix.of_use("fit") if run.id not in self.left_out)
 
-    def without(self, runs: Iterable[str]) -> Models:
+    def without(self, runs: Iterable[str]) -> ModelFamily:
         """The same models, fitted to fewer runs."""
         return replace(self, left_out=self.left_out | frozenset(runs), _known={})
 
@@ -122,7 +122,7 @@ class Models:
         """The name of an effect's strength in the equations."""
         return self.effects[effect].symbol(self.effects[effect].strength.name)
 
-    def fitness(self, effects: tuple[str, ...], samples: int = 0, whole: bool = False) -> OutputError:
+    def fitness(self, effects: tuple[str, ...], samples: int = 0, whole: bool = False) -> SimulatedFitness:
         """The objective of the model with these effects, on records of at most `samples` in all where that is given.
 
         `whole`: simulated by the kernel of the whole catalogue, the other effects off, instead of one of its own.
@@ -135,7 +135,7 @@ class Models:
             given = replace(self.given, fixed={**self.given.fixed, **off})
             space = search_space(model, self.matrix, given, self.band)
             runs = shortened(self.runs, samples) if samples else self.runs
-            self._known[key] = OutputError(model, self.matrix, runs, space, self.band)
+            self._known[key] = SimulatedFitness(model, self.matrix, runs, space, self.band)
         known = self._known[key]
         return known.fresh(known.runs)  # no search goes on from the first states in which another one ended
 
@@ -180,7 +180,7 @@ class Models:
         known = {p.name: p.value for p in fitness.preset.parameters} | dict(start)
         point = fitness.space.point({**known, **fitness.space.fixed})
         until = until or (_TRYING if samples else _FITTING)
-        point, here = polish(fitness.exact, point, _silent, fitness.accept, *until)
+        point, here = levenberg_marquardt(fitness.exact, point, _silent, fitness.accept, *until)
         off = {symbol for name, e in self.effects.items() if name not in effects for symbol in map(e.symbol, _names(e))}
         values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}
         return Refit(effects, values, fitness.space, point, here, fitness)

@@ -43,7 +43,7 @@ class BandErrors:
 
 
 @dataclass(frozen=True)
-class Where:
+class Breakdown:
     """All of it; `edges` of the bands are in Hz, or in cycles a sample where the clock is unknown."""
 
     edges: tuple[float, ...]
@@ -51,12 +51,12 @@ class Where:
     groups: tuple[Group, ...]
 
 
-def where(comparison: Comparison) -> Where:
+def breakdown(comparison: Comparison) -> Breakdown:
     """Where the model fails, run by run and group by group; runs at which the model is unstable are left out."""
     runs = [run for run in comparison.runs if np.all(np.isfinite(run.modelled))]
     edges = band_edges([run.run for run in runs]) if runs else ()
     by_band = tuple(BandErrors(r.run.id, r.run.use, r.error, in_bands(r, edges)) for r in runs)
-    return Where(edges, by_band, tuple(_groups(runs)))
+    return Breakdown(edges, by_band, tuple(_groups(runs)))
 
 
 def band_edges(runs: Sequence[Run]) -> tuple[float, ...]:

@@ -7,14 +7,14 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.fit.objective import Local
+from ident.fit.fitness import Local
 
 Array = NDArray[np.float64]
 STEPS = 200  # at most: along a curved valley it takes more than 60
 _CONVERGED = 1e-10  # relative decrease of the error that a further step promises
 
 
-def polish(
+def levenberg_marquardt(
     evaluate: Callable[[Array], Local], start: Array, report: Callable[[int, float], None],
     accept: Callable[[Local], None], converged: float = _CONVERGED, most: int = STEPS,
 ) -> tuple[Array, Local]:  # fmt: skip

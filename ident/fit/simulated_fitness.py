@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from ident.chain.chain import Chain, conditions, linear_model
 from ident.effects.effect import Effect
-from ident.fit.objective import STEP, UNSTABLE, Local, local
+from ident.fit.fitness import STEP, UNSTABLE, Local, local
+from ident.fit.normal_matrices import NormalMatrices, first_state, normal_matrices_of
 from ident.fit.products import add_products, completed
-from ident.fit.record import Moments, first_state, moments_of
 from ident.fit.space import Space
 from ident.matrix import Matrix, Run
 from ident.parallel import cores, each
@@ -26,14 +26,14 @@ from ident.simulation.simulate import Simulation, rates, steps_needed
 
 Array = NDArray[np.float64]
 _TOGETHER = 256  # lanes simulated in one go: memory stays small, the cores stay busy
-_BLOCKS = 32  # of a record: see ident.fit.record
+_BLOCKS = 32  # of a record: see ident.fit.normal_matrices
 _REACH = 1e-3  # of a state's size, for sensitivities to the first state
 _SETTLING = 3  # rounds in which the first states of a model are found
 
 
 @dataclass
-class OutputError:
-    """The fitness of a preset with effects on runs, over a search space; the interface is that of Objective.
+class SimulatedFitness:
+    """The fitness of a preset with effects on runs, over a search space; the interface is that of LinearFitness.
 
     `evaluations` counts parameter vectors, `unstable` those that were unstable at some run.
     """
@@ -107,13 +107,13 @@ class OutputError:
             found = self._found(values, strides, steps)
         return local([found[run.id] for run in self.runs], with_means=True)
 
-    def _found(self, values: Mapping[str, Array], strides: Array, steps: int) -> dict[str, Moments]:
+    def _found(self, values: Mapping[str, Array], strides: Array, steps: int) -> dict[str, NormalMatrices]:
         """The moments of every run by its id; without sensitivities the first states are followed to their end."""
-        found: dict[str, Moments] = {}
+        found: dict[str, NormalMatrices] = {}
         p = len(strides)
         for _ in range(1 if p else _SETTLING):
             todo = list(self.together(p + 1 + len(self.chain.states)))
-            parts = each(lambda runs: self._moments(runs, values, strides, steps), todo)
+            parts = each(lambda runs: self._normal_matrices(runs, values, strides, steps), todo)
             found = {
                 run.id: m for runs, part in zip(todo, parts, strict=True) for run, m in zip(runs, part, strict=True)
             }
@@ -128,7 +128,7 @@ class OutputError:
         for run, found in zip(self.runs, here.runs, strict=True):
             self._follow(run, found)
 
-    def fresh(self, runs: tuple[Run, ...]) -> OutputError:
+    def fresh(self, runs: tuple[Run, ...]) -> SimulatedFitness:
         """The same for other runs, which know nothing of this search."""
         return replace(self, runs=runs, starts={}, evaluations=0, unstable=0)
 
@@ -146,9 +146,11 @@ class OutputError:
         found = zip(todo, each(of_runs, todo), strict=True)
         return {run.id: y for runs, outputs in found for run, y in zip(runs, outputs, strict=True)}
 
-    def _moments(self, runs: tuple[Run, ...], values: Mapping[str, Array], strides: Array, steps: int) -> list[Moments]:
+    def _normal_matrices(
+        self, runs: tuple[Run, ...], values: Mapping[str, Array], strides: Array, steps: int
+    ) -> list[NormalMatrices]:
         """The moments of runs of one length, from one simulation of all of them."""
-        return moments_of(runs, self._products(runs, values, strides, steps), len(strides))
+        return normal_matrices_of(runs, self._products(runs, values, strides, steps), len(strides))
 
     def _products(self, runs: tuple[Run, ...], values: Mapping[str, Array], strides: Array, steps: int) -> Array:
         """Σ of products of [J, N, 1, r] of runs of one length and of each block of them, (runs, blocks, q, q).
@@ -206,7 +208,7 @@ class OutputError:
                 known = dict(zip(core.states, found, strict=True))
                 self.starts[run.id] = np.array([known.get(name, 0.0) for name in self.chain.states])
 
-    def _follow(self, run: Run, found: Moments) -> None:
+    def _follow(self, run: Run, found: NormalMatrices) -> None:
         if len(found.release) and np.all(np.isfinite(found.release)):
             self.starts[run.id] = self.start(run) + self._reach * found.release
 

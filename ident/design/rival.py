@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from ident.comparison.compare import modelled
 from ident.effects.effect import parameter_name
-from ident.fit.output_error import OutputError, shortened
-from ident.fit.record import Moments
+from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.settings import Settings
+from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.space import search_space
 from ident.matrix import Matrix, Run
 from ident.noise.floor import by_spectrum, like_transducer
@@ -39,7 +39,7 @@ def deviation_of_noise(runs: Sequence[Run], band: float, noise: float) -> Deviat
 
 
 @dataclass(frozen=True)
-class Contender:
+class Rival:
     """A model at its fitted `values` (by the equations' names, SI), for a matrix as it drives the model."""
 
     preset: Preset
@@ -49,13 +49,13 @@ class Contender:
     deviation: Deviation
 
     @cached_property
-    def _fitness(self) -> OutputError:
+    def _fitness(self) -> SimulatedFitness:
         shapes = {
             name: self.values[name] for e in self.preset.effects for p in e.shape if (name := e.symbol(p.name))
         }  # fmt: skip
         space = search_space(self.preset, self.matrix, Settings(self.preset.name, fixed=shapes), self.band)
         runs = shortened(self.matrix.of_use("fit"), _SAMPLES)
-        return OutputError(self.preset, self.matrix, runs, space, self.band)
+        return SimulatedFitness(self.preset, self.matrix, runs, space, self.band)
 
     @cached_property
     def point(self) -> Array:
@@ -90,7 +90,7 @@ class Contender:
         with np.errstate(all="ignore"):
             return modelled(self.preset, self.values, Matrix(self.matrix.actuator, tuple(runs)))
 
-    def moments(self, runs: Sequence[Run]) -> tuple[Moments, ...]:
+    def normal_matrices(self, runs: Sequence[Run]) -> tuple[NormalMatrices, ...]:
         """Sums of products of its sensitivities and residuals on these runs."""
         with np.errstate(all="ignore"):
             return self._fitness.fresh(tuple(runs)).exact(self.point).runs

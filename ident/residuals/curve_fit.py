@@ -16,8 +16,8 @@ import scipy.fft
 from numpy.typing import NDArray
 
 from ident.parallel import each
-from ident.residuals.coarse import Response
-from ident.residuals.normal import STRETCHES, Normal, gauge
+from ident.residuals.decimation import Response
+from ident.residuals.normal_equations import STRETCHES, Normal, gauge
 from ident.residuals.traces import Band, Trace, Traces
 from ident.residuals.views import View
 
@@ -29,7 +29,7 @@ _ROUNDS = 3
 
 
 @dataclass(frozen=True)
-class Settled:
+class CurveFit:
     """A view with its knots, the products of its columns, and their spectra in each run, (bins, q), at `rates` Hz."""
 
     view: View
@@ -47,7 +47,7 @@ class Settled:
         return Normal.of(each(lambda run: _within(*run, *band), list(runs)), len(self.knots))
 
 
-def settle(found: Traces, view: View) -> Settled | None:
+def settle(found: Traces, view: View) -> CurveFit | None:
     """The columns of a view; None where its signal does not move."""
     now = [dict(trace.signals) for trace in found.runs]
     knots = _knots(np.concatenate([_abscissa(view, signals) for signals in now]))
@@ -61,7 +61,7 @@ def settle(found: Traces, view: View) -> Settled | None:
         now = [_improved(trace, view, knots, solution, path, signals) for trace, path, signals in both]
         normal, spectra = _fitted(found, view, knots, paths, now)
     rates, lengths = zip(*((trace.rate, len(trace.residual)) for trace in found.runs), strict=True)
-    return Settled(view, knots, normal, spectra, rates, lengths)
+    return CurveFit(view, knots, normal, spectra, rates, lengths)
 
 
 def _fitted(

@@ -1,0 +1,131 @@
+"""What every fitness is: eq. (17) of a set of runs over a search space, for populations and at one point.
+
+    error = mean over runs of std(x_m − x) / std(x_m)        Qian et al. (2014), eq. (17)
+
+:class:`~ident.fit.linear_fitness.LinearFitness` has reduced runs of a linear chain,
+:class:`~ident.fit.simulated_fitness.SimulatedFitness` simulates every run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.fit.normal_matrices import NormalMatrices
+from ident.fit.space import Space
+from ident.matrix import Matrix, Run
+from ident.presets import Preset
+
+Array = NDArray[np.float64]
+UNSTABLE = 1e3  # the error of a model that is unstable at some run: a cost, not a failure
+STEP = 1e-5  # of an axis, for sensitivities by differences
+
+
+class Fitness(Protocol):
+    """Eq. (17) of the `runs` of a preset as a function of points of the unit cube, through `space`.
+
+    `band` is the angular frequency up to which the commands excite the machine (rad/s). `evaluations` counts parameter
+    vectors, `unstable` those that were unstable at some run.
+    """
+
+    preset: Preset
+    matrix: Matrix
+    runs: tuple[Run, ...]
+    space: Space
+    evaluations: int
+    unstable: int
+
+    @property
+    def band(self) -> float:
+        """rad/s."""
+        ...
+
+    def prepare(self) -> None:
+        """What the first use would take long over."""
+        ...
+
+    def errors(self, points: Array) -> Array:
+        """The error at points, (v, p) → (v,), as fast as may be; at most :data:`UNSTABLE`."""
+        ...
+
+    def approximate(self, point: Array) -> Local:
+        """The fitness and its local shape at one point, as `errors` sees it."""
+        ...
+
+    def exact(self, point: Array, sensitivities: bool = True) -> Local:
+        """The same from the time domain; infinite where a run is unstable."""
+        ...
+
+    def accept(self, here: Local) -> None:
+        """A search goes on from a point."""
+        ...
+
+    def fresh(self, runs: tuple[Run, ...]) -> Self:
+        """The same for other runs, which know nothing of a search."""
+        ...
+
+
+@dataclass(frozen=True)
+class Local:
+    """The fitness and its local shape at one point: the error, its gradient and Gauss-Newton matrix, (p,), (p, p)."""
+
+    error: float
+    gradient: Array
+    curvature: Array
+    runs: tuple[NormalMatrices, ...]
+    means: NormalMatrices | None = None
+
+    @property
+    def terms(self) -> tuple[NormalMatrices, ...]:
+        """All that the data say: the runs, and their means where these count."""
+        return self.runs if self.means is None else (*self.runs, self.means)
+
+
+def local(runs: Sequence[NormalMatrices], with_means: bool = False) -> Local:
+    """Mean over runs of |r| / |x_m|: gradient −Jᵀr/(|r| |x_m|), curvature JᵀJ/(|r| |x_m|), averaged.
+
+    `with_means`: the runs' means count too, see :func:`means_of`.
+    """
+    p = len(runs[0].gram) - 1
+    gradient, curvature = np.zeros(p), np.zeros((p, p))
+    if not all(np.isfinite(run.error) for run in runs):
+        return Local(np.inf, gradient, curvature, tuple(runs))
+    error = float(np.mean([run.error for run in runs]))
+    means = means_of(runs, error) if with_means else None
+    here = Local(error, gradient, curvature, tuple(runs), means)
+    for run in here.terms:
+        weight = weight_of(run) / len(runs)
+        gradient -= weight * run.gram[:p, p]
+        curvature += weight * run.gram[:p, :p]
+    if means is None:
+        return here
+    share = len(runs) / sum(run.length for run in runs)
+    return replace(here, error=error * (1.0 + share * np.log(np.sqrt(means.gram[p, p] / runs[0].total))))
+
+
+def means_of(runs: Sequence[NormalMatrices], error: float) -> NormalMatrices | None:
+    """The means of the runs as one more record, a run a sample, with the transducer's zero as its nuisance.
+
+    Eq. (17) is blind to them, but a bias shows in nothing else: it moves them in proportion to 1/Kp. They enter as
+    log |r̄|, with as many observations as there are runs: the likelihood of means whose scatter is not known. Two
+    runs, or runs of one gain, tell nothing beside the zero: then there is nothing to add.
+    """
+    if len(runs) < 3:
+        return None
+    z = np.array([run.means for run in runs])
+    z = z - z.mean(axis=0)
+    least = 1e-14 * runs[0].total / runs[0].length
+    gram = z.T @ z
+    gram[-1, -1] += least
+    samples = sum(run.length for run in runs) / len(runs)
+    weight = samples / (max(error, 1e-12) * len(runs))  # of the record's norm, so that weight_of gives its due
+    return NormalMatrices(gram, z[:, :-1] * z[:, -1:], float(gram[-1, -1] * weight**2), 0.0)
+
+
+def weight_of(run: NormalMatrices) -> float:
+    """1 / (|r| |x_m|): with it the sum of |r| / |x_m| has the gradient of a weighted least-squares problem."""
+    return float(1.0 / np.sqrt(max(run.gram[-1, -1], 1e-24 * run.total) * run.total))
