@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.chain.linearity import LINEAR, OTHER, ZERO, degree
 from ident.effects.effect import Effect
 from ident.equations.equation import Equation
 from ident.equations.grammar import FUNCTIONS, TIME
@@ -40,6 +41,7 @@ CONDITIONS = {
     "Ps": Quantity("Ps", "Pa", "supply pressure"),
 }
 """What an equation may read of a run and its actuator."""
+_SMALL, _SHARE = 1e-9, 1e-7  # of a unit, and of what stands there: the step of slopes
 NEVER = 1e12
 """Pa: a supply pressure that limits nothing."""
 
@@ -159,6 +161,23 @@ class Chain:
         return tuple(equations[name] for name in order)
 
     @cached_property
+    def is_linear(self) -> bool:
+        """Whether the command alone drives equations that are linear in it and in the states.
+
+        A measured force is a second input, and what remembers or depends on time is not linear in this sense.
+        """
+        if self.memories:
+            return False
+        known = dict.fromkeys((*self.states, INPUT, INPUT_RATE), LINEAR) | dict.fromkeys((FORCE, TIME), OTHER)
+        for equation in self.signals:
+            dry = friction(equation)
+            off = dry is not None and known.get(dry[0]) == ZERO
+            known[equation.target] = ZERO if off else degree(equation.tree, known)
+        needed = {name for output in self.outputs for name in (e.target for e in self.needed(output))}
+        found = [degree(equation.tree, known) for equation in self.equations if equation.is_rate]
+        return all(one in (ZERO, LINEAR) for one in found) and all(known[name] != OTHER for name in needed)
+
+    @cached_property
     def exponents(self) -> tuple[str, ...]:
         """Symbols that stand as exponents: a number there is worth code of its own."""
         powers = (node for e in self.equations for node in ast.walk(e.tree) if isinstance(node, ast.BinOp))
@@ -219,22 +238,38 @@ class Chain:
             self._evaluators[output] = namespace["evaluate"]
         return self._evaluators[output]
 
-    def linearise(self, values: Mapping[str, Array | float], output: str = "displacement") -> LinearModel:
-        """State matrices by applying the equations to unit vectors: exact, because the cores are linear.
+    def linearise(
+        self, values: Mapping[str, Array | float], output: str = "displacement", about: Sequence[float] | None = None
+    ) -> LinearModel:
+        """State matrices: where the equations are linear exact, by applying them to unit vectors.
 
+        Else they are the slopes about an operating point, the states and the command `about` (n + 1 numbers; rest at
+        zero where None), over a step of 1e-9 of a unit: a kink that lies there is seen from its side of larger values.
         `values` holds every symbol, as numbers or arrays of one broadcast shape, which is that of the batch whether the
         equations read them all or not; `output` is a channel's name.
         """
         evaluate, n = self.evaluator(output), len(self.states)
         shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
         system = np.zeros((n + 1, n + 1, *shape))
-        for j in range(n + 1):
-            unit = [float(i == j) for i in range(n)]
-            rates, shown = evaluate(float(j == n), unit, values)
+        for j, rates, shown in self._columns(lambda x: evaluate(x[n], x[:n], values), about or [0.0] * (n + 1)):
             for i, rate in enumerate(rates):
                 system[i, j] = rate
             system[n, j] = shown
         return LinearModel(system)
+
+    def _columns(
+        self, evaluate: Callable[[list[float]], tuple[tuple[Any, ...], Any]], about: Sequence[float]
+    ) -> Iterator[tuple[int, Iterable[Any], Any]]:
+        """Rates and output by each state and the command: (number, rates, output)."""
+        if self.is_linear:
+            for j in range(len(about)):
+                yield j, *evaluate([float(i == j) for i in range(len(about))])
+            return
+        rest_rates, rest = evaluate(list(about))
+        for j, there in enumerate(about):
+            step = max(_SMALL, _SHARE * abs(there))
+            rates, shown = evaluate([value + step * (i == j) for i, value in enumerate(about)])
+            yield j, [(a - b) / step for a, b in zip(rates, rest_rates, strict=True)], (shown - rest) / step
 
     def pattern(self, output: str) -> tuple[tuple[bool, ...], ...]:
         """Which entries of the system matrix can be other than zero, found at generic values of every symbol."""

@@ -153,12 +153,16 @@ class Preset:
 
     @property
     def is_linear(self) -> bool:
-        """Whether the command alone drives a linear chain without effects: a run is reduced once to its spectra."""
-        return not self.effects and MEASURED_LOAD not in self.chain.stages and not self.chain.memories
+        """Whether the command alone drives a linear chain: each run is then reduced once (:mod:`ident.fit.reduction`).
+
+        With effects a chain counts as nonlinear even where its equations are linear: at strength zero some have a
+        state that nothing reads, or a time constant of nothing.
+        """
+        return not self.effects and self.chain.is_linear
 
     @property
     def core(self) -> Chain:
-        """The chain without effects: linear."""
+        """The chain without effects."""
         return self.chain.with_effects(())
 
     @property

@@ -21,7 +21,6 @@ Array = NDArray[np.float64]
 FINE = 0.4  # radians or time constants a step: the largest eigenvalue times the step, above which steps are divided
 MOST = 32  # steps a sample
 FASTEST = FINE * MOST  # radians a sample of the fastest mode that is followed closely; one beyond is said
-_SMALL = 1e-9  # of a unit: where small-signal behaviour is taken
 
 
 @dataclass(frozen=True)
@@ -296,14 +295,7 @@ def _responses(coefficients: Array, duration: float) -> tuple[Array, Array, Arra
 
 def rates(chain: Chain, values: Mapping[str, Any], output: str) -> Array:
     """The largest eigenvalue of the chain's small-signal behaviour in magnitude, 1/s, for a batch of values."""
-    evaluate, n = chain.evaluator(output), len(chain.states)
-    shape = np.broadcast_shapes(*(np.shape(values[name]) for name in chain.symbols))
-    rest = evaluate(0.0, [0.0] * n, values)[0]
-    jacobian = np.zeros((*shape, n, n))
-    for j in range(n):
-        moved = evaluate(0.0, [_SMALL * (i == j) for i in range(n)], values)[0]
-        for i in range(n):
-            jacobian[..., i, j] = (moved[i] - rest[i]) / _SMALL
+    jacobian = chain.linearise({name: values[name] for name in chain.symbols}, output).A
     jacobian = np.where(np.isfinite(jacobian), jacobian, 0.0)
     return np.asarray(np.abs(np.linalg.eigvals(jacobian)).max(axis=-1))
 

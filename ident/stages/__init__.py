@@ -1,8 +1,8 @@
-"""The linear core of each place of the chain; a preset picks one core a place."""
+"""The core of each place of the chain; a preset picks one core a place."""
 
 from ident.stages.controller import OPENED_BY_COMMAND, PROPORTIONAL
 from ident.stages.drive import CASCADE, DIRECT_FORCE, IDEAL_DRIVE
-from ident.stages.flow import LINEAR_FLOW
+from ident.stages.flow import LINEAR_FLOW, SQUARE_ROOT_FLOW
 from ident.stages.load import DRIVEN_MASS, MASS_SPRING_DAMPER, MEASURED_LOAD
 from ident.stages.pressure import COMPRESSIBLE
 from ident.stages.sensor import IDEAL_SENSOR
@@ -25,6 +25,7 @@ __all__ = [
     "PLACES",
     "PROPORTIONAL",
     "RIGID_SPOOL",
+    "SQUARE_ROOT_FLOW",
     "Quantity",
     "Stage",
 ]
