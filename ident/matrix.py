@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Samples = NDArray[np.float64]
 
@@ -62,7 +62,9 @@ class Run:
     """One measured record in SI (or in the record's own units where the matrix says ``1``).
 
     `channels` maps a channel's name to its samples, all of one length; `sample_rate` is in Hz, or in 1/sample where
-    `time_unit` is "sample". `units` holds the SI unit of each channel ("m", "N", "Pa", or "1").
+    `time_unit` is "sample". `units` holds the SI unit of each channel ("m", "N", "Pa", or "1"). Of a record with several
+    outputs each is a run of its own, called ``record.output``: `record` is the id that all of them came under, and
+    `share` what each counts in a mean over runs.
     """
 
     id: str
@@ -83,6 +85,8 @@ class Run:
     rated_current: float | None = None
     clock_jitter: float = 0.0  # largest deviation of the time column from an even clock, in samples
     gaps: int = 0  # samples missing from the time column
+    record: str = ""
+    share: float = 1.0
 
     @property
     def command(self) -> Samples:
@@ -108,6 +112,15 @@ class Run:
     def Kp(self) -> float:
         """The loop gain; 1 where the matrix states none."""
         return 1.0 if self.gain is None else self.gain
+
+    def of_outputs(self, outputs: Sequence[str]) -> tuple[Run, ...]:
+        """The run for each of several outputs; itself where it has one."""
+        if len(outputs) == 1:
+            return (self,)
+        share = 1.0 / len(outputs)
+        return tuple(
+            replace(self, id=output_id(self.id, name), output=name, record=self.id, share=share) for name in outputs
+        )
 
     def driven_by(self, channel: str) -> Run:
         """The run with a channel in the place of its command; unchanged where it has none of that name."""
@@ -139,6 +152,18 @@ class Run:
         speed = float(np.std(x[n:] - x[:-n])) / n
         still = abs(slope) <= max(0.05 * speed, 4 * slope_error)
         return bool(still and abs(value) <= max(0.02 * float(np.std(x)), 4 * value_error))
+
+
+def output_id(record: str, output: str) -> str:
+    """The id of one of several outputs of a record."""
+    return f"{record}.{output}"
+
+
+def over_runs(values: ArrayLike, shares: Sequence[float]) -> Samples:
+    """The mean over outputs, then over runs, along the first axis: each output counts as its share of a run."""
+    found = np.asarray(values, dtype=np.float64)
+    alike = all(share == shares[0] for share in shares)
+    return np.asarray(found.mean(axis=0) if alike else np.average(found, axis=0, weights=shares))
 
 
 @dataclass(frozen=True, eq=False)

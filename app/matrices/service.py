@@ -21,7 +21,7 @@ from app.storage import Storage
 from app.tables import MatrixRow
 from ident.checks.check import check
 from ident.errors import Unusable
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix, Run, output_id
 from ident.readers.limits import LIMITS
 from ident.readers.source import DESCRIPTION, inside
 from ident.readers.strict_yaml import read_yaml
@@ -83,7 +83,8 @@ def revise(context: Context, matrix: str, revision: Revision) -> tuple[MatrixVie
     description = _described(context, row)
     _merge(description["actuator"], revision.actuator)
     runs = {str(run["id"]): run for run in description["runs"]}
-    for name, changes in revision.runs.items():
+    for given, changes in revision.runs.items():
+        name = _record_of(given, runs)
         if name not in runs:
             raise Unusable(
                 "unknown-run", f"there is no run {name!r}", "runs", f"choose from {', '.join(list(runs)[:20])}"
@@ -92,6 +93,17 @@ def revise(context: Context, matrix: str, revision: Revision) -> tuple[MatrixVie
     with context.storage.staged() as staged:
         sha256 = staged.put(io.BytesIO(_yaml(description)))
         return _record(context, staged, {**row.source, "description": sha256}, matrix)
+
+
+def _record_of(run: str, records: Mapping[str, Mapping[str, Any]]) -> str:
+    """The record that a run is an output of; the run itself where it is a record."""
+    outputs = {
+        output_id(name, str(output)): name
+        for name, record in records.items()
+        if isinstance(record.get("output"), list)
+        for output in record["output"]
+    }
+    return outputs.get(run, run)
 
 
 def description(context: Context, matrix: str) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from ident.checks.amplitude import amplitude
 from ident.checks.band import band
@@ -30,7 +30,19 @@ def check(matrix: Matrix) -> tuple[Finding, ...]:
     measured = [(run, respond(run)) for run in matrix.runs]
     found = [finding for run, response in measured for finding in one_run(run, response, matrix.actuator)]
     found += [*delays(measured), *repeats(matrix), *statements(matrix)]
-    return tuple(sorted(found, key=lambda finding: ORDER.index(finding.severity)))
+    return tuple(sorted(_once(found, matrix), key=lambda finding: ORDER.index(finding.severity)))
+
+
+def _once(found: Sequence[Finding], matrix: Matrix) -> Iterator[Finding]:
+    """What concerns a record is said once, not at each of its outputs."""
+    records = {run.id: run.record or run.id for run in matrix.runs}
+    said = set()
+    for finding in found:
+        record = records.get(finding.run or "", "")
+        key = record, finding.code, finding.text.replace(finding.run or record, record)
+        if not record or key not in said:
+            yield finding
+        said.add(key)
 
 
 def one_run(run: Run, response: Response | None, actuator: Actuator) -> Iterator[Finding]:

@@ -44,7 +44,8 @@ def conditions_of(run: Run) -> tuple[object, ...] | None:
     """What was set for a run; None where nothing is stated that would tell it apart."""
     if run.specimen is None and run.gain is None and run.amplitude is None:
         return None
-    return (run.specimen, run.gain, run.amplitude, run.kind, run.use, run.frequency, run.position_range)
+    stated = (run.specimen, run.gain, run.amplitude, run.kind, run.use, run.frequency, run.position_range)
+    return (*stated, run.output)
 
 
 def names(runs: list[Run]) -> str:

@@ -19,7 +19,7 @@ from ident.fit.result import FitResult
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import Space
 from ident.linear import LinearModel
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix, Run, over_runs
 from ident.parallel import each
 from ident.presets import Preset
 
@@ -110,8 +110,9 @@ class Comparison:
         return {use: self._mean(use, "offset") for use in ("fit", "verify")}
 
     def _mean(self, use: str, what: str) -> float | None:
-        values = [getattr(run, what) for run in self.runs if run.run.use == use]
-        return float(np.mean(values)) if values else None
+        found = [run for run in self.runs if run.run.use == use]
+        shares = [run.run.share for run in found]
+        return float(over_runs([getattr(run, what) for run in found], shares)) if found else None
 
 
 def modelled(preset: Preset, values: Mapping[str, float], matrix: Matrix) -> dict[str, Array]:

@@ -120,7 +120,8 @@ def _partly(here: Local, used: list[Mask]) -> Local:
     if not np.isfinite(here.error):
         return here
     return local([
-        NormalMatrices(_projected(run, of), run.scores[:0], run.total, run.offset, run.release, run.means, run.length)
+        NormalMatrices(_projected(run, of), run.scores[:0], run.total, run.offset, run.release, run.means, run.length,
+                       share=run.share)
         for run, of in zip(here.runs, used, strict=True)
     ])  # fmt: skip
 

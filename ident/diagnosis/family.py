@@ -18,7 +18,7 @@ from ident.fit.levenberg_marquardt import levenberg_marquardt
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.space import Space, search_space
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix, Run, over_runs
 from ident.noise.effective_sample_size import independent_samples
 from ident.noise.floor import Floors, noise_floors
 from ident.presets import PRESETS, Preset
@@ -59,12 +59,12 @@ class Refit:
     @property
     def error(self) -> float:
         """Eq. (17) averaged over the runs."""
-        return float(np.mean([run.error for run in self.here.runs]))
+        return float(over_runs([run.error for run in self.here.runs], [run.share for run in self.here.runs]))
 
     @property
     def offset(self) -> float:
         """The mean of the runs' offsets."""
-        return float(np.mean([run.offset for run in self.here.runs]))
+        return float(over_runs([run.offset for run in self.here.runs], [run.share for run in self.here.runs]))
 
 
 @dataclass

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.space import Space
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix, Run, over_runs
 from ident.presets import Preset
 
 Array = NDArray[np.float64]
@@ -94,11 +94,12 @@ def local(runs: Sequence[NormalMatrices], with_means: bool = False) -> Local:
     gradient, curvature = np.zeros(p), np.zeros((p, p))
     if not all(np.isfinite(run.error) for run in runs):
         return Local(np.inf, gradient, curvature, tuple(runs))
-    error = float(np.mean([run.error for run in runs]))
+    shares = [run.share for run in runs]
+    error = float(over_runs([run.error for run in runs], shares))
     means = means_of(runs, error) if with_means else None
     here = Local(error, gradient, curvature, tuple(runs), means)
     for run in here.terms:
-        weight = weight_of(run) / len(runs)
+        weight = weight_of(run) * run.share / sum(shares)
         gradient -= weight * run.gram[:p, p]
         curvature += weight * run.gram[:p, :p]
     if means is None:

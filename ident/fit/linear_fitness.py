@@ -22,7 +22,7 @@ from ident.fit.reduction import Basis, ReducedRun, reduced
 from ident.fit.space import Space
 from ident.fit.transfer import Pattern, values_at
 from ident.linear import LinearModel
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix, Run, over_runs
 from ident.parallel import cores, each
 from ident.presets import Preset
 
@@ -84,7 +84,9 @@ class LinearFitness:
 
         found = self._over_runs(points, measures)
         by_run = np.array([errors for errors, _ in found])
-        errors = np.where(np.all(np.isfinite(by_run), axis=0), by_run.mean(axis=0), UNSTABLE)
+        errors = np.where(
+            np.all(np.isfinite(by_run), axis=0), over_runs(by_run, [run.share for run in self.runs]), UNSTABLE
+        )
         return np.minimum(errors, UNSTABLE), np.max([doubt for _, doubt in found], axis=0)
 
     def _over_runs(self, points: Array, measure: Callable[[int, Array, NDArray[np.bool_]], Outcome]) -> list[Outcome]:
@@ -166,7 +168,7 @@ class LinearFitness:
             z = np.vstack([(y[1:] - y[:1]) / (STEP * signs)[:, None], reduced.d - y[:1]])
             gram = z @ z.T
             gram[-1, -1] += reduced.rest
-            return NormalMatrices(gram, np.zeros((0, p)), reduced.total, 0.0)
+            return NormalMatrices(gram, np.zeros((0, p)), reduced.total, 0.0, share=self.runs[run].share)
 
         return local(self._over_runs(np.concatenate([point[None], point + STEP * np.diag(signs)]), measure))
 

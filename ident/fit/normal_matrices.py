@@ -31,7 +31,7 @@ class NormalMatrices:
     `total` is Σ (x_m − mean)²; `offset` the difference of means over the standard deviation; `release` how much of
     each nuisance but the mean the record holds; `means` the means of [J, r], `length` the number of samples; `blocks`
     the sums of products of [J, N, 1, r] of each block, before anything is projected out, (b, q, q), and `remove` what
-    does so, (q, p+1), see :func:`ident.fit.products.removal`.
+    does so, (q, p+1), see :func:`ident.fit.products.removal`; `share` is what the run counts in a mean over runs.
     """
 
     gram: Array
@@ -43,6 +43,7 @@ class NormalMatrices:
     length: int = 0
     blocks: Array = field(default_factory=lambda: np.empty((0, 0, 0)), repr=False)
     remove: Array = field(default_factory=lambda: np.empty((0, 0)), repr=False)
+    share: float = 1.0
 
     @property
     def error(self) -> float:
@@ -76,7 +77,7 @@ def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Norma
         if not sound[i]
         else NormalMatrices(
             projected[i], scores[i], float(totals[i]), float(release[i, -1, -1] / np.sqrt(totals[i] / run.length)),
-            release[i, :-1, -1], release[i, -1], run.length, blocks[i], remove[i],
+            release[i, :-1, -1], release[i, -1], run.length, blocks[i], remove[i], run.share,
         )
         for i, run in enumerate(runs)
     ]  # fmt: skip

@@ -19,7 +19,7 @@ from ident.fit.fitness import STEP, UNSTABLE, Local, local
 from ident.fit.normal_matrices import NormalMatrices, first_state, normal_matrices_of
 from ident.fit.products import add_products, completed
 from ident.fit.space import Space
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix, Run, over_runs
 from ident.parallel import cores, each
 from ident.presets import Preset
 from ident.simulation.simulate import Simulation, rates, steps_needed
@@ -85,8 +85,9 @@ class SimulatedFitness:
                 found = np.sqrt(np.maximum(variance, 0.0)) / np.std(measured, axis=0)
             return np.where(np.isfinite(found), found, np.inf)
 
-        by_run = np.concatenate(each(of_runs, list(self.together(vectors))))
-        errors = np.where(np.all(np.isfinite(by_run), axis=0), by_run.mean(axis=0), UNSTABLE)
+        todo = list(self.together(vectors))
+        by_run, shares = np.concatenate(each(of_runs, todo)), [run.share for runs in todo for run in runs]
+        errors = np.where(np.all(np.isfinite(by_run), axis=0), over_runs(by_run, shares), UNSTABLE)
         return np.minimum(errors, UNSTABLE)
 
     def approximate(self, point: Array) -> Local:
@@ -105,7 +106,7 @@ class SimulatedFitness:
         self.begin({name: float(value[0]) for name, value in values.items()})
         with np.errstate(over="ignore", invalid="ignore"):
             found = self._found(values, strides, steps)
-        return local([found[run.id] for run in self.runs], with_means=True)
+        return local([found[run.id] for run in self.runs], with_means=len({run.output for run in self.runs}) == 1)
 
     def _found(self, values: Mapping[str, Array], strides: Array, steps: int) -> dict[str, NormalMatrices]:
         """The moments of every run by its id; without sensitivities the first states are followed to their end."""

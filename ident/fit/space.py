@@ -148,7 +148,9 @@ def _typical(matrix: Matrix, runs: tuple[Run, ...]) -> dict[str, float]:
 
 
 def _size(runs: tuple[Run, ...], of: str) -> float:
-    return float(np.mean([np.std(getattr(run, of)) for run in runs]))
+    """Of the displacements, where some runs record them and others something else."""
+    moved = tuple(run for run in runs if run.output == "displacement") or runs
+    return float(np.mean([np.std(getattr(run, of)) for run in moved]))
 
 
 def _refuse_bad_values(fixed: Mapping[str, float], of_effects: AbstractSet[str]) -> None:

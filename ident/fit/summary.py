@@ -19,7 +19,7 @@ from ident.fit.search import evolution
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
-from ident.matrix import Run
+from ident.matrix import Run, over_runs
 from ident.noise.floor import Floors
 from ident.presets.preset import Combined
 from ident.simulation.simulate import FASTEST, MOST
@@ -65,8 +65,15 @@ def summarise(
         correlation=found.correlation({label[name][0]: _value(objective, name) for name in space.names}),
         determined=tuple(_determined(objective, found, relative, values)) if weak else (),
         undetermined=tuple(Undetermined(label[name][0], _reason(objective, name, relative)) for name in weak),
-        error={"fit": _mean(fit_errors, "error"), "held_out": None, "verify": _mean(verify_errors, "error")},
-        offset={"fit": _mean(fit_errors, "offset"), "verify": _mean(verify_errors, "offset")},
+        error={
+            "fit": _mean(fit_runs, fit_errors, "error"),
+            "held_out": None,
+            "verify": _mean(verify_runs, verify_errors, "error"),
+        },
+        offset={
+            "fit": _mean(fit_runs, fit_errors, "offset"),
+            "verify": _mean(verify_runs, verify_errors, "offset"),
+        },
         noise_floor=floors.of_use(matrix),
         runs=(*fit_errors, *verify_errors),
         method=settings.method,
@@ -94,8 +101,9 @@ def _run_errors(runs: Sequence[Run], found: Sequence[NormalMatrices]) -> tuple[R
     )
 
 
-def _mean(runs: Sequence[RunError], what: str) -> float | None:
-    return float(np.mean([getattr(run, what) for run in runs])) if runs else None
+def _mean(runs: Sequence[Run], found: Sequence[RunError], what: str) -> float | None:
+    values = [getattr(of_run, what) for of_run in found]
+    return float(over_runs(values, [run.share for run in runs])) if runs else None
 
 
 def _labels(objective: Fitness) -> dict[str, tuple[str, str]]:

@@ -13,7 +13,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.matrix import USES, Matrix, Run
+from ident.matrix import USES, Matrix, Run, over_runs
 from ident.noise.effective_sample_size import independent_samples
 from ident.noise.power_density import power_density
 from ident.parallel import each
@@ -70,7 +70,8 @@ class Floors:
     def mean(self, runs: Sequence[Run]) -> float | None:
         """Averaged over runs; None where it cannot be told of every one."""
         known = [floor for run in runs if (floor := self.by_run[run.id]) is not None]
-        return float(np.mean(known)) if known and len(known) == len(runs) else None
+        told = bool(known) and len(known) == len(runs)
+        return float(over_runs(known, [run.share for run in runs])) if told else None
 
     def spread(self, samples: int) -> float:
         """The relative standard deviation of noise over so many samples about its floor."""
@@ -81,8 +82,20 @@ def noise_floors(runs: Sequence[Run], band: float, left_out: Collection[str] = (
     """The noise floors of runs whose command ends at `band` (rad/s); `left_out` are ids that are not trusted.
 
     From repeats: half the power of their difference, the median over the pairs, for all runs; in the unit of the
-    displacement or in proportion to it, as the pairs say, or where these are few, the spectra.
+    displacement or in proportion to it, as the pairs say, or where these are few, the spectra. Each output is told by
+    itself: two of one record are no repeats, and their noise has nothing in common.
     """
+    by_output: dict[str, list[Run]] = {}
+    for run in runs:
+        by_output.setdefault(run.output, []).append(run)
+    if len(by_output) > 1:
+        parts = [noise_floors(alike, band, left_out) for alike in by_output.values()]
+        return Floors(
+            {run: floor for part in parts for run, floor in part.by_run.items()},
+            min(part.degrees_of_freedom for part in parts),
+            min(part.independent_share for part in parts),
+            measured=all(part.measured for part in parts),
+        )
     pairs = repeated([run for run in runs if run.id not in left_out])
     if not pairs:
         degrees_of_freedom = _UPPER_HALF * sum(run.length for run in runs if run.use == "fit")

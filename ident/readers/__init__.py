@@ -90,7 +90,8 @@ def read_runs(
             runs[number] = read_run(run, tables[run.skip_rows])
             held += sum(samples.nbytes for samples in runs[number].channels.values())
             check_size(held, limits.samples, "all samples together", name)
-    return tuple(runs[number] for number in sorted(runs)), tuple(notices), digest.hexdigest()
+    outputs = (run for number in sorted(runs) for run in runs[number].of_outputs(described.runs[number].outputs))
+    return tuple(outputs), tuple(notices), digest.hexdigest()
 
 
 def by_file(runs: tuple[RunDescription, ...]) -> dict[str, list[tuple[int, RunDescription]]]:

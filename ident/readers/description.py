@@ -77,7 +77,7 @@ def describe_runs(data: Any, limits: Limits) -> tuple[RunDescription, ...]:
         what = f"{len(data)} runs where {limits.runs} are allowed"
         raise Unusable("too-large", what, "runs", "split the matrix")
     runs = tuple(describe_run(each, f"run {number}") for number, each in enumerate(data, 1))
-    refuse_twice([run.labels.id for run in runs])
+    refuse_twice([one.id for run in runs for one in run.labels.of_outputs(run.outputs)])
     return runs
 
 

@@ -51,6 +51,14 @@ class Fields:
             raise Unusable("not-text", f"{shown(value)!r} is not a line of text", self.place(key), "write a short text")
         return line
 
+    def names(self, key: str) -> tuple[str, ...]:
+        """A list of different lines of text. Raises Unusable: ``not-text``."""
+        value = self.data[key]
+        found = tuple(Fields({key: one}, self.where, (key,)).text(key) for one in value)
+        if not found or len(set(found)) < len(found) or not all(found):
+            raise Unusable("not-text", f"{shown(value)!r} is not a list of names", self.place(key), "name each once")
+        return found
+
     def choice(self, key: str, allowed: Sequence[str], default: str) -> str:
         """One of the allowed words. Raises Unusable: ``unknown-KEY``."""
         value = self.text(key, default)

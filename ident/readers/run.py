@@ -35,7 +35,7 @@ def read_run(described: RunDescription, table: Table) -> Run:
         name: in_si(part(raw[name], described, places[name]), channel.scale, places[name])
         for name, channel in described.channels.items()
     }
-    for name in {"command", labels.output} & set(channels):
+    for name in {"command", *described.outputs} & set(channels):
         check_moves(channels[name], places[name])
     if described.time is None:
         return replace(labels, channels=channels)

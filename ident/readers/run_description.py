@@ -28,9 +28,13 @@ class TimeColumn:
 
 @dataclass(frozen=True)
 class RunDescription:
-    """A run before its samples are read. `labels` is the run without channels and, with a time column, without rate."""
+    """A run before its samples are read. `labels` is the run without channels and, with a time column, without rate.
+
+    `outputs` are the channels that a model must reproduce: each becomes a run.
+    """
 
     labels: Run
+    outputs: tuple[str, ...]
     channels: dict[str, ChannelDescription]
     time: TimeColumn | None
     skip_rows: int
@@ -44,7 +48,7 @@ def describe_run(data: Any, where: str) -> RunDescription:
     fields = Fields(data, f"run {name}", RUN)
     kind = fields.choice("kind", KINDS, "other")
     channels = describe_channels(fields.need("channels", "describe command and displacement"), fields.place("channels"))
-    output = describe_output(fields, kind, channels)
+    outputs = describe_outputs(fields, kind, channels)
     time, rate, time_unit = describe_clock(fields)
     units = {channel: described.scale.unit for channel, described in channels.items()}
     fields.need("file", "add file: runs/NAME.csv")
@@ -60,13 +64,13 @@ def describe_run(data: Any, where: str) -> RunDescription:
         amplitude=fields.positive("amplitude", _driven_unit(units)),  # RMS of the command, in its kind of unit
         kind=kind,
         hold=fields.choice("hold", HOLDS, "linear"),
-        output=output,
+        output=outputs[0],
         use=fields.choice("use", USES, "fit"),
         position_range=describe_range(fields, units.get("displacement", "m")),
         frequency=fields.positive("frequency", "frequency" if time_unit == "s" else "per sample"),
         rated_current=fields.positive("rated_current", units.get("current", "A")),
     )
-    return RunDescription(labels, channels, time, fields.whole("skip_rows"), describe_rows(fields))
+    return RunDescription(labels, outputs, channels, time, fields.whole("skip_rows"), describe_rows(fields))
 
 
 def _driven_unit(units: dict[str, str]) -> str:
@@ -85,20 +89,20 @@ def describe_id(fields: Fields) -> str:
     return name
 
 
-def describe_output(fields: Fields, kind: str, channels: dict[str, ChannelDescription]) -> str:
-    """The channel that a model must reproduce; it and a command, or what else drives, must be described."""
-    output = fields.text("output", "displacement")
-    if output not in channels:
-        remedy = "set output to one of " + ", ".join(channels)
-        raise Unusable(
-            "unknown-output", f"{shown(output)!r} is not a channel of this run", fields.place("output"), remedy
-        )
-    moved = output == "force" and channels.keys() & set(MOTIONS)
+def describe_outputs(fields: Fields, kind: str, channels: dict[str, ChannelDescription]) -> tuple[str, ...]:
+    """The channels that a model must reproduce; they and a command, or what else drives, must be described."""
+    given = fields.data.get("output")
+    outputs = fields.names("output") if isinstance(given, list) else (fields.text("output", "displacement"),)
+    for output in outputs:
+        if output not in channels:
+            what, remedy = f"{shown(output)!r} is not a channel of this run", f"choose from {', '.join(channels)}"
+            raise Unusable("unknown-output", what, fields.place("output"), remedy)
+    moved = outputs == ("force",) and channels.keys() & set(MOTIONS)
     if "command" not in channels and not moved and not (kind in BENCH and "current" in channels):
         raise Unusable("missing-command", "there is no command", fields.place("channels"), "describe the command")
-    if output == "command":
+    if "command" in outputs:
         raise Unusable("unknown-output", "the command cannot be the output", fields.place("output"), "name a response")
-    return output
+    return outputs
 
 
 def describe_clock(fields: Fields) -> tuple[TimeColumn | None, float, str]:
