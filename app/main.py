@@ -17,12 +17,13 @@ from app.context import Context
 from app.database import connect, migrate, sessions
 from app.diagnoses.endpoints import router as diagnoses
 from app.diagnoses.work import DiagnosisWork
-from app.dispatch import FIT, Dispatch
 from app.fits.endpoints import router as fits
-from app.fits.job_endpoints import router as jobs
-from app.fits.service import resume
 from app.fits.work import FitWork
-from app.jobs import Jobs
+from app.jobs.dispatch import FIT, Dispatch
+from app.jobs.endpoints import router as jobs
+from app.jobs.engine import Jobs
+from app.jobs.service import resume
+from app.jobs.work import Work
 from app.matrices.endpoints import router as matrices
 from app.operation.endpoints import router as operation
 from app.pages import router as pages
@@ -31,7 +32,6 @@ from app.report.endpoints import router as report
 from app.security import Guard
 from app.settings import Settings
 from app.storage import Storage
-from app.work import Work
 from ident.parallel import one_thread
 
 API = "/api/v1"

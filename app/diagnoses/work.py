@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from app.diagnoses import repository
 from app.fits import repository as fits
-from app.steps import State, Steps
+from app.jobs.steps import State, Steps
 from app.storage import Storage
 from app.tables import JobRow
 from ident.custom.definition import read_effect

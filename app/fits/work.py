@@ -5,7 +5,7 @@ from __future__ import annotations
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.fits import repository
-from app.steps import State, Steps
+from app.jobs.steps import State, Steps
 from app.storage import Storage
 from app.tables import JobRow
 from ident.fit.identification import StepwiseFit

@@ -12,7 +12,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from app.diagnoses.work import DiagnosisWork
-from app.fits import repository
+from app.jobs import repository
 from tests.hidden_dead_zone import HALF_WIDTH, zipped
 
 API = "/api/v1"
@@ -187,8 +187,8 @@ def test_a_result_is_stored_once_and_one_that_cannot_be_ends_its_job(service, di
     work.store(diagnosis["id"], made)
     assert service.get(f"{API}/diagnoses/{diagnosis['id']}").json() == diagnosis
     with context.sessions.begin() as session:
-        repository.add_job(session, "twice", matrix, {}, linear, "diagnosis")
-        repository.add_job(session, "broken", matrix, {}, linear, "diagnosis")
+        repository.add(session, "twice", matrix, {}, linear, "diagnosis")
+        repository.add(session, "broken", matrix, {}, linear, "diagnosis")
     for _ in range(2):
         work.store("twice", made)
     work.store("broken", {"outcome": None, "state": {"diagnosis": {"x": object()}, "fit": None}})

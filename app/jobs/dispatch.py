@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from sqlalchemy.orm import Session, sessionmaker
 
-from app.fits import repository
-from app.work import State, Work
+from app.jobs import repository
+from app.jobs.work import State, Work
 
 FIT = "fit"
 
@@ -36,5 +36,5 @@ class Dispatch:
 
     def _of(self, job: str) -> Work:
         with self.sessions() as session:
-            row = repository.job(session, job)
+            row = repository.find(session, job)
         return self.works[row.kind if row is not None else FIT]

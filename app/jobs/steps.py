@@ -10,7 +10,7 @@ from typing import Any
 
 from sqlalchemy.orm import Session, sessionmaker
 
-from app.fits import repository
+from app.jobs import repository
 from app.matrices.service import load_row
 from app.storage import Storage
 from app.tables import JobRow, now
@@ -59,7 +59,7 @@ class Steps:
 
     def _store(self, job: str, last: State, keep: Keep) -> None:
         with self.sessions.begin() as session:
-            row = repository.job(session, job)
+            row = repository.find(session, job)
             if row is None or row.state in repository.ENDED:
                 return
             if last["outcome"] is None:
@@ -67,12 +67,12 @@ class Steps:
                 keep(session, row, matrix.serial if matrix else "", last["state"])
             state = last["outcome"] or "succeeded"
             problem = last["state"] if state == "failed" else None
-            repository.change_job(session, job, state=state, problem=problem, ended_at=now())
+            repository.change(session, job, state=state, problem=problem, ended_at=now())
 
     def recorded(self, job: str) -> tuple[JobRow, Matrix]:
         """The job's record and the samples of its matrix. Raises Unusable."""
         with self.sessions() as session:
-            row, matrix = repository.job(session, job), repository.matrix_of(session, job)
+            row, matrix = repository.find(session, job), repository.matrix_of(session, job)
         if row is None or matrix is None:
             raise Unusable("no-such-job", "the job is not recorded", job, "start it again")
         return row, load_row(self.storage, matrix)
@@ -92,8 +92,8 @@ class Steps:
     def note(self, job: str, values: dict[str, Any]) -> None:
         """Write progress and look whether the job is to be cancelled. Raises Cancelled."""
         with self.sessions.begin() as session:
-            alive = repository.change_job(session, job, **values) if values else True
-            row = repository.job(session, job)
+            alive = repository.change(session, job, **values) if values else True
+            row = repository.find(session, job)
             if not alive or row is None or row.cancel:
                 raise Cancelled
 

@@ -16,9 +16,9 @@ from typing import Any
 from dbos import DBOS, DBOSConfig, Serializer, SetWorkflowID
 
 from app.database import connect
-from app.generations import added, whole
+from app.jobs.generations import added, whole
+from app.jobs.work import State, Work
 from app.settings import Settings
-from app.work import State, Work
 
 QUEUE = "fits"
 # Pinned: by default the engine derives it from the code, and jobs queued before an upgrade would wait for ever.
