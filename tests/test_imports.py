@@ -193,6 +193,11 @@ def test_only_the_jobs_file_knows_the_job_engine():
     assert not list(offences(others, {"dbos"}))
 
 
+def test_a_report_knows_neither_pages_nor_commands():
+    """What pages, report and command line all say stands in `ident/words` and in the services."""
+    assert not list(offences(files("app/report/*.py"), {"app.pages", "app.cli"}))
+
+
 def test_the_bootstrap_runs_in_a_bare_python():
     """What the README's two commands run first imports the standard library only, and the packages' heads nothing."""
     bare = [ROOT / name for name in ("app/environment.py", "app/__main__.py", "tests/__main__.py")]
@@ -207,7 +212,7 @@ def test_the_command_line_imports_nothing_heavy_before_a_command_runs():
     light = {
         "app.cli",
         "ident.errors",
-        "ident.words.percent",
+        "ident.words",
         "ident.progress",
         "ident.fit.settings",
         "ident.fit.result",

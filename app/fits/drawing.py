@@ -19,6 +19,7 @@ from ident.figures.ladder import Step
 from ident.figures.selection import number
 from ident.fit.result import FitResult
 from ident.presets import preset
+from ident.words.titles import title
 from schemas.fit import LadderRung
 
 _MOST = 96  # figures in memory, about 100 kB each: fits and their data never change
@@ -76,6 +77,6 @@ def _candidate(context: Context, fit: FitResult, wanted: str) -> FitResult:
 def _steps(rungs: list[LadderRung], model: str) -> Iterator[Step]:
     """A step a fit: the model, then what each refit added."""
     for place, rung in enumerate(rungs):
-        names = [name.replace("_", " ") for name in rung.added]
+        names = [title(name) for name in rung.added]
         label = " + ".join(names if place else (preset(model).title, *names)) or "fitted again"
         yield label, rung.error["fit"], rung.error["verify"]

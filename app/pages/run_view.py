@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.pages import numbers
 from ident.figures import words
 from ident.matrix import Specimen
+from ident.words.engineering import quantity
 from schemas.matrix import RunView
 
 
@@ -35,8 +35,8 @@ def conditions(run: RunView) -> Conditions:
         amplitude=_amplitude(run),
         amplitude_value="" if run.amplitude is None else f"{run.amplitude:g}",
         specimen="–" if run.mass is None else words.specimen(specimen_of(run)),
-        length=numbers.quantity(run.duration, "s"),
-        rate=numbers.quantity(run.sample_rate, "Hz"),
+        length=quantity(run.duration, "s"),
+        rate=quantity(run.sample_rate, "Hz"),
     )
 
 

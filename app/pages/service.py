@@ -10,6 +10,7 @@ from app.diagnoses import service as diagnoses
 from app.errors import Failure
 from app.fits import lineage
 from app.fits import service as fits
+from app.fits.rows import parameter_rows
 from app.jobs import service as jobs
 from app.matrices import service as matrices
 from app.pages.actuator_view import actuator_row, drifts, fit_rows, followed
@@ -17,17 +18,16 @@ from app.pages.compare_view import CompareView, compare_view
 from app.pages.diagnosis_view import missing
 from app.pages.evidence_view import telling_run
 from app.pages.fit_page import FitPageView, fit_page
-from app.pages.fit_view import parameter_rows
 from app.pages.job_view import JobPageView, job_page
 from app.pages.matrix_view import counted, matrix_view
 from app.pages.next_steps import next_steps
-from app.pages.numbers import quantity
 from app.pages.start_view import start_view
 from app.pages.thumbnails import thumbnail
 from app.parameters import service as parameters
 from app.parameters.repository import Wanted
 from ident.fit.result import FitResult
 from ident.synthesis.matrix import SIMULATED
+from ident.words.engineering import quantity
 from schemas.parameters import ActuatorPage, ActuatorView
 
 __all__ = ["actuator", "actuator_list", "fit", "job_list", "matrix", "thumbnail"]
