@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from ident.figures import words
 from ident.matrix import Specimen
+from ident.words.conditions import of_rated
 from ident.words.engineering import quantity
 from schemas.matrix import RunView
 
@@ -44,7 +45,7 @@ def _amplitude(run: RunView) -> str:
     """RMS of the command; of a bench's sine the share of the rated current."""
     if run.amplitude is None:
         return "–"
-    return f"{100 * run.amplitude:.4g} %" if run.kind == "frequency" else words.amplitude(run.amplitude)
+    return of_rated(run.amplitude) if run.kind == "frequency" else words.amplitude(run.amplitude)
 
 
 def specimen_of(run: RunView) -> Specimen | None:

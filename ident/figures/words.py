@@ -75,7 +75,7 @@ def describe(run: Run) -> str:
     if run.amplitude is not None:
         of_bench = run.kind == "frequency"
         parts.append(
-            f"{100 * run.amplitude:.4g} %"
+            conditions.of_rated(run.amplitude)
             if of_bench
             else f"{amplitude(run.amplitude, run.units.get('command', 'm'))} RMS"
         )

@@ -16,3 +16,8 @@ def stiffness(newtons_a_metre: float) -> str:
 def amplitude(value: float, unit: str = "m") -> str:
     """An RMS amplitude; that of a command without a unit is a number."""
     return f"{1000 * value:.4g} mm" if unit == "m" else f"{value:.4g} {unit}".removesuffix(" 1")
+
+
+def of_rated(share: float) -> str:
+    """The amplitude of a bench's sine, a share of the rated current."""
+    return f"{100 * share:.4g} %"
