@@ -96,9 +96,10 @@ class GuardedSteps:
 
     def _work(self, job: str, kind: Kind) -> Work:
         """The work of a job, prepared at its first step in this process: a process has one job at a time."""
-        if self._under_way is None or self._under_way[0] != job:
-            self._under_way = (job, kind.work(self._task(job)))
-        return self._under_way[1]
+        under_way = self._under_way
+        if under_way is None or under_way[0] != job:
+            under_way = self._under_way = (job, kind.work(self._task(job)))
+        return under_way[1]
 
     def _task(self, job: str) -> Task:
         """The job's record with the samples of its matrix. Raises Unusable."""
