@@ -9,7 +9,7 @@ from fastapi import Depends, Request
 from sqlalchemy import Engine
 from sqlalchemy.orm import Session, sessionmaker
 
-from app.jobs import Jobs
+from app.jobs.engine import Jobs
 from app.settings import Settings
 from app.storage import Storage
 

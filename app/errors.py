@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import json
 import logging
+from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
 from fastapi import FastAPI, Request, Response
@@ -62,57 +63,70 @@ COMMON = _documented(400, 401, 403, 404, 405, 409, 413, 415, 422, 503, 507)
 """Responses that every call may give, for the OpenAPI document."""
 
 
+async def _failure(_: Request, error: Exception) -> Response:
+    assert isinstance(error, Failure)
+    return refusal(error)
+
+
+async def _unusable(_: Request, error: Exception) -> Response:
+    assert isinstance(error, Unusable)
+    return problem(422, error.code, error.what, error.where, error.remedy)
+
+
+async def _invalid(_: Request, error: Exception) -> Response:
+    assert isinstance(error, RequestValidationError)
+    first = error.errors()[0]
+    where = ".".join(str(part) for part in first["loc"])
+    return problem(422, "invalid-request", str(first["msg"]), where, "see the OpenAPI document for what is wanted")
+
+
+async def _plain(request: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    headers, remedy = dict(error.headers or {}), "see the OpenAPI document for what there is"
+    code = f"http-{error.status_code}"
+    return problem(error.status_code, code, str(error.detail), request.url.path, remedy, **headers)
+
+
+async def _gone(_: Request, __: Exception) -> Response:  # which nobody reads any more
+    return problem(400, "incomplete", "the request ended before its body did", "body", "send the whole body")
+
+
+async def _unstorable(_: Request, __: Exception) -> Response:
+    return problem(422, "unusable-text", "it holds text that cannot be stored", "request", "write plain text")
+
+
+async def _system(request: Request, error: Exception) -> Response:
+    if is_full(error):
+        return problem(507, "disk-full", "no space is left on the disk", "upload", "free some space and try again")
+    if isinstance(error, OperationalError):
+        _log.error("the database does not answer", exc_info=error)
+        return problem(503, "no-database", "the database does not answer", "service", "try again in a moment")
+    return await _unexpected(request, error)
+
+
+async def _unexpected(request: Request, error: Exception) -> Response:
+    _log.error("%s %s failed", request.method, request.url.path, exc_info=error)
+    return problem(500, "defect", "the request failed by a defect of the program", remedy="see the service's log")
+
+
+_ANSWERS: Mapping[type[Exception], Callable[[Request, Exception], Awaitable[Response]]] = {
+    Failure: _failure,
+    Unusable: _unusable,
+    RequestValidationError: _invalid,
+    HTTPException: _plain,
+    ClientDisconnect: _gone,
+    DataError: _unstorable,
+    UnicodeEncodeError: _unstorable,
+    OSError: _system,
+    OperationalError: _system,
+    Exception: _unexpected,
+}
+
+
 def install(app: FastAPI) -> None:
     """Answer every exception with a problem document."""
-
-    async def failure(_: Request, error: Exception) -> Response:
-        assert isinstance(error, Failure)
-        return refusal(error)
-
-    async def unusable(_: Request, error: Exception) -> Response:
-        assert isinstance(error, Unusable)
-        return problem(422, error.code, error.what, error.where, error.remedy)
-
-    async def invalid(_: Request, error: Exception) -> Response:
-        assert isinstance(error, RequestValidationError)
-        first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"])
-        return problem(422, "invalid-request", str(first["msg"]), where, "see the OpenAPI document for what is wanted")
-
-    async def gone(_: Request, __: Exception) -> Response:  # which nobody reads any more
-        return problem(400, "incomplete", "the request ended before its body did", "body", "send the whole body")
-
-    async def unstorable(_: Request, __: Exception) -> Response:
-        return problem(422, "unusable-text", "it holds text that cannot be stored", "request", "write plain text")
-
-    async def plain(request: Request, error: Exception) -> Response:
-        assert isinstance(error, HTTPException)
-        headers, remedy = dict(error.headers or {}), "see the OpenAPI document for what there is"
-        code = f"http-{error.status_code}"
-        return problem(error.status_code, code, str(error.detail), request.url.path, remedy, **headers)
-
-    async def system(request: Request, error: Exception) -> Response:
-        if is_full(error):
-            return problem(507, "disk-full", "no space is left on the disk", "upload", "free some space and try again")
-        if isinstance(error, OperationalError):
-            _log.error("the database does not answer", exc_info=error)
-            return problem(503, "no-database", "the database does not answer", "service", "try again in a moment")
-        return await unexpected(request, error)
-
-    async def unexpected(request: Request, error: Exception) -> Response:
-        _log.error("%s %s failed", request.method, request.url.path, exc_info=error)
-        return problem(500, "defect", "the request failed by a defect of the program", remedy="see the service's log")
-
-    app.add_exception_handler(Failure, failure)
-    app.add_exception_handler(Unusable, unusable)
-    app.add_exception_handler(RequestValidationError, invalid)
-    app.add_exception_handler(HTTPException, plain)
-    app.add_exception_handler(ClientDisconnect, gone)
-    app.add_exception_handler(DataError, unstorable)
-    app.add_exception_handler(UnicodeEncodeError, unstorable)
-    app.add_exception_handler(OSError, system)
-    app.add_exception_handler(OperationalError, system)
-    app.add_exception_handler(Exception, unexpected)
+    for error, answer in _ANSWERS.items():
+        app.add_exception_handler(error, answer)
 
 
 def is_full(error: Exception) -> bool:

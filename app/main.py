@@ -16,13 +16,13 @@ from app.catalogue.endpoints import router as catalogue
 from app.context import Context
 from app.database import connect, migrate, sessions
 from app.diagnoses.endpoints import router as diagnoses
-from app.diagnoses.work import DiagnosisWork
-from app.dispatch import FIT, Dispatch
+from app.diagnoses.work import DIAGNOSIS
 from app.fits.endpoints import router as fits
-from app.fits.job_endpoints import router as jobs
-from app.fits.service import resume
-from app.fits.work import FitWork
-from app.jobs import Jobs
+from app.fits.work import FIT
+from app.jobs.endpoints import router as jobs
+from app.jobs.engine import Jobs
+from app.jobs.service import resume
+from app.jobs.steps import GuardedSteps
 from app.matrices.endpoints import router as matrices
 from app.operation.endpoints import router as operation
 from app.pages import router as pages
@@ -31,7 +31,6 @@ from app.report.endpoints import router as report
 from app.security import Guard
 from app.settings import Settings
 from app.storage import Storage
-from app.work import Work
 from ident.parallel import one_thread
 
 API = "/api/v1"
@@ -80,8 +79,8 @@ def make_context(settings: Settings) -> Context:
     migrate(settings.database)
     engine = connect(settings.database)
     makers, storage = sessions(engine), Storage(settings.data / "blobs")
-    works: dict[str, Work] = {FIT: FitWork(makers, storage), "diagnosis": DiagnosisWork(makers, storage)}
-    return Context(settings, engine, makers, storage, Jobs(settings, Dispatch(makers, works)))
+    steps = GuardedSteps(makers, storage, FIT, DIAGNOSIS)
+    return Context(settings, engine, makers, storage, Jobs(settings, steps))
 
 
 def run(settings: Settings) -> None:

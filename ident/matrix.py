@@ -62,7 +62,7 @@ class Run:
     """One measured record in SI (or in the record's own units where the matrix says ``1``).
 
     `channels` maps a channel's name to its samples, all of one length; `sample_rate` is in Hz, or in 1/sample where
-    `time_unit` is "sample". `units` holds the SI unit of each channel ("m", "N", "Pa", or "1"). Of a record with several
+    `time_unit` is "sample". `units` holds the SI unit of each channel ("m", "N", "Pa", or "1"). Of a record with many
     outputs each is a run of its own, called ``record.output``: `record` is the id that all of them came under, and
     `share` what each counts in a mean over runs.
     """

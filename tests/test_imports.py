@@ -87,7 +87,7 @@ def test_the_rooms_of_the_library_stand_in_one_order():
 
 
 def test_nothing_outside_the_presets_knows_a_model_by_its_name():
-    """A fact about a model stands with its preset: it is not compared with, nor keyed by, a name."""
+    """A fact about a model stands with its preset: nothing is compared with its name or tabled by it."""
     places = files("ident/**/*.py", "app/**/*.py", "schemas/**/*.py")
     found = [
         f"{file.relative_to(ROOT)}:{line}"
@@ -188,9 +188,14 @@ def test_only_a_repository_builds_a_query():
 
 
 def test_only_the_jobs_file_knows_the_job_engine():
-    """DBOS can be exchanged in one file."""
-    others = [file for file in files("app/**/*.py", "ident/**/*.py") if file != ROOT / "app" / "jobs.py"]
+    """DBOS can be exchanged in one file, app/jobs/engine.py."""
+    others = [file for file in files("app/**/*.py", "ident/**/*.py") if file != ROOT / "app" / "jobs" / "engine.py"]
     assert not list(offences(others, {"dbos"}))
+
+
+def test_a_report_knows_neither_pages_nor_commands():
+    """What pages, report and command line all say stands in `ident/words` and in the services."""
+    assert not list(offences(files("app/report/*.py"), {"app.pages", "app.cli"}))
 
 
 def test_the_bootstrap_runs_in_a_bare_python():
@@ -207,7 +212,7 @@ def test_the_command_line_imports_nothing_heavy_before_a_command_runs():
     light = {
         "app.cli",
         "ident.errors",
-        "ident.words.percent",
+        "ident.words",
         "ident.progress",
         "ident.fit.settings",
         "ident.fit.result",

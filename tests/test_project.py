@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import subprocess
 import sys
@@ -12,6 +13,11 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 LONGEST = 350  # lines of a source file
 WHOLE = {"tests/reference/nonlinear_reference.py"}  # one flat file on purpose: the whole model, to be read in one go
+LONGEST_FUNCTION = 50  # lines from its def to its end
+IN_ONE_GO = {
+    "ident/fit/summary.py: summarise": "a fit's result is put together from a search, each part by a name of its own",
+}
+"""Longer functions whose story splitting would hide, each with the reason."""
 TEXT = {".py", ".md", ".toml", ".lock", ".yaml", ".yml", ".html", ".css", ".js", ".mjs", ".ini", ".mako", ""}
 
 
@@ -51,6 +57,19 @@ def test_source_files_are_short():
     lengths = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in tracked() if path.suffix == ".py"}
     found = {str(path.relative_to(ROOT)): n for path, n in lengths.items() if n > LONGEST}
     assert not found.keys() - WHOLE
+
+
+def test_functions_are_short():
+    """No function of the packages is longer than a screen, but for those that are a story told in one go."""
+    found = {
+        f"{path.relative_to(ROOT)}: {node.name}"
+        for package in ("ident", "app", "schemas")
+        for path in sorted((ROOT / package).rglob("*.py"))
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+        and (node.end_lineno or 0) - node.lineno + 1 > LONGEST_FUNCTION
+    }
+    assert found == IN_ONE_GO.keys()
 
 
 def test_nothing_names_the_machine_it_was_made_on():

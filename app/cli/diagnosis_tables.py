@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.tables import output, table
 from ident.words.percent import percent
+from ident.words.plus_minus import plus_minus_si
 
 if TYPE_CHECKING:
     from ident.diagnosis.result import Diagnosis, Found, Ranked
@@ -65,10 +66,7 @@ def unconfirmed(found: Diagnosis) -> str:
 def strength(ranked: Ranked) -> str:
     """The strength that the refit found with its standard error and unit; a dash where there was no refit."""
     found = of_effect(ranked.parameters, ranked.effect)
-    if found is None:
-        return "–"
-    error = "" if found.std_error is None else f" ± {found.std_error:.2g}"
-    return f"{found.value:.4g}{error} {found.unit}"
+    return "–" if found is None else plus_minus_si(found.value, found.std_error, found.unit, digits=4)
 
 
 def of_effect(parameters: Mapping[str, Found], effect: str) -> Found | None:

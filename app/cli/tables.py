@@ -12,6 +12,7 @@ from rich.table import Table
 
 from ident.fit.result import Estimate, FitResult
 from ident.words.percent import percent
+from ident.words.plus_minus import plus_minus_si
 
 if TYPE_CHECKING:
     from ident.bench.acceptance import Line
@@ -30,7 +31,7 @@ def show_fit(result: FitResult) -> None:
     uses = ("fit", "held out", "verify")
     console.print(table(("error (eq. 17)", *uses), error_rows(result), numbers=uses))
     for combination in result.determined:
-        value = f"{combination.value:.5g} ± {combination.std_error:.2g} {combination.unit}"
+        value = plus_minus_si(combination.value, combination.std_error, combination.unit)
         console.print(f"determined: {combination.expression} = {value}", markup=False)
     for entry in result.undetermined:
         console.print(f"not determined: {entry.name}: {entry.reason}", markup=False)
@@ -65,21 +66,11 @@ def error_rows(result: FitResult) -> Iterator[tuple[str, ...]]:
     yield "offset", *(percent(result.offset.get(use)) for use in uses)
 
 
-READABLE = {("Pa", "kp"): (1e-8, "MPa/%")}
-"""Factor and unit in which a bench's quantity is printed, where it is not that of its kind."""
-
-
 def sheet_rows(lines: Iterable[Line]) -> Iterator[tuple[str, ...]]:
     """One row a quantity of an acceptance sheet."""
     for line in lines:
-        factor, unit = readable(line)
+        factor, unit = line.printed
         numbers = [line.value, line.deviation or None, line.lower, line.upper]
         value, deviation, lower, upper = ("–" if n is None else f"{factor * n:.4g}" for n in numbers)
         verdict = {None: "", True: "pass", False: "FAIL"}[line.passed]
         yield line.quantity, value, deviation, unit, lower, upper, verdict
-
-
-def readable(line: Line) -> tuple[float, str]:
-    """Factor and unit for a reader: per cent of rated current, ms, MPa, mm/s."""
-    by_unit = {"1": (100.0, "%"), "s": (1e3, "ms"), "Pa": (1e-6, "MPa"), "m/s": (1e3, "mm/s")}
-    return READABLE.get((line.unit, line.quantity), by_unit[line.unit])

@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import io
 import zipfile
-from collections import OrderedDict
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from threading import Lock
 
 from app.context import Context
 from app.diagnoses import service
+from app.lru import LRU
 from app.matrices import service as matrices
 from ident.design.experiment import Experiment
 from ident.design.proposal import propose
 from ident.design.rivals import floor_of, rivals, trusted
 from schemas.diagnosis import ProposalView
 
-_KEPT = 32
-_known: OrderedDict[tuple[str, str, int], Experiment] = OrderedDict()
-_lock = Lock()
+_MOST = 32  # proposals in memory
+_proposed: LRU[Experiment] = LRU(_MOST)
 
 
 def proposal(context: Context, diagnosis: str, seed: int) -> ProposalView:
@@ -40,16 +38,11 @@ def archive(context: Context, diagnosis: str, seed: int) -> bytes:
 
 def _experiment(context: Context, diagnosis: str, seed: int) -> Experiment:
     """The best further run: computed once, since the words and the archive are mostly wanted one after the other."""
-    key = (str(context.storage.folder), diagnosis, seed)
-    with _lock:
-        if key in _known:
-            return _known[key]
-    stored = service.get(context, diagnosis)
-    data = stored.model_dump()
-    matrix = trusted(data, matrices.load(context, stored.matrix))
-    found = propose(rivals(data), matrix, floor_of(data), seed)
-    with _lock:
-        _known[key] = found
-        while len(_known) > _KEPT:
-            _known.popitem(last=False)
-    return found
+
+    def made() -> Experiment:
+        stored = service.get(context, diagnosis)
+        data = stored.model_dump()
+        matrix = trusted(data, matrices.load(context, stored.matrix))
+        return propose(rivals(data), matrix, floor_of(data), seed)
+
+    return _proposed.get((str(context.storage.folder), diagnosis, seed), made)

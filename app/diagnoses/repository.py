@@ -8,7 +8,6 @@ from typing import Any
 from sqlalchemy import select, tuple_
 from sqlalchemy.orm import Session
 
-from app.fits.repository import OPEN
 from app.tables import DiagnosisRow, JobRow
 
 
@@ -34,19 +33,7 @@ def page(session: Session, fit: str | None, after: tuple[str, ...] | None, limit
     return session.scalars(query).all()
 
 
-def last_job(session: Session, fit: str) -> JobRow | None:
-    """The newest job that diagnoses a fit."""
-    query = select(JobRow).where(JobRow.kind == "diagnosis", JobRow.parent == fit)
-    return session.scalar(query.order_by(JobRow.created_at.desc(), JobRow.id.desc()).limit(1))
-
-
 def verdicts(session: Session, fits: Sequence[str]) -> dict[str, Any]:
     """The verdict of the newest diagnosis of each of these fits that has one."""
     query = select(DiagnosisRow.fit, DiagnosisRow.result["verdict"]).where(DiagnosisRow.fit.in_(fits))
     return dict(session.execute(query.order_by(DiagnosisRow.created_at, DiagnosisRow.id)).all())
-
-
-def open_jobs(session: Session, fits: Sequence[str]) -> dict[str, str]:
-    """The job of each of these fits that diagnoses it and has not ended."""
-    query = select(JobRow).where(JobRow.kind == "diagnosis", JobRow.parent.in_(fits), JobRow.state.in_(OPEN))
-    return {job.parent: job.id for job in session.scalars(query) if job.parent is not None}

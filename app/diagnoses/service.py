@@ -9,6 +9,8 @@ from app.context import Context
 from app.diagnoses import repository
 from app.errors import Failure, missing
 from app.fits import service as fits
+from app.jobs import repository as recorded
+from app.jobs import service as jobs
 from app.matrices import service as matrices
 from app.paging import cursor, keys_of
 from app.tables import DiagnosisRow
@@ -40,7 +42,7 @@ def submit(context: Context, request: DiagnosisRequest, job: str) -> JobView:
     matrix = matrices.find(context, matrix_id)
     reseed = request.seed if request.fit is not None and "seed" in request.model_fields_set else None
     settings |= {"max_effects": most, "reseed": reseed}
-    return fits.recorded(context, job, matrix.id, settings, request.fit, "diagnosis")
+    return jobs.record(context, job, matrix.id, settings, request.fit, "diagnosis")
 
 
 def _wanted(context: Context, request: DiagnosisRequest) -> tuple[str, dict[str, object]]:
@@ -102,14 +104,14 @@ def listed(context: Context, fit: str | None, after: str | None, limit: int) -> 
 def of_fit(context: Context, fit: str) -> tuple[DiagnosisView | None, JobView | None]:
     """The newest diagnosis of a fit, and the newest job that was to make one."""
     with context.sessions() as session:
-        rows, job = repository.page(session, fit, None, 1), repository.last_job(session, fit)
-    return (view(rows[0]) if rows else None), (fits.job_view(job, "") if job is not None else None)
+        rows, job = repository.page(session, fit, None, 1), recorded.last_diagnosing(session, fit)
+    return (view(rows[0]) if rows else None), (jobs.view(job, "") if job is not None else None)
 
 
 def searches(context: Context, fits: Sequence[str]) -> dict[str, Search]:
     """That of each of these fits that was or is being diagnosed."""
     with context.sessions() as session:
-        verdicts, waiting = repository.verdicts(session, fits), repository.open_jobs(session, fits)
+        verdicts, waiting = repository.verdicts(session, fits), recorded.diagnosing(session, fits)
     found = {fit: VerdictView(**verdict) for fit, verdict in verdicts.items()}
     return {fit: Search(found.get(fit), waiting.get(fit)) for fit in found.keys() | waiting.keys()}
 

@@ -1,15 +1,14 @@
-"""A diagnosis as steps for the queue: it is one step, which a kill makes run again from its beginning."""
+"""A diagnosis as the work of a job: in one piece, which a kill makes run again from its beginning."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from sqlalchemy.orm import Session, sessionmaker
+from sqlalchemy.orm import Session
 
 from app.diagnoses import repository
 from app.fits import repository as fits
-from app.steps import State, Steps
-from app.storage import Storage
+from app.jobs.work import Kind, State, Task, Work
 from app.tables import JobRow
 from ident.custom.definition import read_effect
 from ident.errors import Unusable
@@ -21,32 +20,16 @@ OWN = ("max_effects", "reseed")
 """What the settings of a diagnosis hold beside those of its fit."""
 
 
-class DiagnosisWork:
-    """The steps of a diagnosis, and of the fit that it makes first where it was given none."""
+class DiagnosisWork(Work):
+    """A diagnosis, and the fit that is made first where none is given."""
 
-    def __init__(self, sessions: sessionmaker[Session], storage: Storage) -> None:
-        self.steps = Steps("diagnosis", sessions, storage)
+    def __init__(self, task: Task) -> None:
+        self.task = task
 
-    def begin(self, job: str) -> State:
-        """Mark it as running."""
-        return self.steps.step(job, lambda: {"done": True}, first=True)
-
-    def advance(self, job: str, state: State) -> State:
-        """Nothing: it is not searched in generations."""
-        return self.steps.step(job, lambda: state)
-
-    def finish(self, job: str, state: State) -> State:  # noqa: ARG002  the interface of all jobs
-        """All of it; the state is the diagnosis, and the fit that was made for it."""
-        return self.steps.step(job, lambda: self._diagnosed(job))
-
-    def store(self, job: str, last: State) -> None:
-        """Record the diagnosis with its fit, or how the job ended."""
-        self.steps.store(job, last, _keep)
-
-    def _diagnosed(self, job: str) -> State:
-        row, matrix = self.steps.recorded(job)
-        report, chosen = self.steps.reporter(job), row.settings
-        given = self._given(row)
+    def finish(self, state: State) -> State:  # noqa: ARG002  nothing comes before it
+        """The diagnosis, and the fit that was made for it."""
+        chosen, matrix, report = self.task.settings, self.task.matrix, self.task.report
+        given = self._given()
         if given is None:
             settings = Settings.from_json({name: value for name, value in chosen.items() if name not in OWN})
             fit = identify(matrix, settings, report)
@@ -57,13 +40,15 @@ class DiagnosisWork:
         found = diagnose(matrix, fit, most=chosen["max_effects"], custom=own, report=report)
         return {"diagnosis": found.to_json(), "fit": None if given else fit.to_json()}
 
-    def _given(self, row: JobRow) -> FitResult | None:
-        if row.parent is None:
+    def _given(self) -> FitResult | None:
+        """The fit that the job starts from, None where it makes its own. Raises Unusable."""
+        parent = self.task.parent
+        if parent is None:
             return None
-        with self.steps.sessions() as session:
-            stored = fits.fit(session, row.parent)
+        with self.task.sessions() as session:
+            stored = fits.fit(session, parent)
         if stored is None:
-            raise Unusable("no-such-fit", "the fit is not stored any more", row.parent, "start another diagnosis")
+            raise Unusable("no-such-fit", "the fit is not stored any more", parent, "start another diagnosis")
         return FitResult.from_json(stored.result)
 
 
@@ -77,3 +62,6 @@ def _keep(session: Session, job: JobRow, serial: str, made: State) -> None:
     if made["fit"] is not None:
         fits.add_fit(session, job, serial, made["fit"])
     repository.add(session, job, serial, made["diagnosis"])
+
+
+DIAGNOSIS = Kind("diagnosis", DiagnosisWork, _keep)

@@ -10,7 +10,7 @@ from app.context import Context
 from app.diagnoses import service as diagnoses
 from app.errors import Failure
 from app.fits import lineage, service
-from app.kept import Kept
+from app.lru import LRU
 from app.matrices import service as matrices
 from ident import workflows
 from ident.errors import Unusable
@@ -19,12 +19,13 @@ from ident.figures.ladder import Step
 from ident.figures.selection import number
 from ident.fit.result import FitResult
 from ident.presets import preset
+from ident.words.titles import title
 from schemas.fit import LadderRung
 
-_KEPT = 96  # figures in memory, about 100 kB each: fits and their data never change
+_MOST = 96  # figures in memory, about 100 kB each: fits and their data never change
 _STUDIED = 2  # fits in memory with what their figures computed
-_figures: Kept[bytes] = Kept(_KEPT)
-_studies: Kept[Study] = Kept(_STUDIED)
+_figures: LRU[bytes] = LRU(_MOST)
+_studies: LRU[Study] = LRU(_STUDIED)
 
 
 def drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str, Any]) -> tuple[bytes, str]:
@@ -76,6 +77,6 @@ def _candidate(context: Context, fit: FitResult, wanted: str) -> FitResult:
 def _steps(rungs: list[LadderRung], model: str) -> Iterator[Step]:
     """A step a fit: the model, then what each refit added."""
     for place, rung in enumerate(rungs):
-        names = [name.replace("_", " ") for name in rung.added]
+        names = [title(name) for name in rung.added]
         label = " + ".join(names if place else (preset(model).title, *names)) or "fitted again"
         yield label, rung.error["fit"], rung.error["verify"]

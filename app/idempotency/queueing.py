@@ -7,8 +7,8 @@ from collections.abc import Callable
 from fastapi import Response
 
 from app.context import Context
-from app.fits.service import requeued
 from app.idempotency.answers import Answer, once
+from app.jobs.service import requeued
 from schemas.fit import JobView
 
 

@@ -13,7 +13,7 @@ from sqlalchemy.exc import IntegrityError
 
 from app.context import Context
 from app.errors import missing
-from app.kept import Kept
+from app.lru import LRU
 from app.matrices import repository
 from app.matrices.stored import opened, read_stored
 from app.paging import cursor, keys_of
@@ -28,8 +28,8 @@ from ident.readers.strict_yaml import read_yaml
 from schemas.matrix import FindingView, MatrixPage, MatrixView, Revision, RunView
 
 LONGEST = 200  # characters of a serial number or batch
-_KEPT = 2  # matrices in memory: one may take 130 MB
-_kept: Kept[Matrix] = Kept(_KEPT)
+_MOST = 2  # matrices in memory: one may take 130 MB
+_loaded: LRU[Matrix] = LRU(_MOST)
 
 
 def upload(context: Context, files: Mapping[str, BinaryIO]) -> tuple[MatrixView, bool]:
@@ -73,7 +73,7 @@ def _record(context: Context, staged: Storage, source: dict[str, Any], parent: s
         except IntegrityError:  # the same upload twice at the same moment
             session.rollback()
             return get(context, identity), False
-    _kept.put((str(context.storage.folder), identity), matrix)
+    _loaded.put((str(context.storage.folder), identity), matrix)
     return view(row), True
 
 
@@ -174,7 +174,7 @@ def load(context: Context, matrix: str) -> Matrix:
 
 def load_row(storage: Storage, row: MatrixRow) -> Matrix:
     """The samples of a recorded matrix."""
-    return _kept.get((str(storage.folder), row.id), lambda: read_stored(storage, row.source))
+    return _loaded.get((str(storage.folder), row.id), lambda: read_stored(storage, row.source))
 
 
 def summary(matrix: Matrix) -> dict[str, Any]:

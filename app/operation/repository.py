@@ -5,13 +5,7 @@ from __future__ import annotations
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from app.tables import ActuatorRow, FitRow, JobRow, MatrixRow
-
-
-def jobs_by_state(session: Session) -> dict[str, int]:
-    """Number of jobs in each state."""
-    rows = session.execute(select(JobRow.state, func.count()).group_by(JobRow.state)).all()
-    return {row.state: row[1] for row in rows}
+from app.tables import ActuatorRow, FitRow, MatrixRow
 
 
 def records(session: Session) -> dict[str, int]:

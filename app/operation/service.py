@@ -5,6 +5,7 @@ from __future__ import annotations
 from app.context import Context
 from app.database import reachable
 from app.errors import Failure
+from app.jobs import repository as recorded
 from app.operation import repository
 
 
@@ -19,7 +20,7 @@ def ready(context: Context) -> None:
 def metrics(context: Context) -> str:
     """Numbers of records and of jobs by state, in Prometheus' text format."""
     with context.sessions() as session:
-        jobs, records = repository.jobs_by_state(session), repository.records(session)
+        jobs, records = recorded.by_state(session), repository.records(session)
     lines = ["# HELP servoident_jobs Jobs by state.", "# TYPE servoident_jobs gauge"]
     lines += [f'servoident_jobs{{state="{state}"}} {count}' for state, count in sorted(jobs.items())]
     lines += ["# HELP servoident_records Stored records by kind.", "# TYPE servoident_records gauge"]

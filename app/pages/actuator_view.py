@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from app.pages import numbers
-from app.pages.effect_view import title
 from app.pages.sparkline import ERROR, Drift, drift
 from ident.errors import Unusable
 from ident.presets import preset
+from ident.words.engineering import quantity
+from ident.words.symbols import symbol
+from ident.words.titles import title
 from schemas.fit import JobView
 from schemas.parameters import ActuatorView, ParameterSetView
 
@@ -96,15 +97,15 @@ def drifts(sets: Sequence[ParameterSetView], model: str) -> tuple[tuple[str, Dri
 
 def _parameters(shown: ParameterSetView) -> tuple[tuple[str, str], ...]:
     symbols = {name: _symbol(shown.model, name) for name in shown.parameters}
-    return tuple((symbols[name], numbers.quantity(entry.value, entry.unit)) for name, entry in shown.parameters.items())
+    return tuple((symbols[name], quantity(entry.value, entry.unit)) for name, entry in shown.parameters.items())
 
 
 def _symbol(model: str, name: str) -> str:
     """The symbol of the literature, behind the name of its effect; the plain name where neither is known."""
     effect, dot, _ = name.partition(".")
     try:
-        symbol = numbers.symbol(name, preset(model, (effect,) if dot else ()).parameter(name).symbol)
-        return f"{title(effect)} {symbol}" if dot else symbol
+        written = symbol(name, preset(model, (effect,) if dot else ()).parameter(name).symbol)
+        return f"{title(effect)} {written}" if dot else written
     except Unusable:
         return name
 

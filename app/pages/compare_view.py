@@ -6,11 +6,14 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from app.pages import numbers
-from app.pages.effect_view import title
 from app.pages.figure_forms import FigureForm, forms
 from ident.fit.result import Estimate, FitResult
 from ident.presets import preset
+from ident.words.number import plain
+from ident.words.percent import change, percent_in_print
+from ident.words.plus_minus import plus_minus
+from ident.words.symbols import symbol
+from ident.words.titles import of_parameter, title, with_effects
 from schemas.fit import FitView
 from schemas.matrix import MatrixView
 
@@ -87,7 +90,7 @@ def compare_view(first: FitView, second: FitView, matrix: MatrixView) -> Compare
 
 
 def _side(stored: FitView, fit: FitResult) -> Side:
-    name = " + ".join((preset(fit.model).title, *map(title, fit.effects)))
+    name = with_effects(preset(fit.model).title, fit.effects)
     return Side(stored.id, stored.serial, stored.matrix, name, fit.method, fit.seed, stored.created_at, stored.current)
 
 
@@ -98,15 +101,14 @@ def _errors(a: FitResult, b: FitResult) -> Iterator[Compared]:
             if one is None and other is None:
                 continue
             meaning = f"{title(use)} runs, {name}"
-            yield Compared("", meaning, numbers.percent(one), numbers.percent(other), _percent(one, other))
+            yield Compared("", meaning, percent_in_print(one), percent_in_print(other), _change(one, other))
 
 
-def _percent(one: float | None, other: float | None) -> str:
+def _change(one: float | None, other: float | None) -> str:
     """By how much of itself a number changed."""
     if not one or other is None or one * other < 0:
         return "–"
-    change = round(100 * (other / one - 1), 1) or 0.0  # never a minus before nothing
-    return f"{numbers.fixed(change, 1)} %"
+    return change(other / one - 1)
 
 
 def _parameters(a: FitResult, b: FitResult) -> Iterator[Compared]:
@@ -115,16 +117,15 @@ def _parameters(a: FitResult, b: FitResult) -> Iterator[Compared]:
         known = one or other
         if known is None:
             continue
-        effect, dot, _ = name.partition(".")
-        meaning = f"{title(effect)}: {known.meaning}" if dot else known.meaning
-        change = _percent(one.value, other.value) if one and other else "–"
-        symbol = numbers.symbol(name, known.symbol)
-        yield Compared(symbol, meaning, _value(one, "off" if dot else "–"), _value(other, "off" if dot else "–"),
-                       change, _sure(one, other))  # fmt: skip
+        absent = "off" if "." in name else "–"
+        yield Compared(
+            symbol(name, known.symbol), of_parameter(name, known.meaning), _value(one, absent),
+            _value(other, absent), _change(one.value, other.value) if one and other else "–", _sure(one, other),
+        )  # fmt: skip
 
 
 def _value(entry: Estimate | None, without: str) -> str:
-    return without if entry is None else numbers.with_error(entry.value, entry.std_error, entry.unit)
+    return without if entry is None else plus_minus(entry.value, entry.std_error, entry.unit)
 
 
 def _sure(one: Estimate | None, other: Estimate | None) -> str:
@@ -132,7 +133,7 @@ def _sure(one: Estimate | None, other: Estimate | None) -> str:
     if one is None or other is None or one.std_error is None or other.std_error is None:
         return "–"
     both = math.hypot(one.std_error, other.std_error)
-    return numbers.plain(abs(other.value - one.value) / both, 3) if both else "–"
+    return plain(abs(other.value - one.value) / both, 3) if both else "–"
 
 
 def _runs(a: FitResult, b: FitResult) -> Iterator[ComparedRun]:

@@ -7,10 +7,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from app.pages import numbers
-from app.pages.effect_view import Member, member, title
+from app.pages.effect_view import Member, member
 from app.pages.evidence_view import evidence, known_effect
 from app.pages.job_view import JobPageView, job_page
+from ident.words.engineering import quantity
+from ident.words.number import plain
+from ident.words.percent import percent_in_print
+from ident.words.titles import title
 from schemas.diagnosis import CandidateView, DiagnosisView
 from schemas.fit import JobView
 
@@ -98,7 +101,7 @@ def missing(found: DiagnosisView | None, job: JobView | None, run: str = "") -> 
     return MissingView(
         job=shown,
         found=found,
-        seconds=numbers.quantity(found.seconds, "s"),
+        seconds=quantity(found.seconds, "s"),
         would_add=_would_add(cards, found.verdict.effects),
         cards=tuple(card for card in cards if card.confirmed),
         chance=tuple(card for card in cards if not card.confirmed),
@@ -172,8 +175,8 @@ def _suspect(entry: Mapping[str, Any]) -> SuspectCard:
     return SuspectCard(
         run=str(entry["run"]),
         what=str(entry["what"]),
-        stated=numbers.quantity(entry.get("stated"), unit),
-        found=numbers.quantity(entry.get("found"), unit),
+        stated=quantity(entry.get("stated"), unit),
+        found=quantity(entry.get("found"), unit),
         words=str(entry["evidence"]),
         mend=_mend(entry),
     )
@@ -191,7 +194,7 @@ def _mend(entry: Mapping[str, Any]) -> str:
 
 def _ladder(found: DiagnosisView) -> Iterator[Rung]:
     for rung in found.ladder:
-        said = "–" if rung.nats is None else numbers.plain(rung.nats, 3)
+        said = "–" if rung.nats is None else plain(rung.nats, 3)
         errors = {use: rung.error.get(use) for use in _USES}
         yield Rung(title(rung.added) if rung.added else "the fit as it is", errors, said)
 
@@ -201,5 +204,5 @@ def _left(found: DiagnosisView) -> str:
     error, floor = found.ladder[-1].error.get("fit"), found.noise_floor.get("fit")
     after = " with all that helps" if found.verdict.effects else ""
     if floor is None:
-        return f"The error is {numbers.percent(error)}{after}, and what is left has a memory that noise has not."
-    return f"The error is {numbers.percent(error)}{after}, above the noise floor of {numbers.percent(floor)}."
+        return f"The error is {percent_in_print(error)}{after}, and what is left has a memory that noise has not."
+    return f"The error is {percent_in_print(error)}{after}, above the noise floor of {percent_in_print(floor)}."

@@ -9,9 +9,10 @@ from typing import Any
 
 from markupsafe import Markup
 
-from app.pages import numbers
 from ident.effects.effect import Effect
 from ident.equations.mathml import mathml
+from ident.words.plus_minus import plus_minus
+from ident.words.titles import title
 
 
 @dataclass(frozen=True)
@@ -30,11 +31,6 @@ class Member:
     strength: str
     strength_is: str
     definition: str = ""
-
-
-def title(name: str) -> str:
-    """The name of an effect in words."""
-    return name.replace("_", " ")
 
 
 def member(
@@ -60,4 +56,4 @@ def strength(effect: str, parameters: Mapping[str, Mapping[str, Any]]) -> str:
     entry = next(own, None)
     if entry is None:
         return ""
-    return numbers.with_error(entry["value"], entry["std_error"], entry["unit"])
+    return plus_minus(entry["value"], entry["std_error"], entry["unit"])

@@ -9,12 +9,10 @@ from typing import Any
 
 from markupsafe import Markup
 
-from app.pages import numbers
+from app.fits.rows import Determined, ErrorRow, ParameterRow, combination_rows, error_rows, parameter_rows
 from app.pages.chain_view import Drawing, drawing
 from app.pages.diagnosis_view import MissingView
-from app.pages.effect_view import title
 from app.pages.figure_forms import MAP, FigureForm, forms
-from app.pages.fit_view import Determined, ErrorRow, ParameterRow, combination_rows, error_rows, parameter_rows
 from app.pages.job_view import settings_facts
 from app.pages.ladder_view import Step, steps
 from app.pages.matrix_view import counted
@@ -24,6 +22,9 @@ from ident.equations.equation import Equation
 from ident.equations.mathml import mathml
 from ident.fit.result import FitResult, Undetermined
 from ident.presets import PRESETS, Preset
+from ident.words.engineering import quantity
+from ident.words.percent import percent_in_print
+from ident.words.titles import with_effects
 from schemas.fit import FitView, LadderView
 from schemas.matrix import MatrixView
 from schemas.parameters import ParameterSetView
@@ -100,7 +101,7 @@ def fit_page(
         matrix=stored.matrix,
         newer=newer,
         parent=stored.parent,
-        title=" + ".join((model.title, *(name.replace("_", " ") for name in fit.effects))),
+        title=with_effects(model.title, fit.effects),
         citation=model.citation,
         method=fit.method,
         seed=fit.seed,
@@ -138,9 +139,9 @@ def _places(model: Preset) -> Iterator[tuple[str, str]]:
 
 def _other(fit: ParameterSetView) -> str:
     """Another fit in a line: when, which model, how good."""
-    effects = dict.fromkeys(title(name.partition(".")[0]) for name in fit.parameters if "." in name)
+    effects = dict.fromkeys(name.partition(".")[0] for name in fit.parameters if "." in name)
     made = fit.created_at[:16].replace("T", " ")
-    return f"{made} · {' + '.join((fit.model, *effects))} · {numbers.percent(fit.error_fit)}"
+    return f"{made} · {with_effects(fit.model, effects)} · {percent_in_print(fit.error_fit)}"
 
 
 def fit_request(fit: FitResult, parent: str) -> dict[str, Any]:
@@ -167,7 +168,7 @@ def _facts(fit: FitResult) -> tuple[tuple[str, str], ...]:
     return (
         *settings_facts(dict(fit.settings)),
         ("Evaluations", f"{fit.evaluations:,}".replace(",", "\u2009")),
-        ("Computing time", numbers.quantity(fit.seconds, "s")),
+        ("Computing time", quantity(fit.seconds, "s")),
         ("Version", fit.version),
         ("Data, SHA-256", fit.data_hash),
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from ident.words.titles import title
 from schemas.fit import JobView
 
 _OPEN = ("queued", "running")
@@ -47,7 +48,7 @@ def job_page(job: JobView) -> JobPageView:
         done=job.progress.done,
         total=job.progress.total,
         error=job.progress.error,
-        expected=tuple((one.effect.replace("_", " "), one.error) for one in job.progress.expected),
+        expected=tuple((title(one.effect), one.error) for one in job.progress.expected),
         problem=_problem(job.problem),
         facts=settings_facts(job.settings),
         made=job.created_at,
@@ -59,9 +60,7 @@ def settings_facts(settings: dict[str, Any]) -> tuple[tuple[str, str], ...]:
     names = ("model", "effects", "method", "seed", "bounds", "fixed", "load", "options", "max_effects")
     chosen = ((name, settings.get(name)) for name in names)
     return tuple(
-        (name.replace("_", " ").capitalize(), _words(value))
-        for name, value in chosen
-        if value not in (None, [], {}, "none")
+        (title(name).capitalize(), _words(value)) for name, value in chosen if value not in (None, [], {}, "none")
     )
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.pages import numbers
-from app.pages.effect_view import strength, title
+from app.pages.effect_view import strength
+from ident.words.percent import change
+from ident.words.titles import title
 from schemas.fit import LadderRung, LadderView
 
 
@@ -52,5 +53,5 @@ def _change(rung: LadderRung, before: LadderRung | None) -> str:
     for use in ("verify", "fit"):
         now, then = rung.error[use], before.error[use] if before else None
         if now is not None and then:
-            return f"{numbers.fixed(100 * (now / then - 1), 1)} %"
+            return change(now / then - 1)
     return "–"

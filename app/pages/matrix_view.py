@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 
-from app.pages import numbers
 from app.pages.run_view import Conditions, conditions
+from ident.words.number import plain
+from ident.words.titles import title
 from schemas.matrix import FindingView, MatrixView
 
 _WORST = ("fault", "doubt", "note")
@@ -105,13 +106,13 @@ def _summary(matrix: MatrixView) -> str:
     runs = "run" if len(matrix.runs) == 1 else "runs"
     return (
         f"{len(matrix.runs)} {runs}: {uses['fit']} to fit, {uses['verify']} to verify; "
-        f"{numbers.plain(seconds, 3)} s in all; {counted(matrix.findings) or 'no findings'}"
+        f"{plain(seconds, 3)} s in all; {counted(matrix.findings) or 'no findings'}"
     )
 
 
 def _facts(matrix: MatrixView) -> tuple[tuple[str, str], ...]:
     channels = dict.fromkeys(name for run in matrix.runs for name in run.channels)
     return (
-        ("Channels", ", ".join(name.replace("_", " ") for name in channels)),
+        ("Channels", ", ".join(map(title, channels))),
         ("SHA-256", matrix.data_hash),
     )

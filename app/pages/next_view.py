@@ -8,8 +8,9 @@ from urllib.parse import quote
 
 from app.diagnoses.service import Search
 from app.fits.service import Yardstick
-from app.pages import numbers
-from app.pages.effect_view import title
+from ident.words.number import plain
+from ident.words.percent import percent_in_print
+from ident.words.titles import title
 from schemas.diagnosis import VerdictView
 from schemas.fit import JobView
 from schemas.parameters import ActuatorView, ParameterSetView
@@ -59,14 +60,14 @@ def _fitted(newest: ParameterSetView, yardstick: Yardstick, verdict: VerdictView
     if error > NEAR * yardstick.floor:
         return _failing(error / yardstick.floor, verdict, f"{at}#missing")
     if before is not None and before > NEAR * error:
-        fell = f"The error fell from {numbers.percent(before)} to {numbers.percent(error)}, which is noise."
+        fell = f"The error fell from {percent_in_print(before)} to {percent_in_print(error)}, which is noise."
         return Next(fell, "Compare before and after", f"/compare?fits={yardstick.parent},{newest.id}")
     return Next("The model explains all but the noise.", "Look and approve it", at, main=False)
 
 
 def _failing(ratio: float, verdict: VerdictView | None, at: str) -> Next:
     """Of a fit whose error is so many times the noise."""
-    fails = f"The error is {numbers.plain(ratio, 2)} times the noise"
+    fails = f"The error is {plain(ratio, 2)} times the noise"
     if verdict is None:
         return Next(f"{fails}: the model lacks something.", "Find what is missing", at)
     if verdict.effects:

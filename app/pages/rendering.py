@@ -10,7 +10,8 @@ from fastapi import Request
 from fastapi.responses import HTMLResponse
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from app.pages import numbers
+from ident.words.percent import percent_in_print
+from ident.words.titles import title
 
 HERE = Path(__file__).parent
 STATIC = HERE / "static"
@@ -40,7 +41,8 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["percent"] = numbers.percent
+    environment.filters["percent"] = percent_in_print
+    environment.filters["in_words"] = title
     environment.globals["static"] = static
     return environment
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.pages import numbers
 from ident.figures import words
 from ident.matrix import Specimen
+from ident.words.conditions import of_rated
+from ident.words.engineering import quantity
 from schemas.matrix import RunView
 
 
@@ -35,8 +36,8 @@ def conditions(run: RunView) -> Conditions:
         amplitude=_amplitude(run),
         amplitude_value="" if run.amplitude is None else f"{run.amplitude:g}",
         specimen="–" if run.mass is None else words.specimen(specimen_of(run)),
-        length=numbers.quantity(run.duration, "s"),
-        rate=numbers.quantity(run.sample_rate, "Hz"),
+        length=quantity(run.duration, "s"),
+        rate=quantity(run.sample_rate, "Hz"),
     )
 
 
@@ -44,7 +45,7 @@ def _amplitude(run: RunView) -> str:
     """RMS of the command; of a bench's sine the share of the rated current."""
     if run.amplitude is None:
         return "–"
-    return f"{100 * run.amplitude:.4g} %" if run.kind == "frequency" else words.amplitude(run.amplitude)
+    return of_rated(run.amplitude) if run.kind == "frequency" else words.amplitude(run.amplitude)
 
 
 def specimen_of(run: RunView) -> Specimen | None:

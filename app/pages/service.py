@@ -10,23 +10,24 @@ from app.diagnoses import service as diagnoses
 from app.errors import Failure
 from app.fits import lineage
 from app.fits import service as fits
+from app.fits.rows import parameter_rows
+from app.jobs import service as jobs
 from app.matrices import service as matrices
 from app.pages.actuator_view import actuator_row, drifts, fit_rows, followed
 from app.pages.compare_view import CompareView, compare_view
 from app.pages.diagnosis_view import missing
 from app.pages.evidence_view import telling_run
 from app.pages.fit_page import FitPageView, fit_page
-from app.pages.fit_view import parameter_rows
 from app.pages.job_view import JobPageView, job_page
 from app.pages.matrix_view import counted, matrix_view
 from app.pages.next_steps import next_steps
-from app.pages.numbers import quantity
 from app.pages.start_view import start_view
 from app.pages.thumbnails import thumbnail
 from app.parameters import service as parameters
 from app.parameters.repository import Wanted
 from ident.fit.result import FitResult
 from ident.synthesis.matrix import SIMULATED
+from ident.words.engineering import quantity
 from schemas.parameters import ActuatorPage, ActuatorView
 
 __all__ = ["actuator", "actuator_list", "fit", "job_list", "matrix", "thumbnail"]
@@ -39,7 +40,7 @@ def actuator_list(context: Context, query: str, drifting: str, cursor: str | Non
     """Actuators whose serial number, name or batch holds the query; `drifting` is followed over their approved sets."""
     found = actuators.listed(context, query or None, None, cursor, _ROWS)
     serials = [actuator.serial for actuator in found.items]
-    newest, waiting = parameters.newest(context, serials), fits.open_jobs(context, serials)
+    newest, waiting = parameters.newest(context, serials), jobs.open_of_actuators(context, serials)
     approved = parameters.approved(context, serials)
     rows = [
         actuator_row(each, newest.get(each.serial), waiting.get(each.serial), approved.get(each.serial, ()), drifting)
@@ -74,9 +75,9 @@ def actuator(context: Context, serial: str, cursor: str | None) -> Shown:
 
 def _fits(context: Context, cursor: str | None, serial: str | None = None, matrix: str | None = None) -> Shown:
     """Fits and the jobs that are to make them, newest first, with the number of the next page."""
-    jobs = fits.jobs(context, cursor, _ROWS, serial=serial, matrix=matrix, of_fits=True)
-    made = parameters.page(context, Wanted(ids=[job.id for job in jobs.items]), None, _ROWS).items
-    return {"fits": fit_rows(jobs.items, made), "more": jobs.next}
+    made_by = jobs.listed(context, cursor, _ROWS, serial=serial, matrix=matrix, of_fits=True)
+    made = parameters.page(context, Wanted(ids=[job.id for job in made_by.items]), None, _ROWS).items
+    return {"fits": fit_rows(made_by.items, made), "more": made_by.next}
 
 
 def _facts(found: ActuatorView) -> list[tuple[str, str]]:
@@ -112,7 +113,7 @@ def matrix(context: Context, matrix_id: str, cursor: str | None) -> Shown:
 
 def job_list(context: Context, cursor: str | None) -> Shown:
     """Jobs, newest first."""
-    found = fits.jobs(context, cursor, _ROWS)
+    found = jobs.listed(context, cursor, _ROWS)
     return {"jobs": [job_page(job) for job in found.items], "more": found.next}
 
 
@@ -130,7 +131,7 @@ def fit(context: Context, fit_id: str) -> FitPageView | JobPageView:
     try:
         found = fits.get(context, fit_id)
     except Failure:
-        return job_page(fits.job(context, fit_id))
+        return job_page(jobs.get(context, fit_id))
     stored = matrices.get(context, found.matrix)
     run = telling_run(stored.runs, {run["id"]: run["error"] for run in found.result["runs"]})
     lacks = missing(*diagnoses.of_fit(context, fit_id), run)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from app.pages import numbers
+from ident.words.engineering import quantity
+from ident.words.percent import change, percent_in_print
 from schemas.parameters import ParameterSetView
 
 WIDTH, HEIGHT = 96, 22  # px
@@ -30,11 +31,11 @@ def drift(sets: Sequence[ParameterSetView], name: str, symbol: str) -> Drift | N
         return None
     first, last = found[0], found[-1]
     share = (last - first) / abs(first) if first else 0.0
-    change = f"{share:+.1%}".replace("%", " %").replace("-", "−")
+    moved = change(share, "+")
     places = _places(found)
     ends = f"from {_words(sets, name, first)} to {_words(sets, name, last)}"
-    said = f"{symbol} over {len(found)} approved sets, {ends}, {change}"
-    return Drift(" ".join(f"{x},{y}" for x, y in places), places[-1], said, change, share)
+    said = f"{symbol} over {len(found)} approved sets, {ends}, {moved}"
+    return Drift(" ".join(f"{x},{y}" for x, y in places), places[-1], said, moved, share)
 
 
 def _value(entry: ParameterSetView, name: str) -> float | None:
@@ -45,9 +46,9 @@ def _value(entry: ParameterSetView, name: str) -> float | None:
 
 def _words(sets: Sequence[ParameterSetView], name: str, value: float) -> str:
     if name == ERROR:
-        return numbers.percent(value)
+        return percent_in_print(value)
     unit = next(entry.parameters[name].unit for entry in sets if name in entry.parameters)
-    return numbers.quantity(value, unit)
+    return quantity(value, unit)
 
 
 def _places(found: Sequence[float]) -> list[tuple[str, str]]:

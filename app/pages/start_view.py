@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 
-from app.pages import numbers
 from ident.effects import EFFECTS
 from ident.effects.effect import Effect
 from ident.fit.settings import METHODS, Settings
 from ident.matrix import BENCH
 from ident.presets import PRESETS, Preset
 from ident.stages import PLACES
+from ident.words.engineering import power_of, with_unit
+from ident.words.number import trimmed
+from ident.words.symbols import symbol
 from schemas.matrix import MatrixView
 
 
@@ -74,7 +76,7 @@ def _model(preset: Preset) -> ModelChoice:
         tuple(
             (
                 p.name,
-                numbers.symbol(p.name, p.symbol),
+                symbol(p.name, p.symbol),
                 p.meaning,
                 f"{_bound(p.lower, p.unit)} to {_bound(p.upper, p.unit)}",
             )
@@ -84,6 +86,5 @@ def _model(preset: Preset) -> ModelChoice:
 
 
 def _bound(value: float, unit: str) -> str:
-    power = numbers.power_of(value)
-    number, printed = numbers.trimmed(value / 10.0**power), numbers.scaled_unit(unit, power)
-    return number if printed == "–" else f"{number}{'·' if printed.startswith('10') else ' '}{printed}"
+    power = power_of(value)
+    return with_unit(trimmed(value / 10.0**power), unit, power)

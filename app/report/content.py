@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from app.pages import numbers
-from app.pages.fit_view import combination_rows, error_rows, parameter_rows
+from app.fits.rows import combination_rows, error_rows, parameter_rows
 from app.report.blocks import Block, Facts, Figure, Formula, Heading, Report, Table, Tables, Text
 from app.report.diagnosis import Diagnosis
 from app.report.rows import budget_rows, candidate_rows, curve_rows, group_tables, trend_rows
@@ -17,6 +16,9 @@ from ident.fit.result import FitResult
 from ident.matrix import Matrix
 from ident.residuals.budget import Budget
 from ident.residuals.survey import Survey, survey
+from ident.words.engineering import printed_unit, quantity
+from ident.words.percent import percent_in_print
+from ident.words.titles import title, with_effects
 from ident.workflows import compare, figure
 
 CAPTIONS = {
@@ -31,7 +33,7 @@ def content(matrix: Matrix, fit: FitResult, diagnosis: Diagnosis | None = None) 
     """The report of a fit. Raises Unusable where the fit is of another model's data."""
     found = survey(compare(matrix, fit))
     model = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
-    title = " + ".join((model.title, *(name.replace("_", " ") for name in fit.effects)))
+    title = with_effects(model.title, fit.effects)
     blocks = [
         *([Text(_verdict(diagnosis), "verdict")] if diagnosis else ()),
         *_error(fit, found.budget),
@@ -72,7 +74,7 @@ def _parameters(fit: FitResult) -> Iterator[Block]:
     if fit.determined:
         yield Heading("What these data determine", 3)
         combined = tuple(
-            (Formula(row.expression, numbers.unit(entry.expression)), row.value, row.relative)
+            (Formula(row.expression, printed_unit(entry.expression)), row.value, row.relative)
             for row, entry in zip(combination_rows(fit), fit.determined, strict=True)
         )
         yield Table(("Combination", "Value", "Relative std error"), combined, (1, 2))
@@ -95,7 +97,7 @@ def _failing(matrix: Matrix, fit: FitResult, found: Survey) -> Iterator[Block]:
         tuple(
             Table(
                 (by.capitalize(), "Runs", "Error", "Mean"),
-                tuple((g.label, str(g.runs), numbers.percent(g.error), numbers.percent(g.mean)) for g in groups),
+                tuple((g.label, str(g.runs), percent_in_print(g.error), percent_in_print(g.mean)) for g in groups),
                 (1, 2, 3),
             )
             for by, groups in group_tables(found.where).items()
@@ -118,7 +120,7 @@ def _missing(diagnosis: Diagnosis, matrix: Matrix) -> Iterator[Block]:
     if verdict.unexplained:
         yield Text("No listed effect brings the error near the noise floor.")
     for group in verdict.indistinguishable:
-        yield Text(f"These data cannot tell apart: {', '.join(group).replace('_', ' ')}.")
+        yield Text(f"These data cannot tell apart: {', '.join(map(title, group))}.")
     for suspect in verdict.suspects:
         run = f"run {suspect['run']}: " if suspect.get("run") else ""
         yield Text(f"Doubtful: {run}{suspect.get('what', '')}")
@@ -144,7 +146,7 @@ def _data(matrix: Matrix) -> Iterator[Block]:
 
 
 def _provenance(fit: FitResult, citation: str) -> tuple[tuple[str, str], ...]:
-    taken = numbers.quantity(fit.seconds, "s")
+    taken = quantity(fit.seconds, "s")
     return (
         ("Model", f"{fit.model}: {citation}"),
         ("Method", f"{fit.method}, seed {fit.seed}, {fit.evaluations} evaluations in {taken}"),

@@ -8,6 +8,7 @@ from typing import Any
 from pydantic import BaseModel, Field, ValidationError
 
 from ident.errors import Unusable
+from ident.words.titles import title
 
 Errors = dict[str, float | None]
 
@@ -67,7 +68,7 @@ class Diagnosis(BaseModel):
 
 def _added(step: Step) -> str:
     names = [step.added] if isinstance(step.added, str) else step.added or []
-    return " + ".join(name.replace("_", " ") for name in names) or "as fitted"
+    return " + ".join(map(title, names)) or "as fitted"
 
 
 def read_diagnosis(path: Path) -> Diagnosis:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from app.pages import numbers
 from app.report.diagnosis import Diagnosis
 from ident.residuals.breakdown import Breakdown, Group
 from ident.residuals.budget import Budget
 from ident.residuals.curves import Curve
 from ident.residuals.trends import Trend
+from ident.words.engineering import quantity
+from ident.words.percent import percent_in_print
+from ident.words.titles import title
 
 Row = tuple[str, ...]
 _MEANS = {
@@ -25,8 +27,8 @@ def budget_rows(budget: Budget | None) -> tuple[Row, ...]:
         return ()
     sizes = {"noise": budget.noise, "linear": budget.linear, "nonlinear": budget.nonlinear}
     return tuple(
-        (name, means, "unknown" if sizes[name] is None else numbers.percent(sizes[name]),
-         *(numbers.percent(bound) for bound in budget.bounds[name]))
+        (name, means, "unknown" if sizes[name] is None else percent_in_print(sizes[name]),
+         *(percent_in_print(bound) for bound in budget.bounds[name]))
         for name, means in _MEANS.items()
     )  # fmt: skip
 
@@ -41,13 +43,13 @@ def group_tables(found: Breakdown) -> dict[str, list[Group]]:
 
 def curve_rows(curves: Sequence[Curve]) -> tuple[Row, ...]:
     """Name, what is missing, against what, explained."""
-    return tuple((c.name, c.missing, c.against, numbers.percent(max(c.explained, 0.0), 2)) for c in curves)
+    return tuple((c.name, c.missing, c.against, percent_in_print(max(c.explained, 0.0), 2)) for c in curves)
 
 
 def trend_rows(trends: Sequence[Trend]) -> tuple[Row, ...]:
     """Parameter, condition, values, p: those that are clear."""
     return tuple(
-        (t.parameter, t.condition, " → ".join(numbers.quantity(p.value, t.unit) for p in t.points), f"{t.p:.2g}")
+        (t.parameter, t.condition, " → ".join(quantity(p.value, t.unit) for p in t.points), f"{t.p:.2g}")
         for t in trends
         if t.clear
     )
@@ -56,7 +58,7 @@ def trend_rows(trends: Sequence[Trend]) -> tuple[Row, ...]:
 def candidate_rows(diagnosis: Diagnosis) -> tuple[Row, ...]:
     """Effect, predicted error, errors, why."""
     return tuple(
-        (c.effect.replace("_", " "), numbers.percent(c.predicted_error),
-         *(numbers.percent(c.error.get(use)) for use in ("fit", "held_out", "verify")), c.why)
+        (title(c.effect), percent_in_print(c.predicted_error),
+         *(percent_in_print(c.error.get(use)) for use in ("fit", "held_out", "verify")), c.why)
         for c in diagnosis.candidates
     )  # fmt: skip

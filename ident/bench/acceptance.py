@@ -30,6 +30,8 @@ QUANTITIES = {
     "position_error": ("1", "position error of the model, RMS over deviation, mean over the frequency records"),
 }
 """What a limit may be set for: unit and meaning."""
+_PRINTED = {"1": (100.0, "%"), "s": (1e3, "ms"), "Pa": (1e-6, "MPa"), "m/s": (1e3, "mm/s")}
+_SLOPE = (1e-8, "MPa/%")
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,11 @@ class Line:
     unit: str
     lower: float | None
     upper: float | None
+
+    @property
+    def printed(self) -> tuple[float, str]:
+        """Factor and unit for a reader: per cent of rated current, ms, MPa, mm/s."""
+        return _SLOPE if self.quantity == "kp" else _PRINTED[self.unit]
 
     @property
     def passed(self) -> bool | None:

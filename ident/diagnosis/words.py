@@ -8,6 +8,7 @@ from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.suspects import Suspect
 from ident.effects.effect import Effect
 from ident.words.percent import percent
+from ident.words.titles import title
 
 
 def why(candidate: Candidate, effect: Effect, before: float, floor: float | None, best: bool) -> str:
@@ -35,7 +36,7 @@ def verdict_text(
     """The verdict in a few sentences; without `repeats` nobody knows how much noise lies in the command's band."""
     parts = []
     if added:
-        names = " and ".join(", ".join(name.replace("_", " ") for name in added).rsplit(", ", 1))
+        names = " and ".join(", ".join(map(title, added)).rsplit(", ", 1))
         them = "it" if len(added) == 1 else "them"
         parts.append(
             f"The model lacks {names}: with {them} the error falls from {percent(before)} to {percent(errors['fit'])}"
@@ -46,7 +47,7 @@ def verdict_text(
     else:
         parts.append(f"No effect of the catalogue lowers the error of {percent(before)} beyond chance.")
     for group in groups:
-        names = ", ".join(name.replace("_", " ") for name in group)
+        names = ", ".join(map(title, group))
         parts.append(f"This matrix cannot tell apart: {names}; their refits differ by less than chance.")
     for suspect in suspects:
         parts.append(f"Run {suspect.run} is doubted ({suspect.what}): {suspect.evidence}.")

@@ -25,6 +25,7 @@ from ident.figures.study import Study
 from ident.figures.time import time, typical
 from ident.fit.result import FitResult
 from ident.matrix import Matrix, Run
+from ident.words.titles import title
 
 __all__ = ["BENCH_FIGURES", "FIGURES", "MEDIA", "Chart", "Study", "figure", "figures_of", "ladder", "look", "render"]
 
@@ -119,7 +120,7 @@ def _name(other: FitResult | None, fit: FitResult) -> str:
     """What the other fit is called: what it has more than this one, where it has no less."""
     if other is None:
         return ""
-    more = [effect.replace("_", " ") for effect in other.effects if effect not in fit.effects]
+    more = [title(effect) for effect in other.effects if effect not in fit.effects]
     wider = other.model == fit.model and set(fit.effects) < set(other.effects)
     return " + ".join(more if wider else (other.model, *other.effects))
 

@@ -17,12 +17,11 @@ from ident.figures.pressure_loop import pressure_panel
 from ident.figures.render import Chart, Panel
 from ident.figures.speed_characteristic import speed_panel
 from ident.matrix import Matrix
+from ident.words.titles import title
 
 _COLUMNS = {"quantity": 0, "value": 230, "std error": 330, "unit": 390, "min": 480, "max": 560, "": 620}
 _ROW = 18
 _MOST, _LIMIT = 5, 4  # decimals, digits of a limit
-_UNITS = {"1": (100.0, "%"), "s": (1e3, "ms"), "Pa": (1e-6, "MPa"), "m/s": (1e3, "mm/s")}
-_SLOPE = (1e-8, "MPa/%")
 
 
 def acceptance_sheet(
@@ -85,14 +84,14 @@ def _table(lines: Sequence[Line], of: Look) -> Panel:
 
 
 def _texts(line: Line) -> tuple[str, ...]:
-    factor, unit = _SLOPE if line.quantity == "kp" else _UNITS[line.unit]
+    factor, unit = line.printed
     places = _places(line, factor)
     value, deviation, lower, upper = (
         "" if n is None else f"{factor * n:.{places if i < 2 else _LIMIT}{'f' if i < 2 else 'g'}}".replace("-", "−")
         for i, n in enumerate((line.value, line.deviation or None, line.lower, line.upper))
     )
     verdict = {None: "", True: "pass", False: "FAIL"}[line.passed]
-    return line.quantity.replace("_", " "), value or "not found", deviation, unit, lower, upper, verdict
+    return title(line.quantity), value or "not found", deviation, unit, lower, upper, verdict
 
 
 def _places(line: Line, factor: float) -> int:

@@ -20,6 +20,7 @@ from ident.figures.thin import Real, envelope, significant
 from ident.fit.reduction import within
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Matrix, Run
+from ident.words.titles import title
 
 BINS = 350  # stretches of which smallest and largest sample are kept
 _DASHES = {"command": [2, 2], "measured": [1, 0], "model": [6, 3]}
@@ -70,7 +71,7 @@ def time(
         "told": [words.verdict(fit), f"{words.describe(run)}: {left}", *([f"filtered: {band.words}"] if band else [])],
         "begin": window.start / run.sample_rate,
         "end": (window.stop - 1) / run.sample_rate,
-        "across": words.axis(run.output.replace("_", " ").capitalize(), printed),
+        "across": words.axis(title(run.output).capitalize(), printed),
         "small": words.axis("Measured − model", small),
     }
     tables = {"traces": _table(signals, factor, run, window), "residual": _rows(fine * residual, run, window)}

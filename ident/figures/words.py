@@ -2,40 +2,31 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Run, Specimen
+from ident.words import conditions
+from ident.words.engineering import power_of, printed_unit, scaled_unit
 from ident.words.percent import percent as in_percent
 
-_TIDY = {"^3": "³", "^2": "²", "*": "·"}  # a raised 4 is missing from too many fonts
+_SIGNS = "²³"  # raised: a 4 or a minus is missing from too many fonts
 
 
 def percent(fraction: float | None) -> str:
     """0.0407 → "4.07 %", with a printer's minus; "unknown" where there is none."""
-    return in_percent(fraction, "unknown").replace("-", "−")
+    return in_percent(fraction, "unknown", "−")
 
 
 def tidy_unit(unit: str) -> str:
     """``m^3/(s*Pa)`` → m³/(s·Pa)."""
-    for plain, printed in _TIDY.items():
-        unit = unit.replace(plain, printed)
-    return unit
+    return printed_unit(unit, _SIGNS)
 
 
 def engineering(values: Iterable[float], unit: str) -> tuple[float, str]:
     """(factor, unit) that bring the largest of `values` into a readable range: 2.6e-6 m^4/s → (1e6, "1e-6 m^4/s")."""
-    largest = max((abs(value) for value in values), default=0.0)
-    readable = largest == 0 or not math.isfinite(largest) or 0.1 <= largest < 1e4
-    power = 0 if readable else 3 * math.floor(math.log10(largest) / 3)
-    printed = tidy_unit(unit)
-    if power == 0:
-        return 1.0, printed
-    prefixed = {("m", -3): "mm", ("m", -6): "µm", ("s", -3): "ms", ("N", 3): "kN", ("Pa", 3): "kPa", ("Pa", 6): "MPa"}
-    scale = f"1e{power}"  # no raised minus: not every font has it
-    dimensionless = scale if unit in ("", "1") else f"{scale} {printed}"
-    return 10.0**-power, prefixed.get((unit, power), dimensionless)
+    power = power_of(max((abs(value) for value in values), default=0.0))
+    return 10.0**-power, scaled_unit(unit, power, _SIGNS) if power else tidy_unit(unit)
 
 
 def axis(name: str, unit: str) -> str:
@@ -49,14 +40,12 @@ def specimen(of: Specimen | None) -> str:
         return "specimen not stated"
     if of.mass == 0 and of.stiffness == 0:
         return "no specimen"
-    return f"{of.mass:.4g} kg, {of.stiffness / 1000:.4g} kN/m"
+    return f"{conditions.mass(of.mass)}, {conditions.stiffness(of.stiffness)}"
 
 
 def amplitude(of: float | None, unit: str = "m") -> str:
     """An RMS amplitude as legends print it."""
-    if of is None:
-        return "amplitude not stated"
-    return f"{1000 * of:.4g} mm" if unit == "m" else f"{of:.4g} {unit}"
+    return "amplitude not stated" if of is None else conditions.amplitude(of, unit)
 
 
 def gain(of: float | None) -> str:
@@ -86,7 +75,7 @@ def describe(run: Run) -> str:
     if run.amplitude is not None:
         of_bench = run.kind == "frequency"
         parts.append(
-            f"{100 * run.amplitude:.4g} %"
+            conditions.of_rated(run.amplitude)
             if of_bench
             else f"{amplitude(run.amplitude, run.units.get('command', 'm'))} RMS"
         )

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ident.comparison.compare import Comparison, RunComparison
 from ident.fit.reduction import excited_band
 from ident.matrix import Run
+from ident.words import conditions
 
 Array = NDArray[np.float64]
 _BANDS = 14
@@ -105,16 +106,15 @@ def stated_amplitude(run: Run) -> float:
 
 
 def _amplitude(run: Run) -> str:
-    value, unit = stated_amplitude(run), run.units.get("command", "m")
-    return f"{1000 * value:.4g} mm" if unit == "m" else f"{value:.4g} {unit}".removesuffix(" 1")
+    return conditions.amplitude(stated_amplitude(run), run.units.get("command", "m"))
 
 
 def _mass(run: Run) -> str:
-    return f"{run.specimen.mass:.4g} kg" if run.specimen else ""
+    return conditions.mass(run.specimen.mass) if run.specimen else ""
 
 
 def _stiffness(run: Run) -> str:
-    return f"{run.specimen.stiffness / 1000:.4g} kN/m" if run.specimen else ""
+    return conditions.stiffness(run.specimen.stiffness) if run.specimen else ""
 
 
 def _ratio(run: Run) -> float | None:

@@ -1,1 +1,1 @@
-"""A number in, the words for it out."""
+"""A number or a name in, the words for it out. Nothing heavy is imported: the command line speaks with these too."""

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from app.diagnoses.work import DiagnosisWork
-from app.fits import repository
+from app.diagnoses.work import DIAGNOSIS
+from app.jobs import repository
+from app.jobs.steps import GuardedSteps
 from tests.hidden_dead_zone import HALF_WIDTH, zipped
 
 API = "/api/v1"
@@ -182,16 +183,16 @@ def test_a_running_diagnosis_is_cancelled_and_leaves_nothing(service, linear):
 def test_a_result_is_stored_once_and_one_that_cannot_be_ends_its_job(service, diagnosis, linear, matrix):
     """As after a kill between the last step and its record; nothing is left half written."""
     context = service.app.state.context
-    work = DiagnosisWork(context.sessions, context.storage)
+    steps = GuardedSteps(context.sessions, context.storage, DIAGNOSIS)
     made = {"outcome": None, "state": {"diagnosis": {**diagnosis, "seconds": 1.0}, "fit": None}}
-    work.store(diagnosis["id"], made)
+    steps.store(diagnosis["id"], made)
     assert service.get(f"{API}/diagnoses/{diagnosis['id']}").json() == diagnosis
     with context.sessions.begin() as session:
-        repository.add_job(session, "twice", matrix, {}, linear, "diagnosis")
-        repository.add_job(session, "broken", matrix, {}, linear, "diagnosis")
+        repository.add(session, "twice", matrix, {}, linear, "diagnosis")
+        repository.add(session, "broken", matrix, {}, linear, "diagnosis")
     for _ in range(2):
-        work.store("twice", made)
-    work.store("broken", {"outcome": None, "state": {"diagnosis": {"x": object()}, "fit": None}})
+        steps.store("twice", made)
+    steps.store("broken", {"outcome": None, "state": {"diagnosis": {"x": object()}, "fit": None}})
     listed = service.get(f"{API}/diagnoses", params={"fit": linear}).json()["items"]
     assert sorted(one["id"] for one in listed) == sorted(["twice", diagnosis["id"]])
     assert service.get(f"{API}/jobs/broken").json()["problem"]["code"] == "not-stored"

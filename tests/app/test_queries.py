@@ -13,7 +13,7 @@ from sqlalchemy import event
 from app.context import Context
 from app.database import connect, migrate, sessions
 from app.diagnoses import service as diagnoses
-from app.fits import service as fits
+from app.jobs import service as jobs
 from app.pages import service as pages
 from app.settings import Settings
 from app.storage import Storage
@@ -67,20 +67,20 @@ def sent(context: Context, act: Callable[[], object]) -> list[tuple[str, Any]]:
 
 @pytest.mark.parametrize("limit", [1, 200])
 def test_a_page_of_jobs_is_one_query(context: Context, limit: int) -> None:
-    assert len(sent(context, lambda: fits.jobs(context, None, limit))) == 1
-    assert len(sent(context, lambda: fits.job(context, "quiet"))) == 1
+    assert len(sent(context, lambda: jobs.listed(context, None, limit))) == 1
+    assert len(sent(context, lambda: jobs.get(context, "quiet"))) == 1
 
 
 def test_jobs_carry_the_serial_number_of_their_actuator(context: Context) -> None:
-    assert {one.serial for one in fits.jobs(context, None, 200).items} == {"BUSY"}
-    assert fits.job(context, "quiet").serial == "QUIET"
+    assert {one.serial for one in jobs.listed(context, None, 200).items} == {"BUSY"}
+    assert jobs.get(context, "quiet").serial == "QUIET"
 
 
 def test_pages_of_an_actuators_jobs_meet_without_overlap(context: Context) -> None:
     seen: list[str] = []
     cursor = None
     while cursor is not None or not seen:
-        page = fits.jobs(context, cursor, 100, serial="BUSY")
+        page = jobs.listed(context, cursor, 100, serial="BUSY")
         seen += [one.id for one in page.items]
         cursor = page.next
     assert seen == [f"busy-{number:03}" for number in reversed(range(JOBS))]
@@ -117,7 +117,7 @@ def test_what_to_do_next_is_known_of_every_actuator_of_the_list(context: Context
 
 @pytest.mark.parametrize("wanted", [{"serial": "QUIET"}, {"matrix": "m-QUIET"}])
 def test_the_jobs_of_an_actuator_or_matrix_are_found_by_index(context: Context, wanted: dict[str, str]) -> None:
-    (statement, parameters), *_ = sent(context, lambda: fits.jobs(context, None, 50, **wanted))
+    (statement, parameters), *_ = sent(context, lambda: jobs.listed(context, None, 50, **wanted))
     with context.engine.connect() as connection:
         plan = [row[-1] for row in connection.exec_driver_sql(f"EXPLAIN QUERY PLAN {statement}", parameters)]
     assert any("ix_jobs_matrix" in step for step in plan), plan

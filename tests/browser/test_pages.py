@@ -7,7 +7,7 @@ import re
 import pytest
 from playwright.sync_api import Error, expect
 
-from app.pages import numbers
+from ident.words.engineering import power_of, scaled_unit
 from tests.app.conftest import zipped
 from tests.browser.looks import WIDTHS, barriers, everywhere
 
@@ -105,10 +105,10 @@ def test_the_fit_page_shows_the_stored_parameters_and_errors(page, site, fitted)
     page.goto(f"{site.address}/fits/{fitted}")
     for name, entry in result["parameters"].items():
         cells = page.locator(f"tr:has(th[title='{name}']) td").all_inner_texts()
-        power = numbers.power_of(entry["value"])
+        power = power_of(entry["value"])
         assert float(cells[1].replace("−", "-")) * 10**power == pytest.approx(entry["value"], rel=2e-4)
         assert float(cells[2]) * 10**power == pytest.approx(entry["std_error"], rel=0.5)
-        assert cells[3] == numbers.scaled_unit(entry["unit"], power)
+        assert cells[3] == scaled_unit(entry["unit"], power)
     errors = page.locator("section:has-text('Error, eq. (17)') tbody tr").all_inner_texts()
     assert len(errors) == 2
     for row, use in zip(errors, ("fit", "verify"), strict=True):

@@ -64,12 +64,12 @@ def left(folder: Path) -> int:
 
 
 def main(folder: Path, version: str, dies: int) -> None:
-    from app import jobs
+    from app.jobs import engine
     from app.settings import Settings
 
     if version == "older":
-        jobs.added = lambda before, made: made  # noqa: ARG005  every step stored the whole history
-    queue = jobs.Jobs(Settings(data=folder), Search(folder, dies))
+        engine.added = lambda before, made: made  # noqa: ARG005  every step stored the whole history
+    queue = engine.Jobs(Settings(data=folder), Search(folder, dies))
     queue.launch()
     queue.submit(JOB)
     ends = time.monotonic() + PATIENCE

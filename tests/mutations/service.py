@@ -8,7 +8,7 @@ _SECURITY = ("tests/app/test_security.py",)
 SERVICE = (
     Mutation("same-key", "app/idempotency/answers.py", "if row.fingerprint != asked:", "if row.fingerprint == asked:",
              "another request under a key is answered", (f"{_SERVICE}::test_the_same_key_is_answered_once",)),
-    Mutation("how-it-ended", "app/steps.py", 'state = last["outcome"] or "succeeded"', 'state = "succeeded"',
+    Mutation("how-it-ended", "app/jobs/steps.py", 'state = last["outcome"] or "succeeded"', 'state = "succeeded"',
              "whatever ends is called a success", (f"{_SERVICE}::test_a_running_job_is_cancelled_and_leaves_no_fit",)),
     Mutation("foreign-origin", "app/security.py", 'origin.partition("://")[2] not in self.hosts',
              'not origin.partition("://")[2]', "any page may post", _SECURITY),

@@ -1,4 +1,4 @@
-"""What was made lately, in memory."""
+"""What was used last, in memory: the one cache of what is slow to make and never changes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Generic, TypeVar
 Item = TypeVar("Item")
 
 
-class Kept(Generic[Item]):
+class LRU(Generic[Item]):
     """The `most` items that were used last, by key; what a key stands for never changes."""
 
     def __init__(self, most: int) -> None:
@@ -19,7 +19,7 @@ class Kept(Generic[Item]):
         self._lock = Lock()
 
     def get(self, key: Hashable, make: Callable[[], Item]) -> Item:
-        """The item, made where it is not kept; two at a time may make the same one."""
+        """The item, made where it is not there; two at a time may make the same one."""
         with self._lock:
             if key in self._items:
                 self._items.move_to_end(key)

@@ -1,4 +1,4 @@
-"""A finished fit as the page shows it: rows of text, nothing left to compute in a template."""
+"""A finished fit as its page and its report show it: rows of text, nothing left to compute in a template."""
 
 from __future__ import annotations
 
@@ -7,10 +7,15 @@ from dataclasses import dataclass
 
 from markupsafe import Markup, escape
 
-from app.pages import numbers
 from ident.equations.mathml import mathml
 from ident.errors import Unusable
 from ident.fit.result import Estimate, FitResult
+from ident.words.engineering import power_of, quantity, scaled_unit
+from ident.words.number import fixed, trimmed
+from ident.words.percent import percent_in_print
+from ident.words.plus_minus import decimals
+from ident.words.symbols import symbol
+from ident.words.titles import of_parameter, title
 
 
 @dataclass(frozen=True)
@@ -62,29 +67,23 @@ def parameter_rows(fit: FitResult) -> tuple[ParameterRow, ...]:
 
 
 def _parameter(name: str, entry: Estimate, undetermined: bool) -> ParameterRow:
-    power = numbers.power_of(entry.value)
+    power = power_of(entry.value)
     value = entry.value / 10.0**power
     error = None if entry.std_error is None else entry.std_error / 10.0**power
-    places = numbers.decimals(value, error)
+    places = decimals(value, error)
     return ParameterRow(
         name=name,
-        symbol=numbers.symbol(name, entry.symbol),
-        meaning=_meaning(name, entry),
-        unit=numbers.scaled_unit(entry.unit, power),
-        value=numbers.fixed(value, places),
-        std_error=numbers.fixed(error, places),
-        relative=numbers.percent(error / abs(value), 2) if error is not None and value else "–",
-        lower=numbers.trimmed(entry.lower / 10.0**power),
-        upper=numbers.trimmed(entry.upper / 10.0**power),
+        symbol=symbol(name, entry.symbol),
+        meaning=of_parameter(name, entry.meaning),
+        unit=scaled_unit(entry.unit, power),
+        value=fixed(value, places),
+        std_error=fixed(error, places),
+        relative=percent_in_print(error / abs(value), 2) if error is not None and value else "–",
+        lower=trimmed(entry.lower / 10.0**power),
+        upper=trimmed(entry.upper / 10.0**power),
         remark="; ".join(_remarks(entry, undetermined)),
         plain=f"{entry.value:.8g} {'' if entry.unit == '1' else entry.unit}".strip(),
     )
-
-
-def _meaning(name: str, entry: Estimate) -> str:
-    """What the parameter means, with its effect in front."""
-    effect, dot, _ = name.partition(".")
-    return f"{effect.replace('_', ' ')}: {entry.meaning}" if dot else entry.meaning
 
 
 def _remarks(entry: Estimate, undetermined: bool) -> Iterator[str]:
@@ -105,12 +104,12 @@ def error_rows(fit: FitResult) -> tuple[ErrorRow, ...]:
             continue
         rows.append(
             ErrorRow(
-                use=use.replace("_", " "),
+                use=title(use),
                 runs=sum(run.use == use for run in fit.runs),
-                error=numbers.percent(error),
-                floor="unknown" if floor is None else numbers.percent(floor),
+                error=percent_in_print(error),
+                floor="unknown" if floor is None else percent_in_print(floor),
                 ratio=f"{error / floor:.2f} ×" if floor else "–",
-                offset=numbers.percent(fit.offset.get(use), 2),
+                offset=percent_in_print(fit.offset.get(use), 2),
             )
         )
     return tuple(rows)
@@ -122,8 +121,8 @@ def combination_rows(fit: FitResult) -> tuple[Determined, ...]:
         Determined(
             expression=_formula(entry.expression),
             spoken=entry.expression,
-            value=numbers.quantity(entry.value, entry.unit),
-            relative=numbers.percent(entry.std_error / abs(entry.value), 2) if entry.value else "–",
+            value=quantity(entry.value, entry.unit),
+            relative=percent_in_print(entry.std_error / abs(entry.value), 2) if entry.value else "–",
         )
         for entry in fit.determined
     )

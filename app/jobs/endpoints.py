@@ -12,7 +12,7 @@ from fastapi.responses import StreamingResponse
 
 from app.context import Context, Here
 from app.errors import COMMON
-from app.fits import service
+from app.jobs import service
 from schemas.fit import JobPage, JobView
 
 router = APIRouter(prefix="/jobs", tags=["jobs"], responses=COMMON)
@@ -25,13 +25,13 @@ def listed(
     here: Here, state: str | None = None, cursor: str | None = None, limit: Annotated[int, Query(ge=1, le=200)] = 50
 ) -> JobPage:
     """Jobs, newest first."""
-    return service.jobs(here, cursor, limit, state=state)
+    return service.listed(here, cursor, limit, state=state)
 
 
 @router.get("/{job}")
 def one(here: Here, job: str) -> JobView:
     """A job and its progress."""
-    return service.job(here, job)
+    return service.get(here, job)
 
 
 @router.delete("/{job}")
@@ -46,7 +46,7 @@ async def events(
     here: Here, job: str, last: Annotated[str | None, Header(alias="Last-Event-ID")] = None
 ) -> StreamingResponse:
     """Server-sent events until the job ends: each is the job, its id counts the changes, so a stream can be resumed."""
-    await run_in_threadpool(service.job, here, job)
+    await run_in_threadpool(service.get, here, job)
     seen = int(last) if last and last.isdecimal() and len(last) < 10 else -1
     return StreamingResponse(_stream(here, job, seen), media_type="text/event-stream")
 
@@ -54,7 +54,7 @@ async def events(
 async def _stream(here: Context, job: str, seen: int) -> AsyncIterator[str]:
     quiet = 0.0
     while True:
-        now, sequence = await run_in_threadpool(service.job_and_sequence, here, job)
+        now, sequence = await run_in_threadpool(service.with_sequence, here, job)
         if sequence > seen:
             seen, quiet = sequence, 0.0
             yield f"id: {sequence}\ndata: {now.model_dump_json()}\n\n"

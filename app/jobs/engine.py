@@ -11,14 +11,14 @@ import logging
 import threading
 import time
 from queue import SimpleQueue
-from typing import Any
+from typing import Any, Protocol
 
 from dbos import DBOS, DBOSConfig, Serializer, SetWorkflowID
 
 from app.database import connect
-from app.generations import added, whole
+from app.jobs.generations import added, whole
+from app.jobs.work import State
 from app.settings import Settings
-from app.work import State, Work
 
 QUEUE = "fits"
 # Pinned: by default the engine derives it from the code, and jobs queued before an upgrade would wait for ever.
@@ -30,6 +30,26 @@ _PATIENCE = 2  # s for a step to end by itself when the service stops
 _LOOK = 0.05  # s between two looks whether the engine has noted the end of a job
 _AT_A_TIME = 20  # jobs removed in one transaction: one of an earlier version may have left megabytes
 _log = logging.getLogger("servoident")
+
+
+class Steps(Protocol):
+    """What a job is cut into; each returns {"outcome": None or how it ended, "state": ...}."""
+
+    def begin(self, job: str) -> State:
+        """Start; the state says whether it is `done` but for the finish."""
+        ...
+
+    def advance(self, job: str, state: State) -> State:
+        """A block of the search."""
+        ...
+
+    def finish(self, job: str, state: State) -> State:
+        """All that follows the search; the state is the result."""
+        ...
+
+    def store(self, job: str, last: State) -> None:
+        """Keep what came out, in one transaction; a second call changes nothing."""
+        ...
 
 
 class JsonSerializer(Serializer):
@@ -51,7 +71,7 @@ class JsonSerializer(Serializer):
 class Jobs:
     """The engine of one process; `launch` before use, `stop` at the end."""
 
-    def __init__(self, settings: Settings, work: Work) -> None:
+    def __init__(self, settings: Settings, steps: Steps) -> None:
         self.settings, self.running = settings, False
         self._ended: SimpleQueue[str | None] = SimpleQueue()
         self._tidying = threading.Thread(target=self._tidy, name="tidy", daemon=True)
@@ -70,7 +90,7 @@ class Jobs:
         logging.getLogger("dbos").setLevel(logging.WARNING)
         DBOS.destroy(destroy_registry=True)
         DBOS(config=config)
-        self.workflow = _workflow(work, self._ended)
+        self.workflow = _workflow(steps, self._ended)
 
     def launch(self) -> None:
         """Start the engine; it takes up this executor's unfinished jobs by itself."""
@@ -123,7 +143,7 @@ def _remove_some() -> bool:
     return bool(found)
 
 
-def _workflow(work: Work, ended: SimpleQueue[str | None]) -> Any:
+def _workflow(steps: Steps, ended: SimpleQueue[str | None]) -> Any:
     """The durable workflow around the steps; functions, because the engine cannot mark methods.
 
     `ended` is told each job whose last step is done. Steps and their order are those of every version before: a job
@@ -132,19 +152,19 @@ def _workflow(work: Work, ended: SimpleQueue[str | None]) -> Any:
 
     @DBOS.step(name="begin")
     def begin(job: str) -> State:
-        return work.begin(job)
+        return steps.begin(job)
 
     @DBOS.step(name="advance")
     def advance(job: str, state: State) -> State:
-        return added(state, work.advance(job, state))
+        return added(state, steps.advance(job, state))
 
     @DBOS.step(name="finish")
     def finish(job: str, state: State) -> State:
-        return work.finish(job, state)
+        return steps.finish(job, state)
 
     @DBOS.step(name="store")
     def store(job: str, last: State) -> None:
-        work.store(job, last)
+        steps.store(job, last)
 
     @DBOS.workflow(name=NAME, max_recovery_attempts=1000)
     def fit(job: str) -> None:

@@ -6,9 +6,7 @@ the steps again, bit for bit: also where the process that made the first of them
 
 from __future__ import annotations
 
-from typing import Any
-
-State = dict[str, Any]
+from app.jobs.work import State
 
 
 def added(before: State, made: State) -> State:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from xml.dom.minidom import parseString
 
-from app.pages.fit_view import combination_rows, error_rows, parameter_rows
+from app.fits.rows import combination_rows, error_rows, parameter_rows
 from ident.fit.result import Combination, Estimate, FitResult, RunError, Undetermined
 
 

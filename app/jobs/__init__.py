@@ -1,0 +1,1 @@
+"""Jobs: what is queued, worked off step by step, watched and cancelled."""

@@ -1,0 +1,103 @@
+"""Jobs of every kind: record and queue, look, cancel, take up again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from sqlalchemy.exc import IntegrityError
+
+from app.context import Context
+from app.errors import missing
+from app.jobs import repository
+from app.paging import cursor, keys_of
+from app.tables import JobRow, now
+from schemas.fit import JobPage, JobView, ProgressView
+
+
+def record(context: Context, job: str, matrix: str, settings: dict[str, Any], parent: str | None, kind: str) -> JobView:
+    """Record and queue a job; one that is recorded under this id already is taken for it."""
+    with context.sessions() as session:
+        try:
+            repository.add(session, job, matrix, settings, parent, kind)
+            session.commit()
+        except IntegrityError:  # by the process before, which did not live to answer
+            session.rollback()
+    queued = requeued(context, job)
+    assert queued is not None
+    return queued
+
+
+def requeued(context: Context, job: str) -> JobView | None:
+    """A recorded job as it stands, queued unless it has ended or is queued already; None where there is no such job."""
+    with context.sessions() as session:
+        found = repository.with_serial(session, job)
+    if found is None:
+        return None
+    if found[0].state in repository.OPEN:
+        context.jobs.submit(job)
+    return view(*found)
+
+
+def resume(context: Context) -> None:
+    """Queue again what was recorded but, by a kill at the wrong moment, never queued."""
+    with context.sessions() as session:
+        waiting = repository.unfinished(session)
+    for job in waiting:
+        context.jobs.submit(job)
+
+
+def get(context: Context, job_id: str) -> JobView:
+    """A job by id; raises Failure 404."""
+    return with_sequence(context, job_id)[0]
+
+
+def with_sequence(context: Context, job_id: str) -> tuple[JobView, int]:
+    """A job and the number of changes it has seen; raises Failure 404."""
+    with context.sessions() as session:
+        found = repository.with_serial(session, job_id)
+    if found is None:
+        raise missing("job", job_id)
+    return view(*found), found[0].sequence
+
+
+def listed(
+    context: Context, after: str | None, limit: int, *,
+    state: str | None = None, serial: str | None = None, matrix: str | None = None, of_fits: bool = False,
+) -> JobPage:  # fmt: skip
+    """A page of jobs: all, or those in a state, of an actuator, of a matrix, and only those that make a fit."""
+    wanted = {"state": state, "serial": serial, "matrix": matrix}
+    with context.sessions() as session:
+        found = repository.page(session, keys_of(after, 2), limit, **wanted, of_fits=of_fits)
+    following = cursor(found[-1][0].created_at, found[-1][0].id) if len(found) == limit else None
+    return JobPage(items=[view(*each) for each in found], next=following)
+
+
+def open_of_actuators(context: Context, serials: Sequence[str]) -> dict[str, JobView]:
+    """The latest job of a fit that has not ended of each of these actuators that has one."""
+    with context.sessions() as session:
+        return {serial: view(row, serial) for row, serial in repository.open_of_actuators(session, serials)}
+
+
+def cancel(context: Context, job_id: str) -> JobView:
+    """Ask a job to stop: at once where it waits, at its next report where it runs. An ended job stays as it is."""
+    get(context, job_id)
+    with context.sessions.begin() as session:
+        row = repository.find(session, job_id)
+        if row is not None and row.state == "queued":
+            repository.change(session, job_id, state="cancelled", cancel=True, ended_at=now())
+        else:
+            repository.change(session, job_id, cancel=True)
+    return get(context, job_id)
+
+
+def view(row: JobRow, serial: str) -> JobView:
+    """A job as it is sent."""
+    made, diagnosis = row.state == "succeeded", row.kind == "diagnosis"
+    return JobView(
+        id=row.id, kind=row.kind, state=row.state, matrix=row.matrix, serial=serial, settings=row.settings,
+        progress=ProgressView(**row.progress), parent=row.parent,
+        fit=row.id if made and not (diagnosis and row.parent) else None,
+        diagnosis=row.id if made and diagnosis else None,
+        problem=row.problem, created_at=row.created_at, ended_at=row.ended_at,
+    )  # fmt: skip

@@ -1,0 +1,58 @@
+"""What a kind of job does: plain methods, which know nothing of the queue that calls them."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from sqlalchemy.orm import Session, sessionmaker
+
+from app.tables import JobRow
+from ident.matrix import Matrix
+from ident.progress import Report
+
+State = dict[str, Any]
+Keep = Callable[[Session, JobRow, str, State], None]
+"""Stores what a job made: its record, the actuator's serial number, what its work returned at the end."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a job is asked: its settings, the fit that it starts from, if any, the samples, and whom it tells of it."""
+
+    settings: dict[str, Any]
+    parent: str | None
+    matrix: Matrix
+    report: Report
+    sessions: sessionmaker[Session]
+
+
+class Work(ABC):
+    """The work of one job. A state is plain JSON data; what is raised is how the job ends."""
+
+    @abstractmethod
+    def finish(self, state: State) -> State:
+        """What is made of the last state, as it is to be stored."""
+
+
+class Search(Work):
+    """Work with a search before its end: it is kept after every block, and goes on there after a kill."""
+
+    @abstractmethod
+    def begin(self) -> State:
+        """The state before the first block; it says whether it is `done`."""
+
+    @abstractmethod
+    def advance(self, state: State) -> State:
+        """The state after another block."""
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of job: its name in the record, the work that a task takes, and how what it made is stored."""
+
+    name: str
+    work: Callable[[Task], Work]
+    keep: Keep

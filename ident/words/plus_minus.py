@@ -1,0 +1,33 @@
+"""A value and its standard error, with no more digits than the error leaves it."""
+
+from __future__ import annotations
+
+from ident.words.engineering import power_of, quantity, scaled_unit, with_unit
+from ident.words.number import fixed, places
+
+_MOST = 8  # decimals
+
+
+def decimals(value: float, std_error: float | None) -> int:
+    """Decimals of a value: two digits of its standard error, or five significant digits; never more than eight."""
+    if value == 0 and not std_error:
+        return 1
+    return min(_MOST, places(std_error, 2) if std_error else places(value, 5))
+
+
+def plus_minus(value: float, std_error: float | None, unit: str) -> str:
+    """ "80.27 ± 0.18 µm": in print, in a readable multiple of the unit."""
+    if std_error is None:
+        return quantity(value, unit)
+    power = power_of(value)
+    scaled, error = value / 10.0**power, std_error / 10.0**power
+    digits = decimals(scaled, error)
+    text = f"{fixed(scaled, digits)} ± {fixed(error, digits)}"
+    bracketed = scaled_unit(unit, power).startswith("10")
+    return with_unit(f"({text})" if bracketed else text, unit, power)
+
+
+def plus_minus_si(value: float, std_error: float | None, unit: str, digits: int = 5) -> str:
+    """ "8.027e-05 ± 1.8e-07 m": on a terminal, in SI with its unit as a command takes them."""
+    error = "" if std_error is None else f" ± {std_error:.2g}"
+    return f"{value:.{digits}g}{error} {unit}"
