@@ -110,3 +110,13 @@ def test_the_lock_files_hold_what_the_project_asks_for():
         asked = [*project["dependencies"], *(one for e in extras for one in project["optional-dependencies"][e])]
         wanted = {re.match(r"[\w.-]+", entry)[0].lower().replace("_", "-").replace(".", "-") for entry in asked}
         assert not wanted - locked
+
+
+def test_the_walks_name_files_that_exist():
+    """Three of them, ten lines each, and every file that they lead to is there."""
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    walks = text.partition("## Three walks")[2].partition("\n## ")[0]
+    assert len(re.findall(r"^\d+\. ", walks, re.M)) == 30
+    named = re.findall(r"`([a-z_]+/[\w/.]+)`", walks)
+    assert len(named) > 40
+    assert not [name for name in named if not (ROOT / name).is_file()]

@@ -1,1 +1,1 @@
-"""Kononykhin's bench: procedures and fitters from the records of an acceptance test to a model of an actuator."""
+"""Records of an acceptance test in, a model of the actuator and its sheet out: the procedures of Kononykhin."""

@@ -1,1 +1,1 @@
-"""Every kind of doubt about a measured matrix, a file each; :mod:`ident.checks.check` runs them all."""
+"""A measured matrix in, every doubt about it out: a kind a file, and :mod:`ident.checks.check` runs them all."""

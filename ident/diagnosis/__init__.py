@@ -1,1 +1,1 @@
-"""What a fitted model lacks: candidates predicted, refitted, and judged on data that no fit saw."""
+"""A fitted model and its runs in, what the model lacks out: predicted, refitted, judged on data that no fit saw."""

@@ -27,7 +27,7 @@ from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.fit.space import Space
 from ident.fit.uncertainty import covariance
-from ident.matrix import Matrix
+from ident.matrix import Matrix, over_runs
 from ident.progress import Expected, Progress, Report, silent
 
 _NOISE_LIKE = 0.5  # correlation of neighbouring residuals that noise may have, where there is no floor
@@ -60,26 +60,26 @@ class Diagnoser:
 
     def diagnosis(self) -> Diagnosis:
         """The whole of it."""
-        addition = self._added(self.models)
-        doubted = self._doubted(addition)
+        selection = self._added(self.models)
+        doubted = self._doubted(selection)
         if doubted:
-            addition = self._added(self.models.without(suspect.run for suspect in doubted))
-            doubted = self._doubted(addition)
-        ladder = self._ladder(addition)
-        floor = addition.models.floors.of_use(self.models.matrix)
-        unexplained = self._unexplained(addition)
-        groups = tuple(tuple(c.effect for c in group) for group in addition.groups.values() if len(group) > 1)
-        base = addition.base
-        text = verdict_text(addition.added, groups, doubted, unexplained, ladder[-1].error, base.error,
-                            repeats=addition.models.floors.measured)  # fmt: skip
+            selection = self._added(self.models.without(suspect.run for suspect in doubted))
+            doubted = self._doubted(selection)
+        ladder = self._ladder(selection)
+        floor = selection.models.floors.of_use(self.models.matrix)
+        unexplained = self._unexplained(selection)
+        groups = tuple(tuple(c.effect for c in group) for group in selection.groups.values() if len(group) > 1)
+        base = selection.base
+        text = verdict_text(selection.added, groups, doubted, unexplained, ladder[-1].error, base.error,
+                            repeats=selection.models.floors.measured)  # fmt: skip
         return Diagnosis(
             model=self.fit.model,
             given=base.effects,
             baseline={"error": dict(ladder[0].error), "offset": base.offset},
             noise_floor=floor,
-            candidates=tuple(self._ranked(addition, floor["fit"])),
+            candidates=tuple(self._ranked(selection, floor["fit"])),
             ladder=tuple(ladder),
-            verdict=Verdict(addition.added, groups, tuple(doubted), unexplained, text),
+            verdict=Verdict(selection.added, groups, tuple(doubted), unexplained, text),
             seed=self.fit.seed,
             version=version("servoident"),
             data_hash=self.models.matrix.data_hash,
@@ -99,9 +99,9 @@ class Diagnoser:
         self.expected = self.expected or progress.expected
         self.report(replace(progress, expected=self.expected))
 
-    def _doubted(self, addition: StepwiseSelection) -> list[Suspect]:
+    def _doubted(self, selection: StepwiseSelection) -> list[Suspect]:
         self.tell(Progress("labels", 0, 1))
-        return suspects(addition.models, addition.found, self.models.floors.by_run)
+        return suspects(selection.models, selection.found, self.models.floors.by_run)
 
     # What is said ----------------------------------------------------------------------------------------------
 
@@ -111,7 +111,8 @@ class Diagnoser:
         if verify:
             here = refit.fitness.fresh(verify).exact(refit.point, sensitivities=False)
             errors = [run.error for run in here.runs]
-            on_verify = float(np.mean(errors)) if np.all(np.isfinite(errors)) else None
+            mean = over_runs(errors, [run.share for run in verify])
+            on_verify = float(mean) if np.isfinite(mean) else None
         return {"fit": refit.error, "held_out": refit.held_out.error, "verify": on_verify}
 
     def _parameters(self, models: ModelFamily, refit: Refit) -> dict[str, Found]:
@@ -127,12 +128,12 @@ class Diagnoser:
             found[parameter_name(name)] = Found(refit.values[name], parameter.unit, error, parameter.symbol)
         return found
 
-    def _ranked(self, addition: StepwiseSelection, floor: float | None) -> list[Ranked]:
-        base, models = addition.base, addition.models
-        alike = tuple(candidate.effect for candidate in addition.alike())
+    def _ranked(self, selection: StepwiseSelection, floor: float | None) -> list[Ranked]:
+        base, models = selection.base, selection.models
+        alike = tuple(candidate.effect for candidate in selection.alike())
         group = alike if len(alike) > 1 else ()
         listed = []
-        for i, candidate in enumerate(addition.ranking):
+        for i, candidate in enumerate(selection.ranking):
             refit = candidate.refit
             errors: Mapping[str, float | None] = {"fit": None, "held_out": None, "verify": None}
             listed.append(Ranked(
@@ -147,19 +148,19 @@ class Diagnoser:
             ))  # fmt: skip
         return listed
 
-    def _ladder(self, addition: StepwiseSelection) -> list[Rung]:
+    def _ladder(self, selection: StepwiseSelection) -> list[Rung]:
         rungs: list[Rung] = []
         before: Refit | None = None
-        for added, refit in addition.ladder():
+        for added, refit in selection.ladder():
             found = None if before is None else improvement(before.held_out, refit.held_out).nats
-            rungs.append(Rung(added, self._errors(addition.models, refit), refit.held_out.offset,
-                              self._parameters(addition.models, refit), found))  # fmt: skip
+            rungs.append(Rung(added, self._errors(selection.models, refit), refit.held_out.offset,
+                              self._parameters(selection.models, refit), found))  # fmt: skip
             before = refit
         return rungs
 
-    def _unexplained(self, addition: StepwiseSelection) -> bool:
+    def _unexplained(self, selection: StepwiseSelection) -> bool:
         """Whether the error is still above the noise: its floor, or where that is not known, its lack of memory."""
-        found, models = addition.found, addition.models
+        found, models = selection.found, selection.models
         if models.floor is not None:
             return not models.at_floor(found)
         outputs = found.fitness.outputs(found.point)

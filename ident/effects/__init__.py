@@ -1,4 +1,4 @@
-"""The catalogue of effects, in the order in which they act within their place."""
+"""A name in, an effect out: the catalogue, in the order in which effects act within their place."""
 
 from ident.effects.acquisition_lag import ACQUISITION_LAG
 from ident.effects.backlash import BACKLASH

@@ -1,1 +1,1 @@
-"""From a test matrix to identified parameters: search, polish, uncertainty, result."""
+"""A test matrix and settings in, identified parameters out: search, optimum, uncertainty, result."""

@@ -1,4 +1,4 @@
-"""The models by name: each a paper's choice of stages, with its citation."""
+"""A name in, a model out: each a paper's choice of stages, with its citation."""
 
 from collections.abc import Sequence
 from functools import lru_cache

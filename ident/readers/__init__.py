@@ -1,4 +1,4 @@
-"""A matrix folder or archive to a :class:`ident.matrix.Matrix` in SI."""
+"""A folder or an archive in, a :class:`ident.matrix.Matrix` in SI out."""
 
 from __future__ import annotations
 

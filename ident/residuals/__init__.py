@@ -1,1 +1,1 @@
-"""Where a fitted model fails: by condition, against what moves inside the machine, and how much of it is noise."""
+"""A comparison in, where the model fails out: by condition, against what moves inside, and how much of it is noise."""

@@ -1,4 +1,4 @@
-"""The core of each place of the chain; a preset picks one core a place."""
+"""A place of the chain in, its core out: the equations that a preset picks there."""
 
 from ident.stages.controller import OPENED_BY_COMMAND, PROPORTIONAL
 from ident.stages.drive import CASCADE, DIRECT_FORCE, IDEAL_DRIVE
