@@ -20,7 +20,7 @@ MACHINE = (
              "the specimen's mass dropped", _EQUATIONS),
     Mutation("measured-force", "ident/stages/load.py", '("S = fm"', '("S = -fm"',
              "the sign of the measured load", ("tests/fit/test_loads.py",)),
-    Mutation("flow-gain", "ident/stages/flow.py", "Q = Z0 / A * w", "Q = 1.01 * Z0 / A * w",
+    Mutation("flow-gain", "ident/stages/flow.py", '"Q = Z0 / A * w",', '"Q = 1.01 * Z0 / A * w",',
              "a factor of 1.01 in the flow gain", _EQUATIONS),
     Mutation("play-width", "ident/stages/bench.py", "clip(wb__old, q - B, q + B)", "clip(wb__old, q - B, q + 1.01 * B)",
              "a factor of 1.01 in one bound of the play", ("tests/bench/test_model.py",)),
