@@ -152,7 +152,11 @@ def _totals(order: Sequence[str], look: Look, height: int) -> Panel:
         alt.Chart(alt.NamedData("totals"), width=look.across(120), height=height)
         .mark_bar(cursor="pointer")
         .encode(
-            x=alt.X("e:Q", axis=alt.Axis(title="Error (%)", tickCount=4, format="~r"), scale=alt.Scale(zero=True)),
+            x=alt.X(
+                "e:Q",
+                axis=alt.Axis(title="Error (%)", tickCount=3, format="~r", labelOverlap="greedy", labelSeparation=6),
+                scale=alt.Scale(zero=True),
+            ),
             y=_rows(order, labels=False),
             color=colour,
             tooltip=[alt.Tooltip("d:N", title="Run"), alt.Tooltip("e:Q", title="Error (%)", format=".3g")],
