@@ -44,8 +44,10 @@ def run(samples: int = SAMPLES) -> Run:
 
 def simulation(model: Preset, lanes: int, one: Run) -> Simulation:
     """`lanes` equal vectors with the strengths above, one step a sample."""
-    known = {p.name: p.value for p in model.parameters} | conditions(one, Actuator("", piston_area=PLANT.A))
-    known |= {model.parameter(name).name: value for name, value in STRENGTHS.items() if name.split(".")[0] in THREE}
+    known = {p.in_equations: p.value for p in model.parameters} | conditions(one, Actuator("", piston_area=PLANT.A))
+    known |= {
+        model.parameter(name).in_equations: value for name, value in STRENGTHS.items() if name.split(".")[0] in THREE
+    }
     return Simulation(model.chain, (one,), {name: np.full((1, lanes), value) for name, value in known.items()})
 
 

@@ -39,7 +39,7 @@ SLACK, SHARE = 1.25, 0.8
 def work(runs: float, seconds: float, effects: float, cores: float) -> Callable[[], object]:
     """The simulation of a matrix with the first effects of the catalogue: their strengths do not change the time."""
     model = preset("qian2014", tuple(effect.name for effect in EFFECTS[: int(effects)]))
-    known = {p.name: np.full((1, VECTORS), p.value) for p in model.parameters}
+    known = {p.in_equations: np.full((1, VECTORS), p.value) for p in model.parameters}
     todo: list[tuple[Run, Mapping[str, Any]]] = []
     for trial in reference.trials()[: int(runs)]:
         samples = round(seconds * reference.SAMPLE_RATE)

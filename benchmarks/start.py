@@ -25,7 +25,7 @@ imported = time.perf_counter()
 model = preset("qian2014", tuple(effect.name for effect in EFFECTS))
 u = numpy.linspace(0.0, 1e-3, 64)
 run = Run("run", "", 4096.0, {"command": u, "displacement": u}, specimen=Specimen(1.0, 6e4, 0.0), gain=5.0)
-values = {p.name: p.value for p in model.parameters} | conditions(run, Actuator("", piston_area=497e-6))
+values = {p.in_equations: p.value for p in model.parameters} | conditions(run, Actuator("", piston_area=497e-6))
 responses(model.chain, [run], {name: numpy.array([[value]]) for name, value in values.items()})
 print(imported - begun, time.perf_counter() - imported)
 """

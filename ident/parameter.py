@@ -11,9 +11,10 @@ from ident.errors import Unusable
 class Parameter:
     """A model parameter in SI.
 
-    `name` is its identifier in equations, results and requests; `symbol` how it is written in the literature;
-    `lower` and `upper` are the physical bounds of the search; `value` is the default (for a strength: 0, off).
-    A range of more than two decades is searched on a logarithmic scale, any other on a linear one.
+    `name` is what the user calls it, in results and requests; `symbol` how it is written in the literature; `of` the
+    effect that it belongs to, none for a model's own. `lower` and `upper` are the physical bounds of the search;
+    `value` is the default (for a strength: 0, off). A range of more than two decades is searched on a logarithmic
+    scale, any other on a linear one.
     """
 
     name: str
@@ -24,6 +25,7 @@ class Parameter:
     value: float
     meaning: str
     source: str = ""
+    of: str = ""
 
     def __post_init__(self) -> None:
         if not self.lower < self.upper:
@@ -33,6 +35,15 @@ class Parameter:
                 f"parameter {self.name}",
                 "give bounds as NAME=LOWER:UPPER with LOWER < UPPER",
             )
+
+    @property
+    def in_equations(self) -> str:
+        """Its name in the equations of a chain: ``dead_zone.half_width`` is ``dead_zone__half_width`` there."""
+        return self.name.replace(".", "__")
+
+    def of_effect(self, effect: str) -> Parameter:
+        """The same as a model has it that has the effect."""
+        return replace(self, name=f"{effect}.{self.name}", of=effect)
 
     @property
     def logarithmic(self) -> bool:

@@ -333,7 +333,7 @@ def _local_names(effect: Effect, equation: Equation, core: frozenset[str]) -> di
     own = {e.target for e in effect.equations} - core
     memories = {e.target for e in effect.equations if e.is_memory}
     names = {name: effect.symbol(name) for name in own}
-    names |= {parameter.symbol: effect.symbol(parameter.name) for parameter in effect.parameters}
+    names |= {parameter.symbol: parameter.in_equations for parameter in effect.added}
     if equation.is_memory:
         names |= {name: f"{effect.symbol(name)}__old" for name in memories}
     return names

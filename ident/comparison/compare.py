@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from ident.chain.chain import linear_model
 from ident.custom.definition import preset_with
-from ident.effects.effect import parameter_name
 from ident.errors import Unusable
 from ident.fit.normal_matrices import output
 from ident.fit.result import FitResult
@@ -145,8 +144,8 @@ def fitted(fit: FitResult, matrix: Matrix) -> tuple[Preset, Matrix, dict[str, fl
     """
     named = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
     preset, driven = named.for_matrix(matrix, str(fit.settings.get("load", "none")))
-    values = {preset.parameter(name).name: value for name, value in fit.values.items()}
-    missing = [parameter_name(p.name) for p in preset.parameters if p.name not in values]
+    values = {preset.parameter(name).in_equations: value for name, value in fit.values.items()}
+    missing = [p.name for p in preset.parameters if p.in_equations not in values]
     if missing:
         raise Unusable("bad-fit", f"no value of {', '.join(missing)}", "fit", f"give a fit of model {fit.model}")
     return preset, driven, values

@@ -58,7 +58,7 @@ def _drawn(preset: Preset, effect: Effect, chain: Chain, rng: np.random.Generato
     values: dict[str, Any] = {name: signal(name) for name in free}
     values |= {name: np.exp(rng.uniform(-3, 3, _TRIALS)) for name in chain.symbols}
     values |= {p.name: np.full(_TRIALS, p.value) for p in preset.parameters}
-    values |= {effect.symbol(p.name): np.full(_TRIALS, p.value) for p in effect.parameters}
+    values |= {p.in_equations: np.full(_TRIALS, p.value) for p in effect.added}
     values |= {TIME: rng.uniform(0, 1e3, _TRIALS), STEP: np.full(_TRIALS, 1e-3)}
     return values | _memories(rng)
 

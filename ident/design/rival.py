@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.comparison.compare import modelled
-from ident.effects.effect import parameter_name
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
@@ -51,7 +50,7 @@ class Rival:
     @cached_property
     def _fitness(self) -> SimulatedFitness:
         shapes = {
-            name: self.values[name] for e in self.preset.effects for p in e.shape if (name := e.symbol(p.name))
+            p.in_equations: self.values[p.in_equations] for e in self.preset.effects for p in e.added[1:]
         }  # fmt: skip
         space = search_space(self.preset, self.matrix, Settings(self.preset.name, fixed=shapes), self.band)
         runs = shortened(self.matrix.of_use("fit"), _SAMPLES)
@@ -66,7 +65,7 @@ class Rival:
     @property
     def names(self) -> tuple[str, ...]:
         """The parameters, one an axis."""
-        return tuple(parameter_name(name) for name in self._fitness.space.names)
+        return tuple(self.preset.parameter(name).name for name in self._fitness.space.names)
 
     @cached_property
     def information(self) -> Array:

@@ -77,8 +77,8 @@ def _model(diagnosis: Mapping[str, Any], parameters: Mapping[str, Any], custom: 
     known = [*(effect.name for effect in EFFECTS), *own]
     effects = tuple(e for e in known if any(parameter.startswith(f"{e}.") for parameter in parameters))
     preset = preset_called(name, effects, tuple(effect for effect in own.values() if effect.name in effects))
-    values = {preset.parameter(key).name: float(entry["value"]) for key, entry in parameters.items()}
-    missing = [parameter.name for parameter in preset.parameters if parameter.name not in values]
+    values = {preset.parameter(key).in_equations: float(entry["value"]) for key, entry in parameters.items()}
+    missing = [parameter.name for parameter in preset.parameters if parameter.in_equations not in values]
     if missing or not all(map(math.isfinite, values.values())):
         raise _bad(f"no value of {missing[0]}" if missing else "a value is not finite")
     return preset, values

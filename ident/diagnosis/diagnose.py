@@ -20,7 +20,7 @@ from ident.diagnosis.significance import improvement
 from ident.diagnosis.stepwise import StepwiseSelection
 from ident.diagnosis.suspects import Suspect, suspects
 from ident.diagnosis.words import verdict_text, why
-from ident.effects.effect import Effect, parameter_name
+from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.fit.reduction import excited_band
 from ident.fit.result import FitResult
@@ -88,7 +88,7 @@ class Diagnoser:
 
     def _added(self, models: ModelFamily) -> StepwiseSelection:
         preset = models.model(self.fit.effects)
-        start = {preset.parameter(name).name: value for name, value in self.fit.values.items()}
+        start = {preset.parameter(name).in_equations: value for name, value in self.fit.values.items()}
         base = models.refit(tuple(self.fit.effects), start)
         if not base.finite:
             raise Unusable("bad-fit", "the fitted model is unstable on a run", "fit", "fit the model to this matrix")
@@ -120,12 +120,12 @@ class Diagnoser:
         known = covariance(refit.here, refit.point, np.empty((0, len(refit.point))))
         found = {}
         for parameter in preset.parameters:
-            name = parameter.name
+            name = parameter.in_equations
             error = None
             if name in refit.space.names:
                 error = known.deviation(partial(_value_of, refit.space, name))
                 error = error if np.isfinite(error) and error < 1e3 * max(abs(refit.values[name]), 1e-300) else None
-            found[parameter_name(name)] = Found(refit.values[name], parameter.unit, error, parameter.symbol)
+            found[parameter.name] = Found(refit.values[name], parameter.unit, error, parameter.symbol)
         return found
 
     def _ranked(self, selection: StepwiseSelection, floor: float | None) -> list[Ranked]:

@@ -111,7 +111,7 @@ class ModelFamily:
     @cached_property
     def off(self) -> dict[str, float]:
         """The values of all effects' parameters where they are off, by the equations' names."""
-        return {effect.symbol(p.name): p.value for effect in self.effects.values() for p in effect.parameters}
+        return {p.in_equations: p.value for effect in self.effects.values() for p in effect.added}
 
     @cached_property
     def fit_together(self) -> bool:
@@ -120,7 +120,7 @@ class ModelFamily:
 
     def strength(self, effect: str) -> str:
         """The name of an effect's strength in the equations."""
-        return self.effects[effect].symbol(self.effects[effect].strength.name)
+        return self.effects[effect].added[0].in_equations
 
     def fitness(self, effects: tuple[str, ...], samples: int = 0, whole: bool = False) -> SimulatedFitness:
         """The objective of the model with these effects, on records of at most `samples` in all where that is given.
@@ -177,11 +177,11 @@ class ModelFamily:
     ) -> Refit:
         """The optimum near `start`, on shortened records where `samples` is given."""
         fitness = self.fitness(effects, samples)
-        known = {p.name: p.value for p in fitness.preset.parameters} | dict(start)
+        known = {p.in_equations: p.value for p in fitness.preset.parameters} | dict(start)
         point = fitness.space.point({**known, **fitness.space.fixed})
         until = until or (_TRYING if samples else _FITTING)
         point, here = levenberg_marquardt(fitness.exact, point, _silent, fitness.accept, *until)
-        off = {symbol for name, e in self.effects.items() if name not in effects for symbol in map(e.symbol, _names(e))}
+        off = {p.in_equations for name, e in self.effects.items() if name not in effects for p in e.added}
         values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}
         return Refit(effects, values, fitness.space, point, here, fitness)
 
@@ -212,10 +212,6 @@ def _sound(model: Callable[[], Preset]) -> bool:
     except Unusable:
         return False
     return True
-
-
-def _names(effect: Effect) -> list[str]:
-    return [parameter.name for parameter in effect.parameters]
 
 
 def _silent(_count: int, _error: float) -> None:

@@ -60,11 +60,11 @@ class Effect:
         """Strength and shape."""
         return (self.strength, *self.shape)
 
+    @cached_property
+    def added(self) -> tuple[Parameter, ...]:
+        """Strength and shape as parameters of a model that has the effect, the strength first."""
+        return tuple(parameter.of_effect(self.name) for parameter in self.parameters)
+
     def symbol(self, name: str) -> str:
-        """The name of one of its parameters or own quantities in the equations of a whole chain."""
+        """The name of one of its own quantities in the equations of a whole chain."""
         return f"{self.name}__{name}"
-
-
-def parameter_name(symbol: str) -> str:
-    """The name of an effect's parameter to the user: ``dead_zone__h`` → ``dead_zone.h``; others stay as they are."""
-    return symbol.replace("__", ".")

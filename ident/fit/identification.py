@@ -88,23 +88,21 @@ class Identification:
 
     @property
     def _linear(self) -> set[str]:
-        of_effects = {effect.symbol(p.name) for effect in self.preset.effects for p in effect.parameters}
-        return {parameter.name for parameter in self.preset.parameters} - of_effects
+        return {parameter.in_equations for parameter in self.preset.parameters if not parameter.of}
 
     def _linear_values(self) -> dict[str, float]:
         """What the model without effects finds, every strength at zero."""
 
         def own(given: Mapping[str, Any]) -> dict[str, Any]:
-            names = {name: self.preset.parameter(name).name for name in given}
-            return {name: given[name] for name in given if names[name] in self._linear}
+            return {name: value for name, value in given.items() if not self.preset.parameter(name).of}
 
         settings = replace(
             self.settings, effects=(), custom=(), method="ga", load="none", options={},
             bounds=own(self.settings.bounds), fixed=own(self.settings.fixed),
         )  # fmt: skip
         found = completed(Identification(self.matrix, settings, self.report))
-        values = {self.preset.parameter(name).name: value for name, value in found.values.items()}
-        return {p.name: 0.0 for p in self.preset.parameters if p.name not in self._linear} | values
+        values = {self.preset.parameter(name).in_equations: value for name, value in found.values.items()}
+        return {p.in_equations: 0.0 for p in self.preset.parameters if p.of} | values
 
     def _take_up(self, state: State) -> None:
         """What every process has to know of a search that may have begun in another."""

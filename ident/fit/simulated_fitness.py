@@ -191,7 +191,7 @@ class SimulatedFitness:
     @cached_property
     def _strides(self) -> Array:
         """How far each axis is moved for a sensitivity."""
-        far = {effect.symbol(effect.strength.name): effect.stride for effect in self.preset.effects}
+        far = {effect.added[0].in_equations: effect.stride for effect in self.preset.effects}
         return np.array([far.get(name, STEP) for name in self.space.names])
 
     # First states -----------------------------------------------------------------------------------------------
@@ -255,7 +255,7 @@ class SimulatedFitness:
 
     def _is_on(self, effect: Effect, values: Mapping[str, Array]) -> bool:
         """Whether an effect is searched, or held at a strength that is not zero."""
-        name = effect.symbol(effect.strength.name)
+        name = effect.added[0].in_equations
         return name in self.space.names or bool(np.any(values[name]))
 
     @cached_property

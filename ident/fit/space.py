@@ -100,8 +100,8 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     of every run known. Any other machine is searched over scale-free ratios. Bounds and values of the user come first.
     """
     runs = matrix.of_use("fit")
-    given = {preset.parameter(name).name: bounds for name, bounds in settings.bounds.items()}
-    fixed = {preset.parameter(name).name: value for name, value in settings.fixed.items()}
+    given = {preset.parameter(name).in_equations: bounds for name, bounds in settings.bounds.items()}
+    fixed = {preset.parameter(name).in_equations: value for name, value in settings.fixed.items()}
     area, known_for = matrix.actuator.piston_area, preset.bounds_hold_for
     stated = all(run.gain is not None and run.specimen is not None for run in runs)
     same = known_for is not None and area is not None and abs(area / known_for - 1) < _SAME_AREA and stated
@@ -109,8 +109,8 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     if settings.load == "force":  # a mass that would need this force
         force = float(np.mean([np.std(run.channels["force"]) for run in runs]))
         typical["mL"] = force / (typical["X"] * band**2)
-    strengths = {effect.symbol(effect.strength.name) for effect in preset.effects}
-    shapes = {effect.symbol(p.name): p.value for effect in preset.effects for p in effect.shape}
+    strengths = {effect.added[0].in_equations for effect in preset.effects}
+    shapes = {p.in_equations: p.value for effect in preset.effects for p in effect.added[1:]}
     fixed = {name: value for name, value in shapes.items() if name not in given} | fixed
     convention = None
     forced = preset.driven_by != "command" or settings.load == "force"

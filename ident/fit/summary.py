@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.effects.effect import parameter_name
 from ident.fit.ends import parted
 from ident.fit.fitness import UNSTABLE, Fitness, Local
 from ident.fit.multistart import Optimum
@@ -40,7 +39,7 @@ def summarise(
     own = here.runs if preset.is_linear else objective.fresh(fit_runs).exact(point, sensitivities=False).runs
     fit_errors, verify_errors = _run_errors(fit_runs, own), _run_errors(verify_runs, verify)
     found = covariance(here, point, optimum.as_good)
-    strengths = {effect.symbol(p.name) for effect in preset.effects for p in effect.parameters}
+    strengths = {p.in_equations for p in preset.parameters if p.of}
     relative = {name: found.relative(_value(objective, name)) for name in space.names if name not in strengths}
     deviation = {name: values[name] * error for name, error in relative.items()}
     deviation |= {name: found.deviation(_value(objective, name)) for name in space.names if name in strengths}
@@ -108,7 +107,7 @@ def _mean(runs: Sequence[Run], found: Sequence[RunError], what: str) -> float | 
 
 def _labels(objective: Fitness) -> dict[str, tuple[str, str]]:
     """Name and unit under which a parameter is reported: a ratio to the area where the area is unknown."""
-    plain = {p.name: (parameter_name(p.name), p.unit) for p in objective.preset.parameters}
+    plain = {p.in_equations: (p.name, p.unit) for p in objective.preset.parameters}
     known = objective.matrix.actuator.piston_area is not None
     return plain if known else plain | dict(objective.preset.without_area or {})
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from ident.chain.chain import CONDITIONS, Chain, unfit
-from ident.effects.effect import Effect, parameter_name
+from ident.effects.effect import Effect
 from ident.equations.equation import Equation
 from ident.errors import Unusable
 from ident.matrix import Matrix
@@ -91,9 +91,10 @@ class Preset:
     shown: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        known = {parameter.name for parameter in self.parameters} | CONDITIONS.keys()
+        names = {parameter.in_equations for parameter in self.parameters}
+        known = names | CONDITIONS.keys()
         unknown = set(self.chain.symbols) - known
-        if unknown or {scale.name for scale in self.scales} != {p.name for p in self.parameters}:
+        if unknown or {scale.name for scale in self.scales} != names:
             raise Unusable(
                 "bad-preset",
                 f"its equations read {sorted(unknown)}, or a parameter has no scale",
@@ -108,12 +109,8 @@ class Preset:
         """
         if not effects:
             return self
-        added = tuple(
-            replace(parameter, name=effect.symbol(parameter.name))
-            for effect in effects
-            for parameter in effect.parameters
-        )
-        known = {parameter.name for parameter in (*self.parameters, *added)} | CONDITIONS.keys()
+        added = tuple(parameter for effect in effects for parameter in effect.added)
+        known = {parameter.in_equations for parameter in (*self.parameters, *added)} | CONDITIONS.keys()
         for effect in effects:
             if set(self.chain.with_effects((effect,)).symbols) - known:
                 raise unfit(effect)
@@ -123,7 +120,7 @@ class Preset:
             parameters=(*self.parameters, *added),
             scales=(
                 *self.scales,
-                *(scale_of(effect, p, self.force_scale) for effect in effects for p in effect.parameters),
+                *(scale_of(effect, p, self.force_scale) for effect in effects for p in effect.added),
             ),
             effects=effects,
         )
@@ -177,21 +174,21 @@ class Preset:
         """
         for parameter in self.parameters:
             alias = (self.without_area or {}).get(parameter.name, ("", ""))[0]
-            if name in (parameter.name, parameter_name(parameter.name), alias):
+            if name in (parameter.name, parameter.in_equations, alias):
                 return parameter
         for effect in self.effects:
             for parameter in effect.parameters:
                 if name == f"{effect.name}.{parameter.symbol}" or (
                     name == effect.name and parameter == effect.strength
                 ):
-                    return self.parameter(effect.symbol(parameter.name))
+                    return self.parameter(f"{effect.name}.{parameter.name}")
         if self.under_control is not None:
             return self.under_control.with_effects(self.effects).parameter(name)
         raise Unusable(
             "unknown-parameter",
             f"model {self.name} has no parameter {name!r}",
             "bounds or values",
-            f"choose from {', '.join(parameter_name(p.name) for p in self.parameters)}",
+            f"choose from {', '.join(p.name for p in self.parameters)}",
         )
 
 
@@ -220,6 +217,6 @@ def scale_of(effect: Effect, parameter: Parameter, force: str) -> Scale:
         reach = None
     text = text.replace("F", f"({force})")
     if reach is None:
-        return Scale(effect.symbol(parameter.name), "1", parameter.lower, parameter.upper, logarithmic=False)
+        return Scale(parameter.in_equations, "1", parameter.lower, parameter.upper, logarithmic=False)
     lower = -reach if parameter.lower < 0 else 0.0
-    return Scale(effect.symbol(parameter.name), text, lower, reach, logarithmic=False)
+    return Scale(parameter.in_equations, text, lower, reach, logarithmic=False)

@@ -70,7 +70,7 @@ class Traces:
     @property
     def units(self) -> Mapping[str, str]:
         """The unit of each parameter."""
-        return {parameter.name: parameter.unit for parameter in self.preset.parameters}
+        return {parameter.in_equations: parameter.unit for parameter in self.preset.parameters}
 
     def paths(self, view: View) -> list[Response]:
         """For each run the linear response from what is added at the view's place to the output and to its signals."""
@@ -166,7 +166,9 @@ def _cores(
 
 
 def _searched(chain: Chain, preset: Preset, values: Mapping[str, float]) -> tuple[str, ...]:
-    return tuple(p.name for p in preset.parameters if p.name in chain.symbols and values[p.name] != 0)
+    return tuple(
+        p.in_equations for p in preset.parameters if p.in_equations in chain.symbols and values[p.in_equations] != 0
+    )
 
 
 def _moved(

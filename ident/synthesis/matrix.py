@@ -108,8 +108,8 @@ def simulate_matrix(
     if on_bench:
         write_bench(out, model, seed, noise, report)
         return
-    values = {parameter.name: parameter.value for parameter in model.parameters}
-    values |= {model.parameter(name).name: value for name, value in (effects or {}).items()}
+    values = {parameter.in_equations: parameter.value for parameter in model.parameters}
+    values |= {model.parameter(name).in_equations: value for name, value in (effects or {}).items()}
     actuator, entries = Actuator(serial, piston_area=AREA), []
     todo = plans(small)
     for index, plan in enumerate(todo):

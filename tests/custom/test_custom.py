@@ -163,7 +163,9 @@ def simulated(own: Effect) -> np.ndarray:
     still = np.zeros(20)
     run = Run("run", "", 100.0, {"command": still, "displacement": still})
     model = PRESETS["first_order"].with_effects((own,))
-    values = {p.name: p.value for p in model.parameters} | conditions(run, Actuator("")) | {own.symbol("h"): 1.0}
+    values = (
+        {p.in_equations: p.value for p in model.parameters} | conditions(run, Actuator("")) | {own.symbol("h"): 1.0}
+    )
     return responses(model.chain, [run], {name: np.array([[value]]) for name, value in values.items()})[:, 0, 0]
 
 

@@ -39,7 +39,7 @@ def confused() -> tuple[Matrix, list[tuple[Preset, dict[str, float]]]]:
     for name in ("coulomb_friction", "dead_zone"):
         found, model = identify(few, Settings(effects=(name,), seed=1)), preset("qian2014", (name,))
         assert found.error["fit"] < 1.05 * NOISE
-        models.append((model, {model.parameter(key).name: value for key, value in found.values.items()}))
+        models.append((model, {model.parameter(key).in_equations: value for key, value in found.values.items()}))
     return few, models
 
 

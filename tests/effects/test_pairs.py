@@ -36,9 +36,9 @@ def deviations(cell: linear.Cell, number: int, hold: str) -> dict[frozenset[str]
     u, model = command(number)[:SAMPLES], preset("qian2014", tuple(effect.name for effect in EFFECTS))
     run = Run("run", "", linear.SAMPLE_RATE, {"command": u, "displacement": np.zeros_like(u)}, gain=cell.gain,
               specimen=Specimen(cell.mass, cell.stiffness, cell.damping), hold=hold)  # fmt: skip
-    known = {p.name: p.value for p in model.parameters} | conditions(run, Actuator("", piston_area=PLANT.A))
+    known = {p.in_equations: p.value for p in model.parameters} | conditions(run, Actuator("", piston_area=PLANT.A))
     batch = {name: np.full((1, len(PAIRS)), value) for name, value in known.items()}
-    strengths = {e.name: (e.symbol(e.strength.name), e.strength.symbol, SHARE * strength(e)) for e in EFFECTS}
+    strengths = {e.name: (e.added[0].in_equations, e.strength.symbol, SHARE * strength(e)) for e in EFFECTS}
     for i, pair in enumerate(PAIRS):
         for name in pair:
             symbol, _, value = strengths[name]

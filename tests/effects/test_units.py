@@ -39,7 +39,9 @@ def units(model: Preset) -> dict[str, dimensions.Dimension]:
     command = COMMAND[model.driven_by]
     inputs = {INPUT: command, INPUT_RATE: "1/s" if command == "1" else f"{command}/s", FORCE: "N", TIME: "s"}
     known = {**inputs, **{q.name: q.unit for q in CONDITIONS.values()}, **published(model)}
-    return {name: dimensions.of(unit) for name, unit in (known | {p.name: p.unit for p in model.parameters}).items()}
+    return {
+        name: dimensions.of(unit) for name, unit in (known | {p.in_equations: p.unit for p in model.parameters}).items()
+    }
 
 
 @EACH

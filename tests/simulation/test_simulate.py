@@ -77,7 +77,7 @@ class Batch:
         """(samples, runs, delays), in blocks of a length."""
         known = [conditions(run, ACTUATOR) for run in self.runs]
         values = {name: np.array([entry[name] for entry in known])[:, None] for name in known[0]}
-        values |= {p.name: np.array([[p.value]]) for p in self.model.parameters}
+        values |= {p.in_equations: np.array([[p.value]]) for p in self.model.parameters}
         if self.model.effects:
             values["command_delay__delay"] = np.array([self.delays])
         blocks = Simulation(self.model.chain, self.runs, values, self.steps).outputs(length)
@@ -112,7 +112,7 @@ def test_the_error_of_runs_with_a_measured_force_does_not_hang_on_the_number_of_
     monkeypatch.setattr(simulated_fitness, "cores", lambda: cores)
     runs = tuple(loaded(number, "zoh") for number in range(4))
     used = model("command_delay")
-    values = {p.name: p.value for p in used.parameters}
+    values = {p.in_equations: p.value for p in used.parameters}
 
     def errors(*chosen: Run) -> np.ndarray:
         fitness = SimulatedFitness(used, Matrix(ACTUATOR, chosen), chosen, Space((), tuple(values), values, {}), 0.0)
