@@ -15,8 +15,7 @@ from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.fit.normal_matrices import output
 from ident.fit.result import FitResult
-from ident.fit.simulated_fitness import SimulatedFitness
-from ident.fit.space import Space
+from ident.fit.simulated_runs import SimulatedRuns
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Matrix, Run, over_runs
 from ident.parallel import each
@@ -116,8 +115,7 @@ class Comparison:
 
 def modelled(preset: Preset, values: Mapping[str, float], matrix: Matrix) -> dict[str, Array]:
     """The output of a model with effects for every run of a matrix, by the run's id."""
-    nothing = Space((), tuple(values), values, {})
-    return SimulatedFitness(preset, matrix, matrix.runs, nothing, 0.0).outputs(np.empty(0))
+    return SimulatedRuns(preset, matrix, matrix.runs).outputs_at(values)
 
 
 def compare(matrix: Matrix, fit: FitResult, simulator: Simulator = modelled) -> Comparison:

@@ -13,8 +13,7 @@ from ident.chain.chain import Chain, conditions
 from ident.comparison.compare import Comparison, fitted
 from ident.errors import Unusable
 from ident.fit.normal_matrices import first_state
-from ident.fit.simulated_fitness import SimulatedFitness
-from ident.fit.space import Space
+from ident.fit.simulated_runs import SimulatedRuns
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Run
 from ident.parallel import each
@@ -187,16 +186,16 @@ def _simulated(
 ) -> dict[str, dict[str, Array]]:
     """The internal signals of a model with effects, from its compiled kernel: name, then run."""
     _, matrix, values = fitted(comparison.fit, replace(comparison.matrix, runs=tuple(runs)))
-    error = SimulatedFitness(preset, matrix, matrix.runs, Space((), tuple(values), values, {}), 0.0)
-    error.exact(np.empty(0), sensitivities=False)
+    simulated = SimulatedRuns(preset, matrix, matrix.runs)
+    simulated.outputs_at(values)  # finds the first states of runs that start moving
     chain = showing(preset.chain, signals)
-    steps = int(error.steps(error.space.values(np.empty((1, 0)))).max())
+    steps = int(simulated.steps({name: np.array([value]) for name, value in values.items()}).max())
 
     def one(entry: tuple[str, Run]) -> Array:
         name, run = entry
         known = conditions(run, matrix.actuator) | values
         at = {symbol: np.array([[value]]) for symbol, value in known.items()}
-        start = None if run.starts_at_rest else error.start(run)[None, None]
+        start = None if run.starts_at_rest else simulated.start(run)[None, None]
         named = replace(run, output=name, channels={**run.channels, name: run.measured})
         blocks = Simulation(chain, (named,), at, steps, start).outputs()
         return np.concatenate([rows[:, 0, 0] for rows, _, _ in blocks])

@@ -12,7 +12,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from ident.chain.chain import conditions
-from ident.fit import simulated_fitness
+from ident.fit import simulated_runs
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import Space
 from ident.matrix import Actuator, Matrix, Run
@@ -109,7 +109,7 @@ def test_runs_with_a_measured_force_are_what_each_is_alone_and_what_the_referenc
 @pytest.mark.parametrize("cores", [1, 2, 5])
 def test_the_error_of_runs_with_a_measured_force_does_not_hang_on_the_number_of_cores(monkeypatch, cores):
     """The right delay leaves nothing of any run; a wrong one leaves what it leaves of each run alone."""
-    monkeypatch.setattr(simulated_fitness, "cores", lambda: cores)
+    monkeypatch.setattr(simulated_runs, "cores", lambda: cores)
     runs = tuple(loaded(number, "zoh") for number in range(4))
     used = model("command_delay")
     values = {p.in_equations: p.value for p in used.parameters}

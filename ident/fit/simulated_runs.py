@@ -1,0 +1,196 @@
+"""Runs under a chain that is not linear, simulated at given values: outputs, and what a fit needs of them.
+
+The first state of a record that starts moving is a nuisance of its run: it begins at the linear model's and follows
+with each step of a fit, by the sensitivities to it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.chain.chain import Chain, conditions, linear_model
+from ident.effects.effect import Effect
+from ident.fit.normal_matrices import NormalMatrices, first_state, normal_matrices_of
+from ident.fit.products import add_products, completed
+from ident.matrix import Matrix, Run
+from ident.parallel import cores, each
+from ident.presets import Preset
+from ident.simulation.simulate import Simulation, rates, steps_needed
+
+Array = NDArray[np.float64]
+_TOGETHER = 256  # lanes simulated in one go: memory stays small, the cores stay busy
+_BLOCKS = 32  # of a record: see ident.fit.normal_matrices
+_REACH = 1e-3  # of a state's size, for sensitivities to the first state
+_SETTLING = 3  # rounds in which the first states of a model are found
+
+
+@dataclass
+class SimulatedRuns:
+    """Runs of a matrix as a preset simulates them; `starts` are the first states that are known, by the run's id.
+
+    Values are by the equations' names, SI: numbers, or arrays of v parameter vectors side by side.
+    """
+
+    preset: Preset
+    matrix: Matrix
+    runs: tuple[Run, ...]
+    starts: dict[str, Array] = field(default_factory=dict, kw_only=True)
+
+    @property
+    def chain(self) -> Chain:
+        """The chain with its effects."""
+        return self.preset.chain
+
+    def outputs_at(self, values: Mapping[str, float]) -> dict[str, Array]:
+        """The model's output of each run by its id, with the first state that fits best."""
+        vector = {name: np.array([value]) for name, value in values.items()}
+        steps = int(self.steps(vector).max())
+        self.begin(values)
+        with np.errstate(over="ignore", invalid="ignore"):
+            self.settled(vector, np.empty(0), steps)
+
+        def of_runs(runs: tuple[Run, ...]) -> Array:
+            blocks = [rows[:, :, 0] for rows, _, _ in self.simulation(runs, vector, steps).outputs()]
+            return np.concatenate(blocks).T
+
+        todo = list(self.together(1))
+        found = zip(todo, each(of_runs, todo), strict=True)
+        return {run.id: y for runs, outputs in found for run, y in zip(runs, outputs, strict=True)}
+
+    def settled(self, values: Mapping[str, Array], strides: Array, steps: int) -> dict[str, NormalMatrices]:
+        """The matrices of every run by its id; without sensitivities the first states are followed to their end.
+
+        `strides` (p,) are those of the vectors behind the first.
+        """
+        found: dict[str, NormalMatrices] = {}
+        p = len(strides)
+        for _ in range(1 if p else _SETTLING):
+            todo = list(self.together(p + 1 + len(self.chain.states)))
+            parts = each(lambda runs: self._normal_matrices(runs, values, strides, steps), todo)
+            found = {
+                run.id: m for runs, part in zip(todo, parts, strict=True) for run, m in zip(runs, part, strict=True)
+            }
+            if p or not any(len(moments.release) for moments in found.values()):
+                break
+            for run in self.runs:
+                self._follow(run, found[run.id])
+        return found
+
+    def _normal_matrices(
+        self, runs: tuple[Run, ...], values: Mapping[str, Array], strides: Array, steps: int
+    ) -> list[NormalMatrices]:
+        """The moments of runs of one length, from one simulation of all of them."""
+        return normal_matrices_of(runs, self._products(runs, values, strides, steps), len(strides))
+
+    def _products(self, runs: tuple[Run, ...], values: Mapping[str, Array], strides: Array, steps: int) -> Array:
+        """Σ of products of [J, N, 1, r] of runs of one length and of each block of them, (runs, blocks, q, q).
+
+        J are the differences of the vectors behind the first to it, over `strides`.
+        """
+        released = self.released(runs, values, steps)
+        length = max(16, -(-runs[0].length // _BLOCKS))
+        records = np.column_stack([run.measured - run.measured.mean() for run in runs])
+        q = released.shape[1] + 1
+        sums = np.zeros((-(-runs[0].length // length), len(runs), q, q))
+        for block, (rows, first, last) in enumerate(released.outputs(length)):
+            add_products(rows, records[first:last], q - 2, sums[block])
+        return completed(sums, strides).transpose(1, 0, 2, 3)
+
+    def released(self, runs: tuple[Run, ...], values: Mapping[str, Array], steps: int) -> Simulation:
+        """A simulation of vectors and, where runs start moving, of the first with each of its first states moved."""
+        if all(run.starts_at_rest for run in runs):
+            return self.simulation(runs, values, steps)
+        vectors, states = len(next(iter(values.values()))), len(self.chain.states)
+        wide = {name: np.concatenate([value, np.repeat(value[:1], states)]) for name, value in values.items()}
+        start = np.repeat(np.array([self.start(run) for run in runs])[:, None], vectors + states, axis=1)
+        start[:, vectors:] += np.diag(self._reach)
+        return self.simulation(runs, wide, steps, start)
+
+    def simulation(
+        self, runs: tuple[Run, ...], values: Mapping[str, Array], steps: int, start: Array | None = None
+    ) -> Simulation:
+        """A simulation of vectors at runs of a kind, from the first states that are known."""
+        known = [conditions(run, self.matrix.actuator) for run in runs]
+        stacked = {name: np.array([entry[name] for entry in known])[:, None] for name in known[0]}
+        vectors = len(next(iter(values.values())))
+        if start is None and not all(run.starts_at_rest for run in runs):
+            start = np.repeat(np.array([self.start(run) for run in runs])[:, None], vectors, axis=1)
+        return Simulation(self.chain, runs, stacked | {n: v[None] for n, v in values.items()}, steps, start)
+
+    # First states -----------------------------------------------------------------------------------------------
+
+    def start(self, run: Run) -> Array:
+        """The states in which a run begins, (n,)."""
+        return self.starts.get(run.id, np.zeros(len(self.chain.states)))
+
+    def begin(self, values: Mapping[str, float]) -> None:
+        """Take the first states that are not known yet from the linear model at `values`."""
+        core = self.preset.core
+        for run in self.runs:
+            if not run.starts_at_rest and run.id not in self.starts:
+                found = first_state(run, linear_model(core, values, run, self.matrix.actuator))
+                known = dict(zip(core.states, found, strict=True))
+                self.starts[run.id] = np.array([known.get(name, 0.0) for name in self.chain.states])
+
+    def _follow(self, run: Run, found: NormalMatrices) -> None:
+        if len(found.release) and np.all(np.isfinite(found.release)):
+            self.starts[run.id] = self.start(run) + self._reach * found.release
+
+    @cached_property
+    def _reach(self) -> Array:
+        """A small step of each state: of the size that the first states have, or of the output's for others."""
+        size = float(np.mean([np.std(run.measured) for run in self.runs]))
+        known = np.array([np.abs(start) for start in self.starts.values()])
+        largest = known.max(axis=0) if len(known) else np.zeros(len(self.chain.states))
+        return np.asarray(_REACH * np.where(largest > 0, largest, size))
+
+    # Shares ------------------------------------------------------------------------------------------------------
+
+    def together(self, vectors: int, lanes: int = _TOGETHER) -> Iterator[tuple[Run, ...]]:
+        """Runs that are simulated in one go: of one length, sample rate, output and kind of start."""
+        groups: dict[tuple[object, ...], list[Run]] = {}
+        for run in self.runs:
+            groups.setdefault((run.length, run.sample_rate, run.output, run.starts_at_rest), []).append(run)
+        for runs in groups.values():
+            most = max(1, lanes // vectors)
+            shares = -(-len(runs) // most)
+            shares = min(len(runs), max(shares, cores()))
+            for share in np.array_split(np.arange(len(runs)), shares):
+                yield tuple(runs[i] for i in share)
+
+    def steps(self, values: Mapping[str, Array], kinks: bool = True) -> NDArray[np.int64]:
+        """Steps a sample for each vector."""
+        fastest, holds = self.fastest(values), {run.hold for run in self.runs}
+        on = [effect for effect in self.preset.effects if kinks and self._is_on(effect, values)]
+        return np.asarray(np.max([steps_needed(self.chain, fastest, hold, on) for hold in holds], axis=0))
+
+    def fastest(self, values: Mapping[str, Array]) -> Array:
+        """Radians a sample of each vector's fastest mode, of the linear core and the effects at small signals.
+
+        Beyond :data:`ident.simulation.simulate.FASTEST` it is followed only roughly.
+        """
+        vectors = len(next(iter(values.values())))
+        fastest = np.zeros(vectors)
+        for run in self._extreme:
+            known = {name: np.full(vectors, value) for name, value in conditions(run, self.matrix.actuator).items()}
+            fastest = np.maximum(fastest, rates(self.chain, known | dict(values), run.output) / run.sample_rate)
+        return fastest
+
+    def _is_on(self, effect: Effect, values: Mapping[str, Array]) -> bool:
+        """Whether an effect has a strength that is not zero."""
+        return bool(np.any(values[effect.added[0].in_equations]))
+
+    @cached_property
+    def _extreme(self) -> tuple[Run, ...]:
+        """For each specimen the run of largest gain: the others are no faster."""
+        chosen: dict[object, Run] = {}
+        for run in self.runs:
+            key = (run.specimen, run.sample_rate)
+            if key not in chosen or run.Kp > chosen[key].Kp:
+                chosen[key] = run
+        return tuple(chosen.values())
