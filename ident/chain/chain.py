@@ -177,6 +177,16 @@ class Chain:
         found = [degree(equation.tree, known) for equation in self.equations if equation.is_rate]
         return all(one in (ZERO, LINEAR) for one in found) and all(known[name] != OTHER for name in needed)
 
+    def signals_at(self, known: Mapping[str, Any]) -> dict[str, Any]:
+        """Every signal beside what is `known`: states, inputs, symbols, and memories at the start of the step.
+
+        Dry friction takes nothing here: what it takes hangs on the step.
+        """
+        values = dict(known)
+        for equation in self.signals:
+            values[equation.target] = 0.0 if friction(equation) else equation.value(values)
+        return values
+
     @cached_property
     def exponents(self) -> tuple[str, ...]:
         """Symbols that stand as exponents: a number there is worth code of its own."""

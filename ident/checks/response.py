@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
+from scipy.signal import ShortTimeFFT, get_window
 
 from ident.matrix import Run, Samples
 
@@ -18,7 +18,7 @@ SHORTEST_FRAME = 16
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """Averages over Hann frames of half overlap, each frame without its mean.
+    """Averages over Hann frames of half overlap, each frame without its mean (Welch 1967).
 
     `frequency` (F,) in Hz (or 1/sample) without 0; power of command `uu` and output `yy`, cross power `uy`, each (F,).
     Good enough to see a sign, a factor or a whole sample; the fit uses the exact spectra of :mod:`ident.fit.reduction`.
@@ -63,20 +63,13 @@ def response(u: Samples, y: Samples, sample_rate: float) -> Response | None:
     length = min(LONGEST_FRAME, 1 << max(len(u) // (FRAMES // 2 + 1), 1).bit_length() - 1)
     if length < SHORTEST_FRAME:
         return None
-    window = np.hanning(length + 1)[:-1]
-    one, two = (spectra(signal, window) for signal in (u, y))
-    frequency: Samples = np.arange(1, length // 2 + 1, dtype=np.float64) * (sample_rate / length)
-    uu, yy = power(one), power(two)
-    return Response(frequency, uu, yy, (one.conj() * two).mean(axis=0), len(one))
+    frames = ShortTimeFFT(get_window("hann", length), length // 2, sample_rate)
+    inside = frames.lower_border_end[1], frames.upper_border_begin(len(u))[1]
+    one, two = (frames.stft_detrend(signal, "constant", *inside)[1:] for signal in (u, y))
+    uy = (one.conj() * two).mean(axis=1)
+    return Response(frames.f[1:], _power(one), _power(two), uy, one.shape[1])
 
 
-def spectra(signal: Samples, window: Samples) -> NDArray[np.complex128]:
-    """The spectrum of each frame without its mean, (frames, F), frequency 0 left out."""
-    frames = sliding_window_view(signal, len(window))[:: len(window) // 2]
-    return np.asarray(np.fft.rfft((frames - frames.mean(axis=1, keepdims=True)) * window, axis=1)[:, 1:])
-
-
-def power(frames: NDArray[np.complex128]) -> Samples:
+def _power(frames: NDArray[np.complex128]) -> Samples:
     """The mean power of the frames, (F,), never 0 so that it may divide."""
-    mean: Samples = np.asarray((np.abs(frames) ** 2).mean(axis=0), np.float64)
-    return mean + float(np.finfo(float).tiny)
+    return np.asarray((np.abs(frames) ** 2).mean(axis=1) + np.finfo(float).tiny, np.float64)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain.chain import FORCE, INPUT, INPUT_RATE, STEP, Chain, friction
+from ident.chain.chain import FORCE, INPUT, INPUT_RATE, STEP, Chain
 from ident.effects.effect import Effect
 from ident.equations.grammar import TIME
 from ident.errors import Unusable
@@ -78,8 +78,6 @@ def _memories(rng: np.random.Generator) -> dict[str, Any]:
 
 def _evaluated(chain: Chain, drawn: Mapping[str, Any]) -> dict[str, Array]:
     """Every signal, and every rate under the name of its state with a prime."""
-    known = dict(drawn)
-    for equation in chain.signals:
-        known[equation.target] = np.zeros(_TRIALS) if friction(equation) else equation.value(known)
+    known = chain.signals_at(drawn)
     found = {e.target: np.asarray(known[e.target]) for e in chain.signals}
     return found | {f"{e.target}'": np.asarray(e.value(known)) for e in chain.equations if e.is_rate}

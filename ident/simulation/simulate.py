@@ -11,7 +11,7 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from ident.chain.chain import FORCE, INPUT, INPUT_RATE, STEP, Chain, friction
+from ident.chain.chain import FORCE, INPUT, INPUT_RATE, STEP, Chain
 from ident.effects.effect import Effect
 from ident.equations.grammar import TIME
 from ident.matrix import Run
@@ -161,8 +161,7 @@ def _at_rest(chain: Chain, known: Mapping[str, Any]) -> dict[str, Any]:
     copies = {equation.target for equation in chain.equations if equation.is_memory and not _reads_old(equation.names)}
     values = dict(known) | {f"{name}__old": 0.0 for name in chain.memories}
     for _ in range(2):
-        for equation in chain.signals:
-            values[equation.target] = 0.0 if friction(equation) else equation.value(values)
+        values = chain.signals_at(values)
         values |= {f"{name}__old": values[name] for name in copies}
     return values
 
