@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import importlib
+import importlib.util
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -58,6 +60,16 @@ def test_only_figures_draw():
     """Altair is imported below ident/figures and nowhere else."""
     others = [file for file in files("ident/**/*.py", "app/**/*.py", "schemas/**/*.py") if "figures" not in file.parts]
     assert not list(offences(others, {"altair"}))
+
+
+@pytest.mark.parametrize("file", files("benchmarks/*.py", "docs/**/*.py"), ids=lambda file: file.stem)
+def test_what_a_benchmark_or_a_picture_imports_is_there(file):
+    """They run seldom: a name that moved is noticed here."""
+    for module in sorted(imports(file)):
+        parent, _, name = module.rpartition(".")
+        if within(module, OWN) and parent:
+            found = hasattr(importlib.import_module(parent), name)
+            assert found or importlib.util.find_spec(module) is not None, module
 
 
 ROOMS = (

@@ -77,7 +77,7 @@ class Response:
         return np.asarray(_respond(self.phi, self.gamma0, self.gamma1, self.C, self.D, first, rows))
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, fastmath={"contract"})
 def _respond(phi, gamma0, gamma1, C, D, first, inputs):  # type: ignore[no-untyped-def]
     samples, width = inputs.shape
     n, m = len(first), len(D)

@@ -101,7 +101,7 @@ def advance(order: int, lanes: int = LANES) -> Callable[..., Any]:
 
 _RECURSION = """from numba import njit
 
-@njit(cache=True, fastmath=True, nogil=True)
+@njit(cache=True, fastmath={{"contract"}}, nogil=True)
 def recursion(b, u, first, last, out, stride):
     for k in range(first, last):
         now = u[k]

@@ -234,7 +234,7 @@ _SOURCE = """from math import cos, sin, sqrt, tanh
 from numba import njit
 
 
-@njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
+@njit(cache=True, fastmath={{"contract", "nnan", "ninf", "nsz"}}, nogil=True, error_model="numpy")
 def advance(b, commands, forces, command_at, force_at, first, last, every, out, stride):
     for k in range(first, last):
         for lane in range({lanes}):
