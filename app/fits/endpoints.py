@@ -8,7 +8,8 @@ from app.context import Here
 from app.errors import COMMON
 from app.fits import drawing, lineage, service
 from app.idempotency import Key, fingerprint, once, queued_once
-from schemas.fit import ComparisonView, EffectsRequest, ErrorBudget, FitRequest, FitView, JobView, LadderView
+from schemas.fit import ComparisonView, EffectsRequest, FitRequest, FitView, JobView, LadderView
+from schemas.result import ErrorBudget
 
 router = APIRouter(prefix="/fits", tags=["fits"], responses=COMMON)
 _MEDIA = ("application/json", "image/svg+xml", "image/png", "application/pdf")

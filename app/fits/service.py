@@ -24,11 +24,11 @@ from schemas.fit import (
     Chosen,
     ComparedRun,
     ComparisonView,
-    ErrorBudget,
     FitRequest,
     FitView,
     JobView,
 )
+from schemas.result import ErrorBudget
 
 
 @dataclass(frozen=True)
