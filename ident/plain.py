@@ -13,6 +13,7 @@ from types import NoneType, UnionType
 from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
 T = TypeVar("T")
+_HUGE = 10**300  # no float reaches whole numbers much beyond
 Reader = Callable[[Any], Any]
 
 
@@ -146,11 +147,9 @@ def _mapping(reader: Reader) -> Reader:
 
 
 def _number(data: Any) -> float:
-    if isinstance(data, int | float) and not isinstance(data, bool):
-        try:
-            return float(data)
-        except OverflowError:
-            pass
+    """A number as it is written, so that 20 does not go out as 20.0."""
+    if isinstance(data, float) or (isinstance(data, int) and not isinstance(data, bool) and abs(data) < _HUGE):
+        return data
     raise Misfit("is no number")
 
 

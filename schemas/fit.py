@@ -4,7 +4,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from schemas.result import ErrorBudget, Errors, EstimateView
+from schemas.result import ErrorBudget, Errors, EstimateView, FitResultView
 
 Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 
@@ -104,7 +104,7 @@ class FitView(BaseModel):
     created_at: str
     approved_at: str | None
     current: bool
-    result: dict[str, Any]
+    result: FitResultView
 
 
 class LadderRung(BaseModel):

@@ -6,6 +6,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 Errors: TypeAlias = dict[str, float | None]
 """Eq. (17), or the offset, by use: fit, held_out, verify; null where there are no such runs."""
+Number: TypeAlias = int | float
+"""As its user wrote it: 20 stays 20."""
 Entry: TypeAlias = str | bool | int | float | None
 Entries: TypeAlias = dict[str, Entry]
 
@@ -36,11 +38,11 @@ class SettingsView(BaseModel):
     model: str = "qian2014"
     effects: list[str] = Field(default_factory=list)
     method: str = "ga"
-    bounds: dict[str, tuple[float, float]] = Field(default_factory=dict)
-    fixed: dict[str, float] = Field(default_factory=dict)
+    bounds: dict[str, tuple[Number, Number]] = Field(default_factory=dict)
+    fixed: dict[str, Number] = Field(default_factory=dict)
     load: str = "none"
     seed: int = 0
-    options: dict[str, float] = Field(default_factory=dict)
+    options: dict[str, Number] = Field(default_factory=dict)
     custom: list[DefinitionView] = Field(default_factory=list)
 
 
@@ -66,6 +68,69 @@ class EstimateView(BaseModel):
     symbol: str = ""
     meaning: str = ""
     fixed: bool = False
+
+
+class CombinationView(BaseModel):
+    """A product of powers of parameters that the data determine although its factors may not be."""
+
+    expression: str
+    value: float
+    unit: str
+    std_error: float
+
+
+class UndeterminedView(BaseModel):
+    """A parameter that the data do not determine, and why."""
+
+    name: str
+    reason: str
+
+
+class RunErrorView(BaseModel):
+    """Eq. (17) of one run, and its offset."""
+
+    id: str
+    use: str
+    error: float
+    offset: float
+
+
+class GenerationView(BaseModel):
+    """One generation of a search: errors are eq. (17), `population` holds one parameter vector a row."""
+
+    index: int
+    best: float
+    mean: float
+    population: list[list[float]] = Field(default_factory=list)
+    errors: list[float] = Field(default_factory=list)
+
+
+class FitResultView(BaseModel):
+    """The contract's fit JSON; `evolution` belongs to the parameters `searched`, in that order.
+
+    What an earlier version did not know is absent.
+    """
+
+    model: str
+    effects: list[str]
+    parameters: dict[str, EstimateView]
+    correlation: dict[str, dict[str, float]]
+    determined: list[CombinationView]
+    undetermined: list[UndeterminedView]
+    error: Errors
+    offset: Errors
+    noise_floor: Errors
+    runs: list[RunErrorView]
+    method: str
+    seed: int
+    evaluations: int
+    seconds: float
+    version: str
+    data_hash: str
+    notes: list[str] = Field(default_factory=list)
+    settings: SettingsView = Field(default_factory=SettingsView)
+    searched: list[str] = Field(default_factory=list)
+    evolution: list[GenerationView] = Field(default_factory=list)
 
 
 class RefittedView(BaseModel):

@@ -15,8 +15,8 @@ from ident.diagnosis.rivals import rivals
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from schemas.diagnosis import DiagnosisView
-from schemas.fit import LadderView
-from schemas.result import DiagnosisResult
+from schemas.fit import FitView, LadderView
+from schemas.result import DiagnosisResult, FitResultView
 
 HERE = Path(__file__).parent
 FITS = ("fit", "bench")
@@ -36,7 +36,9 @@ def again(data: object) -> object:
 
 @pytest.mark.parametrize("name", FITS)
 def test_a_fit_goes_out_as_it_came_in(name):
+    """From its file, and over HTTP."""
     assert again(read_fit(HERE / f"{name}.json").to_json()) == stored(name)
+    assert FitResultView(**stored(name)).model_dump(mode="json", exclude_unset=True) == stored(name)
 
 
 @pytest.mark.parametrize("name", DIAGNOSES)
@@ -135,7 +137,7 @@ def anything(schema: Any, path: str = "") -> Iterator[str]:
             yield from anything(part, f"{path}.{name}")
 
 
-@pytest.mark.parametrize("model", [DiagnosisView, LadderView])
+@pytest.mark.parametrize("model", [DiagnosisView, FitView, LadderView])
 def test_the_document_shows_a_result_in_full(model):
     """No place of it is said to hold just anything."""
     found = set(anything(model.model_json_schema(mode="serialization")))
