@@ -38,6 +38,8 @@ def read(kind: type[T], data: object) -> T:
 
 def written(value: Any) -> Any:
     """A dataclass, with all that is in it, as plain JSON data."""
+    if value is None or isinstance(value, float | int | str):
+        return value
     if is_dataclass(value):
         return {field.name: written(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, Mapping):

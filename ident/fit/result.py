@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ident.errors import Unusable
-from ident.plain import Misfit, read
+from ident.plain import Misfit, read, written
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,8 @@ class FitResult:
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data (no NaN, no infinity)."""
-        return asdict(self)
+        data: dict[str, Any] = written(self)
+        return data
 
     @classmethod
     def from_json(cls, data: object) -> FitResult:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any
 
 from ident.errors import Unusable
-from ident.plain import Misfit, read
+from ident.plain import Misfit, read, written
 
 GENERAL = ("ga", "paper-ga", "differential-evolution", "cma-es")
 """Methods of any model; a preset may name more of its own."""
@@ -35,8 +35,8 @@ class Settings:
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data."""
-        lists = {"effects": list(self.effects), "custom": [dict(definition) for definition in self.custom]}
-        return asdict(self) | lists | {"bounds": {k: list(v) for k, v in self.bounds.items()}}
+        data: dict[str, Any] = written(self)
+        return data
 
     @classmethod
     def from_json(cls, data: object) -> Settings:
