@@ -4,6 +4,8 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from schemas.result import ErrorBudget, Errors, EstimateView, FitResultView
+
 Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 
 
@@ -102,7 +104,7 @@ class FitView(BaseModel):
     created_at: str
     approved_at: str | None
     current: bool
-    result: dict[str, Any]
+    result: FitResultView
 
 
 class LadderRung(BaseModel):
@@ -112,8 +114,8 @@ class LadderRung(BaseModel):
     parent: str | None
     matrix: str
     added: list[str]
-    error: dict[str, float | None]
-    parameters: dict[str, dict[str, Any]]
+    error: Errors
+    parameters: dict[str, EstimateView]
     seed: int
     version: str
     data_hash: str
@@ -205,16 +207,6 @@ class ParameterTrend(BaseModel):
     points: list[TrendPoint]
     p: float
     clear: bool
-
-
-class ErrorBudget(BaseModel):
-    """Parts of eq. (17), combining quadratically; null noise cannot be told and is within nonlinear."""
-
-    noise: float | None
-    linear: float
-    nonlinear: float
-    bounds: dict[str, tuple[float, float]]
-    notes: list[str]
 
 
 class ComparisonView(BaseModel):

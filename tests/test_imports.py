@@ -73,7 +73,7 @@ def test_what_a_benchmark_or_a_picture_imports_is_there(file):
 
 
 ROOMS = (
-    "errors", "progress", "parallel", "matrix", "parameter", "linear", "equations", "units", "words", "stages",
+    "errors", "plain", "progress", "parallel", "matrix", "parameter", "linear", "equations", "units", "words", "stages",
     "effects", "chain", "presets", "readers", "custom", "checks", "noise", "simulation", "fit", "comparison",
     "residuals", "design", "diagnosis", "bench", "figures", "synthesis", "workflows",
 )  # fmt: skip
@@ -156,7 +156,7 @@ def chosen_by_name(tree: ast.Module, names: set[str]) -> Iterator[int]:
 def test_there_is_no_loose_file_but_the_basic_words_and_the_workflows():
     """What belongs together stands in a folder."""
     loose = {file.stem for file in files("ident/*.py")} - {"__init__"}
-    assert loose == {"errors", "progress", "parallel", "matrix", "parameter", "linear", "workflows"}
+    assert loose == {"errors", "plain", "progress", "parallel", "matrix", "parameter", "linear", "workflows"}
 
 
 def test_effects_never_import_each_other():

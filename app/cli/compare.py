@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from app.cli.given import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
-from ident.errors import Unusable
 
 if TYPE_CHECKING:
     from ident.fit.result import FitResult
@@ -48,24 +47,6 @@ def compare(
         show_survey(found)
     if out is not None:
         draw(read, result, out, other)
-
-
-def read_fit(path: Path) -> FitResult:
-    """A fit from its JSON file; raises Unusable where it is not one."""
-    from pydantic import TypeAdapter, ValidationError
-
-    from ident.fit.result import FitResult
-
-    try:
-        result = TypeAdapter(FitResult).validate_json(path.read_bytes())
-        sound = all(math.isfinite(value) for value in result.values.values())
-    except ValidationError:
-        sound = False
-    if not sound:
-        raise Unusable(
-            "bad-fit", "not the JSON of a fit", str(path), "give the file that `servoident fit --json FILE` wrote"
-        )
-    return result
 
 
 def show(rows: list[tuple[str, str, float, float]], error: Any) -> None:

@@ -21,6 +21,7 @@ from app.cli.fit_options import (
     Values,
     settings,
 )
+from app.cli.given import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
 from ident.errors import Unusable
@@ -77,7 +78,6 @@ def diagnose(
 
 def given_fit(path: Path, chosen: Settings) -> FitResult:
     """The fit of a file, which brings its own settings. Raises Unusable where others are given beside it."""
-    from app.cli.compare import read_fit
     from ident.fit.settings import Settings
 
     if replace(chosen, seed=0) != Settings():

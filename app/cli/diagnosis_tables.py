@@ -40,7 +40,7 @@ def show_diagnosis(found: Diagnosis) -> None:
 
 def error_rows(found: Diagnosis) -> Iterator[Row]:
     """The model's error and the noise floor by use, in per cent."""
-    yield "model", *(percent(found.baseline["error"].get(use)) for use in USES)
+    yield "model", *(percent(found.baseline.error.get(use)) for use in USES)
     yield "noise floor", *(percent(found.noise_floor.get(use)) for use in USES)
 
 
@@ -59,7 +59,7 @@ def unconfirmed(found: Diagnosis) -> str:
     rest = [ranked for ranked in found.candidates if not ranked.parameters]
     if not rest:
         return ""
-    best = min(ranked.predicted_error for ranked in rest)
+    best = min((ranked.predicted_error for ranked in rest if ranked.predicted_error is not None), default=None)
     return f"not refitted, predicted {percent(best)} at best: {', '.join(ranked.effect for ranked in rest)}"
 
 

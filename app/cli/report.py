@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from app.cli.compare import read_fit
+from app.cli.given import read_diagnosis, read_fit
 from app.cli.output import check_target, write_bytes
 from ident.errors import Unusable
 
@@ -28,7 +28,6 @@ def report(
     check_target(out)
     result = None if fit is None else read_fit(fit)
     from app.cli.progress import shown
-    from app.report.diagnosis import read_diagnosis
     from app.report.document import document
     from ident.fit.settings import Settings
     from ident.readers import read_matrix

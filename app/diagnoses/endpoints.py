@@ -10,8 +10,9 @@ from app.context import Here
 from app.diagnoses import proposal, service
 from app.errors import COMMON
 from app.idempotency import Key, fingerprint, queued_once
-from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView, ProposalView
+from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView
 from schemas.fit import JobView
+from schemas.result import ProposalView
 
 router = APIRouter(prefix="/diagnoses", tags=["diagnoses"], responses=COMMON)
 Seed = Annotated[int, Query(ge=0, lt=2**31)]
@@ -24,7 +25,7 @@ def submit(here: Here, request: DiagnosisRequest, key: Key = None) -> Response:
     return queued_once(here, key, asked, lambda job: service.submit(here, request, job))
 
 
-@router.get("")
+@router.get("", response_model_exclude_unset=True)
 def listed(
     here: Here, fit: str | None = None, cursor: str | None = None, limit: Annotated[int, Query(ge=1, le=200)] = 50
 ) -> DiagnosisPage:
@@ -32,7 +33,7 @@ def listed(
     return service.listed(here, fit, cursor, limit)
 
 
-@router.get("/{diagnosis}")
+@router.get("/{diagnosis}", response_model_exclude_unset=True)
 def one(here: Here, diagnosis: str) -> DiagnosisView:
     """A diagnosis: what the fit lacks, ranked, with the ladder and the verdict."""
     return service.get(here, diagnosis)

@@ -13,8 +13,8 @@ from app.lru import LRU
 from app.matrices import service as matrices
 from ident.design.experiment import Experiment
 from ident.design.proposal import propose
-from ident.design.rivals import floor_of, rivals, trusted
-from schemas.diagnosis import ProposalView
+from ident.diagnosis.rivals import rivals
+from schemas.result import ProposalView
 
 _MOST = 32  # proposals in memory
 _proposed: LRU[Experiment] = LRU(_MOST)
@@ -40,9 +40,7 @@ def _experiment(context: Context, diagnosis: str, seed: int) -> Experiment:
     """The best further run: computed once, since the words and the archive are mostly wanted one after the other."""
 
     def made() -> Experiment:
-        stored = service.get(context, diagnosis)
-        data = stored.model_dump()
-        matrix = trusted(data, matrices.load(context, stored.matrix))
-        return propose(rivals(data), matrix, floor_of(data), seed)
+        stored = service.stored(context, diagnosis)
+        return propose(rivals(stored.found), matrices.load(context, stored.matrix), seed)
 
     return _proposed.get((str(context.storage.folder), diagnosis, seed), made)

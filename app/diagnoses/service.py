@@ -15,21 +15,35 @@ from app.matrices import service as matrices
 from app.paging import cursor, keys_of
 from app.tables import DiagnosisRow
 from ident.custom.definition import definition_of, read_effect, together
+from ident.diagnosis.result import Diagnosis, Verdict
 from ident.diagnosis.stepwise import MOST, USUAL
 from ident.errors import Unusable
 from ident.fit.identification import check_settings
 from ident.fit.result import Estimate, FitResult
-from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView, VerdictView
+from ident.plain import read
+from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView
 from schemas.fit import Chosen, JobView
 
 _BESIDE_A_FIT = {"fit", "seed", "max_effects", "custom"}
 
 
 @dataclass(frozen=True)
+class Stored:
+    """A diagnosis, and where it belongs."""
+
+    id: str
+    matrix: str
+    serial: str
+    fit: str
+    created_at: str
+    found: Diagnosis
+
+
+@dataclass(frozen=True)
 class Search:
     """What is known of what a fit lacks: the newest verdict, and the job of a diagnosis that has not ended."""
 
-    verdict: VerdictView | None = None
+    verdict: Verdict | None = None
     job: str | None = None
 
 
@@ -70,24 +84,28 @@ def _with_own(fit: FitResult, request: DiagnosisRequest) -> dict[str, object]:
 
 
 def get(context: Context, diagnosis_id: str) -> DiagnosisView:
+    """A diagnosis by id, as it is sent; raises Failure 404."""
+    return _view(stored(context, diagnosis_id))
+
+
+def stored(context: Context, diagnosis_id: str) -> Stored:
     """A diagnosis by id; raises Failure 404."""
     with context.sessions() as session:
         row = repository.diagnosis(session, diagnosis_id)
     if row is None:
         raise missing("diagnosis", diagnosis_id)
-    return view(row)
+    return _stored(row)
 
 
 def refit(context: Context, diagnosis_id: str, fit: FitResult, effect: str) -> FitResult:
     """The fit with an effect as the diagnosis refitted or, where it went no further, predicted it; else Failure 404."""
-    found = get(context, diagnosis_id)
+    found = stored(context, diagnosis_id).found
     candidate = next((one for one in found.candidates if one.effect == effect), None)
     if candidate is None:
         raise missing("candidate", f"{diagnosis_id}:{effect}")
-    settings = (found.model_extra or {}).get("settings") or {}
-    wider = fit.with_custom(settings.get("custom", ()))
+    wider = fit.with_custom(found.settings.get("custom", ()))
     estimates = {
-        name: Estimate(entry["value"], entry["unit"], entry["std_error"], entry["value"], entry["value"], False)
+        name: Estimate(entry.value, entry.unit, entry.std_error, entry.value, entry.value, False)
         for name, entry in candidate.parameters.items()
     }
     return replace(wider, effects=(*fit.effects, effect), parameters={**fit.parameters, **estimates})
@@ -98,25 +116,30 @@ def listed(context: Context, fit: str | None, after: str | None, limit: int) -> 
     with context.sessions() as session:
         rows = repository.page(session, fit, keys_of(after, 2), limit)
     following = cursor(rows[-1].created_at, rows[-1].id) if len(rows) == limit else None
-    return DiagnosisPage(items=[view(row) for row in rows], next=following)
+    return DiagnosisPage(items=[_view(_stored(row)) for row in rows], next=following)
 
 
-def of_fit(context: Context, fit: str) -> tuple[DiagnosisView | None, JobView | None]:
+def of_fit(context: Context, fit: str) -> tuple[Stored | None, JobView | None]:
     """The newest diagnosis of a fit, and the newest job that was to make one."""
     with context.sessions() as session:
         rows, job = repository.page(session, fit, None, 1), recorded.last_diagnosing(session, fit)
-    return (view(rows[0]) if rows else None), (jobs.view(job, "") if job is not None else None)
+    return (_stored(rows[0]) if rows else None), (jobs.view(job, "") if job is not None else None)
 
 
 def searches(context: Context, fits: Sequence[str]) -> dict[str, Search]:
     """That of each of these fits that was or is being diagnosed."""
     with context.sessions() as session:
         verdicts, waiting = repository.verdicts(session, fits), recorded.diagnosing(session, fits)
-    found = {fit: VerdictView(**verdict) for fit, verdict in verdicts.items()}
+    found = {fit: read(Verdict, verdict) for fit, verdict in verdicts.items()}
     return {fit: Search(found.get(fit), waiting.get(fit)) for fit in found.keys() | waiting.keys()}
 
 
-def view(row: DiagnosisRow) -> DiagnosisView:
-    """A diagnosis as it is sent."""
-    beside = {"id": row.id, "matrix": row.matrix, "serial": row.serial, "fit": row.fit, "created_at": row.created_at}
-    return DiagnosisView(**{**row.result, **beside})
+def _stored(row: DiagnosisRow) -> Stored:
+    return Stored(row.id, row.matrix, row.serial, row.fit, row.created_at, Diagnosis.from_json(row.result))
+
+
+def _view(stored: Stored) -> DiagnosisView:
+    return DiagnosisView(
+        **stored.found.to_json(), id=stored.id, matrix=stored.matrix, serial=stored.serial, fit=stored.fit,
+        created_at=stored.created_at,
+    )  # fmt: skip

@@ -60,8 +60,8 @@ def _study(context: Context, fit_id: str) -> Study:
     """A fit beside its data, from memory where it was drawn lately; raises Failure 404."""
 
     def made() -> Study:
-        row, result = service.whole(context, fit_id)
-        return workflows.study(matrices.load(context, row.matrix), FitResult.from_json(result))
+        stored = service.stored(context, fit_id)
+        return workflows.study(matrices.load(context, stored.matrix), stored.found)
 
     return _studies.get((str(context.storage.folder), fit_id), made)
 

@@ -7,8 +7,9 @@ from fastapi import APIRouter, Request, Response
 from app.context import Here
 from app.errors import COMMON
 from app.fits import drawing, lineage, service
-from app.idempotency import Key, fingerprint, once, queued_once
-from schemas.fit import ComparisonView, EffectsRequest, ErrorBudget, FitRequest, FitView, JobView, LadderView
+from app.idempotency import Answer, Key, fingerprint, once, queued_once
+from schemas.fit import ComparisonView, EffectsRequest, FitRequest, FitView, JobView, LadderView
+from schemas.result import ErrorBudget
 
 router = APIRouter(prefix="/fits", tags=["fits"], responses=COMMON)
 _MEDIA = ("application/json", "image/svg+xml", "image/png", "application/pdf")
@@ -22,7 +23,7 @@ def submit(here: Here, request: FitRequest, key: Key = None) -> Response:
     return queued_once(here, key, asked, lambda job: service.submit(here, request, job))
 
 
-@router.get("/{fit}")
+@router.get("/{fit}", response_model_exclude_unset=True)
 def one(here: Here, fit: str) -> FitView:
     """A fit: the contract's fit JSON in `result`."""
     return service.get(here, fit)
@@ -43,9 +44,11 @@ def budget(here: Here, fit: str) -> ErrorBudget:
 @router.post("/{fit}/approve", response_model=FitView)
 def approve(here: Here, fit: str, key: Key = None) -> Response:
     """Make the fit its actuator's current parameter set; older ones stay."""
-    return once(
-        here.sessions, key, fingerprint("approve", fit), lambda _: (200, service.approve(here, fit).model_dump(), "")
-    )
+
+    def approved(_: str) -> Answer:
+        return 200, service.approve(here, fit).model_dump(exclude_unset=True), ""
+
+    return once(here.sessions, key, fingerprint("approve", fit), approved)
 
 
 @router.post("/{fit}/effects", status_code=202, response_model=JobView)

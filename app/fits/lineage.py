@@ -10,8 +10,10 @@ from app.fits import repository, service
 from app.tables import FitRow
 from ident.custom.definition import definition_of, together
 from ident.effects import effect
+from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from schemas.fit import EffectsRequest, JobView, LadderRung, LadderView
+from schemas.result import EstimateView
 
 
 def add(context: Context, fit_id: str, request: EffectsRequest, job: str) -> JobView:
@@ -22,22 +24,18 @@ def add(context: Context, fit_id: str, request: EffectsRequest, job: str) -> Job
     wanted = dict.fromkeys([*named, *(str(definition["name"]) for definition in more)])
     if not wanted:
         raise Failure(422, "bad-request", "no effect is given", "effect", "name one of those at /api/v1/effects")
-    settings = _settings(parent)
+    fit = FitResult.from_json(parent.result)
+    settings = Settings.from_json(fit.settings) if fit.settings else Settings(model=fit.model, seed=fit.seed)
     settings = replace(settings, custom=together(settings.custom, more))
     own = {definition["name"] for definition in settings.custom}
     for name in wanted.keys() - own:
         effect(name)
-    there = [name for name in wanted if name in parent.result["effects"]]
+    there = [name for name in wanted if name in fit.effects]
     if there:
         raise Failure(409, "effect-there", f"the fit has {', '.join(there)} already", "effect",
                       "add another one, or start from the fit before it")  # fmt: skip
-    settings = replace(settings, effects=(*parent.result["effects"], *wanted))
+    settings = replace(settings, effects=(*fit.effects, *wanted))
     return service.queue(context, job, parent.matrix, settings, parent.id)
-
-
-def _settings(row: FitRow) -> Settings:
-    given = row.result["settings"]
-    return Settings.from_json(given) if given else Settings(model=row.model, seed=row.result["seed"])
 
 
 def ladder(context: Context, fit_id: str) -> LadderView:
@@ -45,19 +43,20 @@ def ladder(context: Context, fit_id: str) -> LadderView:
     with context.sessions() as session:
         rows = repository.lineage(session, service.find(context, fit_id))
     rungs = []
-    before: list[str] = []
+    before: tuple[str, ...] = ()
     for row in rows:
-        rungs.append(_rung(row, before))
-        before = row.result["effects"]
+        found = FitResult.from_json(row.result)
+        rungs.append(_rung(row, found, before))
+        before = found.effects
     return LadderView(fit=fit_id, rungs=rungs)
 
 
-def _rung(row: FitRow, before: list[str]) -> LadderRung:
-    result = row.result
+def _rung(row: FitRow, found: FitResult, before: tuple[str, ...]) -> LadderRung:
     return LadderRung(
         fit=row.id, parent=row.parent, matrix=row.matrix,
-        added=[name for name in result["effects"] if name not in before],
-        error={"fit": row.error_fit, "verify": row.error_verify}, parameters=result["parameters"],
-        seed=result["seed"], version=result["version"], data_hash=result["data_hash"],
+        added=[name for name in found.effects if name not in before],
+        error={"fit": row.error_fit, "verify": row.error_verify},
+        parameters={name: EstimateView(**vars(entry)) for name, entry in found.parameters.items()},
+        seed=found.seed, version=found.version, data_hash=found.data_hash,
         created_at=row.created_at, approved_at=row.approved_at, current=row.current,
     )  # fmt: skip

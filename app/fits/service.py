@@ -24,11 +24,25 @@ from schemas.fit import (
     Chosen,
     ComparedRun,
     ComparisonView,
-    ErrorBudget,
     FitRequest,
     FitView,
     JobView,
 )
+from schemas.result import ErrorBudget, FitResultView
+
+
+@dataclass(frozen=True)
+class Stored:
+    """A fit, and where it belongs."""
+
+    id: str
+    matrix: str
+    serial: str
+    parent: str | None
+    created_at: str
+    approved_at: str | None
+    current: bool
+    found: FitResult
 
 
 @dataclass(frozen=True)
@@ -90,11 +104,24 @@ def find(context: Context, fit_id: str) -> FitRow:
 
 
 def get(context: Context, fit_id: str) -> FitView:
-    """A fit by id, with the history of its search."""
-    return view(*whole(context, fit_id))
+    """A fit by id as it is sent, with the history of its search; raises Failure 404."""
+    row, result = _whole(context, fit_id)
+    return FitView(
+        id=row.id, matrix=row.matrix, serial=row.serial, parent=row.parent, created_at=row.created_at,
+        approved_at=row.approved_at, current=row.current, result=FitResultView(**result),
+    )  # fmt: skip
 
 
-def whole(context: Context, fit_id: str) -> tuple[FitRow, dict[str, Any]]:
+def stored(context: Context, fit_id: str) -> Stored:
+    """A fit by id, with the history of its search; raises Failure 404."""
+    row, result = _whole(context, fit_id)
+    return Stored(
+        id=row.id, matrix=row.matrix, serial=row.serial, parent=row.parent, created_at=row.created_at,
+        approved_at=row.approved_at, current=row.current, found=FitResult.from_json(result),
+    )  # fmt: skip
+
+
+def _whole(context: Context, fit_id: str) -> tuple[FitRow, dict[str, Any]]:
     """The record of a fit, and its result with the history of its search; raises Failure 404."""
     row = find(context, fit_id)
     with context.sessions() as session:
@@ -125,11 +152,3 @@ def budget_of(context: Context, fit_id: str) -> ErrorBudget:
     matrix = matrices.load(context, row.matrix)
     fitted = replace(matrix, runs=matrix.of_use("fit") or matrix.runs)
     return ErrorBudget(**budget(compare(fitted, FitResult.from_json(row.result))).to_json())
-
-
-def view(row: FitRow, result: dict[str, Any]) -> FitView:
-    """A fit as it is sent."""
-    return FitView(
-        id=row.id, matrix=row.matrix, serial=row.serial, parent=row.parent, created_at=row.created_at,
-        approved_at=row.approved_at, current=row.current, result=result,
-    )  # fmt: skip

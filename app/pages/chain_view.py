@@ -99,10 +99,9 @@ def drawing(fit: FitResult) -> Drawing:
 def _on(fit: FitResult, own: Mapping[str, Any]) -> Iterator[Member]:
     """The effects of the fit with the strengths that were found."""
     known = {effect.name: effect for effect in EFFECTS}
-    parameters = {name: vars(entry) for name, entry in fit.parameters.items()}
     for name in fit.effects:
         effect = known[name] if name in known else read_effect(own[name])
-        yield member(name, effect, parameters, own.get(name))
+        yield member(name, effect, fit.parameters, own.get(name))
 
 
 def _off(fit: FitResult) -> Iterator[Member]:

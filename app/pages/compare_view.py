@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from app.fits.service import Stored
 from app.pages.figure_forms import FigureForm, forms
 from ident.fit.result import Estimate, FitResult
 from ident.presets import preset
@@ -14,7 +15,6 @@ from ident.words.percent import change, percent_in_print
 from ident.words.plus_minus import plus_minus
 from ident.words.symbols import symbol
 from ident.words.titles import of_parameter, title, with_effects
-from schemas.fit import FitView
 from schemas.matrix import MatrixView
 
 
@@ -77,9 +77,9 @@ class CompareView:
         return self.first.serial
 
 
-def compare_view(first: FitView, second: FitView, matrix: MatrixView) -> CompareView:
+def compare_view(first: Stored, second: Stored, matrix: MatrixView) -> CompareView:
     """The page of two fits; `matrix` is that of the first."""
-    a, b = FitResult.from_json(first.result), FitResult.from_json(second.result)
+    a, b = first.found, second.found
     known = {run.id for run in matrix.runs}
     same = first.matrix == second.matrix or {run.id for run in b.runs} == known
     figures = tuple(form for form in forms(matrix.runs, a) if form.name == "bode") if same else ()
@@ -89,7 +89,7 @@ def compare_view(first: FitView, second: FitView, matrix: MatrixView) -> Compare
     )  # fmt: skip
 
 
-def _side(stored: FitView, fit: FitResult) -> Side:
+def _side(stored: Stored, fit: FitResult) -> Side:
     name = with_effects(preset(fit.model).title, fit.effects)
     return Side(stored.id, stored.serial, stored.matrix, name, fit.method, fit.seed, stored.created_at, stored.current)
 

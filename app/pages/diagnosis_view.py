@@ -7,14 +7,15 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from app.diagnoses.service import Stored
 from app.pages.effect_view import Member, member
 from app.pages.evidence_view import evidence, known_effect
 from app.pages.job_view import JobPageView, job_page
+from ident.diagnosis.result import Diagnosis, Ranked, Suspect
 from ident.words.engineering import quantity
 from ident.words.number import plain
 from ident.words.percent import percent_in_print
 from ident.words.titles import title
-from schemas.diagnosis import CandidateView, DiagnosisView
 from schemas.fit import JobView
 
 _LABELS = {"mass": "kg", "stiffness": "N/m", "gain": ""}
@@ -33,7 +34,7 @@ class Card:
     rank: int
     title: str
     members: tuple[Member, ...]
-    predicted: float
+    predicted: float | None
     error: Mapping[str, float | None]
     words: str
     looks: str
@@ -79,7 +80,9 @@ class MissingView:
     """The section *What is missing?* of a fit; without a diagnosis only the button, or the job that makes one."""
 
     job: JobPageView | None
-    found: DiagnosisView | None
+    found: Diagnosis | None
+    id: str = ""
+    made: str = ""
     seconds: str = ""
     would_add: tuple[Member, ...] = ()
     cards: tuple[Card, ...] = ()
@@ -89,18 +92,20 @@ class MissingView:
     left: str = ""
 
 
-def missing(found: DiagnosisView | None, job: JobView | None, run: str = "") -> MissingView:
+def missing(stored: Stored | None, job: JobView | None, run: str = "") -> MissingView:
     """The section for the newest diagnosis of a fit and the newest job that was to make one.
 
     `run` is the one that shows what no curve does.
     """
     shown = job_page(job) if job is not None and job.state != "succeeded" else None
-    if found is None:
+    if stored is None:
         return MissingView(shown, None)
-    cards = tuple(_cards(found, run))
+    found, cards = stored.found, tuple(_cards(stored, run))
     return MissingView(
         job=shown,
         found=found,
+        id=stored.id,
+        made=stored.created_at,
         seconds=quantity(found.seconds, "s"),
         would_add=_would_add(cards, found.verdict.effects),
         cards=tuple(card for card in cards if card.confirmed),
@@ -111,29 +116,31 @@ def missing(found: DiagnosisView | None, job: JobView | None, run: str = "") -> 
     )
 
 
-def _would_add(cards: tuple[Card, ...], names: list[str]) -> tuple[Member, ...]:
+def _would_add(cards: tuple[Card, ...], names: tuple[str, ...]) -> tuple[Member, ...]:
     """The members of that name that can be added, in the order of the verdict."""
     members = {member.name: member for card in cards for member in card.addable}
     return tuple(members[name] for name in names if name in members)
 
 
-def _cards(found: DiagnosisView, run: str) -> Iterator[Card]:
+def _cards(stored: Stored, run: str) -> Iterator[Card]:
     """A card for each candidate; those of a group share the card of the best."""
-    by_name = {candidate.effect: candidate for candidate in found.candidates}
+    candidates = stored.found.candidates
+    by_name = {candidate.effect: candidate for candidate in candidates}
     shown: set[str] = set()
     rank = 0
-    for candidate in found.candidates:
+    for candidate in candidates:
         if candidate.effect in shown:
             continue
         others = [name for name in candidate.group if name != candidate.effect and name in by_name]
         together = [candidate, *(by_name[name] for name in others)]
         shown |= {member.effect for member in together}
         rank += 1
-        yield _card(rank, together, found, run)
+        yield _card(rank, together, stored, run)
 
 
-def _card(rank: int, together: list[CandidateView], found: DiagnosisView, run: str) -> Card:
-    best, own = together[0], definitions(found)
+def _card(rank: int, together: list[Ranked], stored: Stored, run: str) -> Card:
+    found, best = stored.found, together[0]
+    own = {str(definition["name"]): definition for definition in found.settings.get("custom", ())}
     looks = str(best.evidence.get("looks", ""))
     return Card(
         rank=rank,
@@ -146,60 +153,54 @@ def _card(rank: int, together: list[CandidateView], found: DiagnosisView, run: s
         confirmed=bool(best.evidence.get("beyond_chance")),
         chosen=any(candidate.effect in found.verdict.effects for candidate in together),
         gauge=_gauge(best, found),
-        evidence=evidence(best, found, own.get(best.effect), run),
+        evidence=evidence(best, stored, own.get(best.effect), run),
     )
 
 
-def _gauge(best: CandidateView, found: DiagnosisView) -> tuple[float, float, float]:
+def _gauge(best: Ranked, found: Diagnosis) -> tuple[float, float, float]:
     """Confirmed error, predicted error and noise floor in per cent of the error without the effect."""
-    before = found.baseline["error"]["held_out"] or 1.0
+    before = found.baseline.error.get("held_out") or 1.0
     floor = found.noise_floor.get("fit")
     parts = (best.error.get("held_out"), best.predicted_error, floor)
     confirmed, predicted, lowest = (min(100.0, 100 * (part or 0.0) / before) for part in parts)
     return round(confirmed, 1), round(predicted, 1), round(lowest, 1)
 
 
-def definitions(found: DiagnosisView) -> dict[str, Mapping[str, Any]]:
-    """The user's own effects that a diagnosis ranked, by name."""
-    settings = (found.model_extra or {}).get("settings") or {}
-    return {str(definition["name"]): definition for definition in settings.get("custom", ())}
-
-
-def _member(candidate: CandidateView, own: Mapping[str, Any] | None) -> Member:
+def _member(candidate: Ranked, own: Mapping[str, Any] | None) -> Member:
     effect = known_effect(candidate.effect, own)
     return member(candidate.effect, effect, candidate.parameters, own)
 
 
-def _suspect(entry: Mapping[str, Any]) -> SuspectCard:
-    unit = str(entry.get("unit", "1"))
+def _suspect(entry: Suspect) -> SuspectCard:
     return SuspectCard(
-        run=str(entry["run"]),
-        what=str(entry["what"]),
-        stated=quantity(entry.get("stated"), unit),
-        found=quantity(entry.get("found"), unit),
-        words=str(entry["evidence"]),
+        run=entry.run,
+        what=entry.what,
+        stated=quantity(entry.stated, entry.unit),
+        found=quantity(entry.found, entry.unit),
+        words=entry.evidence,
         mend=_mend(entry),
     )
 
 
-def _mend(entry: Mapping[str, Any]) -> str:
+def _mend(entry: Suspect) -> str:
     """What a revision of the matrix would change."""
-    what, found = str(entry["what"]), entry.get("found")
-    if what not in _LABELS or found is None:
+    if entry.what not in _LABELS or entry.found is None:
         return ""
-    unit = _LABELS[what]
-    label = {"specimen": {what: f"{found:.4g} {unit}"}} if unit else {what: float(f"{found:.4g}")}
-    return json.dumps({"runs": {str(entry["run"]): label}})
+    unit = _LABELS[entry.what]
+    label = (
+        {"specimen": {entry.what: f"{entry.found:.4g} {unit}"}} if unit else {entry.what: float(f"{entry.found:.4g}")}
+    )
+    return json.dumps({"runs": {entry.run: label}})
 
 
-def _ladder(found: DiagnosisView) -> Iterator[Rung]:
+def _ladder(found: Diagnosis) -> Iterator[Rung]:
     for rung in found.ladder:
         said = "–" if rung.nats is None else plain(rung.nats, 3)
         errors = {use: rung.error.get(use) for use in _USES}
         yield Rung(title(rung.added) if rung.added else "the fit as it is", errors, said)
 
 
-def _left(found: DiagnosisView) -> str:
+def _left(found: Diagnosis) -> str:
     """What stays unexplained, in a sentence."""
     error, floor = found.ladder[-1].error.get("fit"), found.noise_floor.get("fit")
     after = " with all that helps" if found.verdict.effects else ""

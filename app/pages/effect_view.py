@@ -9,10 +9,16 @@ from typing import Any
 
 from markupsafe import Markup
 
+from ident.diagnosis.result import Found
 from ident.effects.effect import Effect
 from ident.equations.mathml import mathml
+from ident.fit.result import Estimate
 from ident.words.plus_minus import plus_minus
 from ident.words.titles import title
+from schemas.result import EstimateView
+
+Valued = Estimate | Found | EstimateView
+"""A parameter with its standard error: of a fit, of a refit, of a step of the ladder."""
 
 
 @dataclass(frozen=True)
@@ -33,9 +39,7 @@ class Member:
     definition: str = ""
 
 
-def member(
-    name: str, effect: Effect | None, parameters: Mapping[str, Mapping[str, Any]], own: Mapping[str, Any] | None
-) -> Member:
+def member(name: str, effect: Effect | None, parameters: Mapping[str, Valued], own: Mapping[str, Any] | None) -> Member:
     """An effect as the page tells of it, with the strength that is among the parameters."""
     return Member(
         name=name,
@@ -50,10 +54,10 @@ def member(
     )
 
 
-def strength(effect: str, parameters: Mapping[str, Mapping[str, Any]]) -> str:
+def strength(effect: str, parameters: Mapping[str, Valued]) -> str:
     """The first parameter of the effect, with standard error and unit; "" where it is not among the parameters."""
     own = (entry for name, entry in parameters.items() if name.startswith(f"{effect}."))
     entry = next(own, None)
     if entry is None:
         return ""
-    return plus_minus(entry["value"], entry["std_error"], entry["unit"])
+    return plus_minus(entry.value, entry.std_error, entry.unit)

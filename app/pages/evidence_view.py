@@ -6,12 +6,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 from urllib.parse import urlencode
 
+from app.diagnoses.service import Stored
 from ident.custom.definition import read_effect
+from ident.diagnosis.result import Ranked
 from ident.effects import EFFECTS
 from ident.effects.effect import Effect
 from ident.presets import preset
 from ident.residuals.views import view_of
-from schemas.diagnosis import CandidateView, DiagnosisView
 from schemas.matrix import RunView
 
 _CATALOGUE = {effect.name: effect for effect in EFFECTS}
@@ -29,9 +30,7 @@ def telling_run(runs: Sequence[RunView], errors: Mapping[str, float]) -> str:
     return max(small, key=lambda run: errors.get(run.id, 0.0)).id if small else ""
 
 
-def evidence(
-    best: CandidateView, found: DiagnosisView, own: Mapping[str, Any] | None, run: str = ""
-) -> tuple[str, str] | None:
+def evidence(best: Ranked, found: Stored, own: Mapping[str, Any] | None, run: str = "") -> tuple[str, str] | None:
     """The figure in which the effect shows, with what it predicts; None where it was not refitted.
 
     Where no curve shows it, the Bode plot of `run` does.
@@ -39,6 +38,6 @@ def evidence(
     effect = known_effect(best.effect, own)
     if effect is None or not best.parameters:
         return None
-    view = view_of(effect, preset(found.model))
+    view = view_of(effect, preset(found.found.model))
     query = {"candidate": f"{found.id}:{best.effect}", **({"view": view.name} if view else {"run": run})}
     return "residual-curve" if view else "bode", urlencode({name: text for name, text in query.items() if text})

@@ -10,6 +10,7 @@ from typing import Any
 from markupsafe import Markup
 
 from app.fits.rows import Determined, ErrorRow, ParameterRow, combination_rows, error_rows, parameter_rows
+from app.fits.service import Stored
 from app.pages.chain_view import Drawing, drawing
 from app.pages.diagnosis_view import MissingView
 from app.pages.figure_forms import MAP, FigureForm, forms
@@ -25,7 +26,7 @@ from ident.presets import PRESETS, Preset
 from ident.words.engineering import quantity
 from ident.words.percent import percent_in_print
 from ident.words.titles import with_effects
-from schemas.fit import FitView, LadderView
+from schemas.fit import LadderView
 from schemas.matrix import MatrixView
 from schemas.parameters import ParameterSetView
 
@@ -80,7 +81,7 @@ class FitPageView:
 
 
 def fit_page(
-    stored: FitView,
+    stored: Stored,
     matrix: MatrixView,
     lacks: MissingView,
     ladder: LadderView,
@@ -91,7 +92,7 @@ def fit_page(
 
     `newer` is the newest revision of the matrix, None where that is the matrix itself.
     """
-    fit = FitResult.from_json(stored.result)
+    fit = stored.found
     model = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
     known = {run.id: run for run in matrix.runs}
     figures = forms(matrix.runs, fit)

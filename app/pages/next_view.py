@@ -8,10 +8,10 @@ from urllib.parse import quote
 
 from app.diagnoses.service import Search
 from app.fits.service import Yardstick
+from ident.diagnosis.result import Verdict
 from ident.words.number import plain
 from ident.words.percent import percent_in_print
 from ident.words.titles import title
-from schemas.diagnosis import VerdictView
 from schemas.fit import JobView
 from schemas.parameters import ActuatorView, ParameterSetView
 
@@ -52,7 +52,7 @@ def next_step(
     return _fitted(newest, yardstick or Yardstick(), search.verdict, at)
 
 
-def _fitted(newest: ParameterSetView, yardstick: Yardstick, verdict: VerdictView | None, at: str) -> Next:
+def _fitted(newest: ParameterSetView, yardstick: Yardstick, verdict: Verdict | None, at: str) -> Next:
     """Of a fit that waits for its user."""
     error, before = newest.error_fit, yardstick.before
     if error is None or not yardstick.floor:
@@ -65,7 +65,7 @@ def _fitted(newest: ParameterSetView, yardstick: Yardstick, verdict: VerdictView
     return Next("The model explains all but the noise.", "Look and approve it", at, main=False)
 
 
-def _failing(ratio: float, verdict: VerdictView | None, at: str) -> Next:
+def _failing(ratio: float, verdict: Verdict | None, at: str) -> Next:
     """Of a fit whose error is so many times the noise."""
     fails = f"The error is {plain(ratio, 2)} times the noise"
     if verdict is None:

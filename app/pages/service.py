@@ -25,7 +25,6 @@ from app.pages.start_view import start_view
 from app.pages.thumbnails import thumbnail
 from app.parameters import service as parameters
 from app.parameters.repository import Wanted
-from ident.fit.result import FitResult
 from ident.synthesis.matrix import SIMULATED
 from ident.words.engineering import quantity
 from schemas.parameters import ActuatorPage, ActuatorView
@@ -91,7 +90,7 @@ def _facts(found: ActuatorView) -> list[tuple[str, str]]:
 def _approved(context: Context, found: ActuatorView) -> Any:
     if found.current is None:
         return ()
-    return parameter_rows(FitResult.from_json(fits.get(context, found.current.id).result))
+    return parameter_rows(fits.stored(context, found.current.id).found)
 
 
 def _drifts(context: Context, found: ActuatorView) -> Any:
@@ -122,20 +121,20 @@ def compared(context: Context, wanted: str) -> CompareView:
     names = [name for name in wanted.split(",") if name]
     if len(names) != 2:
         raise Failure(422, "bad-request", f"{len(names)} fits are given", "fits", "give two: /compare?fits=A,B")
-    first, second = (fits.get(context, name) for name in names)
+    first, second = (fits.stored(context, name) for name in names)
     return compare_view(first, second, matrices.get(context, first.matrix))
 
 
 def fit(context: Context, fit_id: str) -> FitPageView | JobPageView:
     """A finished fit, or the job that has not made it; raises Failure 404."""
     try:
-        found = fits.get(context, fit_id)
+        stored = fits.stored(context, fit_id)
     except Failure:
         return job_page(jobs.get(context, fit_id))
-    stored = matrices.get(context, found.matrix)
-    run = telling_run(stored.runs, {run["id"]: run["error"] for run in found.result["runs"]})
+    matrix = matrices.get(context, stored.matrix)
+    run = telling_run(matrix.runs, {run.id: run.error for run in stored.found.runs})
     lacks = missing(*diagnoses.of_fit(context, fit_id), run)
     way = lineage.ladder(context, fit_id)
-    others = parameters.page(context, Wanted(serial=found.serial), None, _ROWS).items
-    newer = matrices.newer(context, found.matrix)
-    return fit_page(found, stored, lacks, way, others, newer)
+    others = parameters.page(context, Wanted(serial=stored.serial), None, _ROWS).items
+    newer = matrices.newer(context, stored.matrix)
+    return fit_page(stored, matrix, lacks, way, others, newer)

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from app.fits.rows import combination_rows, error_rows, parameter_rows
 from app.report.blocks import Block, Facts, Figure, Formula, Heading, Report, Table, Tables, Text
-from app.report.diagnosis import Diagnosis
-from app.report.rows import budget_rows, candidate_rows, curve_rows, group_tables, trend_rows
+from app.report.rows import budget_rows, candidate_rows, curve_rows, group_tables, ladder_steps, trend_rows
 from ident.checks.check import check
 from ident.custom.definition import preset_with
+from ident.diagnosis.result import Diagnosis
 from ident.errors import Unusable
 from ident.figures import ladder, look
 from ident.fit.result import FitResult
@@ -122,10 +122,9 @@ def _missing(diagnosis: Diagnosis, matrix: Matrix) -> Iterator[Block]:
     for group in verdict.indistinguishable:
         yield Text(f"These data cannot tell apart: {', '.join(map(title, group))}.")
     for suspect in verdict.suspects:
-        run = f"run {suspect['run']}: " if suspect.get("run") else ""
-        yield Text(f"Doubtful: {run}{suspect.get('what', '')}")
-    if diagnosis.steps:
-        chart = ladder(diagnosis.steps, diagnosis.floor, matrix.actuator, look("light"))
+        yield Text(f"Doubtful: run {suspect.run}: {suspect.what}")
+    if steps := ladder_steps(diagnosis):
+        chart = ladder(steps, diagnosis.noise_floor.get("fit"), matrix.actuator, look("light"))
         yield Figure("ladder", chart, "The error with each effect added")
     header = ("Effect", "Predicted error", "Fit", "Held out", "Verify", "Why")
     yield Table(header, candidate_rows(diagnosis), (1, 2, 3, 4))

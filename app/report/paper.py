@@ -11,7 +11,7 @@ from typing import Any
 
 from app.report.blocks import Block, Figure, Report, Table, Tables
 from app.report.content import content
-from app.report.diagnosis import Diagnosis
+from ident.diagnosis.result import Diagnosis
 from ident.figures import render
 from ident.fit.result import FitResult
 from ident.matrix import Matrix

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from app.report.diagnosis import Diagnosis
+from ident.diagnosis.result import Diagnosis
+from ident.figures.ladder import Step
 from ident.residuals.breakdown import Breakdown, Group
 from ident.residuals.budget import Budget
 from ident.residuals.curves import Curve
@@ -14,6 +15,7 @@ from ident.words.percent import percent_in_print
 from ident.words.titles import title
 
 Row = tuple[str, ...]
+_FIRST = "as fitted"
 _MEANS = {
     "noise": "what no model can take",
     "linear": "what a better linear model could take",
@@ -53,6 +55,18 @@ def trend_rows(trends: Sequence[Trend]) -> tuple[Row, ...]:
         for t in trends
         if t.clear
     )
+
+
+def ladder_steps(diagnosis: Diagnosis) -> list[Step]:
+    """The ladder as its figure takes it, the fitted model first."""
+    steps: list[Step] = [
+        (title(rung.added) if rung.added else _FIRST, rung.error.get("fit"), rung.error.get("verify"))
+        for rung in diagnosis.ladder
+    ]
+    first = diagnosis.baseline.error
+    if first and not (diagnosis.ladder and diagnosis.ladder[0].added is None):
+        steps.insert(0, (_FIRST, first.get("fit"), first.get("verify")))
+    return steps
 
 
 def candidate_rows(diagnosis: Diagnosis) -> tuple[Row, ...]:

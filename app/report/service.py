@@ -6,9 +6,9 @@ from app.context import Context
 from app.diagnoses import service as diagnoses
 from app.fits import service as fits
 from app.matrices import service as matrices
-from app.report.diagnosis import Diagnosis
 from app.report.document import POLICY, document
 from app.report.paper import paper
+from ident.diagnosis.result import Diagnosis
 from ident.fit.result import FitResult
 from ident.matrix import Matrix
 
@@ -28,5 +28,5 @@ def as_pdf(context: Context, fit_id: str) -> bytes:
 def _known(context: Context, fit_id: str) -> tuple[Matrix, FitResult, Diagnosis | None]:
     row = fits.find(context, fit_id)
     newest, _ = diagnoses.of_fit(context, fit_id)
-    diagnosis = None if newest is None else Diagnosis.model_validate(newest.model_dump())
+    diagnosis = None if newest is None else newest.found
     return matrices.load(context, row.matrix), FitResult.from_json(row.result), diagnosis

@@ -12,7 +12,7 @@ import numpy as np
 from ident.bench.missing import LACKING, Candidate, Refit, Refitter
 from ident.bench.outputs import errors_of, model_of, noise_floor
 from ident.bench.records import Record, bench_set
-from ident.diagnosis.result import Diagnosis, Found, Ranked, Rung, Verdict
+from ident.diagnosis.result import Baseline, Diagnosis, Found, Ranked, Rung, Verdict
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.words import verdict_text
 from ident.effects.effect import Effect
@@ -54,7 +54,7 @@ class BenchDiagnoser:
         unexplained = bool(self.floor["fit"] and (errors["fit"] or 0.0) > _NEAR_FLOOR * self.floor["fit"])
         text = verdict_text(found.effects, groups, (), unexplained, errors, float(before["fit"] or 0.0))
         return Diagnosis(
-            model=self.fit.model, given=(), baseline={"error": before, "offset": self._offset(base)},
+            model=self.fit.model, baseline=Baseline(before, self._offset(base)),
             noise_floor={"fit": self.floor["fit"], "held_out": None, "verify": self.floor["verify"]},
             candidates=tuple(self._ranked(c, group, base, i == 0) for i, c in enumerate(first)),
             ladder=tuple(self._rung(step, steps[i - 1] if i else None) for i, step in enumerate(steps)),
@@ -118,7 +118,10 @@ class BenchDiagnoser:
     def _rung(self, step: Refit, before: Refit | None) -> Rung:
         nats = None if before is None else improvement(before.held_out, step.held_out).nats
         added = None if before is None else step.effects[-1]
-        return Rung(added, self._errors(step), self._offset(step), self._parameters(step), nats)
+        return Rung(
+            added=added, error=self._errors(step), offset=self._offset(step), nats=nats,
+            parameters=self._parameters(step),
+        )  # fmt: skip
 
 
 def _alike(ranking: list[Candidate]) -> tuple[str, ...]:

@@ -22,12 +22,12 @@ from ident.design.candidate_runs import candidate_runs
 from ident.design.excitation import KINDS
 from ident.design.experiment import Experiment
 from ident.design.rival import PRIOR, Rival, deviation_of_noise
+from ident.design.rivals import Rivals
 from ident.errors import Unusable
 from ident.fit.bounded_step import bounded_step
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.reduction import excited_band
 from ident.matrix import Matrix, Run
-from ident.presets import Preset
 
 Array = NDArray[np.float64]
 _TRIAL = 4096  # samples on which runs are judged
@@ -56,14 +56,9 @@ class Worth:
         return float(np.minimum(self.pairs, _SURE).sum()), float(self.pairs.sum())
 
 
-def propose(
-    models: Sequence[tuple[Preset, Mapping[str, float]]], matrix: Matrix, noise: float, seed: int = 0
-) -> Experiment:
-    """The best further run for models in question, each a preset and its values by the names of its equations, SI.
-
-    `noise` is the relative noise floor. Raises Unusable where no model is given or none can be run.
-    """
-    rivals = _rivals(models, matrix, noise)
+def propose(in_question: Rivals, matrix: Matrix, seed: int = 0) -> Experiment:
+    """The best further run for the models in question. Raises Unusable where there is none, or none can be run."""
+    rivals = _rivals(in_question, matrix)
     worths = _judged(rivals, list(candidate_runs(rivals[0].matrix, rivals[0].band, seed)))
     if not worths:
         raise Unusable("no-experiment", "the models are stable in no run that could be proposed", "models",
@@ -80,23 +75,23 @@ def propose(
     return replace(found, text=_text(found, rivals, tells_apart))
 
 
-def ranked(
-    models: Sequence[tuple[Preset, Mapping[str, float]]], matrix: Matrix, noise: float, seed: int = 0
-) -> list[Worth]:
+def ranked(in_question: Rivals, matrix: Matrix, seed: int = 0) -> list[Worth]:
     """Every run that was weighed, the one that separates the models best first."""
-    rivals = _rivals(models, matrix, noise)
+    rivals = _rivals(in_question, matrix)
     worths = _judged(rivals, list(candidate_runs(rivals[0].matrix, rivals[0].band, seed)))
     return sorted(worths, key=lambda worth: worth.rank, reverse=True)
 
 
-def _rivals(models: Sequence[tuple[Preset, Mapping[str, float]]], matrix: Matrix, noise: float) -> list[Rival]:
-    if not models:
+def _rivals(in_question: Rivals, matrix: Matrix) -> list[Rival]:
+    """Each model with what the trusted runs of the matrix say of it."""
+    noise, trusted = in_question.noise, in_question.trusted(matrix)
+    if not in_question.models:
         raise Unusable("no-model", "no model is in question", "models", "give at least one fitted model")
     if not 0 < noise < np.inf:
         raise Unusable("bad-value", f"noise {noise:g}", "noise floor", "give a positive share of the output")
     found = []
-    for preset, values in models:
-        suited, driven = preset.for_matrix(matrix)
+    for preset, values in in_question.models:
+        suited, driven = preset.for_matrix(trusted)
         runs = driven.of_use("fit")
         band = excited_band(runs)
         found.append(Rival(suited, dict(values), driven, band, deviation_of_noise(runs, band, noise)))

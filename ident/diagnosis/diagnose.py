@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from ident.diagnosis.advice import error_budget, next_run
 from ident.diagnosis.family import ModelFamily, Refit
 from ident.diagnosis.ranking import Candidate
-from ident.diagnosis.result import Diagnosis, Found, Ranked, Rung, Verdict
+from ident.diagnosis.result import Baseline, Diagnosis, Found, Ranked, Rung, Suspect, Verdict
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.stepwise import StepwiseSelection
-from ident.diagnosis.suspects import Suspect, suspects
+from ident.diagnosis.suspects import suspects
 from ident.diagnosis.words import verdict_text, why
 from ident.effects.effect import Effect
 from ident.errors import Unusable
@@ -74,8 +74,8 @@ class Diagnoser:
                             repeats=selection.models.floors.measured)  # fmt: skip
         return Diagnosis(
             model=self.fit.model,
-            given=base.effects,
-            baseline={"error": dict(ladder[0].error), "offset": base.offset},
+            effects=base.effects,
+            baseline=Baseline(dict(ladder[0].error), base.offset),
             noise_floor=floor,
             candidates=tuple(self._ranked(selection, floor["fit"])),
             ladder=tuple(ladder),
@@ -153,8 +153,10 @@ class Diagnoser:
         before: Refit | None = None
         for added, refit in selection.ladder():
             found = None if before is None else improvement(before.held_out, refit.held_out).nats
-            rungs.append(Rung(added, self._errors(selection.models, refit), refit.held_out.offset,
-                              self._parameters(selection.models, refit), found))  # fmt: skip
+            rungs.append(Rung(
+                added=added, error=self._errors(selection.models, refit), offset=refit.held_out.offset, nats=found,
+                parameters=self._parameters(selection.models, refit),
+            ))  # fmt: skip
             before = refit
         return rungs
 

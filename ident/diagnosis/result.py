@@ -1,4 +1,4 @@
-"""What a diagnosis found, in the contract's words."""
+"""What a diagnosis found, in the contract's words: its JSON has these names in this order."""
 
 from __future__ import annotations
 
@@ -6,7 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from ident.diagnosis.suspects import Suspect
+from ident.errors import Unusable
+from ident.matrix import Specimen
+from ident.plain import Misfit, read, written
+from ident.residuals.budget import Budget
 
 Errors = Mapping[str, float | None]
 """Eq. (17) averaged over the runs of a kind: fit, held_out, verify; None where there are none."""
@@ -17,107 +20,147 @@ class Found:
     """One parameter of a refit, SI, with its standard error (None where the data do not determine it)."""
 
     value: float
-    unit: str
-    std_error: float | None
+    unit: str = "1"
+    std_error: float | None = None
     symbol: str = ""
-
-    def to_json(self) -> dict[str, Any]:
-        """As plain JSON data."""
-        return {"value": self.value, "unit": self.unit, "std_error": self.std_error, "symbol": self.symbol}
 
 
 @dataclass(frozen=True)
+class Baseline:
+    """Errors and offset of the model that was given."""
+
+    error: Errors = field(default_factory=dict)
+    offset: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class Ranked:
     """An effect that the model lacks: what it was predicted to gain, what its refit gained, and why.
 
-    `group` are the effects that the data cannot tell from it. `confirmed` is False where only the prediction was made.
+    `group` are the effects that the data cannot tell from it. Without `parameters` only the prediction was made.
     """
 
     effect: str
-    error: Errors
-    offset: float | None
-    predicted_error: float
-    parameters: Mapping[str, Found]
-    group: tuple[str, ...]
-    evidence: Mapping[str, float | str | bool | None]
-    why: str
-
-    def to_json(self) -> dict[str, Any]:
-        """As plain JSON data."""
-        return {
-            "effect": self.effect, "error": dict(self.error), "offset": self.offset,
-            "predicted_error": self.predicted_error, "parameters": {n: p.to_json() for n, p in self.parameters.items()},
-            "group": list(self.group), "evidence": dict(self.evidence), "why": self.why,
-        }  # fmt: skip
+    error: Errors = field(default_factory=dict)
+    offset: float | None = None
+    predicted_error: float | None = None
+    parameters: Mapping[str, Found] = field(default_factory=dict)
+    group: tuple[str, ...] = ()
+    evidence: Mapping[str, float | str | bool | None] = field(default_factory=dict)
+    why: str = ""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Rung:
     """A step of the ladder: what was added (None: the fitted model), the errors after it, the parameters.
 
     `nats` tell by how much the step made the held-out data more likely.
     """
 
-    added: str | None
-    error: Errors
-    offset: float
-    parameters: Mapping[str, Found]
-    nats: float | None
+    added: str | None = None
+    error: Errors = field(default_factory=dict)
+    offset: float | None = None
+    nats: float | None = None
+    parameters: Mapping[str, Found] = field(default_factory=dict)
 
-    def to_json(self) -> dict[str, Any]:
-        """As plain JSON data."""
-        return {
-            "added": self.added, "error": dict(self.error), "offset": self.offset, "nats": self.nats,
-            "parameters": {n: p.to_json() for n, p in self.parameters.items()},
-        }  # fmt: skip
+
+@dataclass(frozen=True)
+class LabelErrors:
+    """Eq. (17) of a run as labelled, what the other runs let expect, and with the label mended."""
+
+    as_labelled: float | None = None
+    usual: float | None = None
+    mended: float | None = None
+
+
+@dataclass(frozen=True)
+class Suspect:
+    """A run, which of its labels is doubted, what stands there and what the data say, in `unit`; why, in a sentence."""
+
+    run: str
+    what: str = ""
+    stated: float | None = None
+    found: float | None = None
+    unit: str = "1"
+    error: LabelErrors = LabelErrors()
+    evidence: str = ""
 
 
 @dataclass(frozen=True)
 class Verdict:
     """What to add, what the data cannot tell apart, whose label is doubted, and whether something is left."""
 
-    effects: tuple[str, ...]
-    indistinguishable: tuple[tuple[str, ...], ...]
-    suspects: tuple[Suspect, ...]
-    unexplained: bool
-    text: str
-
-    def to_json(self) -> dict[str, Any]:
-        """As plain JSON data."""
-        return {
-            "effects": list(self.effects), "indistinguishable": [list(group) for group in self.indistinguishable],
-            "suspects": [suspect.to_json() for suspect in self.suspects], "unexplained": self.unexplained,
-            "text": self.text,
-        }  # fmt: skip
+    effects: tuple[str, ...] = ()
+    indistinguishable: tuple[tuple[str, ...], ...] = ()
+    suspects: tuple[Suspect, ...] = ()
+    unexplained: bool = False
+    text: str = ""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
+class NextRun:
+    """The run that the lab should add, SI, as :class:`ident.design.experiment.Experiment` tells it.
+
+    `conditions` are its words, `run` its entry in matrix.yaml.
+    """
+
+    specimen: Specimen | None = None
+    gain: float | None = None
+    amplitude: float
+    unit: str = "m"
+    signal: str
+    frequency: float
+    seconds: float
+    sample_rate: float
+    seed: int = 0
+    separation: float | None = None
+    so_far: float | None = None
+    typical: float | None = None
+    information: float = 0.0
+    std_errors: Mapping[str, float] = field(default_factory=dict)
+    text: str = ""
+    conditions: str = ""
+    run: Mapping[str, str | float | Mapping[str, str]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Diagnosis:
-    """Everything that was found about one fit of one matrix."""
+    """Everything that was found about one fit of one matrix; `effects` are those that the fit had.
 
-    model: str
-    given: tuple[str, ...]
-    baseline: Mapping[str, Any]
-    noise_floor: Errors
+    `budget` is None where the model is unstable at every run, `next_experiment` where no run can be proposed.
+    """
+
+    model: str = "qian2014"
+    effects: tuple[str, ...] = ()
+    baseline: Baseline = Baseline()
+    noise_floor: Errors = field(default_factory=dict)
+    budget: Budget | None = None
     candidates: tuple[Ranked, ...]
-    ladder: tuple[Rung, ...]
+    ladder: tuple[Rung, ...] = ()
     verdict: Verdict
-    seed: int
-    version: str
-    data_hash: str
-    seconds: float = 0.0
-    budget: Mapping[str, Any] = field(default_factory=dict)
-    next_experiment: Mapping[str, Any] = field(default_factory=dict)
+    next_experiment: NextRun | None = None
     settings: Mapping[str, Any] = field(default_factory=dict)
+    seed: int = 0
+    seconds: float = 0.0
+    version: str = ""
+    data_hash: str = ""
     notes: tuple[str, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data (no NaN, no infinity)."""
-        return {
-            "model": self.model, "effects": list(self.given), "baseline": dict(self.baseline),
-            "noise_floor": dict(self.noise_floor), "budget": dict(self.budget),
-            "candidates": [candidate.to_json() for candidate in self.candidates],
-            "ladder": [rung.to_json() for rung in self.ladder], "verdict": self.verdict.to_json(),
-            "next_experiment": dict(self.next_experiment), "settings": dict(self.settings), "seed": self.seed,
-            "seconds": self.seconds, "version": self.version, "data_hash": self.data_hash, "notes": list(self.notes),
-        }  # fmt: skip
+        data: dict[str, Any] = written(self)
+        return data | {name: data[name] or {} for name in ("budget", "next_experiment")}
+
+    @classmethod
+    def from_json(cls, data: object) -> Diagnosis:
+        """The inverse of :meth:`to_json`, of what any version wrote. Raises Unusable where it is no diagnosis."""
+        try:
+            return read(cls, data)
+        except Misfit as error:
+            raise bad_diagnosis(str(error)) from None
+
+
+def bad_diagnosis(why: str, where: str = "diagnosis") -> Unusable:
+    """The refusal of what is no diagnosis, or of one whose models cannot be put together."""
+    return Unusable("bad-diagnosis", f"not the JSON of a diagnosis: {why}", where,
+                    "give the file that `servoident diagnose --json FILE` wrote")  # fmt: skip

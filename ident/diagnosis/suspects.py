@@ -7,13 +7,14 @@ suspect where its error stands out from those of the others and one change of a 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.chain.chain import conditions
 from ident.diagnosis.family import ModelFamily, Refit
+from ident.diagnosis.result import LabelErrors, Suspect
 from ident.matrix import Run
 from ident.parallel import each
 from ident.simulation.simulate import Simulation
@@ -27,46 +28,6 @@ _LABELS = {"mass": "mL", "stiffness": "k", "gain": "Kp"}
 _UNITS = {"mass": "kg", "stiffness": "N/m", "gain": "1"}
 _ROUNDS = 3  # of refining a label's value
 _MOST = 0.2  # of the runs: where more stand out, it is not their labels
-
-
-@dataclass(frozen=True)
-class Suspect:
-    """A run, which of its labels is doubted, what stands there and what the data say, in `unit`.
-
-    `error` is eq. (17) of the run as labelled, `usual` what the other runs let expect, `mended` with the label mended.
-    """
-
-    run: str
-    what: str
-    stated: float
-    found: float
-    unit: str
-    error: float
-    usual: float
-    mended: float
-
-    @property
-    def evidence(self) -> str:
-        """Why, in a sentence."""
-        label = f"with {self.what} {self.found:.4g} {self.unit} in place of {self.stated:.4g} {self.unit}"
-        of_channel = {
-            "sign": "turned in sign",
-            "unit": f"multiplied by {self.found:.4g}",
-            "delay": f"shifted by {1e3 * self.found:.3g} ms",
-        }
-        change = of_channel.get(self.what, label)
-        return (
-            f"the run's error is {100 * self.error:.3g} %, where {100 * self.usual:.3g} % would be usual; "
-            f"{change} it is {100 * self.mended:.3g} %"
-        )
-
-    def to_json(self) -> dict[str, object]:
-        """In the contract's words."""
-        return {
-            "run": self.run, "what": self.what, "stated": self.stated, "found": self.found, "unit": self.unit,
-            "error": {"as_labelled": self.error, "usual": self.usual, "mended": self.mended},
-            "evidence": self.evidence,
-        }  # fmt: skip
 
 
 def suspects(models: ModelFamily, fitted: Refit, floors: Mapping[str, float | None]) -> list[Suspect]:
@@ -96,7 +57,7 @@ def suspects(models: ModelFamily, fitted: Refit, floors: Mapping[str, float | No
         return _doubt(models, fitted, run, float(np.exp(usual)) * scale[run.id], errors[run.id])
 
     found = [suspect for suspect in each(doubt, outside) if suspect is not None]
-    return sorted(found, key=lambda s: s.usual / s.error)
+    return sorted(found, key=lambda s: (s.error.usual or 0.0) / (s.error.as_labelled or 1.0))
 
 
 def _doubt(models: ModelFamily, fitted: Refit, run: Run, usual: float, error: float) -> Suspect | None:
@@ -105,7 +66,24 @@ def _doubt(models: ModelFamily, fitted: Refit, run: Run, usual: float, error: fl
     what, stated, found, mended = min(changes, key=lambda change: change[3])
     if error**2 - mended**2 < _EXPLAINED * (error**2 - usual**2):
         return None
-    return Suspect(run.id, what, stated, found, _UNITS.get(what, "s" if what == "delay" else "1"), error, usual, mended)
+    unit, errors = _UNITS.get(what, "s" if what == "delay" else "1"), LabelErrors(error, usual, mended)
+    return Suspect(
+        run.id, what, stated, found, unit, errors, _evidence(what, stated, found, unit, error, usual, mended)
+    )
+
+
+def _evidence(what: str, stated: float, found: float, unit: str, error: float, usual: float, mended: float) -> str:
+    """Why, in a sentence."""
+    label = f"with {what} {found:.4g} {unit} in place of {stated:.4g} {unit}"
+    of_channel = {
+        "sign": "turned in sign",
+        "unit": f"multiplied by {found:.4g}",
+        "delay": f"shifted by {1e3 * found:.3g} ms",
+    }
+    return (
+        f"the run's error is {100 * error:.3g} %, where {100 * usual:.3g} % would be usual; "
+        f"{of_channel.get(what, label)} it is {100 * mended:.3g} %"
+    )
 
 
 def _label(models: ModelFamily, fitted: Refit, run: Run, what: str) -> tuple[str, float, float, float]:

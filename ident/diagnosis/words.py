@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from ident.diagnosis.ranking import Candidate
-from ident.diagnosis.suspects import Suspect
+from ident.diagnosis.result import Suspect
 from ident.effects.effect import Effect
 from ident.words.percent import percent
 from ident.words.titles import title

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
+
+from ident.errors import Unusable
+from ident.plain import Misfit, read, written
 
 
 @dataclass(frozen=True)
@@ -101,30 +105,18 @@ class FitResult:
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data (no NaN, no infinity)."""
-        return asdict(self)
+        data: dict[str, Any] = written(self)
+        return data
 
     @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> FitResult:
-        """The inverse of :meth:`to_json`."""
-        return cls(
-            **{
-                **data,
-                "effects": tuple(data["effects"]),
-                "parameters": {name: Estimate(**entry) for name, entry in data["parameters"].items()},
-                "determined": tuple(Combination(**entry) for entry in data["determined"]),
-                "undetermined": tuple(Undetermined(**entry) for entry in data["undetermined"]),
-                "runs": tuple(RunError(**entry) for entry in data["runs"]),
-                "notes": tuple(data.get("notes", ())),
-                "searched": tuple(data.get("searched", ())),
-                "evolution": tuple(
-                    Generation(
-                        **{
-                            **entry,
-                            "population": tuple(map(tuple, entry.get("population", ()))),
-                            "errors": tuple(entry.get("errors", ())),
-                        }
-                    )
-                    for entry in data.get("evolution", ())
-                ),
-            }
-        )
+    def from_json(cls, data: object) -> FitResult:
+        """The inverse of :meth:`to_json`, of what any version wrote. Raises Unusable where it is no fit."""
+        try:
+            found = read(cls, data)
+            for name, value in found.values.items():
+                if not math.isfinite(value):
+                    raise Misfit("is not finite", f"parameters.{name}.value")
+            return found
+        except Misfit as error:
+            raise Unusable("bad-fit", f"not the JSON of a fit: {error}", "fit",
+                           "give the file that `servoident fit --json FILE` wrote") from None  # fmt: skip

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any
+
+from ident.errors import Unusable
+from ident.plain import Misfit, read, written
 
 GENERAL = ("ga", "paper-ga", "differential-evolution", "cma-es")
 """Methods of any model; a preset may name more of its own."""
@@ -32,12 +35,14 @@ class Settings:
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data."""
-        lists = {"effects": list(self.effects), "custom": [dict(definition) for definition in self.custom]}
-        return asdict(self) | lists | {"bounds": {k: list(v) for k, v in self.bounds.items()}}
+        data: dict[str, Any] = written(self)
+        return data
 
     @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> Settings:
-        """The inverse of :meth:`to_json`."""
-        bounds = {name: (float(lo), float(hi)) for name, (lo, hi) in data.get("bounds", {}).items()}
-        lists = {name: tuple(data.get(name, ())) for name in ("effects", "custom")}
-        return cls(**{**data, **lists, "bounds": bounds})
+    def from_json(cls, data: object) -> Settings:
+        """The inverse of :meth:`to_json`, of what any version wrote. Raises Unusable where it is no settings."""
+        try:
+            return read(cls, data)
+        except Misfit as error:
+            raise Unusable("bad-fit", f"not the settings of a fit: {error}", "fit",
+                           "give the file that `servoident fit --json FILE` wrote") from None  # fmt: skip

@@ -11,7 +11,7 @@ cannot be noise: it is the lower bound of the nonlinear part.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from itertools import product
 from typing import Any
 
@@ -44,8 +44,8 @@ class Budget:
     noise: float | None
     linear: float
     nonlinear: float
-    bounds: Mapping[str, tuple[float, float]]
-    notes: tuple[str, ...]
+    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
     @property
     def error(self) -> float:

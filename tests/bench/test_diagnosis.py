@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from ident.design.rivals import rivals
-from ident.diagnosis.result import Diagnosis
+from ident.diagnosis.result import Diagnosis, Verdict
+from ident.diagnosis.rivals import rivals
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
@@ -66,4 +66,4 @@ def test_runs_to_verify_report_only():
 
 def test_no_run_is_proposed_for_a_bench():
     with pytest.raises(Unusable, match="bench"):
-        rivals({"model": "kononykhin", "candidates": [], "verdict": {}})
+        rivals(Diagnosis(model="kononykhin", candidates=(), verdict=Verdict()))

@@ -14,7 +14,9 @@ from ident.design.candidate_runs import candidate_runs
 from ident.design.experiment import Experiment
 from ident.design.proposal import propose, ranked
 from ident.design.rival import Rival
-from ident.design.rivals import floor_of, rivals, trusted
+from ident.design.rivals import Rivals
+from ident.diagnosis.result import Diagnosis
+from ident.diagnosis.rivals import rivals
 from ident.fit.levenberg_marquardt import levenberg_marquardt
 from ident.fit.reduction import excited_band
 from ident.fit.settings import Settings
@@ -41,6 +43,11 @@ def confused() -> tuple[Matrix, list[tuple[Preset, dict[str, float]]]]:
         assert found.error["fit"] < 1.05 * NOISE
         models.append((model, {model.parameter(key).in_equations: value for key, value in found.values.items()}))
     return few, models
+
+
+def question(models: list[tuple[Preset, dict[str, float]]]) -> Rivals:
+    """Which of these models it is."""
+    return Rivals(tuple(models), NOISE)
 
 
 def recorded(experiment: Experiment, seed: int) -> Run:
@@ -79,7 +86,7 @@ def separation(experiment: Experiment, seed: int) -> float:
 def test_the_proposed_run_separates_confused_models():
     """Friction and dead zone after two runs: the proposal tells them apart, three times better than the median run."""
     few, models = confused()
-    proposal, everything = propose(models, few, NOISE), ranked(models, few, NOISE)
+    proposal, everything = propose(question(models), few), ranked(question(models), few)
     others = [worth.experiment for worth in everything[5 :: len(everything) // 5]]
     typical = float(np.median([separation(other, 10 + i) for i, other in enumerate(others)]))
     found = separation(proposal, 1)
@@ -92,8 +99,8 @@ def test_the_proposed_run_separates_confused_models():
 def test_the_proposal_is_the_same_again_and_fits_the_bench():
     """Specimen and gain of the matrix, amplitude at most 1.5 times its largest, the command as promised."""
     few, models = confused()
-    proposal = propose(models, few, NOISE, seed=7)
-    assert proposal == propose(models, few, NOISE, seed=7)
+    proposal = propose(question(models), few, seed=7)
+    assert proposal == propose(question(models), few, seed=7)
     assert proposal.specimen in {run.specimen for run in few.runs}
     assert 5 <= proposal.gain <= 10
     largest = max(np.sqrt(np.mean(run.command**2)) for run in few.runs)
@@ -117,9 +124,9 @@ def test_no_command_leaves_the_stroke():
 def test_with_one_model_the_run_teaches_the_parameters():
     """Fisher information: the promised share of the standard errors is left when the run is added."""
     few, models = confused()
-    (model, values), proposal = models[0], propose(models[:1], few, NOISE)
+    (model, values), proposal = models[0], propose(question(models[:1]), few)
     assert proposal.separation is None
-    assert proposal.information == pytest.approx(max(w.information for w in ranked(models[:1], few, NOISE)))
+    assert proposal.information == pytest.approx(max(w.information for w in ranked(question(models[:1]), few)))
     more = replace(few, runs=(*few.runs, recorded(proposal, 3)))
     before, after = (
         np.sqrt(np.diag(np.linalg.inv(Rival(model, values, data, 500.0, lambda size: NOISE * size).information)))
@@ -146,18 +153,18 @@ def diagnosis() -> dict:
 
 def test_a_diagnosis_says_what_is_in_question(diagnosis):
     """The group that it cannot tell apart, with its values; its noise floor."""
-    again = rivals(json.loads(json.dumps(diagnosis)))
+    again = rivals(Diagnosis.from_json(json.loads(json.dumps(diagnosis))))
     _, models = confused()
-    assert [(m.effects, v) for m, v in again] == [(m.effects, v) for m, v in models]
-    assert floor_of(diagnosis) == NOISE
+    assert [(m.effects, v) for m, v in again.models] == [(m.effects, v) for m, v in models]
+    assert again.noise == NOISE
 
 
 def test_what_a_diagnosis_settled_on_is_not_in_question(diagnosis):
     """Then the next run is to teach the parameters of the last step."""
     step = {"added": diagnosis["candidates"][0]["effect"], "parameters": diagnosis["candidates"][0]["parameters"]}
     verdict = {"effects": [step["added"]], "indistinguishable": [], "unexplained": False}
-    again = rivals(diagnosis | {"ladder": [step], "verdict": verdict})
-    assert [model.effects[0].name for model, _ in again] == [step["added"]]
+    again = rivals(Diagnosis.from_json(diagnosis | {"ladder": [step], "verdict": verdict}))
+    assert [model.effects[0].name for model, _ in again.models] == [step["added"]]
 
 
 def test_the_command_writes_the_signals(servoident, diagnosis, tmp_path):
@@ -182,9 +189,10 @@ def test_a_run_with_a_doubted_label_does_not_say_what_the_bench_can_do():
     few, _ = confused()
     names = [run.id for run in few.runs]
 
-    def doubted(*runs: str) -> dict[str, object]:
-        return {"verdict": {"suspects": [{"run": run} for run in runs]}}
+    def trusted(*doubted: str) -> list[str]:
+        said = {"candidates": [], "verdict": {"suspects": [{"run": run} for run in doubted]}}
+        return [run.id for run in rivals(Diagnosis.from_json(said)).trusted(few).runs]
 
-    assert [run.id for run in trusted(doubted(names[0]), few).runs] == names[1:]
-    assert [run.id for run in trusted(doubted(*names), few).runs] == names
-    assert [run.id for run in trusted({}, few).runs] == names
+    assert trusted(names[0]) == names[1:]
+    assert trusted(*names) == names
+    assert trusted() == names

@@ -54,13 +54,12 @@ def test_the_strength_is_found(dead_zone):
 
 
 def test_the_budget_adds_up_and_the_next_run_sharpens_what_was_settled(dead_zone):
-    parts = [dead_zone.budget[name] for name in ("noise", "linear", "nonlinear")]
-    assert np.sqrt(np.sum(np.square(parts))) == pytest.approx(dead_zone.baseline["error"]["fit"], rel=0.05)
-    assert dead_zone.budget["nonlinear"] > dead_zone.budget["linear"]
-    left = dead_zone.next_experiment["std_errors"]
+    assert dead_zone.budget.error == pytest.approx(dead_zone.baseline.error["fit"], rel=0.05)
+    assert dead_zone.budget.nonlinear > dead_zone.budget.linear
+    left = dead_zone.next_experiment.std_errors
     assert "dead_zone.half_width" in left
     assert 0 < min(left.values()) < 1
-    assert dead_zone.next_experiment["separation"] is None
+    assert dead_zone.next_experiment.separation is None
 
 
 def test_candidates_are_sorted_by_the_error_on_held_out_data(dead_zone):

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from app.diagnoses.service import Stored
 from app.pages.diagnosis_view import missing
 from app.pages.rendering import _TEMPLATES
-from schemas.diagnosis import DiagnosisView
+from ident.diagnosis.result import Diagnosis
 
 
 def candidate(effect: str, error: float, group: tuple[str, ...] = (), beyond: bool = True) -> dict[str, Any]:
@@ -18,7 +19,7 @@ def candidate(effect: str, error: float, group: tuple[str, ...] = (), beyond: bo
     }  # fmt: skip
 
 
-def found() -> DiagnosisView:
+def found() -> Stored:
     group = ("coulomb_friction", "stribeck_friction")
     suspect = {
         "run": "r <1>",
@@ -28,18 +29,18 @@ def found() -> DiagnosisView:
         "unit": "kg",
         "evidence": "the error is 9 %",
     }
-    return DiagnosisView(
-        id="d", matrix="m", serial="S", fit="f", created_at="2026-11-21T08:00:00", model="qian2014",
-        budget={}, next_experiment={},
-        baseline={"error": {"fit": 0.02, "held_out": 0.02, "verify": None}, "offset": 0.0},
-        noise_floor={"fit": 0.005, "verify": None}, seconds=3.2,
-        candidates=[candidate("coulomb_friction", 0.01, group), candidate("stribeck_friction", 0.0101, group),
-                    candidate("own_effect", 0.012), candidate("lead", 0.0199, beyond=False)],
-        ladder=[{"added": None, "error": {"fit": 0.02}, "parameters": {}, "nats": None},
-                {"added": "coulomb_friction", "error": {"fit": 0.01}, "parameters": {}, "nats": 7.0}],
-        verdict={"effects": ["coulomb_friction"], "indistinguishable": [list(group)], "suspects": [suspect],
-                 "unexplained": True, "text": "The model lacks something."},
-    )  # fmt: skip
+    said = {
+        "model": "qian2014", "budget": {}, "next_experiment": {},
+        "baseline": {"error": {"fit": 0.02, "held_out": 0.02, "verify": None}, "offset": 0.0},
+        "noise_floor": {"fit": 0.005, "verify": None}, "seconds": 3.2,
+        "candidates": [candidate("coulomb_friction", 0.01, group), candidate("stribeck_friction", 0.0101, group),
+                       candidate("own_effect", 0.012), candidate("lead", 0.0199, beyond=False)],
+        "ladder": [{"added": None, "error": {"fit": 0.02}, "parameters": {}, "nats": None},
+                   {"added": "coulomb_friction", "error": {"fit": 0.01}, "parameters": {}, "nats": 7.0}],
+        "verdict": {"effects": ["coulomb_friction"], "indistinguishable": [list(group)], "suspects": [suspect],
+                    "unexplained": True, "text": "The model lacks something."},
+    }  # fmt: skip
+    return Stored("d", "m", "S", "f", "2026-11-21T08:00:00", Diagnosis.from_json(said))
 
 
 def test_a_group_is_one_card_that_names_all_and_adds_one():

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from app.pages.evidence_view import evidence, telling_run
-from schemas.diagnosis import CandidateView
+from ident.diagnosis.result import Ranked
+from ident.plain import read
 from schemas.matrix import RunView
 from tests.app.pages.test_diagnosis_view import candidate, found
 
@@ -19,7 +20,7 @@ from tests.app.pages.test_diagnosis_view import candidate, found
     ],
 )
 def test_a_curve_shows_the_effect_or_else_the_bode_plot_of_one_run(effect, shown):
-    assert evidence(CandidateView(**candidate(effect, 0.01)), found(), None, "r7") == shown
+    assert evidence(read(Ranked, candidate(effect, 0.01)), found(), None, "r7") == shown
 
 
 def test_the_telling_run_is_the_worst_of_the_smallest_amplitude():

@@ -9,7 +9,7 @@ import pytest
 from app.diagnoses.service import Search
 from app.fits.service import Yardstick
 from app.pages.next_view import Next, next_step
-from schemas.diagnosis import VerdictView
+from ident.diagnosis.result import Suspect, Verdict
 from schemas.fit import JobView, ProgressView
 from schemas.parameters import ActuatorView, ParameterSetView
 
@@ -34,9 +34,7 @@ def step(error: float | None = None, *, state: str = "", current: bool = False, 
 
 def verdict(*effects: str, suspects: int = 0) -> Search:
     """A search that found these effects and so many doubted labels."""
-    doubted = [{"run": "r"}] * suspects
-    found = {"effects": list(effects), "indistinguishable": [], "suspects": doubted, "unexplained": True, "text": ""}
-    return Search(verdict=VerdictView(**found))
+    return Search(verdict=Verdict(effects=effects, suspects=(Suspect("r"),) * suspects, unexplained=True))
 
 
 MISSING = "/fits/f#missing"

@@ -10,7 +10,7 @@ import typst
 from app.report import paper
 from app.report.blocks import Facts, Figure, Heading, Report, Table, Tables, Text
 from app.report.content import content
-from app.report.diagnosis import Diagnosis
+from ident.diagnosis.result import Diagnosis
 from ident.figures import ladder, look
 from ident.matrix import Actuator
 from tests.app.report.test_report import DIAGNOSIS
@@ -22,7 +22,7 @@ HOSTILE = '#panic("ran") $x$ *b* @none \\ <a> = 10⁻¹² √Pa τ ₐ'
 @pytest.fixture(scope="module")
 def report():
     base = compared("coulomb_friction")
-    return content(base.matrix, base.fit, Diagnosis.model_validate(DIAGNOSIS))
+    return content(base.matrix, base.fit, Diagnosis.from_json(DIAGNOSIS))
 
 
 def test_the_whole_report_becomes_a_pdf_the_same_each_time(report):

@@ -8,13 +8,14 @@ from html.parser import HTMLParser
 
 import pytest
 
-from app.report.diagnosis import Diagnosis, read_diagnosis
+from app.cli.given import read_diagnosis
 from app.report.document import document
+from ident.diagnosis.result import Diagnosis
 from ident.errors import Unusable
 from tests.residuals.conftest import compared
 
 DIAGNOSIS = {
-    "baseline": {"error": {"fit": 0.0227, "verify": 0.024}, "offset": {}},
+    "baseline": {"error": {"fit": 0.0227, "verify": 0.024}, "offset": 0.0},
     "noise_floor": {"fit": 0.005, "verify": 0.005},
     "budget": {"noise": 0.005, "linear": 0.003, "nonlinear": 0.02},
     "candidates": [
@@ -30,7 +31,7 @@ DIAGNOSIS = {
 @pytest.fixture(scope="module")
 def told() -> str:
     base = compared("coulomb_friction")
-    return document(base.matrix, base.fit, Diagnosis.model_validate(DIAGNOSIS))
+    return document(base.matrix, base.fit, Diagnosis.from_json(DIAGNOSIS))
 
 
 class Elements(HTMLParser):

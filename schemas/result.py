@@ -1,0 +1,263 @@
+"""What a fit and a diagnosis hold, in the contract's words: one JSON over HTTP and in the files of the commands."""
+
+from typing import TypeAlias
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Errors: TypeAlias = dict[str, float | None]
+"""Eq. (17), or the offset, by use: fit, held_out, verify; null where there are no such runs."""
+Number: TypeAlias = int | float
+"""As its user wrote it: 20 stays 20."""
+Entry: TypeAlias = str | bool | int | float | None
+Entries: TypeAlias = dict[str, Entry]
+
+
+class Nothing(BaseModel):
+    """An object without members: there is none."""
+
+    model_config = ConfigDict(extra="forbid")
+
+
+class DefinitionView(BaseModel):
+    """An effect of one's own as its user wrote it; what was not written is absent."""
+
+    name: str
+    place: Entry = None
+    equation: Entry | list[Entry] = None
+    strength: Entries = Field(default_factory=dict)
+    shape: Entry | list[Entry | Entries] | dict[str, Entry | Entries] = None
+    state: Entries = Field(default_factory=dict)
+    meaning: Entry = None
+    looks: Entry = None
+    source: Entry = None
+
+
+class SettingsView(BaseModel):
+    """What was chosen about a fit, SI; an earlier version may not have known all of it, which is then absent."""
+
+    model: str = "qian2014"
+    effects: list[str] = Field(default_factory=list)
+    method: str = "ga"
+    bounds: dict[str, tuple[Number, Number]] = Field(default_factory=dict)
+    fixed: dict[str, Number] = Field(default_factory=dict)
+    load: str = "none"
+    seed: int = 0
+    options: dict[str, Number] = Field(default_factory=dict)
+    custom: list[DefinitionView] = Field(default_factory=list)
+
+
+class ErrorBudget(BaseModel):
+    """Parts of eq. (17), combining quadratically; null noise cannot be told and is within nonlinear."""
+
+    noise: float | None
+    linear: float
+    nonlinear: float
+    bounds: dict[str, tuple[float, float]]
+    notes: list[str]
+
+
+class EstimateView(BaseModel):
+    """One parameter: value, standard error (null where the data do not determine it), bounds, all in `unit`."""
+
+    value: float
+    unit: str
+    std_error: float | None
+    lower: float
+    upper: float
+    at_bound: bool
+    symbol: str = ""
+    meaning: str = ""
+    fixed: bool = False
+
+
+class CombinationView(BaseModel):
+    """A product of powers of parameters that the data determine although its factors may not be."""
+
+    expression: str
+    value: float
+    unit: str
+    std_error: float
+
+
+class UndeterminedView(BaseModel):
+    """A parameter that the data do not determine, and why."""
+
+    name: str
+    reason: str
+
+
+class RunErrorView(BaseModel):
+    """Eq. (17) of one run, and its offset."""
+
+    id: str
+    use: str
+    error: float
+    offset: float
+
+
+class GenerationView(BaseModel):
+    """One generation of a search: errors are eq. (17), `population` holds one parameter vector a row."""
+
+    index: int
+    best: float
+    mean: float
+    population: list[list[float]] = Field(default_factory=list)
+    errors: list[float] = Field(default_factory=list)
+
+
+class FitResultView(BaseModel):
+    """The contract's fit JSON; `evolution` belongs to the parameters `searched`, in that order.
+
+    What an earlier version did not know is absent.
+    """
+
+    model: str
+    effects: list[str]
+    parameters: dict[str, EstimateView]
+    correlation: dict[str, dict[str, float]]
+    determined: list[CombinationView]
+    undetermined: list[UndeterminedView]
+    error: Errors
+    offset: Errors
+    noise_floor: Errors
+    runs: list[RunErrorView]
+    method: str
+    seed: int
+    evaluations: int
+    seconds: float
+    version: str
+    data_hash: str
+    notes: list[str] = Field(default_factory=list)
+    settings: SettingsView = Field(default_factory=SettingsView)
+    searched: list[str] = Field(default_factory=list)
+    evolution: list[GenerationView] = Field(default_factory=list)
+
+
+class RefittedView(BaseModel):
+    """A parameter of a refit, SI; null where the data do not determine its standard error."""
+
+    value: float
+    unit: str
+    std_error: float | None
+    symbol: str
+
+
+class BaselineView(BaseModel):
+    """Errors and offset of the model that was given."""
+
+    error: Errors
+    offset: float | None
+
+
+class CandidateView(BaseModel):
+    """An effect that the model lacks, best first by held-out error; `group` are those it cannot be told from.
+
+    Without `parameters` there is only the prediction.
+    """
+
+    effect: str
+    error: Errors
+    offset: float | None
+    predicted_error: float | None
+    parameters: dict[str, RefittedView]
+    group: list[str]
+    evidence: dict[str, float | bool | str | None]
+    why: str
+
+
+class RungView(BaseModel):
+    """A step of the ladder: what was added to the model before it, null for the fitted model itself.
+
+    `nats` by which it made the held-out data more likely.
+    """
+
+    added: str | None
+    error: Errors
+    offset: float | None
+    nats: float | None
+    parameters: dict[str, RefittedView]
+
+
+class LabelErrorsView(BaseModel):
+    """Eq. (17) of a run as labelled, what the other runs let expect, and with the label mended."""
+
+    as_labelled: float | None
+    usual: float | None
+    mended: float | None
+
+
+class SuspectView(BaseModel):
+    """A run, which of its labels is doubted, what stands there and what the data say, in `unit`."""
+
+    run: str
+    what: str
+    stated: float | None
+    found: float | None
+    unit: str
+    error: LabelErrorsView
+    evidence: str
+
+
+class VerdictView(BaseModel):
+    """What to add, what the data cannot tell apart, whose label is doubted, whether something is left."""
+
+    effects: list[str]
+    indistinguishable: list[list[str]]
+    suspects: list[SuspectView]
+    unexplained: bool
+    text: str
+
+
+class SpecimenView(BaseModel):
+    """What the actuator moves, SI."""
+
+    mass: float
+    stiffness: float
+    damping: float
+
+
+class ProposalView(BaseModel):
+    """The run that the lab should add, SI: `text` says why, `conditions` what, `run` is its entry in matrix.yaml.
+
+    `separation` are the standard deviations of the noise by which the models in question will then differ, `so_far`
+    those by the runs there are, `typical` those by another run; `std_errors` the share of each standard error that is
+    expected to be left.
+    """
+
+    specimen: SpecimenView | None
+    gain: float | None
+    amplitude: float
+    unit: str
+    signal: str
+    frequency: float
+    seconds: float
+    sample_rate: float
+    seed: int
+    separation: float | None
+    so_far: float | None
+    typical: float | None
+    information: float
+    std_errors: dict[str, float]
+    text: str
+    conditions: str
+    run: dict[str, str | float | dict[str, str]]
+
+
+class DiagnosisResult(BaseModel):
+    """The contract's diagnose JSON."""
+
+    model: str
+    effects: list[str]
+    baseline: BaselineView
+    noise_floor: Errors
+    budget: ErrorBudget | Nothing
+    candidates: list[CandidateView]
+    ladder: list[RungView]
+    verdict: VerdictView
+    next_experiment: ProposalView | Nothing
+    settings: SettingsView
+    seed: int
+    seconds: float
+    version: str
+    data_hash: str
+    notes: list[str]

@@ -1,0 +1,1 @@
+"""Results as earlier versions wrote them, which every later version reads."""
