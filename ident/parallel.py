@@ -72,11 +72,12 @@ def one_thread() -> Iterator[None]:
     How a library splits a product over threads would change its rounding, and with it the answer, from one machine
     to the next.
     """
-    _held.enter()
+    held = _held  # the same at the end as at the start
+    held.enter()
     try:
         yield
     finally:
-        _held.leave()
+        held.leave()
 
 
 @lru_cache
