@@ -121,7 +121,7 @@ def gauss_newton() -> tuple[float, int]:
     start = space.point({name: value * 1.03 for name, value in truth.items()} | dict(space.fixed))
     fitness.exact(start)  # compiles
     fitness.evaluations, begun = 0, time.perf_counter()
-    levenberg_marquardt(fitness.exact, start, lambda _count, _error: None, fitness.accept)
+    levenberg_marquardt(fitness.exact, start, accept=fitness.accept)
     return time.perf_counter() - begun, fitness.evaluations
 
 

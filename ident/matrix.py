@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -159,9 +160,18 @@ def output_id(record: str, output: str) -> str:
     return f"{record}.{output}"
 
 
-def over_runs(values: ArrayLike, shares: Sequence[float]) -> Samples:
+class Shared(Protocol):
+    """A run, or what is known of one."""
+
+    @property
+    def share(self) -> float:
+        """What it counts in a mean over runs."""
+        ...
+
+
+def over_runs(values: ArrayLike, runs: Sequence[Shared]) -> Samples:
     """The mean over outputs, then over runs, along the first axis: each output counts as its share of a run."""
-    found = np.asarray(values, dtype=np.float64)
+    found, shares = np.asarray(values, dtype=np.float64), [run.share for run in runs]
     alike = all(share == shares[0] for share in shares)
     return np.asarray(found.mean(axis=0) if alike else np.average(found, axis=0, weights=shares))
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ident.bench.analysis import Analysis
+from ident.bench.model import dead_space
 from ident.bench.quantity import Found
 from ident.errors import Unusable
 from ident.readers.strict_yaml import read_yaml
@@ -87,7 +88,6 @@ def found_quantities(analysis: Analysis) -> dict[str, Found]:
 def _of_whole(analysis: Analysis) -> dict[str, Found]:
     assert analysis.whole is not None
     v, solution = analysis.whole.values, analysis.whole
-    dead = {"B": 1.0, "dPfr": 1.0 / v["kp"], "kp": -v["dPfr"] / v["kp"] ** 2}
     named = (
         ("zero_shift", "I0", "1"),
         ("hysteresis", "B", "1"),
@@ -96,7 +96,7 @@ def _of_whole(analysis: Analysis) -> dict[str, Found]:
         ("T", "T", "s"),
     )
     out = {name: Found(v[own], solution.deviations[own], unit) for name, own, unit in named}
-    return out | {"dead_space": Found(solution.model.dead_space, solution.deviation(dead), "1")}
+    return out | {"dead_space": Found(solution.model.dead_space, solution.deviation(dead_space), "1")}
 
 
 def sheet(analysis: Analysis, limits: Mapping[str, tuple[float | None, float | None]]) -> tuple[Line, ...]:

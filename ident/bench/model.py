@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,11 @@ Array = NDArray[np.float64]
 CONSTANTS = ("T", "B", "I0", "kp", "dPfr")
 MISSING = ("second_lag", "stiction", "load", "delay")
 """What the four blocks lack: s, Pa above ΔPfr to break loose, Pa/m of position, s."""
+
+
+def dead_space(values: Mapping[str, Any]) -> Any:
+    """Half of the range of currents in which the actuator stands: B + ΔPfr/kp; of numbers or of arrays."""
+    return values["B"] + values["dPfr"] / values["kp"]
 
 
 @dataclass(frozen=True)
@@ -52,8 +58,8 @@ class Model:
 
     @property
     def dead_space(self) -> float:
-        """Half of the range of currents in which the actuator stands: B + ΔPfr/kp."""
-        return self.B + self.dPfr / self.kp
+        """See :func:`dead_space`."""
+        return float(dead_space(self.values()))
 
     @cached_property
     def constants(self) -> Array:

@@ -180,20 +180,16 @@ class Residual:
     def _first(self) -> dict[str, float]:
         return self.model.values() | {name: self.model.extra.get(name, 0.0) for name in _REACH if name != "I0"}
 
-    def values(self, point: Array) -> dict[str, float]:
-        """The values at a point."""
+    def values(self, points: Array) -> dict[str, Array]:
+        """The values at points: (v, p) → name: (v,)."""
         return {
-            name: float(place * _REACH[name] if name in _REACH else self._first[name] * np.exp(np.clip(place, -5, 5)))
-            for name, place in zip(self.names, point, strict=True)
+            name: place * _REACH[name] if name in _REACH else self._first[name] * np.exp(np.clip(place, -5, 5))
+            for name, place in zip(self.names, points.T, strict=True)
         }
-
-    def unit(self, name: str, point: Array) -> float:
-        """What a step of 1 along an axis is worth at a point."""
-        return _REACH[name] if name in _REACH else abs(self.values(point)[name])
 
     def at(self, point: Array) -> Model:
         """The model at a point."""
-        return self.model.with_values(self.values(point))
+        return self.model.with_values({name: float(value[0]) for name, value in self.values(point[None]).items()})
 
     def of_records(self, point: Array) -> list[Array]:
         """The scaled residual of each record."""
@@ -253,27 +249,24 @@ class Normal:
         return np.asarray(self.products.sum(axis=0))
 
     @property
-    def cost(self) -> float:
+    def error(self) -> float:
         """Σ r²."""
         return float(self._sum[-1, -1])
 
     @property
     def gradient(self) -> Array:
-        """Jᵀ r."""
-        return self._sum[:-1, -1]
+        """2 Jᵀ r, (p,)."""
+        return np.asarray(2.0 * self._sum[:-1, -1])
 
     @property
     def curvature(self) -> Array:
-        """Jᵀ J."""
-        return self._sum[:-1, :-1]
+        """2 Jᵀ J, (p, p)."""
+        return np.asarray(2.0 * self._sum[:-1, :-1])
 
     @property
-    def covariance(self) -> Array:
-        """H⁻¹ (Σ scores of blocks) H⁻¹: residuals of neighbouring samples are alike, so their number is no measure."""
-        H, scores = self.curvature, self.products[:, :-1, -1]
-        scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
-        inverse = np.linalg.pinv(H / scale[:, None] / scale, rcond=1e-12) / scale[:, None] / scale
-        return np.asarray(inverse @ (scores.T @ scores) @ inverse)
+    def scores(self) -> Array:
+        """The parts of the gradient that the blocks make, (blocks, p)."""
+        return np.asarray(2.0 * self.products[:, :-1, -1])
 
 
 def _seen_from(table: SpeedTable, name: str) -> float:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.bench.least_squares import Solution, solve
-from ident.bench.model import Model
+from ident.bench.model import Model, dead_space
 from ident.bench.motion import groups, onsets
 from ident.bench.quantity import Found
 from ident.bench.records import Record
@@ -63,12 +63,11 @@ def ranges(records: Sequence[Record], start: Model, observed: Sequence[Observed]
 
 def _result(records: Sequence[Record], solution: Solution) -> Static:
     model, v = solution.model, solution.values
-    by_dead_space = {"B": 1.0, "dPfr": 1.0 / v["kp"], "kp": -v["dPfr"] / v["kp"] ** 2}
     deviations = solution.deviations
     bounds = {record.position_range for record in records}
     return Static(
         Found(v["I0"], deviations["I0"], "1"),
-        Found(model.dead_space, solution.deviation(by_dead_space), "1"),
+        Found(model.dead_space, solution.deviation(dead_space), "1"),
         Found(v["kp"], deviations["kp"], "Pa"),
         Found(v["dPfr"], deviations["dPfr"], "Pa"),
         Found(v["B"], deviations["B"], "1"),

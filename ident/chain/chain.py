@@ -283,17 +283,19 @@ class Chain:
 
     def pattern(self, output: str) -> tuple[tuple[bool, ...], ...]:
         """Which entries of the system matrix can be other than zero, found at generic values of every symbol."""
-        generic = {name: np.sqrt(2.0 + i) for i, name in enumerate(self.symbols)}
-        return tuple(tuple(bool(entry) for entry in row) for row in self.linearise(generic, output).system)
+        return tuple(tuple(row) for row in self._reads(output, frozenset()).tolist())
+
+    def _reads(self, output: str, zeros: AbstractSet[str]) -> NDArray[np.bool_]:
+        """Which entries of the system matrix are other than zero where the symbols `zeros` are 0, (n + 1, n + 1)."""
+        generic = {name: 0.0 if name in zeros else np.sqrt(2.0 + i) for i, name in enumerate(self.symbols)}
+        return np.asarray(self.linearise(generic, output).system != 0)
 
     def observed(self, output: str, zeros: AbstractSet[str]) -> tuple[int, ...]:
         """The states that an output depends on, by their places, where the symbols `zeros` are 0.
 
         Without a spring a pressure knows no position: that state integrates beside the rest of the machine.
         """
-        values = {name: 0.0 if name in zeros else np.sqrt(2.0 + i) for i, name in enumerate(self.symbols)}
-        reads = self.linearise(values, output).system != 0
-        states = len(self.states)
+        reads, states = self._reads(output, zeros), len(self.states)
         found = {j for j in range(states) if reads[states, j]}
         while more := {j for i in found for j in range(states) if reads[i, j]} - found:
             found |= more

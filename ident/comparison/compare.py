@@ -109,8 +109,7 @@ class Comparison:
 
     def _mean(self, use: str, what: str) -> float | None:
         found = [run for run in self.runs if run.run.use == use]
-        shares = [run.run.share for run in found]
-        return float(over_runs([getattr(run, what) for run in found], shares)) if found else None
+        return float(over_runs([getattr(run, what) for run in found], [run.run for run in found])) if found else None
 
 
 def modelled(preset: Preset, values: Mapping[str, float], matrix: Matrix) -> dict[str, Array]:

@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.fit.bounded_step import bounded_step
-from ident.fit.fitness import Local, local, weight_of
-from ident.fit.levenberg_marquardt import levenberg_marquardt
+from ident.fit.fitness import Local, local
+from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.products import without
 
@@ -31,8 +31,7 @@ Mask = NDArray[np.bool_]
 CHUNKS, FOLDS = 8, 4
 _FINER = 32  # chunks of a record where there are fewer records than CHUNKS
 _FAR = 0.01  # of an axis: a longer step is beyond what one linearisation tells
-_STEPS = 5  # of a fit without a fold: it starts close by
-_ENOUGH = 1e-5  # relative promise of a further step below which the fit without a fold stops
+_CLOSE = Way(converged=1e-5, most=5)  # of a fit without a fold: it starts close by
 
 
 @dataclass(frozen=True)
@@ -108,7 +107,7 @@ def _without(point: Array, here: Local, used: list[Mask], evaluate: Callable[[Ar
     def of_used(trial: Array) -> Local:
         return _partly(evaluate(trial), used)
 
-    end, _ = levenberg_marquardt(of_used, point, lambda _count, _error: None, lambda _local: None, _ENOUGH, _STEPS)
+    end, _ = levenberg_marquardt(of_used, point, _CLOSE)
     there = evaluate(end)
     if not np.isfinite(there.error):  # the point lies at the edge of what is stable: judged by its linearisation
         return here, step
@@ -150,10 +149,8 @@ def _step(point: Array, here: Local, parts: list[Array]) -> Array:
     """The Gauss-Newton step of the parts of all runs that stays in the unit cube."""
     p = len(point)
     H, g = np.zeros((p, p)), np.zeros(p)
-    terms = [(weight_of(run), gram) for run, gram in zip(here.runs, parts, strict=True)]
-    if here.means is not None:
-        terms.append((weight_of(here.means), here.means.gram))
-    for weight, gram in terms:
+    grams = parts if here.means is None else [*parts, here.means.gram]
+    for weight, gram in zip(here.weights, grams, strict=True):
         H += weight * gram[:p, :p]
         g -= weight * gram[:p, p]
     return bounded_step(point, H, g)

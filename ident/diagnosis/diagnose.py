@@ -111,13 +111,13 @@ class Diagnoser:
         if verify:
             here = refit.fitness.fresh(verify).exact(refit.point, sensitivities=False)
             errors = [run.error for run in here.runs]
-            mean = over_runs(errors, [run.share for run in verify])
+            mean = over_runs(errors, verify)
             on_verify = float(mean) if np.isfinite(mean) else None
         return {"fit": refit.error, "held_out": refit.held_out.error, "verify": on_verify}
 
     def _parameters(self, models: ModelFamily, refit: Refit) -> dict[str, Found]:
         preset = models.model(refit.effects)
-        known = covariance(refit.here, refit.point, np.empty((0, len(refit.point))))
+        known = covariance(refit.here, refit.point)
         found = {}
         for parameter in preset.parameters:
             name = parameter.in_equations

@@ -14,7 +14,7 @@ from ident.effects import EFFECTS
 from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.fit.fitness import Local
-from ident.fit.levenberg_marquardt import levenberg_marquardt
+from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.space import Space, search_space
@@ -25,9 +25,7 @@ from ident.presets import PRESETS, Preset
 
 Array = NDArray[np.float64]
 _TRIAL = 131_072  # samples of a first refit; the finalists take every sample
-_FITTING = 1e-7, 20  # relative promise of a further step below which a refit stops, and its most steps
-_TRYING = 1e-5, 10
-_SEARCHING = 1e-5, 30
+_FITTING, _TRYING, _SEARCHING = Way(1e-7, 20), Way(1e-5, 10), Way(1e-5, 30)  # of a refit, a first one, one far off
 _BETTER = 0.99  # times the error: a new optimum, not the same one
 _AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be noise, beside
 _CHANCE = 3.0  # standard deviations
@@ -59,12 +57,12 @@ class Refit:
     @property
     def error(self) -> float:
         """Eq. (17) averaged over the runs."""
-        return float(over_runs([run.error for run in self.here.runs], [run.share for run in self.here.runs]))
+        return float(over_runs([run.error for run in self.here.runs], self.here.runs))
 
     @property
     def offset(self) -> float:
         """The mean of the runs' offsets."""
-        return float(over_runs([run.offset for run in self.here.runs], [run.share for run in self.here.runs]))
+        return float(over_runs([run.offset for run in self.here.runs], self.here.runs))
 
 
 @dataclass
@@ -173,14 +171,14 @@ class ModelFamily:
         effects: tuple[str, ...],
         start: Mapping[str, float],
         samples: int = 0,
-        until: tuple[float, int] | None = None,
+        way: Way | None = None,
     ) -> Refit:
         """The optimum near `start`, on shortened records where `samples` is given."""
         fitness = self.fitness(effects, samples)
         known = {p.in_equations: p.value for p in fitness.preset.parameters} | dict(start)
         point = fitness.space.point({**known, **fitness.space.fixed})
-        until = until or (_TRYING if samples else _FITTING)
-        point, here = levenberg_marquardt(fitness.exact, point, _silent, fitness.accept, *until)
+        way = way or (_TRYING if samples else _FITTING)
+        point, here = levenberg_marquardt(fitness.exact, point, way, accept=fitness.accept)
         off = {p.in_equations for name, e in self.effects.items() if name not in effects for p in e.added}
         values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}
         return Refit(effects, values, fitness.space, point, here, fitness)
@@ -212,7 +210,3 @@ def _sound(model: Callable[[], Preset]) -> bool:
     except Unusable:
         return False
     return True
-
-
-def _silent(_count: int, _error: float) -> None:
-    """Report nothing."""

@@ -84,6 +84,17 @@ class Local:
         """All that the data say: the runs, and their means where these count."""
         return self.runs if self.means is None else (*self.runs, self.means)
 
+    @property
+    def weights(self) -> Array:
+        """What each of them counts in gradient and curvature."""
+        whole = sum(run.share for run in self.runs)
+        return np.array([weight_of(term) * term.share / whole for term in self.terms])
+
+    @property
+    def scores(self) -> Array:
+        """The parts of the gradient that blocks of neighbouring samples make, (blocks, p)."""
+        return np.concatenate([-w * term.scores for w, term in zip(self.weights, self.terms, strict=True)])
+
 
 def local(runs: Sequence[NormalMatrices], with_means: bool = False) -> Local:
     """Mean over runs of |r| / |x_m|: gradient −Jᵀr/(|r| |x_m|), curvature JᵀJ/(|r| |x_m|), averaged.
@@ -94,12 +105,10 @@ def local(runs: Sequence[NormalMatrices], with_means: bool = False) -> Local:
     gradient, curvature = np.zeros(p), np.zeros((p, p))
     if not all(np.isfinite(run.error) for run in runs):
         return Local(np.inf, gradient, curvature, tuple(runs))
-    shares = [run.share for run in runs]
-    error = float(over_runs([run.error for run in runs], shares))
+    error = float(over_runs([run.error for run in runs], runs))
     means = means_of(runs, error) if with_means else None
     here = Local(error, gradient, curvature, tuple(runs), means)
-    for run in here.terms:
-        weight = weight_of(run) * run.share / sum(shares)
+    for weight, run in zip(here.weights, here.terms, strict=True):
         gradient -= weight * run.gram[:p, p]
         curvature += weight * run.gram[:p, :p]
     if means is None:

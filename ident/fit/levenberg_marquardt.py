@@ -1,56 +1,107 @@
-"""Bounded Levenberg-Marquardt on eq. (17): from the best vectors of a search to the optimum."""
+"""Levenberg-Marquardt within bounds: from a start to the optimum near it, for every objective there is."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.fit.fitness import Local
-
 Array = NDArray[np.float64]
 STEPS = 200  # at most: along a curved valley it takes more than 60
-_CONVERGED = 1e-10  # relative decrease of the error that a further step promises
+_LEAST, _MOST = 1e-12, 1e6  # damping
+
+
+class Shape(Protocol):
+    """An objective and its local shape at one point: its gradient, (p,), and its Gauss-Newton matrix, (p, p)."""
+
+    @property
+    def error(self) -> float:
+        """What is to be least."""
+        ...
+
+    @property
+    def gradient(self) -> Array:
+        """Its derivatives."""
+        ...
+
+    @property
+    def curvature(self) -> Array:
+        """Its second derivatives, but for those of the residuals."""
+        ...
+
+
+S = TypeVar("S", bound=Shape)
+
+
+@dataclass(frozen=True)
+class Way:
+    """How far to go.
+
+    `converged` is the relative decrease of the error below which no further step is worth it, `most` the number of
+    steps, `within` the bounds of every axis, `longest` the longest step along one. Below a promise of `rough` the
+    error is not smooth: a step that failed and promised less is the last one.
+    """
+
+    converged: float = 1e-10
+    most: int = STEPS
+    within: tuple[float, float] = (0.0, 1.0)
+    longest: float = np.inf
+    rough: float = 0.0
 
 
 def levenberg_marquardt(
-    evaluate: Callable[[Array], Local], start: Array, report: Callable[[int, float], None],
-    accept: Callable[[Local], None], converged: float = _CONVERGED, most: int = STEPS,
-) -> tuple[Array, Local]:  # fmt: skip
-    """The point of the unit cube with the least error near `start`, and the objective there.
+    evaluate: Callable[[Array], S], start: Array, way: Way | None = None,
+    report: Callable[[int, float], None] = lambda _count, _error: None,
+    accept: Callable[[S], None] = lambda _here: None, error: Callable[[Array], float] | None = None,
+) -> tuple[Array, S]:  # fmt: skip
+    """The point with the least error near `start`, and the objective there.
 
     A step solves (H + λ diag H) δ = −g on the axes that are free: those at a bound with a gradient that points
-    outwards stay. λ falls tenfold after a step that helped and rises tenfold after one that did not. `accept` is told
-    of each point that is gone on from; `converged` is the relative decrease below which no further step is worth it,
-    `most` the number of steps.
+    outwards stay. λ falls tenfold after a step that helped and rises tenfold after one that did not. `report` is told
+    the number of steps and the error, `accept` of each point that is gone on from; `error` is the objective without
+    its shape, where that alone costs less.
     """
+    way = way or Way()
     point, here, damping = start.copy(), evaluate(start), 1e-4
     accept(here)
-    for count in range(most):
+    for count in range(way.most):
         report(count, here.error)
-        free_step = _step(point, here, damping)
-        trial = np.clip(point + free_step, 0.0, 1.0)
+        free_step = np.clip(_step(point, here, damping, way.within), -way.longest, way.longest)
+        trial = np.clip(point + free_step, *way.within)
         step = trial - point
         promised = -(here.gradient @ step + 0.5 * step @ here.curvature @ step)
         # A step cut at a bound may promise nothing where a shorter one does.
         cut = bool(np.any(trial != point + free_step))
-        if not promised > converged * here.error and not cut:
+        if not promised > way.converged * here.error and not cut:
             break
-        there = evaluate(trial) if promised > 0 else None
-        if there is not None and there.error < here.error:
-            point, here, damping = trial, there, max(damping / 10, 1e-12)
+        there = _better(evaluate, error, trial, here.error) if promised > 0 else None
+        if there is not None:
+            point, here, damping = trial, there, max(damping / 10, _LEAST)
             accept(here)
-        elif damping > 1e6:
+        elif damping > _MOST or promised < way.rough * here.error:
             break
         else:
             damping *= 10
     return point, here
 
 
-def _step(point: Array, here: Local, damping: float) -> Array:
+def _better(
+    evaluate: Callable[[Array], S], error: Callable[[Array], float] | None, trial: Array, least: float
+) -> S | None:
+    """The objective at a trial where it is less than so far."""
+    if error is not None and not error(trial) < least:
+        return None
+    there = evaluate(trial)
+    return there if there.error < least else None
+
+
+def _step(point: Array, here: Shape, damping: float, within: tuple[float, float]) -> Array:
     step = np.zeros_like(point)
-    outwards = ((point <= 0) & (here.gradient > 0)) | ((point >= 1) & (here.gradient < 0))
+    lower, upper = within
+    outwards = ((point <= lower) & (here.gradient > 0)) | ((point >= upper) & (here.gradient < 0))
     free = np.flatnonzero(~outwards)
     if len(free):
         H = here.curvature[np.ix_(free, free)]

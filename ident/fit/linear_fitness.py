@@ -84,9 +84,7 @@ class LinearFitness:
 
         found = self._over_runs(points, measures)
         by_run = np.array([errors for errors, _ in found])
-        errors = np.where(
-            np.all(np.isfinite(by_run), axis=0), over_runs(by_run, [run.share for run in self.runs]), UNSTABLE
-        )
+        errors = np.where(np.all(np.isfinite(by_run), axis=0), over_runs(by_run, self.runs), UNSTABLE)
         return np.minimum(errors, UNSTABLE), np.max([doubt for _, doubt in found], axis=0)
 
     def _over_runs(self, points: Array, measure: Callable[[int, Array, NDArray[np.bool_]], Outcome]) -> list[Outcome]:

@@ -60,7 +60,7 @@ def _end(
     def progress(count: int, error: float) -> None:
         report(Progress("polish", count, STEPS, error))
 
-    point, here = levenberg_marquardt(evaluate or of.exact, start, progress, of.accept)
+    point, here = levenberg_marquardt(evaluate or of.exact, start, report=progress, accept=of.accept)
     values = {name: float(value[0]) for name, value in of.space.values(point[None]).items()}
     return End(here.error, values, point), here
 

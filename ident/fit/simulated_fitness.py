@@ -65,8 +65,8 @@ class SimulatedFitness(SimulatedRuns):
             return np.where(np.isfinite(found), found, np.inf)
 
         todo = list(self.together(vectors))
-        by_run, shares = np.concatenate(each(of_runs, todo)), [run.share for runs in todo for run in runs]
-        errors = np.where(np.all(np.isfinite(by_run), axis=0), over_runs(by_run, shares), UNSTABLE)
+        by_run, order = np.concatenate(each(of_runs, todo)), [run for runs in todo for run in runs]
+        errors = np.where(np.all(np.isfinite(by_run), axis=0), over_runs(by_run, order), UNSTABLE)
         return np.minimum(errors, UNSTABLE)
 
     def approximate(self, point: Array) -> Local:

@@ -48,11 +48,7 @@ class SimulatedRuns:
 
     def outputs_at(self, values: Mapping[str, float]) -> dict[str, Array]:
         """The model's output of each run by its id, with the first state that fits best."""
-        vector = {name: np.array([value]) for name, value in values.items()}
-        steps = int(self.steps(vector).max())
-        self.begin(values)
-        with np.errstate(over="ignore", invalid="ignore"):
-            self.settled(vector, np.empty(0), steps)
+        vector, steps = self.settle(values)
 
         def of_runs(runs: tuple[Run, ...]) -> Array:
             blocks = [rows[:, :, 0] for rows, _, _ in self.simulation(runs, vector, steps).outputs()]
@@ -61,6 +57,16 @@ class SimulatedRuns:
         todo = list(self.together(1))
         found = zip(todo, each(of_runs, todo), strict=True)
         return {run.id: y for runs, outputs in found for run, y in zip(runs, outputs, strict=True)}
+
+    def settle(self, values: Mapping[str, float]) -> tuple[dict[str, Array], int]:
+        """Find the first states of runs that start moving; the values as a vector of one, and the steps a sample."""
+        vector = {name: np.array([value]) for name, value in values.items()}
+        steps = int(self.steps(vector).max())
+        if not all(run.starts_at_rest for run in self.runs):
+            self.begin(values)
+            with np.errstate(over="ignore", invalid="ignore"):
+                self.settled(vector, np.empty(0), steps)
+        return vector, steps
 
     def settled(self, values: Mapping[str, Array], strides: Array, steps: int) -> dict[str, NormalMatrices]:
         """The matrices of every run by its id; without sensitivities the first states are followed to their end.

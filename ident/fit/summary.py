@@ -101,8 +101,7 @@ def _run_errors(runs: Sequence[Run], found: Sequence[NormalMatrices]) -> tuple[R
 
 
 def _mean(runs: Sequence[Run], found: Sequence[RunError], what: str) -> float | None:
-    values = [getattr(of_run, what) for of_run in found]
-    return float(over_runs(values, [run.share for run in runs])) if runs else None
+    return float(over_runs([getattr(of_run, what) for of_run in found], runs)) if runs else None
 
 
 def _labels(objective: Fitness) -> dict[str, tuple[str, str]]:

@@ -9,17 +9,27 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.fit.fitness import Local, weight_of
+from ident.fit.levenberg_marquardt import Shape
 
 Array = NDArray[np.float64]
 _LOST = 1e-9  # relative to the largest eigenvalue of the scaled H: below it a direction is not determined at all
 _BLIND = 1e4  # logarithmic standard deviation that stands for "not at all"
 DETERMINED = 0.5  # largest relative standard error that still is knowledge
 COMBINED = 0.1  # for a combination, which has to be worth reporting
+
+
+class Scattered(Shape, Protocol):
+    """An objective at one point with the scatter of its gradient."""
+
+    @property
+    def scores(self) -> Array:
+        """The parts of the gradient that blocks of neighbouring samples make, (blocks, p)."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -71,16 +81,13 @@ class Covariance:
         return self._slope(lambda points: np.log(np.abs(quantity(points))))
 
 
-def covariance(here: Local, point: Array, valley: Array) -> Covariance:
+def covariance(here: Scattered, point: Array, valley: Array | None = None) -> Covariance:
     """The covariance at the optimum."""
-    p = len(point)
-    H, S = np.zeros((p, p)), np.zeros((p, p))
-    for run in here.terms:
-        weight = weight_of(run)
-        H += weight * run.gram[:p, :p]
-        S += weight**2 * run.scores.T @ run.scores
-    if not p or not np.all(np.isfinite(H)):
+    p, H = len(point), here.curvature
+    valley = np.empty((0, p)) if valley is None else valley
+    if not p or not np.isfinite(here.error):
         return Covariance(point, np.zeros((p, p)), np.eye(p), valley)
+    S = here.scores.T @ here.scores
     scale = np.sqrt(np.maximum(np.diag(H), 1e-12 * max(np.diag(H).max(), 1e-300)))
     strengths, directions = np.linalg.eigh(H / scale[:, None] / scale)
     seen = strengths > _LOST * strengths[-1]

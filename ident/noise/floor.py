@@ -71,7 +71,7 @@ class Floors:
         """Averaged over runs; None where it cannot be told of every one."""
         known = [floor for run in runs if (floor := self.by_run[run.id]) is not None]
         told = bool(known) and len(known) == len(runs)
-        return float(over_runs(known, [run.share for run in runs])) if told else None
+        return float(over_runs(known, runs)) if told else None
 
     def spread(self, samples: int) -> float:
         """The relative standard deviation of noise over so many samples about its floor."""

@@ -187,9 +187,8 @@ def _simulated(
     """The internal signals of a model with effects, from its compiled kernel: name, then run."""
     _, matrix, values = fitted(comparison.fit, replace(comparison.matrix, runs=tuple(runs)))
     simulated = SimulatedRuns(preset, matrix, matrix.runs)
-    simulated.outputs_at(values)  # finds the first states of runs that start moving
+    _, steps = simulated.settle(values)
     chain = showing(preset.chain, signals)
-    steps = int(simulated.steps({name: np.array([value]) for name, value in values.items()}).max())
 
     def one(entry: tuple[str, Run]) -> Array:
         name, run = entry

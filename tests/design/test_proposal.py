@@ -17,7 +17,7 @@ from ident.design.rival import Rival
 from ident.design.rivals import Rivals
 from ident.diagnosis.result import Diagnosis
 from ident.diagnosis.rivals import rivals
-from ident.fit.levenberg_marquardt import levenberg_marquardt
+from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
 from ident.fit.reduction import excited_band
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
@@ -69,9 +69,8 @@ def apart(*added: Run) -> float:
     for model, values in models:
         space = search_space(model, more, Settings(), excited_band(more.runs))
         fitness = SimulatedFitness(model, more, more.runs, space, 500.0)
-        _, here = levenberg_marquardt(
-            fitness.exact, space.point(values), lambda _count, _error: None, fitness.accept, 1e-6
-        )
+        start = space.point(values)
+        _, here = levenberg_marquardt(fitness.exact, start, Way(converged=1e-6), accept=fitness.accept)
         left.append(
             sum(m.gram[-1, -1] / (NOISE * r.measured.std()) ** 2 for m, r in zip(here.runs, more.runs, strict=True))
         )

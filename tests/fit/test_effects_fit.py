@@ -72,6 +72,6 @@ def test_an_effect_defined_here_is_fitted(data):
     space = search_space(model, data, Settings(), 500.0)
     fitness = SimulatedFitness(model, data, data.of_use("fit"), space, 500.0)
     start = space.point({p.in_equations: p.value for p in model.parameters} | {"overlap__width": 1e-4})
-    point, here = levenberg_marquardt(fitness.exact, start, lambda _count, _error: None, fitness.accept)
+    point, here = levenberg_marquardt(fitness.exact, start, accept=fitness.accept)
     assert float(space.values(point[None])["overlap__width"][0]) == pytest.approx(2e-4, rel=0.01)
     assert np.mean([run.error for run in here.runs]) < 1.05 * NOISE

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -64,8 +65,9 @@ def test_each_output_of_a_record_is_a_run_that_counts_its_share(matrix):
 
 
 def test_the_mean_goes_over_outputs_then_over_runs():
-    assert over_runs([1.0, 2.0, 4.0], [1.0, 0.5, 0.5]) == pytest.approx((1 + (2 + 4) / 2) / 2)
-    assert over_runs([[1.0, 2.0], [3.0, 4.0]], [0.5, 0.5]) == pytest.approx([2.0, 3.0])
+    whole, half = SimpleNamespace(share=1.0), SimpleNamespace(share=0.5)
+    assert over_runs([1.0, 2.0, 4.0], [whole, half, half]) == pytest.approx((1 + (2 + 4) / 2) / 2)
+    assert over_runs([[1.0, 2.0], [3.0, 4.0]], [half, half]) == pytest.approx([2.0, 3.0])
 
 
 def test_both_outputs_are_fitted_at_once(matrix):

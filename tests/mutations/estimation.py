@@ -15,7 +15,7 @@ ESTIMATION = (
     Mutation("power-of-the-record", "ident/fit/reduction.py", "mean_free = gram[columns, columns]",
              "mean_free = 1.02 * gram[columns, columns]",
              "a factor of 1.02 in what eq. (17) divides by, 1.01 in the error", _FITNESS),
-    Mutation("mean-over-runs", "ident/fit/linear_fitness.py", "over_runs(by_run, [run.share for run in self.runs])",
+    Mutation("mean-over-runs", "ident/fit/linear_fitness.py", "over_runs(by_run, self.runs)",
              "np.median(by_run, axis=0)", "eq. (17) averaged by the median", _FITNESS),
     Mutation("exact-error", "ident/fit/normal_matrices.py", "(run.measured - mean) ** 2) for run",
              "(run.measured - 0.99 * mean) ** 2) for run", "the record's mean left in its power",
