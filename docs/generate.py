@@ -11,7 +11,7 @@ from typing import Any
 import typer
 
 from app.cli.program import program
-from ident.effects import EFFECTS
+from ident.effects import CATALOGUE
 from ident.equations.equation import Equation
 from ident.parameter import Parameter
 from ident.presets import PRESETS, Preset
@@ -74,7 +74,7 @@ def models() -> str:
     for preset in PRESETS.values():
         lines += model(preset)
     lines += ["# Effects", "", *EFFECTS_HEAD, ""]
-    for effect in EFFECTS:
+    for effect in CATALOGUE:
         on = ", ".join(f"`{signal}` ({unit})" for signal, unit in effect.units.items())
         lines += [f"## {effect.name}", "", f"At the place *{effect.place}*, on {on}: {effect.meaning}.", ""]
         lines += [*(f"    {text}" for text in effect.texts), ""]

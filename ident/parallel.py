@@ -72,12 +72,11 @@ def one_thread() -> Iterator[None]:
     How a library splits a product over threads would change its rounding, and with it the answer, from one machine
     to the next.
     """
-    held = _held  # the same at the end as at the start
-    held.enter()
+    _held.enter()
     try:
         yield
     finally:
-        held.leave()
+        _held.leave()
 
 
 @lru_cache

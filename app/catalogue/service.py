@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from ident.custom.definition import read_effect
-from ident.effects import EFFECTS
+from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
 from ident.equations.equation import Equation
 from ident.equations.mathml import mathml
@@ -29,7 +29,7 @@ def models() -> list[ModelView]:
 
 def effects() -> list[EffectView]:
     """Every effect of the catalogue."""
-    return [_effect(effect) for effect in EFFECTS]
+    return [_effect(effect) for effect in CATALOGUE]
 
 
 def custom_effect(definition: Mapping[str, Any] | str) -> EffectView:

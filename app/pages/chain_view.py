@@ -10,7 +10,7 @@ from typing import Any
 
 from app.pages.effect_view import Member, member
 from ident.custom.definition import preset_with, read_effect
-from ident.effects import EFFECTS
+from ident.effects import CATALOGUE
 from ident.equations.equation import Equation
 from ident.equations.grammar import DYNAMIC
 from ident.errors import Unusable
@@ -98,7 +98,7 @@ def drawing(fit: FitResult) -> Drawing:
 
 def _on(fit: FitResult, own: Mapping[str, Any]) -> Iterator[Member]:
     """The effects of the fit with the strengths that were found."""
-    known = {effect.name: effect for effect in EFFECTS}
+    known = {effect.name: effect for effect in CATALOGUE}
     for name in fit.effects:
         effect = known[name] if name in known else read_effect(own[name])
         yield member(name, effect, fit.parameters, own.get(name))
@@ -107,7 +107,7 @@ def _on(fit: FitResult, own: Mapping[str, Any]) -> Iterator[Member]:
 def _off(fit: FitResult) -> Iterator[Member]:
     """The effects of the catalogue that the fit would take if it were made again with one of them."""
     settings = Settings.from_json(fit.settings) if fit.settings else Settings(model=fit.model)
-    for effect in EFFECTS:
+    for effect in CATALOGUE:
         if effect.name in fit.effects:
             continue
         try:

@@ -9,18 +9,18 @@ from urllib.parse import urlencode
 from app.diagnoses.service import Stored
 from ident.custom.definition import read_effect
 from ident.diagnosis.result import Ranked
-from ident.effects import EFFECTS
+from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
 from ident.presets import preset
 from ident.residuals.views import view_of
 from schemas.matrix import RunView
 
-_CATALOGUE = {effect.name: effect for effect in EFFECTS}
+_BY_NAME = {effect.name: effect for effect in CATALOGUE}
 
 
 def known_effect(name: str, own: Mapping[str, Any] | None) -> Effect | None:
     """An effect of one's own from its definition, or the catalogue's of that name; None where neither is there."""
-    return read_effect(own) if own is not None else _CATALOGUE.get(name)
+    return read_effect(own) if own is not None else _BY_NAME.get(name)
 
 
 def telling_run(runs: Sequence[RunView], errors: Mapping[str, float]) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 
-from ident.effects import EFFECTS
+from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
 from ident.fit.settings import METHODS, Settings
 from ident.matrix import BENCH
@@ -49,7 +49,7 @@ def start_view(matrix: MatrixView) -> StartView:
         says=f"{PRESETS[proposed].title}, by genetic search: {_counted(uses['fit'])} fit it, {others}.",
         models=tuple(sorted(map(_model, PRESETS.values()), key=lambda model: model.name != proposed)),
         methods=METHODS,
-        effects=tuple((place, found) for place in PLACES if (found := tuple(e for e in EFFECTS if e.place == place))),
+        effects=tuple((place, found) for place in PLACES if (found := tuple(e for e in CATALOGUE if e.place == place))),
         force=any("force" in run.channels for run in matrix.runs),
         runs=tuple((run.id, run.use) for run in matrix.runs),
     )

@@ -1,4 +1,4 @@
-"""A diagnosis of a bench's model: what of its four effects is added, in the words of any diagnosis."""
+"""A diagnosis of a bench's model: what of the effects of a bench is added, in the words of any diagnosis."""
 
 from __future__ import annotations
 
@@ -9,39 +9,41 @@ from typing import Any
 
 import numpy as np
 
-from ident.bench.missing import LACKING, Candidate, Refit, Refitter
+from ident.bench.missing import Candidate, Refit, Refitter
 from ident.bench.outputs import errors_of, model_of, noise_floor
 from ident.bench.records import Record, bench_set
+from ident.comparison.compare import fitted
 from ident.diagnosis.result import Baseline, Diagnosis, Found, Ranked, Rung, Verdict
-from ident.diagnosis.significance import improvement
-from ident.diagnosis.words import verdict_text
+from ident.diagnosis.significance import Improvement, improvement
+from ident.diagnosis.words import verdict_text, why_of_gain
 from ident.effects.effect import Effect
 from ident.fit.result import FitResult
 from ident.matrix import Matrix
 from ident.presets import preset
 from ident.progress import Progress, Report, silent
-from ident.words.percent import percent
 
 _NEAR_FLOOR = 1.25
 """Times the converter's part of the error, up to which an error is its noise: a reading that rests is off for long."""
 
 
 def diagnose_bench(
-    matrix: Matrix, fit: FitResult, most: int, _custom: Sequence[Effect] = (), report: Report = silent
+    matrix: Matrix, fit: FitResult, most: int, custom: Sequence[Effect] = (), report: Report = silent
 ) -> Diagnosis:
-    """Rank the four effects, add what helps beyond chance on held-out data, and say what is left."""
-    return BenchDiagnoser(matrix, fit, most, report).diagnosis()
+    """Rank the effects of a bench and the user's own, add what helps beyond chance, and say what is left."""
+    return BenchDiagnoser(matrix, fit, most, tuple(custom), report).diagnosis()
 
 
 class BenchDiagnoser:
     """One diagnosis of bench records."""
 
-    def __init__(self, matrix: Matrix, fit: FitResult, most: int, report: Report) -> None:
+    def __init__(self, matrix: Matrix, fit: FitResult, most: int, custom: tuple[Effect, ...], report: Report) -> None:
         self.matrix, self.fit, self.most, self.report = matrix, fit, most, report
         self.begun = time.monotonic()
         bench = bench_set(matrix)
         self.records = {use: tuple(r for r in bench.records if r.use == use) for use in ("fit", "verify")}
-        self.refitter = Refitter(model_of(fit.values, bench.supply_pressure), self.records["fit"])
+        self.preset, _, values = fitted(fit, matrix)
+        model = model_of(values, bench.supply_pressure, self.preset)
+        self.refitter = Refitter(model, preset(fit.model), self.preset.effects, self.records["fit"], custom)
         self.floor = {use: noise_floor(matrix, use) for use in ("fit", "verify")}
 
     def diagnosis(self) -> Diagnosis:
@@ -52,32 +54,33 @@ class BenchDiagnoser:
         groups = (group,) if len(group) > 1 and group[0] in found.effects else ()
         errors, before = self._errors(found), self._errors(base)
         unexplained = bool(self.floor["fit"] and (errors["fit"] or 0.0) > _NEAR_FLOOR * self.floor["fit"])
-        text = verdict_text(found.effects, groups, (), unexplained, errors, float(before["fit"] or 0.0))
+        added = found.effects[len(base.effects) :]
+        text = verdict_text(added, groups, (), unexplained, errors, float(before["fit"] or 0.0))
         return Diagnosis(
-            model=self.fit.model, baseline=Baseline(before, self._offset(base)),
+            model=self.fit.model, effects=base.effects, baseline=Baseline(before, self._offset(base)),
             noise_floor={"fit": self.floor["fit"], "held_out": None, "verify": self.floor["verify"]},
             candidates=tuple(self._ranked(c, group, base, i == 0) for i, c in enumerate(first)),
             ladder=tuple(self._rung(step, steps[i - 1] if i else None) for i, step in enumerate(steps)),
-            verdict=Verdict(found.effects, groups, (), unexplained, text), seed=self.fit.seed,
+            verdict=Verdict(added, groups, (), unexplained, text), seed=self.fit.seed,
             seconds=time.monotonic() - self.begun, version=version("servoident"), data_hash=self.matrix.data_hash,
             settings=dict(self.fit.settings),
-            notes=("Ranked are the four effects of a bench's model; a fit cannot take them up: the refits are here.",),
         )  # fmt: skip
 
     def _added(self, base: Refit) -> tuple[list[Candidate], list[Refit]]:
         """The first ranking, and the refits from the fitted model to the last, each with one effect more."""
         first: list[Candidate] = []
         steps = [base]
-        while len(steps) <= min(self.most, len(LACKING)):
-            names = [name for name in LACKING if name not in steps[-1].effects]
-            if not names:
-                break
+        while len(steps) <= self.most and (names := self._names(steps[-1])):
             ranking = self.refitter.rank(steps[-1], names, self._progress)
             first = first or ranking
             if not ranking[0].gain.beyond_chance:
                 break
             steps.append(ranking[0].refit)
-        return first or self.refitter.rank(base, list(LACKING), self._progress), steps
+        return first or self.refitter.rank(base, self._names(base), self._progress), steps
+
+    def _names(self, refit: Refit) -> list[str]:
+        """What may be added."""
+        return [name for name in self.refitter.effects if name not in refit.effects]
 
     def _progress(self, done: int, total: int) -> None:
         self.report(Progress("confirming", done, total))
@@ -96,23 +99,23 @@ class BenchDiagnoser:
         return self._mean(refit, self.records["fit"], "offset") or 0.0
 
     def _parameters(self, refit: Refit) -> dict[str, Found]:
-        known, deviations = {p.name: p for p in preset(self.fit.model).parameters}, refit.solution.deviations
-        out = {}
-        for name, value in refit.solution.values.items():
-            effect = LACKING.get(name)
-            if effect is not None:
-                out[f"{name}.{effect.symbol}"] = Found(value, effect.unit, deviations[name], effect.symbol)
-            else:
-                out[name] = Found(value, known[name].unit, deviations[name], known[name].symbol)
-        return dict(sorted(out.items(), key=lambda entry: "." not in entry[0]))
+        effects = tuple(self.refitter.effects[name] for name in refit.effects)
+        known = {p.in_equations: p for p in self.refitter.bare.with_effects(effects).parameters}
+        deviations = refit.solution.deviations
+        found = {
+            known[name].name: Found(value, known[name].unit, deviations[name], known[name].symbol)
+            for name, value in refit.solution.values.items()
+        }
+        return dict(sorted(found.items(), key=lambda entry: "." not in entry[0]))
 
     def _ranked(self, candidate: Candidate, group: tuple[str, ...], base: Refit, best: bool) -> Ranked:
-        refit = candidate.refit
+        refit, effect = candidate.refit, self.refitter.effects[candidate.effect]
         return Ranked(
             effect=candidate.effect, error=self._errors(refit), offset=self._offset(refit),
             predicted_error=candidate.predicted, parameters=self._parameters(refit),
-            group=group if candidate.effect in group and len(group) > 1 else (), evidence=_evidence(candidate),
-            why=_why(candidate, base, best),
+            group=group if candidate.effect in group and len(group) > 1 else (),
+            evidence=_evidence(candidate.gain, effect),
+            why=why_of_gain(candidate.gain, effect, (base.held_out_error, refit.held_out_error), None, best),
         )  # fmt: skip
 
     def _rung(self, step: Refit, before: Refit | None) -> Rung:
@@ -132,20 +135,9 @@ def _alike(ranking: list[Candidate]) -> tuple[str, ...]:
     return tuple(c.effect for c in ranking if c is ranking[0] or improvement(c.refit.held_out, best).within_chance)
 
 
-def _evidence(candidate: Candidate) -> Mapping[str, Any]:
-    found = candidate.gain
+def _evidence(found: Improvement, effect: Effect) -> Mapping[str, Any]:
     return {
         "confirmed": True, "fall": found.share, "deviations": found.deviations, "nats": found.nats,
-        "nats_without_best_run": found.nats_without, "beyond_chance": found.beyond_chance,
-        "looks": LACKING[candidate.effect].looks, "meaning": LACKING[candidate.effect].meaning,
+        "nats_without_best_run": found.nats_without, "beyond_chance": found.beyond_chance, "looks": effect.looks,
+        "meaning": effect.meaning,
     }  # fmt: skip
-
-
-def _why(candidate: Candidate, base: Refit, best: bool) -> str:
-    before, after = percent(base.held_out_error), percent(candidate.refit.held_out_error)
-    change = f"On data held out from the fit the error goes from {before} to {after}"
-    looks = LACKING[candidate.effect].looks
-    if not candidate.gain.beyond_chance:
-        steadily = f"{candidate.gain.deviations:.1f} standard errors"
-        return f"{change}, {steadily}: no more than chance. It would show as: {looks}."
-    return f"{change}. {'No other effect does better. ' if best else ''}It shows as: {looks}."

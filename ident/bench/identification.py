@@ -6,6 +6,7 @@ It has the steps of every fit (start, advance, finish), so that jobs, progress a
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from dataclasses import replace
 from importlib.metadata import version
 
@@ -14,11 +15,13 @@ from numpy.typing import NDArray
 
 from ident.bench.analysis import Analysis, analyse
 from ident.bench.least_squares import Solution, solve
-from ident.bench.model import CONSTANTS, Model
-from ident.bench.outputs import model_of, noise_floor, run_errors
+from ident.bench.missing import QUICK, centred, finely, with_effect
+from ident.bench.model import CONSTANTS, Model, Models
+from ident.bench.outputs import errors_of, model_of, noise_floor
 from ident.bench.polish import polished, weak
 from ident.bench.records import bench_set
-from ident.bench.residual import Residual, observe
+from ident.bench.residual import Observed, Residual, observe
+from ident.custom.definition import preset_with
 from ident.fit.ends import distinct
 from ident.fit.result import Estimate, FitResult, RunError, Undetermined
 from ident.fit.search import Search, State, evolution, options_of
@@ -26,11 +29,13 @@ from ident.fit.settings import Settings
 from ident.fit.space import Axis, Space
 from ident.matrix import Matrix
 from ident.parallel import each
-from ident.presets import preset as preset_called
+from ident.parameter import Parameter
 from ident.progress import Progress, Report, silent
 
 Array = NDArray[np.float64]
 _SEARCHED = 60.0  # Hz of the records during the search; the polish takes what each record needs
+_FASTEST = 10.0  # Hz, where no sine was recorded
+_STEPS = 12  # of the procedures' own model where effects are added to it
 _STARTS = 3  # vectors of the last generation from which the polish starts, beside what the procedures found
 
 
@@ -39,7 +44,7 @@ class BenchIdentification:
 
     def __init__(self, matrix: Matrix, settings: Settings, report: Report = silent) -> None:
         self.matrix, self.settings, self.report = matrix, settings, report
-        self.preset = preset_called(settings.model)
+        self.preset = preset_with(settings.model, settings.effects, settings.custom)
         self.bench = bench_set(matrix, "fit")
         self.space = self._space()
         options = options_of(settings, self.preset)
@@ -53,16 +58,23 @@ class BenchIdentification:
         report(Progress("prepare", 1, 1))
 
     def _space(self) -> Space:
-        """The parameters' bounds, or the user's; every quantity in SI."""
-        given = {self.preset.parameter(name).name: bounds for name, bounds in self.settings.bounds.items()}
-        fixed = {self.preset.parameter(name).name: value for name, value in self.settings.fixed.items()}
+        """The parameters' bounds, or the user's; every quantity in SI. Shapes are held where no bounds are given."""
+        given = {self.preset.parameter(name).in_equations: bounds for name, bounds in self.settings.bounds.items()}
+        shapes = {p.in_equations: p.value for effect in self.preset.effects for p in effect.added[1:]}
+        held = {name: value for name, value in centred(shapes, self.bench.records).items() if name not in given}
+        fixed = held | {self.preset.parameter(name).in_equations: v for name, v in self.settings.fixed.items()}
         axes = []
-        for parameter in self.preset.parameters:
-            lower, upper = given.get(parameter.name, (parameter.lower, parameter.upper))
-            bounded = parameter.within(lower, upper)
-            if parameter.name not in fixed:
-                axes.append(Axis(parameter.name, lower, upper, bounded.logarithmic))
-        return Space(tuple(axes), tuple(p.name for p in self.preset.parameters), fixed, {})
+        for parameter, scale in zip(self.preset.parameters, self.preset.scales, strict=True):
+            name = parameter.in_equations
+            lower, upper = given.get(name, (parameter.lower, parameter.upper))
+            if parameter.of and name not in given:
+                axes.append(Axis(name, scale.lower, scale.upper, scale.logarithmic, scale.equation))
+            elif name not in fixed:
+                axes.append(Axis(name, lower, upper, parameter.within(lower, upper).logarithmic))
+        axes = [axis for axis in axes if axis.name not in fixed]
+        fastest = max((record.frequency or 0.0 for record in self.bench.records), default=0.0) or _FASTEST
+        order = tuple(p.in_equations for p in self.preset.parameters)
+        return Space(tuple(axes), order, fixed, {"W": 2.0 * np.pi * fastest})
 
     @property
     def generations(self) -> int:
@@ -87,13 +99,13 @@ class BenchIdentification:
         Square roots of square roots: far from the optimum one bad record must not hide what the others say.
         """
 
-        def one(point: Array) -> float:
-            model = self._model(point)
-            means = [float(np.sqrt(np.mean(observed.residual(model) ** 2))) for observed in self._coarse]
-            return float(np.mean(np.sqrt(means)))
-
-        found = np.array(each(one, list(points)))
-        return np.where(np.isfinite(found), found, 1e9)
+        models = Models.of([self._model(point) for point in points])
+        fast = models.each[0].chain is None
+        # A chain's kernel takes many models side by side, the fast simulation is shared out to the cores.
+        shares = [models.some(np.array([i])) for i in range(len(models))] if fast else [models]
+        found = np.concatenate(each(lambda share: np.array([one.error(share) for one in self._coarse]), shares), axis=1)
+        mean = np.mean(np.sqrt(found), axis=0)
+        return np.where(np.isfinite(mean), mean, 1e9)
 
     def finish(self, state: State) -> FitResult:
         """Least squares from the best of the search, or for "gradient" the procedures' own model; what it says."""
@@ -107,8 +119,26 @@ class BenchIdentification:
         lag = self.analysis.dynamics
         if steps is None or lag is None:
             raise AssertionError("complete() has seen to it")
-        own = replace(steps, T=lag.gradient_T).with_values(self.space.fixed)
-        return solve(Residual(own, self._fine, self.space.names), steps=0)
+        own, observed = self._own(replace(steps, T=lag.gradient_T))
+        return solve(Residual(own, observed, self.space.names), steps=_STEPS if self.preset.effects else 0)
+
+    def _own(self, found: Model) -> tuple[Model, tuple[Observed, ...]]:
+        """What the procedures found, which know of no effects, and the records that it is polished on.
+
+        Effects come one after the other. They are told from the lag by parts of a millisecond and by what few samples
+        see: then the records are taken finely, each weighed by what is left of it.
+        """
+        if not self.preset.effects:
+            return found.with_values(self.space.fixed), self._fine
+        off = {p.in_equations: p.value for effect in self.preset.effects for p in effect.added}
+        model = model_of({**found.values(), **off, **self.space.fixed}, found.Ps, self.preset)
+        names = tuple(name for name in QUICK if name in self.space.names)
+        for effect in self.preset.effects:
+            if (strength := effect.added[0].in_equations) in self.space.names:
+                names = (*names, strength)
+                model = with_effect(model, effect, self._fine, names)
+        first = solve(Residual(model, self._fine, self.space.names)).model
+        return first, tuple(each(lambda one: one.weighed(first), finely(self.bench.records)))
 
     def _polished(self, state: State) -> tuple[Solution, list[str]]:
         """The best of where the starts end, and what is to be said of the others."""
@@ -117,45 +147,60 @@ class BenchIdentification:
         own = self.analysis.model
         if own is None:
             raise AssertionError("complete() has seen to it")
-        own = own.with_values(self.space.fixed)
+        own, observed = self._own(own)
         bounds = self.space.bounds(own.values()).items()
         allowed = all(lower <= own.values()[name] <= upper for name, (lower, upper) in bounds)
-        return polished(starts, own if allowed else None, self._fine, self.space.names)
+        return polished(starts, own if allowed else None, observed, self.space.names)
 
     def _model(self, point: Array) -> Model:
         values = {name: float(value[0]) for name, value in self.space.values(point[None]).items()}
-        return model_of(values, self.bench.supply_pressure)
+        return model_of(values, self.bench.supply_pressure, self.preset)
 
     def _result(self, solution: Solution, state: State, notes: list[str]) -> FitResult:
         values = {**self.space.fixed, **solution.values}
-        runs = run_errors(self.matrix, values)
-        undetermined = weak(solution)
+        supply = self.bench.supply_pressure
+        runs = errors_of(bench_set(self.matrix).records, model_of(values, supply, self.preset))
+        undetermined, called = weak(solution), {p.in_equations: p.name for p in self.preset.parameters}
         seen, bounds = solution.deviations, self.space.bounds(values)
         parameters = {
-            p.name: self._estimate(p.name, values[p.name], seen.get(p.name), bounds.get(p.name), p.name in undetermined)
+            p.name: self._estimate(p, values[n], seen.get(n), bounds.get(n), n in undetermined)
             for p in self.preset.parameters
+            if (n := p.in_equations)
         }
         return FitResult(
-            model=self.preset.name, effects=(), parameters=parameters, correlation=solution.correlation, determined=(),
-            undetermined=tuple(Undetermined(name, "these records hardly depend on it") for name in undetermined),
+            model=self.preset.name, effects=tuple(effect.name for effect in self.preset.effects),
+            parameters=parameters, correlation=_called(called, solution.correlation), determined=(),
+            undetermined=tuple(Undetermined(called[n], "these records hardly depend on it") for n in undetermined),
             error={"fit": _mean(runs, "fit", "error"), "held_out": None, "verify": _mean(runs, "verify", "error")},
             offset={"fit": _mean(runs, "fit", "offset"), "verify": _mean(runs, "verify", "offset")},
             noise_floor={use: noise_floor(self.matrix, use) for use in ("fit", "verify")}, runs=runs,
             method=self.settings.method, seed=self.settings.seed,
             evaluations=int(state["evaluations"]) + solution.evaluations, seconds=time.monotonic() - self._started,
             version=version("servoident"), data_hash=self.matrix.data_hash,
-            notes=(*self.matrix.notices, *self.analysis.notes, *notes, *_compared(self.analysis, solution)),
-            settings=self.settings.to_json(), searched=self.space.names, evolution=evolution(self.space, state),
+            notes=(*self.matrix.notices, *self._doubts, *notes, *_compared(self.analysis, solution)),
+            settings=self.settings.to_json(), searched=tuple(called[n] for n in self.space.names),
+            evolution=evolution(self.space, state),
         )  # fmt: skip
 
+    @property
+    def _doubts(self) -> list[str]:
+        """What the procedures say; a delay that they ask for is no news where the fit has it, or a lag in its place."""
+        late = any(effect.strength.unit == "s" for effect in self.preset.effects)
+        delay = self.analysis.delay.doubt if self.analysis.delay is not None and late else None
+        return [note for note in self.analysis.notes if note != delay]
+
     def _estimate(
-        self, name: str, value: float, deviation: float | None, bounds: tuple[float, float] | None, unsure: bool
-    ) -> Estimate:
-        parameter = self.preset.parameter(name)
+        self, parameter: Parameter, value: float, deviation: float | None, bounds: tuple[float, float] | None,
+        unsure: bool,
+    ) -> Estimate:  # fmt: skip
         lower, upper = bounds or (value, value)
         at_bound = bounds is not None and not lower < value < upper
         return Estimate(value, parameter.unit, None if unsure else deviation, lower, upper, at_bound, parameter.symbol,
                         parameter.meaning, fixed=bounds is None)  # fmt: skip
+
+
+def _called(names: Mapping[str, str], correlation: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, float]]:
+    return {names[a]: {names[b]: value for b, value in row.items()} for a, row in correlation.items()}
 
 
 def _mean(runs: tuple[RunError, ...], use: str, what: str) -> float | None:

@@ -16,7 +16,7 @@ from ident.fit.uncertainty import Covariance, covariance
 
 Array = NDArray[np.float64]
 _STEPS = 12
-_WAY = Way(converged=1e-5, within=(-np.inf, np.inf), longest=0.7, rough=1e-4)
+_WAY = Way(converged=1e-5, longest=0.7, rough=1e-4)
 """Where the play turns, the sum of squares is not smooth: `rough`. A value goes no farther than twofold in one step."""
 
 
@@ -81,6 +81,6 @@ def solve(residual: Residual, steps: int = _STEPS, start: Array | None = None) -
         return residual.cost(point)
 
     first = residual.origin if start is None else start
-    way = replace(_WAY, most=steps)
+    way = replace(_WAY, most=steps, within=residual.within)
     point, normal = levenberg_marquardt(residual.normal, first, way, error=error)
     return Solution(residual, point, normal, 1 + tried)

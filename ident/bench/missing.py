@@ -1,12 +1,12 @@
-"""What the four blocks lack, ranked: each of four effects is refitted with every value of the model to every record.
+"""What the four blocks lack, ranked: each effect is refitted with every value of the model to every record.
 
-The catalogue's effects belong to a chain with a controller; the bench drives its actuator by a current, so that these
-four are its own. What is better beyond chance is judged as for any model, see :mod:`ident.diagnosis.significance`.
+Ranked are the effects that the fast simulation knows, and the user's own. What is better beyond chance is judged as
+for any model, see :mod:`ident.diagnosis.significance`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -14,14 +14,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.bench.least_squares import Solution, solve
-from ident.bench.model import CONSTANTS, Model
+from ident.bench.model import CONSTANTS, FAST, Model
 from ident.bench.records import Record
 from ident.bench.residual import Observed, Residual, observe
 from ident.diagnosis.cross_validation import FOLDS, CrossValidation
 from ident.diagnosis.significance import Improvement, improvement
+from ident.effects import CATALOGUE
+from ident.effects.effect import Effect
+from ident.effects.second_lag import SECOND_LAG
+from ident.effects.spring_load import SPRING_LOAD
 from ident.fit.bounded_step import bounded_step
 from ident.noise.effective_sample_size import independent_samples
 from ident.parallel import each
+from ident.presets import Preset
 
 Array = NDArray[np.float64]
 
@@ -30,35 +35,11 @@ def _unsaid(_done: int, _total: int) -> None:
     """Report nothing."""
 
 
-@dataclass(frozen=True)
-class Lacking:
-    """An effect that the blocks lack: unit of its strength, what it is, what it looks like in data."""
-
-    name: str
-    symbol: str
-    unit: str
-    meaning: str
-    looks: str
-
-
-LACKING = {
-    one.name: one
-    for one in (
-        Lacking("delay", "T_d", "s", "pure delay before the lag",
-                "a phase lag that grows with the frequency, at the same gain"),
-        Lacking("second_lag", "T_2", "s", "second lag in series with T: the lag is of second order",
-                "more phase lag than T explains, and a rounded start of every movement"),
-        Lacking("stiction", "ΔP_st", "Pa", "pressure above friction that breaks the link loose",
-                "movements that begin late and with a jump, and pressures beyond friction before them"),
-        Lacking("load", "c_F", "Pa/m", "load that grows with the position, so that the speed depends on it",
-                "speeds that differ from place to place, and a zero shift of each range of positions"),
-    )
-}  # fmt: skip
-"""The four, by name."""
-_QUICK = ("T", "B", "I0", "kp", "dPfr")
+QUICK = CONSTANTS
+"""What a first refit moves beside the strengths."""
 _TRIED = (0.05, 0.2, 0.6)
 _STEPS, _FINAL = 6, 12
-RATE = 500.0  # Hz
+_RATE = 500.0  # Hz
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,10 +71,22 @@ class Candidate:
 
 @dataclass(frozen=True, eq=False)
 class Refitter:
-    """Refits of a fitted model with effects, to the records of the fit."""
+    """Refits of a fitted model with further effects, to the records of the fit.
+
+    `bare` is the preset without effects, `on` are those of the fitted `model`, `custom` the user's own.
+    """
 
     model: Model
+    bare: Preset
+    on: tuple[Effect, ...]
     records: tuple[Record, ...]
+    custom: tuple[Effect, ...] = ()
+
+    @cached_property
+    def effects(self) -> Mapping[str, Effect]:
+        """Those of the model and those that it may be given, by name, in the order of the catalogue."""
+        known = {*self.on, *FAST, *self.custom}
+        return {effect.name: effect for effect in (*CATALOGUE, *self.custom) if effect in known}
 
     @cached_property
     def _coarse(self) -> tuple[Observed, ...]:
@@ -102,23 +95,17 @@ class Refitter:
 
     @cached_property
     def _fine(self) -> tuple[Observed, ...]:
-        """The records in steps so fine that a mean over samples is not taken for a lag."""
-        return observe(self.records, rate=RATE)
-
-    @cached_property
-    def _start(self) -> Model:
-        ends = [(record.position.min(), record.position.max()) for record in self.records]
-        return replace(self.model, centre=float(0.5 * (min(a for a, _ in ends) + max(b for _, b in ends))))
+        return finely(self.records)
 
     @cached_property
     def base(self) -> Refit:
         """The fitted model, refitted to the weighed records."""
-        return self._refit((), self._start)
+        return self._refit(tuple(effect.name for effect in self.on), self.model)
 
     @cached_property
     def _left(self) -> Array:
         """Mean square, of the position of each record, that the fitted model leaves."""
-        residual = self._positions(self._start)
+        residual = self._positions(self.model)
         return np.array([float(np.mean(r**2)) for r in residual])
 
     @cached_property
@@ -135,14 +122,24 @@ class Refitter:
         return sorted(found, key=lambda one: one.refit.held_out_error)
 
     def _candidate(self, base: Refit, name: str) -> Candidate:
-        names = (*_QUICK, *base.effects, name)
-        tried = [solve(Residual(start, self._coarse, names), steps=_STEPS) for start in _starts(base.model, name)]
-        best = min(tried, key=lambda solution: solution.cost)
-        refit = self._refit((*base.effects, name), best.model)
-        return Candidate(name, self._error(best.model), refit, improvement(base.held_out, refit.held_out))
+        effects = (*base.effects, name)
+        model = self._with(base.model, effects)
+        best = with_effect(model, self.effects[name], self._coarse, (*QUICK, *self._strengths(effects)))
+        refit = self._refit(effects, best)
+        return Candidate(name, self._error(best), refit, improvement(base.held_out, refit.held_out))
+
+    def _strengths(self, effects: Sequence[str]) -> tuple[str, ...]:
+        return tuple(self.effects[name].added[0].in_equations for name in effects)
+
+    def _with(self, model: Model, effects: Sequence[str]) -> Model:
+        """The model with these effects, new ones off."""
+        on = tuple(effect for name, effect in self.effects.items() if name in effects)
+        off = {p.in_equations: p.value for effect in on for p in effect.added}
+        chain = self.bare.with_effects(on).chain if set(on) - set(FAST) else None
+        return replace(model, strengths=centred(off, self.records) | dict(model.strengths), chain=chain)
 
     def _refit(self, effects: tuple[str, ...], start: Model) -> Refit:
-        names = (*CONSTANTS, *start.table.names, *effects)
+        names = (*CONSTANTS, *start.table.names, *self._strengths(effects))
         first = _longer_first(solve(Residual(start, self._coarse, names), steps=_FINAL).model)
         weighed = tuple(each(lambda one: one.weighed(first), self._fine))
         solution = solve(Residual(first, weighed, names), steps=_FINAL)
@@ -180,8 +177,9 @@ class Refitter:
 
 def _longer_first(model: Model) -> Model:
     """Two lags in series may change places: the longer one is T."""
-    second = model.extra.get("second_lag", 0.0)
-    return replace(model.with_values({"second_lag": model.T}), T=second) if second > model.T else model
+    name = SECOND_LAG.added[0].in_equations
+    second = model.strengths.get(name, 0.0)
+    return replace(model.with_values({name: model.T}), T=second) if second > model.T else model
 
 
 def _bounded(products: Array) -> Array:
@@ -190,12 +188,33 @@ def _bounded(products: Array) -> Array:
     return bounded_step(np.full(p, 0.5), products[:p, :p], products[:p, p])
 
 
-def _starts(model: Model, name: str) -> list[Model]:
+def finely(records: Sequence[Record]) -> tuple[Observed, ...]:
+    """The records in steps so fine that a mean over samples is not taken for a lag."""
+    return observe(records, rate=_RATE)
+
+
+def with_effect(model: Model, effect: Effect, observed: tuple[Observed, ...], names: tuple[str, ...]) -> Model:
+    """The best of quick fits of these values, from a weak, a middling and a strong effect."""
+    tried = [solve(Residual(start, observed, names), steps=_STEPS) for start in _starts(model, effect)]
+    return min(tried, key=lambda solution: solution.cost).model
+
+
+def centred(values: Mapping[str, float], records: Sequence[Record]) -> dict[str, float]:
+    """The values, a load that grows with the position being zero in the middle of all positions."""
+    centre = SPRING_LOAD.added[1].in_equations
+    ends = [(record.position.min(), record.position.max()) for record in records]
+    middle = float(0.5 * (min(a for a, _ in ends) + max(b for _, b in ends)))
+    return {name: middle if name == centre else value for name, value in values.items()}
+
+
+def _starts(model: Model, effect: Effect) -> list[Model]:
     """Models with some of an effect, the lag made shorter by what a second lag or a delay takes over."""
-    if name in ("delay", "second_lag"):
+    strength = effect.added[0]
+    if strength.unit == "s":
         return [
-            replace(model.with_values({name: share * model.T}), T=max(1.0 - share, 0.2) * model.T) for share in _TRIED
+            replace(model.with_values({strength.in_equations: share * model.T}), T=max(1.0 - share, 0.2) * model.T)
+            for share in _TRIED
         ]
-    size = model.dPfr if name == "stiction" else 10.0 * model.dPfr
-    signs = (1.0,) if name == "stiction" else (1.0, -1.0)
-    return [model.with_values({name: sign * share * size}) for share in _TRIED for sign in signs]
+    size = {"Pa": model.dPfr, "Pa/m": 10.0 * model.dPfr}.get(strength.unit, strength.upper)
+    signs = (1.0,) if strength.lower >= 0 else (1.0, -1.0)
+    return [model.with_values({strength.in_equations: sign * share * size}) for share in _TRIED for sign in signs]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -10,13 +10,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.chain_response import SHOWN, chain_response
 from ident.bench.response import respond
 from ident.bench.speed_table import SpeedTable
+from ident.chain.chain import Chain
+from ident.effects.command_delay import COMMAND_DELAY
+from ident.effects.second_lag import SECOND_LAG
+from ident.effects.spring_load import SPRING_LOAD
+from ident.effects.stiction import STICTION
 
 Array = NDArray[np.float64]
 CONSTANTS = ("T", "B", "I0", "kp", "dPfr")
-MISSING = ("second_lag", "stiction", "load", "delay")
-"""What the four blocks lack: s, Pa above ΔPfr to break loose, Pa/m of position, s."""
+FAST = (COMMAND_DELAY, SECOND_LAG, SPRING_LOAD, STICTION)
+"""The effects that the compiled simulation of a bench knows; with any other the chain is simulated."""
+_STRENGTHS = tuple(
+    parameter.in_equations
+    for effect in (SECOND_LAG, STICTION, SPRING_LOAD, COMMAND_DELAY)
+    for parameter in effect.added
+)  # fmt: skip
 
 
 def dead_space(values: Mapping[str, Any]) -> Any:
@@ -42,8 +53,9 @@ class Model:
     c: V0 = f(I_BL − I0), the speed without load and friction     table (1 → m/s), I0 the zero shift
     d: V = V0 sqrt(max(0, 1 − needed/available)), available = min(kp |I_BL − I0|, Ps), needed = ΔPfr (Pa)
 
-    At rest the pressure difference is what is available, kp (I_BL − I0); in motion what is needed, ±ΔPfr. `extra`
-    holds what the four blocks lack, all zero: see :data:`MISSING`; `centre` (m) is where the lacking load is zero.
+    At rest the pressure difference is what is available, kp (I_BL − I0); in motion what is needed, ±ΔPfr. `strengths`
+    holds the parameters of effects by their names in the equations, all zero where there is none; `chain` is given
+    where an effect is not one of :data:`FAST`: it then says what the actuator answers.
     """
 
     T: float
@@ -53,8 +65,8 @@ class Model:
     dPfr: float
     table: SpeedTable
     Ps: float = np.inf
-    extra: Mapping[str, float] = field(default_factory=dict)
-    centre: float = 0.0
+    strengths: Mapping[str, float] = field(default_factory=dict)
+    chain: Chain | None = None
 
     @property
     def dead_space(self) -> float:
@@ -64,18 +76,18 @@ class Model:
     @cached_property
     def constants(self) -> Array:
         """As the compiled simulation takes them."""
-        lacking = [self.extra.get(name, 0.0) for name in MISSING]
-        return np.array([self.T, self.B, self.I0, self.kp, self.dPfr, self.Ps, *lacking, self.centre])
+        of_effects = [self.strengths.get(name, 0.0) for name in _STRENGTHS]
+        return np.array([self.T, self.B, self.I0, self.kp, self.dPfr, self.Ps, *of_effects])
 
     def with_values(self, values: Mapping[str, float]) -> Model:
-        """The model with other values of constants, of extras, or of the table (``V_p5``: at +5 %)."""
-        own = {name: value for name, value in values.items() if name in CONSTANTS}
-        extra = {**self.extra, **{name: value for name, value in values.items() if name in MISSING}}
-        return replace(self, **own, extra=extra, table=self.table.with_values(values))
+        """The model with other values of constants, of effects, or of the table (``V_p5``: at +5 %)."""
+        own: dict[str, Any] = {name: value for name, value in values.items() if name in CONSTANTS}
+        strengths = {**self.strengths, **{name: value for name, value in values.items() if "__" in name}}
+        return replace(self, **own, strengths=strengths, table=self.table.with_values(values))
 
     def values(self) -> dict[str, float]:
-        """Every constant and every speed of the table by name."""
-        return {name: float(getattr(self, name)) for name in CONSTANTS} | self.table.values()
+        """Every constant, every speed of the table and every parameter of effects by name."""
+        return {name: float(getattr(self, name)) for name in CONSTANTS} | self.table.values() | dict(self.strengths)
 
     def answer(
         self, current: Array, rate: float, hold: str = "linear", start: float = 0.0, steps: int | None = None
@@ -85,6 +97,8 @@ class Model:
         The play begins where it holds the current nearest to the zero shift. A sample is divided until a step is no
         longer than a tenth of T, and 2.5 ms.
         """
+        if self.chain is not None:
+            return Answer(*(by_chain([self], current, rate, hold, start, what)[0] for what in SHOWN))
         longest = min(2.5e-3, max(0.1 * self.T, 5e-4))
         divided = max(1, int(np.ceil(1.0 / (rate * longest) - 1e-9))) if steps is None else steps
         driven = np.ascontiguousarray(current, dtype=float)
@@ -95,3 +109,34 @@ class Model:
             np.array([start, driven[0], driven[0], play]), out,
         )  # fmt: skip
         return Answer(*out)
+
+
+def by_chain(models: Sequence[Model], current: Array, rate: float, hold: str, start: float, what: str) -> Array:
+    """One answer of models that differ in their values alone, by their chain: (models, n)."""
+    chain, values = models[0].chain, [model.values() for model in models]
+    if chain is None:
+        raise ValueError("models of the fast simulation have no chain")
+    stacked = {name: np.array([own[name] for own in values]) for name in values[0]}
+    return chain_response(chain, stacked, models[0].Ps, current, rate, hold, start, what)
+
+
+@dataclass(frozen=True, eq=False)
+class Models:
+    """Models that differ in their values alone, as a compiled simulation takes them."""
+
+    each: tuple[Model, ...]
+    constants: Array
+    pieces: Array
+
+    @classmethod
+    def of(cls, models: Sequence[Model]) -> Models:
+        """Those models."""
+        constants, pieces = [model.constants for model in models], [model.table.pieces for model in models]
+        return cls(tuple(models), np.array(constants), np.array(pieces))
+
+    def __len__(self) -> int:
+        return len(self.each)
+
+    def some(self, which: NDArray[np.intp]) -> Models:
+        """Some of them, by their places."""
+        return Models(tuple(self.each[i] for i in which), self.constants[which], self.pieces[which])

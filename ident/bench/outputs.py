@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.bench.model import Model
+from ident.bench.model import FAST, Model
 from ident.bench.records import Record, bench_set
 from ident.bench.speed_table import SpeedTable
 from ident.fit.result import RunError
@@ -17,33 +17,34 @@ from ident.presets import Preset
 Array = NDArray[np.float64]
 
 
-def model_of(values: Mapping[str, float], supply: float) -> Model:
-    """The model that has these values, SI, currents in rated currents."""
+def model_of(values: Mapping[str, float], supply: float, preset: Preset | None = None) -> Model:
+    """The model that has these values by the equations' names, SI, currents in rated currents.
+
+    `preset` says which effects it has; with any beside :data:`ident.bench.model.FAST` its chain is simulated.
+    """
     table = SpeedTable.straight(1.0).with_values(values)
-    return Model(values["T"], values["B"], values["I0"], values["kp"], values["dPfr"], table, supply)
+    strengths = {name: value for name, value in values.items() if "__" in name}
+    chain = preset.chain if preset is not None and set(preset.effects) - set(FAST) else None
+    return Model(
+        values["T"], values["B"], values["I0"], values["kp"], values["dPfr"], table, supply, strengths, chain
+    )  # fmt: skip
 
 
-def outputs(_preset: Preset, values: Mapping[str, float], matrix: Matrix) -> dict[str, Array]:
-    """The position of each bench record's run, from where the record begins; the model's equations are all one's own.
+def outputs(preset: Preset, values: Mapping[str, float], matrix: Matrix) -> dict[str, Array]:
+    """The position of each bench record's run, from where the record begins.
 
     A simulator of its own, exact between the corners of play and table: see docs/bench.md for what it saves.
     """
     bench = bench_set(matrix)
-    model = model_of(values, bench.supply_pressure)
+    model = model_of(values, bench.supply_pressure, preset)
     return {
         record.id: model.answer(record.current, record.rate, record.hold, float(record.position[0])).position
         for record in bench.records
     }
 
 
-def run_errors(matrix: Matrix, values: Mapping[str, float]) -> tuple[RunError, ...]:
-    """Eq. (17) of each bench record's run, and its offset."""
-    bench = bench_set(matrix)
-    return errors_of(bench.records, model_of(values, bench.supply_pressure))
-
-
 def errors_of(records: Sequence[Record], model: Model) -> tuple[RunError, ...]:
-    """The same of a model, whatever it has beside the four blocks."""
+    """Eq. (17) of each bench record, and its offset."""
     out = []
     for record in records:
         found = model.answer(record.current, record.rate, record.hold, float(record.position[0])).position

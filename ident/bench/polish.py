@@ -40,7 +40,7 @@ def polished(
 
 def weak(solution: Solution) -> list[str]:
     """The values that the records do not determine."""
-    size = {name: abs(value) if name != "I0" else 1e-2 for name, value in solution.values.items()}
+    size = {name: solution.residual.reach.get(name, abs(value)) for name, value in solution.values.items()}
     return [name for name, deviation in solution.deviations.items() if not 0 < deviation < _WEAK * size[name]]
 
 

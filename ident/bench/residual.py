@@ -15,9 +15,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.bench.model import Model
+from ident.bench.model import FAST, Model, Models, by_chain
 from ident.bench.records import Record
-from ident.bench.response import products, residuals
+from ident.bench.response import products, residuals, rest
 from ident.bench.speed_table import SpeedTable
 from ident.noise.effective_sample_size import independent_samples
 from ident.parallel import cores, each
@@ -27,11 +27,15 @@ IMPERFECT = 2e-3  # of a record's standard deviation
 _SETTLED = 0.25  # s at the start of a record that its unknown past may have shaped
 _MOVED = 3.0 + 1e-6  # steps of the converter that are no accident; three of them are, however they are rounded
 _STEP = 1e-4  # relative, of a difference
-_STRIDE = {"stiction": 0.1}  # the same where a value acts in jumps, from one sample to the next
+_STRIDE = {"stiction__pressure": 0.1}  # the same where a value acts in jumps, from one sample to the next
 _NOTHING = np.empty(0)
 _BLOCKS = 8  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
-_REACH = {"I0": 1e-2, "delay": 1e-2, "second_lag": 1e-2, "stiction": 1e5, "load": 1e7}
-"""The natural size of what may be zero or negative; everything else is positive and moved by a share of itself."""
+_REACH = {
+    "I0": 1e-2, "command_delay__delay": 1e-2, "second_lag__time_constant": 1e-2, "stiction__pressure": 1e5,
+    "spring_load__rate": 1e7, "spring_load__centre": 1e-2,
+}  # fmt: skip
+"""The natural size of what may be zero or negative, a tenth of the range for other effects; everything else is
+positive and moved by a share of itself."""
 
 
 def rate_wanted(record: Record) -> float:
@@ -78,7 +82,7 @@ class Observed:
 
     def residual(self, model: Model) -> Array:
         """Everything compared, scaled: position part by part, then pressure."""
-        return np.asarray(self.residuals(model.constants[None], model.table.nodes, model.table.pieces[None])[0])
+        return np.asarray(self.residuals(Models.of([model]))[0])
 
     @property
     def count(self) -> int:
@@ -86,18 +90,40 @@ class Observed:
         outputs = int(np.isfinite(self.position_scale)) + int(self.pressure_scale is not None)
         return outputs * sum(end - first for first, end in self.parts)
 
-    def residuals(self, constants: Array, nodes: Array, pieces: Array, room: Array | None = None) -> Array:
+    def error(self, models: Models) -> Array:
+        """The RMS of the residuals of several models, (models,)."""
+        return np.asarray(np.sqrt(np.mean(self.residuals(models) ** 2, axis=1)))
+
+    def residuals(self, models: Models, room: Array | None = None) -> Array:
         """The residuals of several models, (models, samples compared); in `room`, where that is given."""
         record, positions = self.record, bool(np.isfinite(self.position_scale))
-        size = len(constants) * self.count
-        out = (np.empty(size) if room is None else room[:size]).reshape(len(constants), self.count)
+        size = len(models) * self.count
+        out = (np.empty(size) if room is None else room[:size]).reshape(len(models), self.count)
+        if models.each[0].chain is not None:
+            self._by_chain(models, out)
+            return out
         scales = np.array([self.position_scale if positions else 0.0, self.pressure_scale or 0.0])
         residuals(
-            record.current, 1.0 / record.rate, record.hold == "zoh", constants, nodes, pieces, record.position,
-            record.pressure if record.pressure is not None else _NOTHING,
+            record.current, 1.0 / record.rate, record.hold == "zoh", models.constants, models.each[0].table.nodes,
+            models.pieces, record.position, record.pressure if record.pressure is not None else _NOTHING,
             np.array(self.parts, dtype=np.int64).reshape(-1, 2), scales, self.drifting, out,
         )  # fmt: skip
         return out
+
+    def _by_chain(self, models: Models, out: Array) -> None:
+        """Fill `out` by a simulation of the chain."""
+        record, at = self.record, 0
+        outputs = [("position", record.position, self.position_scale, self.drifting)]
+        if record.pressure is not None and self.pressure_scale is not None:
+            outputs.append(("pressure", record.pressure, self.pressure_scale, False))
+        for what, measured, scale, drifting in outputs:
+            if not np.isfinite(scale):
+                continue
+            answers = by_chain(models.each, record.current, record.rate, record.hold, self.start, what)
+            for first, end in self.parts:
+                for row, answer in zip(out[:, at : at + end - first], answers, strict=True):
+                    rest(answer, measured, first, end, scale, drifting, row)
+                at += end - first
 
     @cached_property
     def power(self) -> float:
@@ -174,16 +200,32 @@ class Residual:
     @property
     def origin(self) -> Array:
         """The point of the first model."""
-        return np.array([self._first[name] / _REACH[name] if name in _REACH else 0.0 for name in self.names])
+        return np.array([self._first[n] / self.reach[n] if n in self.reach else 0.0 for n in self.names])
 
     @cached_property
     def _first(self) -> dict[str, float]:
-        return self.model.values() | {name: self.model.extra.get(name, 0.0) for name in _REACH if name != "I0"}
+        return dict.fromkeys(_REACH, 0.0) | self.model.values()
+
+    @cached_property
+    def reach(self) -> dict[str, float]:
+        """The natural sizes of what may be zero."""
+        effects = self.model.chain.effects if self.model.chain is not None else ()
+        other = {p.in_equations: 0.1 * (p.upper - p.lower) for effect in effects for p in effect.added}
+        return {**other, **_REACH}
+
+    @cached_property
+    def within(self) -> tuple[Array, Array]:
+        """Bounds of each axis: a strength of one sign keeps it."""
+        effects = (*FAST, *(self.model.chain.effects if self.model.chain is not None else ()))
+        lower = {p.in_equations: p.lower / self.reach[p.in_equations] for effect in effects for p in effect.added
+                 if p.lower >= 0}  # fmt: skip
+        return np.array([lower.get(name, -np.inf) for name in self.names]), np.full(len(self.names), np.inf)
 
     def values(self, points: Array) -> dict[str, Array]:
         """The values at points: (v, p) → name: (v,)."""
+        reach = self.reach
         return {
-            name: place * _REACH[name] if name in _REACH else self._first[name] * np.exp(np.clip(place, -5, 5))
+            name: place * reach[name] if name in reach else self._first[name] * np.exp(np.clip(place, -5, 5))
             for name, place in zip(self.names, points.T, strict=True)
         }
 
@@ -211,13 +253,11 @@ class Residual:
         strides = np.array([_STRIDE.get(name, _STEP) for name in self.names])
         models = [self.at(moved) for moved in point + np.diag(strides)]
         limits = np.array([-1.0, *(_seen_from(here.table, name) for name in self.names)])
-        every = [here, *models]
-        constants = np.array([model.constants for model in every])
-        pieces = np.array([model.table.pieces for model in every])
+        every = Models.of([here, *models])
 
         def one(observed: Observed, room: Array) -> tuple[int, Array]:
             seen = np.flatnonzero(observed.reach + abs(here.I0) > limits)
-            rows = observed.residuals(constants[seen], here.table.nodes, pieces[seen], room)
+            rows = observed.residuals(every.some(seen), room)
             base = rows[0].copy()
             rows[:-1] = (rows[1:] - base) / strides[seen[1:] - 1, None]
             rows[-1] = base

@@ -62,12 +62,12 @@ def respond(
 ) -> None:  # fmt: skip
     """Fill `out` (3, n) with position (m), pressure difference (Pa) and the current after the play.
 
-    `constants` holds T, B, I0, kp, ΔPfr, Ps and what the four blocks lack: second lag (s), stiction (Pa above ΔPfr),
-    load (Pa/m), delay (s), and the position (m) at which the load is zero.
+    `constants` holds T, B, I0, kp, ΔPfr, Ps and the parameters of effects: second lag (s), stiction (Pa above ΔPfr),
+    load (Pa/m), the position (m) at which it is zero, delay (s).
     `start` holds position and currents after the lags and the play, and is left as they are
     at the end; `steps` divides a sample.
     """
-    T, B, I0, kp, friction, supply, T2, sticking, load, delay, centre = constants
+    T, B, I0, kp, friction, supply, T2, sticking, load, centre, delay = constants
     late = delay / step
     phi, g0, g1 = filter_gains(T, step / steps)
     phi2, h0, h1 = filter_gains(T2, step / steps)

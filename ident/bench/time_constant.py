@@ -17,11 +17,12 @@ from ident.bench.least_squares import solve
 from ident.bench.model import Model
 from ident.bench.quantity import Found
 from ident.bench.residual import Observed, Residual
+from ident.effects.command_delay import COMMAND_DELAY
 
 Array = NDArray[np.float64]
 _LARGEST, _SMALLEST = 1.0, 1e-4  # s
 _STEPS = 25
-_TOGETHER = ("T", "B", "delay")
+_DELAY = COMMAND_DELAY.added[0].in_equations
 _TOLD, _SEEN = 4.0, 0.02  # standard deviations, share of T, from which on a delay is said to be there
 
 
@@ -107,9 +108,11 @@ def dynamics(model: Model, observed: Sequence[Observed]) -> Dynamics:
 
 def delay_check(model: Model, observed: Sequence[Observed]) -> DelayCheck:
     """T, B and a delay refitted together from a model that has T and B alone."""
-    both = solve(Residual(model, tuple(observed), _TOGETHER), steps=5)
-    delay = Found(both.values["delay"], both.deviations["delay"], "s")
-    T, B, correlation = both.values["T"], both.values["B"], both.correlation
+    both = solve(Residual(model, tuple(observed), ("T", "B", _DELAY)), steps=5)
+    delay = Found(both.values[_DELAY], both.deviations[_DELAY], "s")
+    called = {"T": "T", "B": "B", _DELAY: "delay"}
+    correlation = {called[a]: {called[b]: value for b, value in row.items()} for a, row in both.correlation.items()}
+    T, B = both.values["T"], both.values["B"]
     doubt = ""
     if abs(delay.value) > max(_TOLD * delay.deviation, _SEEN * model.T):
         doubt = (

@@ -74,7 +74,7 @@ class Chain:
             if not self._core & {equation.target for equation in effect.equations}:
                 raise unfit(effect)
             for signal, unit in effect.units.items():
-                if self.units.get(signal, unit) != unit:
+                if unit and self.units.get(signal, unit) != unit:
                     raise of_other_unit(effect, signal, self.units[signal])
 
     def __hash__(self) -> int:

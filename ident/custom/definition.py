@@ -24,7 +24,7 @@ from typing import Any
 from ident.custom.names import Line, check_names
 from ident.custom.off_at_zero import refuse_unless_off
 from ident.custom.parameters import shapes_of, strength_of, symbol_of
-from ident.effects import EFFECTS
+from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
 from ident.equations.equation import Equation
 from ident.equations.grammar import parsed, refused
@@ -121,7 +121,7 @@ def _name(fields: Fields) -> str:
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*", name) or len(name) > 60:
         raise Unusable("bad-name", f"{shown(name)!r} is no name of an effect", "effect name",
                        "give letters, digits and single underscores, a letter first")  # fmt: skip
-    if name in {effect.name for effect in EFFECTS}:
+    if name in {effect.name for effect in CATALOGUE}:
         raise Unusable("name-taken", f"the catalogue has an effect {name}", "effect name", "give it another name")
     return name
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.diagnosis.cross_validation import CrossValidation, cross_validated
-from ident.effects import EFFECTS
+from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.fit.fitness import Local
@@ -84,7 +84,7 @@ class ModelFamily:
     def of(cls, matrix: Matrix, given: Settings, band: float, custom: Iterable[Effect] = ()) -> ModelFamily:
         """The models of the settings' preset with every effect that it has a place for."""
         preset, matrix = PRESETS[given.model].for_matrix(matrix, given.load)
-        known = {effect.name: effect for effect in (*EFFECTS, *custom) if _fits(preset, effect)}
+        known = {effect.name: effect for effect in (*CATALOGUE, *custom) if _fits(preset, effect)}
         return cls(preset, matrix, given, band, known)
 
     @property

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from ident.custom.definition import read_effect
 from ident.design.rivals import NOISE, Model, Rivals
 from ident.diagnosis.result import Diagnosis, Found, bad_diagnosis
-from ident.effects import EFFECTS
+from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.presets import PRESETS, preset
@@ -50,7 +50,7 @@ def _model(found: Diagnosis, parameters: Values, custom: Sequence[Effect]) -> Mo
     """The preset with the effects that the parameters belong to, and their values."""
     defined = (read_effect(entry, model=found.model) for entry in found.settings.get("custom") or ())
     own = {effect.name: effect for effect in (*custom, *defined)}
-    known = [*(effect.name for effect in EFFECTS), *own]
+    known = [*(effect.name for effect in CATALOGUE), *own]
     effects = tuple(name for name in known if any(parameter.startswith(f"{name}.") for parameter in parameters))
     model = preset(found.model, effects, tuple(effect for effect in own.values() if effect.name in effects))
     values = {model.parameter(name).in_equations: entry.value for name, entry in parameters.items()}

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.result import Suspect
+from ident.diagnosis.significance import Improvement
 from ident.effects.effect import Effect
 from ident.words.percent import percent
 from ident.words.titles import title
@@ -16,15 +17,21 @@ def why(candidate: Candidate, effect: Effect, before: float, floor: float | None
     if candidate.refit is None or candidate.gain is None:
         share = 100 * candidate.prediction.fall
         return f"Predicted to take {share:.2g} % off the error, less than others; it was not refitted."
-    after, found = candidate.refit.held_out.error, candidate.gain
-    change = f"On data held out from the fit the error goes from {percent(before)} to {percent(after)}"
-    if not found.beyond_chance:
+    return why_of_gain(candidate.gain, effect, (before, candidate.refit.held_out.error), floor, best)
+
+
+def why_of_gain(
+    gain: Improvement, effect: Effect, errors: tuple[float, float], floor: float | None, best: bool
+) -> str:  # fmt: skip
+    """The same of an effect that was refitted; `errors` are those on held-out data without it and with it."""
+    change = "On data held out from the fit the error goes from {} to {}".format(*map(percent, errors))
+    if not gain.beyond_chance:
         return (
-            f"{change}, {found.deviations:.1f} standard errors: no more than chance. It would show as: {effect.looks}."
+            f"{change}, {gain.deviations:.1f} standard errors: no more than chance. It would show as: {effect.looks}."
         )
     near = f", with the noise floor at {percent(floor)}" if floor is not None else ""
     first = "No other effect does better. " if best else ""
-    if abs(found.share) < 1e-3:
+    if abs(gain.share) < 1e-3:
         return f"{first}The error stays, but the runs' offsets become explained: {effect.looks}."
     return f"{change}{near}. {first}It shows as: {effect.looks}."
 

@@ -21,13 +21,16 @@ from ident.effects.presliding_friction import PRESLIDING_FRICTION
 from ident.effects.pressure_feedback import PRESSURE_FEEDBACK
 from ident.effects.pressure_flow import PRESSURE_FLOW
 from ident.effects.quadratic_damping import QUADRATIC_DAMPING
+from ident.effects.second_lag import SECOND_LAG
 from ident.effects.sensor_gain import SENSOR_GAIN
 from ident.effects.sensor_lag import SENSOR_LAG
 from ident.effects.specimen_free_play import SPECIMEN_FREE_PLAY
 from ident.effects.specimen_hysteresis import SPECIMEN_HYSTERESIS
 from ident.effects.specimen_joint import SPECIMEN_JOINT
 from ident.effects.spool_stiction import SPOOL_STICTION
+from ident.effects.spring_load import SPRING_LOAD
 from ident.effects.static_load import STATIC_LOAD
+from ident.effects.stiction import STICTION
 from ident.effects.stribeck_friction import STRIBECK_FRICTION
 from ident.effects.stroke_dependent_volume import STROKE_DEPENDENT_VOLUME
 from ident.effects.supply_droop import SUPPLY_DROOP
@@ -71,12 +74,17 @@ EFFECTS: tuple[Effect, ...] = (
     ACQUISITION_LAG,
     SENSOR_GAIN,
 )
+"""Those of hydraulic chains."""
+OF_BENCH: tuple[Effect, ...] = (SECOND_LAG, SPRING_LOAD, STICTION)
+"""Those of an actuator on a bench, whose signals are rated currents and pressures."""
+CATALOGUE = (*EFFECTS, *OF_BENCH)
+"""All of them: which a model takes its chain says."""
 
 
 def effect(name: str) -> Effect:
     """The effect called `name`; raises Unusable with the names there are."""
-    for known in EFFECTS:
+    for known in CATALOGUE:
         if known.name == name:
             return known
-    names = ", ".join(known.name for known in EFFECTS)
+    names = ", ".join(known.name for known in CATALOGUE)
     raise Unusable("unknown-effect", f"no effect {name!r}", "effects", f"choose from {names}")

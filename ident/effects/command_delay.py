@@ -9,7 +9,7 @@ COMMAND_DELAY = Effect(
     meaning="the command acts late, outside the loop",
     strength=Parameter("delay", "T", "s", 0.0, 5e-3, 0.0, "time by which the command acts late"),
     texts=("r = delay(r, T)",),
-    units={"r": "m"},
+    units={"r": ""},
     looks="phase that falls in proportion to frequency, the same at every gain and specimen; magnitude untouched",
     source="transport delay",
 )

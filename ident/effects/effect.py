@@ -21,10 +21,10 @@ class Effect:
     chain and give the rates and memories of the effect's own states. An equation reads a signal that its effect
     redefines as it was left by what stands before, every other name in its final value, and a memory of the effect in
     the equation of a memory as it was at the start of the step. `units` are those of the signals of the chain that it
-    redefines, for which its strength is made: a chain that has such a signal in another unit refuses it. `looks` says
-    what the effect looks like in data, `steps` into how many a sample has to be divided so that its kinks are met
-    closely enough, `stride` by which share of its range its strength is moved for a sensitivity: far where it acts in
-    jumps.
+    redefines, for which its strength is made ("": for any): a chain that has such a signal in another unit refuses it.
+    `looks` says what the effect looks like in data, `steps` into how many a sample has to be divided so that its kinks
+    are met closely enough, `stride` by which share of its range its strength is moved for a sensitivity: far where it
+    acts in jumps.
 
     Raises Unusable where place or strength are not of that form.
     """

@@ -12,6 +12,7 @@ from ident.bench.model import Model
 from ident.bench.outputs import model_of
 from ident.bench.records import BenchSet, Record, bench_set
 from ident.bench.speed import levels
+from ident.comparison.compare import fitted
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.acceptance_sheet import sheet_chart
@@ -27,8 +28,9 @@ Draw = Callable[[Matrix, FitResult, Look, Mapping[str, Any]], Chart]
 
 
 def _of(matrix: Matrix, fit: FitResult) -> tuple[BenchSet, Model]:
+    preset, _, values = fitted(fit, matrix)
     bench = bench_set(matrix)
-    return bench, model_of(fit.values, bench.supply_pressure)
+    return bench, model_of(values, bench.supply_pressure, preset)
 
 
 def _records(bench: BenchSet, what: str, *kinds: str) -> tuple[Record, ...]:

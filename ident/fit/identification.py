@@ -144,13 +144,12 @@ class Identification:
 def check_settings(settings: Settings) -> None:
     """Raise Unusable for settings that no matrix could be fitted with."""
     preset = preset_with(settings.model, settings.effects, settings.custom)
-    if not preset.takes_effects and (settings.effects or settings.load != "none"):
-        raise Unusable("effect-does-not-fit", f"the model {settings.model} takes no effect and no measured load", "fit",
-                       "leave --effect and --load out")  # fmt: skip
     if settings.method not in (*GENERAL, *preset.methods):
         raise _not_a_method(settings)
     if settings.load not in ("none", "force"):
         raise Unusable("unknown-load", f"load {settings.load!r} is not known", "load", "use force or none")
+    if settings.load == "force":
+        preset.refuse_without_specimen()
     for name in (*settings.bounds, *settings.fixed):
         preset.parameter(name)
     options_of(settings, preset)

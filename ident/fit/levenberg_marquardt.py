@@ -41,13 +41,13 @@ class Way:
     """How far to go.
 
     `converged` is the relative decrease of the error below which no further step is worth it, `most` the number of
-    steps, `within` the bounds of every axis, `longest` the longest step along one. Below a promise of `rough` the
-    error is not smooth: a step that failed and promised less is the last one.
+    steps, `within` the bounds of every axis or of each, `longest` the longest step along one. Below a promise of
+    `rough` the error is not smooth: a step that failed and promised less is the last one.
     """
 
     converged: float = 1e-10
     most: int = STEPS
-    within: tuple[float, float] = (0.0, 1.0)
+    within: tuple[float | Array, float | Array] = (0.0, 1.0)
     longest: float = np.inf
     rough: float = 0.0
 
@@ -81,7 +81,7 @@ def levenberg_marquardt(
         if there is not None:
             point, here, damping = trial, there, max(damping / 10, _LEAST)
             accept(here)
-        elif damping > _MOST or promised < way.rough * here.error:
+        elif damping > _MOST or 0 < promised < way.rough * here.error:
             break
         else:
             damping *= 10
@@ -98,7 +98,7 @@ def _better(
     return there if there.error < least else None
 
 
-def _step(point: Array, here: Shape, damping: float, within: tuple[float, float]) -> Array:
+def _step(point: Array, here: Shape, damping: float, within: tuple[float | Array, float | Array]) -> Array:
     step = np.zeros_like(point)
     lower, upper = within
     outwards = ((point <= lower) & (here.gradient > 0)) | ((point >= upper) & (here.gradient < 0))

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from functools import lru_cache
 
-from ident.effects import EFFECTS, effect
+from ident.effects import CATALOGUE, effect
 from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.presets.drive import DRIVE
@@ -33,7 +33,7 @@ def _with_effects(name: str, effects: frozenset[str], custom: tuple[Effect, ...]
         raise Unusable("name-taken", "two effects have the same name", "custom effects", "rename one of them")
     for wanted in effects - own:
         effect(wanted)
-    return PRESETS[name].with_effects(tuple(known for known in (*EFFECTS, *custom) if known.name in effects))
+    return PRESETS[name].with_effects(tuple(known for known in (*CATALOGUE, *custom) if known.name in effects))
 
 
 __all__ = ["PRESETS", "Preset", "Scale", "preset"]

@@ -67,7 +67,6 @@ KONONYKHIN = Preset(
     ),
     driven_by="current",
     kind="bench",
-    takes_effects=False,
     methods=("gradient",),
     search={"population": 80.0, "generations": 40.0, "elite": 8.0},
     figures=(

@@ -82,7 +82,6 @@ class Preset:
     driven_by: str = "command"
     under_control: Preset | None = None
     kind: Kind = "chain"
-    takes_effects: bool = True
     methods: tuple[str, ...] = ()
     search: Mapping[str, float] = field(default_factory=dict)
     figures: tuple[str, ...] = ()
@@ -143,10 +142,14 @@ class Preset:
         bare = [run.id for run in matrix.runs if "force" not in run.channels]
         if bare:
             raise Unusable("missing-channel", "no force channel", f"run {bare[0]}", "fit without the measured load")
-        if MASS_SPRING_DAMPER not in self.chain.stages:
-            raise Unusable("unknown-load", f"model {self.name} has no specimen", "load", "use none")
+        self.refuse_without_specimen()
         stages = tuple(MEASURED_LOAD if stage is MASS_SPRING_DAMPER else stage for stage in self.chain.stages)
         return replace(self, chain=replace(self.chain, stages=stages))
+
+    def refuse_without_specimen(self) -> None:
+        """Raise Unusable where the model has no specimen whose force could be measured instead."""
+        if MASS_SPRING_DAMPER not in self.chain.stages:
+            raise Unusable("unknown-load", f"model {self.name} has no specimen", "load", "use none")
 
     @property
     def is_linear(self) -> bool:

@@ -16,8 +16,12 @@ def node_names(fractions: tuple[float, ...] = FRACTIONS) -> tuple[str, ...]:
 
 OPEN_LOOP = stage(
     "controller",
-    (Quantity("e", "1", "control signal, in rated currents"),),
-    ("e = u / Ir", "the current acts at once; it is counted in rated currents"),
+    (
+        Quantity("r", "1", "current as it acts, in the unit of the record"),
+        Quantity("e", "1", "control signal, in rated currents"),
+    ),
+    ("r = u", "the current acts at once"),
+    ("e = r / Ir", "it is counted in rated currents"),
 )
 
 LAG = stage(

@@ -67,30 +67,34 @@ def test_a_diagnosis_of_a_sound_set_names_nothing(service, fit):
     job = ended(service, service.post(f"{API}/diagnoses", json={"fit": fit}))
     found = service.get(f"{API}/diagnoses/{job['diagnosis']}").json()
     assert found["verdict"]["effects"] == []
-    assert {c["effect"] for c in found["candidates"]} == {"delay", "second_lag", "stiction", "load"}
+    assert {c["effect"] for c in found["candidates"]} == {"command_delay", "second_lag", "stiction", "spring_load"}
     refused = service.get(f"{API}/diagnoses/{job['diagnosis']}/proposal")
     assert refused.status_code == 422
     assert "bench" in refused.json()["detail"]
 
 
 def test_the_page_offers_what_a_bench_has(service, fit):
-    """The sheet's tab, amplitudes in shares of the rated current; no budget, no effect to add, nor one's own."""
+    """The sheet's tab, amplitudes in shares of the rated current, the effects of a bench, one's own; no budget."""
     page = service.get(f"/fits/{fit}").text
     assert "Acceptance sheet" in page
     assert "data-budget" not in page
-    assert "Your own effect" not in page
-    assert "own.js" not in page  # it would look for the form
+    assert "Your own effect" in page
     assert ">50 %<" in page
-    assert "Add it" not in page
+    assert '"spring_load"' in page
     assert re.findall(r'class="signal[^>]*>([^<]*)<', page) == ["e", "q", "w", "V0", "X"]
 
 
-def test_an_effect_of_the_catalogue_is_refused_at_once(service, fit):
-    """Nothing is queued that a fit of the bench must refuse: in metres, or of any unit."""
-    for name, what in (
-        ("dead_zone", "it redefines w in m, which is a plain number here"),
-        ("sensor_gain", "no effect"),
-    ):
-        refused = service.post(f"{API}/fits/{fit}/effects", json={"effect": name})
-        assert refused.status_code == 422
-        assert what in refused.json()["detail"]
+def test_an_effect_of_the_bench_is_added_to_its_fit(service, fit):
+    """Nothing of it is hidden in this set: the strength is nothing, and the error stays."""
+    job = ended(service, service.post(f"{API}/fits/{fit}/effects", json={"effect": "spring_load"}))
+    before, after = (service.get(f"{API}/fits/{one}").json()["result"] for one in (fit, job["fit"]))
+    assert after["effects"] == ["spring_load"]
+    assert abs(after["parameters"]["spring_load.rate"]["value"]) < 1e5
+    assert after["error"]["fit"] == pytest.approx(before["error"]["fit"], rel=0.02)
+
+
+def test_an_effect_in_another_unit_is_refused_at_once(service, fit):
+    """Nothing is queued that a fit of the bench must refuse."""
+    refused = service.post(f"{API}/fits/{fit}/effects", json={"effect": "dead_zone"})
+    assert refused.status_code == 422
+    assert "it redefines w in m, which is a plain number here" in refused.json()["detail"]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
 
-from ident.bench.model import Model
+from ident.bench.model import FAST, Model
 from ident.bench.speed_table import FRACTIONS, SpeedTable
 from ident.chain.chain import Chain, conditions
 from ident.equations.equation import Equation
@@ -27,6 +27,9 @@ from tests.reference import kononykhin_reference as reference
 
 MIDDLE = {p.name: p.value for p in KONONYKHIN.parameters}
 TIME = np.arange(6000) / 1000
+SLOW = 0.01 * np.sin(2 * np.pi * 0.5 * TIME) + 0.01 * np.sin(2 * np.pi * 1.3 * TIME)
+STRENGTHS = {"command_delay__delay": 0.02, "second_lag__time_constant": 0.02, "stiction__pressure": 3e6,
+             "spring_load__rate": 5e9, "spring_load__centre": 1e-4}  # fmt: skip
 CURRENT = 0.1 * np.sin(2 * np.pi * 0.5 * TIME) + 0.3 * np.sin(2 * np.pi * 1.3 * TIME)
 
 
@@ -54,6 +57,20 @@ def test_the_fast_simulation_is_that_of_the_equations(shift):
     assert np.std(position - answer.position) < 1e-5 * np.std(position)
     pressure = by_chain(values, CURRENT, "load_pressure")
     assert np.sqrt(np.mean((pressure - answer.pressure)[1:] ** 2)) < 1e-6 * np.std(pressure)
+
+
+@pytest.mark.parametrize("name", [effect.name for effect in FAST])
+def test_the_fast_simulation_of_an_effect_is_that_of_its_equations(name):
+    """Position and pressure within a hundredth of what the effect changes."""
+    strengths = {p.in_equations: p.value for effect in FAST for p in effect.added}
+    strengths |= {n: value for n, value in STRENGTHS.items() if n.startswith(name)}
+    plain, chain = by_bench(MIDDLE), preset("kononykhin", tuple(effect.name for effect in FAST)).chain
+    fast = replace(plain, strengths=strengths)
+    slow = replace(fast, chain=chain)
+    without, found, expected = (model.answer(SLOW, 1000.0) for model in (plain, fast, slow))
+    for of in ("position", "pressure"):
+        a, b, off = getattr(found, of), getattr(expected, of), getattr(without, of)
+        assert np.std(a - b) < 0.01 * np.std(a - off), of
 
 
 def test_the_fast_simulation_is_that_of_the_reference():

@@ -8,7 +8,7 @@ import pytest
 
 from ident.chain.chain import CONDITIONS, FORCE, INPUT, INPUT_RATE
 from ident.custom.definition import read_effect
-from ident.effects import EFFECTS
+from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
 from ident.equations.grammar import TIME
 from ident.errors import Unusable
@@ -19,13 +19,15 @@ from tests.effects import dimensions
 MODELS = {**PRESETS, "drive under control": UNDER_CONTROL}
 COMMAND = {"current": "1", "drive_force": "N", "command": "m"}
 OTHER_UNIT = {
+    "qian2014": {"second_lag"},
+    "open_valve": {"second_lag"},
     "kononykhin": {"command_limit", "integral_action", "lead", "pressure_feedback", "valve_second_order",
                    "valve_rate_limit", "spool_stiction", "backlash", "null_bias", "dead_zone", "underlap",
                    "gain_asymmetry", "flow_saturation"},
     "drive under control": {"command_limit", "integral_action", "lead", "pressure_feedback"},
 }  # fmt: skip
 """What has a signal to act on there, but in rated currents or newtons where the effect is of metres."""
-NULL_BIAS: Effect = next(effect for effect in EFFECTS if effect.name == "null_bias")
+NULL_BIAS: Effect = next(effect for effect in CATALOGUE if effect.name == "null_bias")
 EACH = pytest.mark.parametrize("name", MODELS)
 
 
@@ -54,15 +56,15 @@ def test_every_model_keeps_its_units(name):
 def test_an_effect_names_the_unit_of_each_signal_that_it_redefines():
     """Of all signals of all models, neither more nor less."""
     signals = set().union(*(published(model) for model in MODELS.values()))
-    targets = {effect.name: {equation.target for equation in effect.equations} & signals for effect in EFFECTS}
-    assert {effect.name: set(effect.units) for effect in EFFECTS} == targets
+    targets = {effect.name: {equation.target for equation in effect.equations} & signals for effect in CATALOGUE}
+    assert {effect.name: set(effect.units) for effect in CATALOGUE} == targets
 
 
 @EACH
 def test_a_model_takes_an_effect_where_its_signals_have_the_effects_units(name):
     """The equations keep their units in every model that takes it; one with other units says which."""
     model, refused = MODELS[name], {}
-    for effect in EFFECTS:
+    for effect in CATALOGUE:
         try:
             model.with_effects((effect,))
         except Unusable as refusal:

@@ -10,16 +10,14 @@ import pytest
 import scipy.linalg  # noqa: F401  brings its own linear algebra, beside numpy's
 from threadpoolctl import ThreadpoolController
 
-from ident import parallel
 from ident.parallel import each
 
 OWN = 2  # threads that a notebook gave to linear algebra, also on a machine of one core
 
 
 @pytest.fixture
-def notebook(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """A process in which nobody computes: the service that other tests have started in this one stands aside."""
-    monkeypatch.setattr(parallel, "_held", parallel._Held())
+def notebook() -> Iterator[None]:
+    """A process in which nobody computes."""
     with ThreadpoolController().limit(limits=OWN, user_api="blas"):
         yield
 

@@ -12,7 +12,7 @@ from fastapi.testclient import TestClient
 from app import main
 from app.cli.worker import worker
 from app.settings import Settings
-from tests.test_parallel import OWN, notebook, threads
+from tests.alone.test_parallel import OWN, notebook, threads
 
 __all__ = ["notebook"]
 
