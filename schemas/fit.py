@@ -4,7 +4,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from schemas.result import ErrorBudget, Errors, EstimateView, FitResultView
+from schemas.result import ErrorBudget, Errors, EstimateView, FitResultView, SettingsView
 
 Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 
@@ -66,6 +66,22 @@ class ProgressView(BaseModel):
     expected: list[ExpectedView] = Field(default_factory=list)
 
 
+class JobSettings(SettingsView):
+    """What a job was asked for: the fit, and of a diagnosis how much to add at most and a search made anew."""
+
+    max_effects: int | None = None
+    reseed: int | None = None
+
+
+class JobProblem(BaseModel):
+    """Why a job failed; `detail` says what is wrong, `where` where, `remedy` what to do."""
+
+    code: str = ""
+    detail: str = ""
+    where: str = ""
+    remedy: str = ""
+
+
 class JobView(BaseModel):
     """A queued, running or ended job; `parent` is the fit that it starts from, `problem` says why it failed.
 
@@ -77,12 +93,12 @@ class JobView(BaseModel):
     state: str
     matrix: str
     serial: str
-    settings: dict[str, Any]
+    settings: JobSettings
     progress: ProgressView
     parent: str | None
     fit: str | None
     diagnosis: str | None
-    problem: dict[str, Any] | None
+    problem: JobProblem | None
     created_at: str
     ended_at: str | None
 

@@ -12,7 +12,7 @@ from app.errors import missing
 from app.jobs import repository
 from app.paging import cursor, keys_of
 from app.tables import JobRow, now
-from schemas.fit import JobPage, JobView, ProgressView
+from schemas.fit import JobPage, JobProblem, JobSettings, JobView, ProgressView
 
 
 def record(context: Context, job: str, matrix: str, settings: dict[str, Any], parent: str | None, kind: str) -> JobView:
@@ -95,9 +95,11 @@ def view(row: JobRow, serial: str) -> JobView:
     """A job as it is sent."""
     made, diagnosis = row.state == "succeeded", row.kind == "diagnosis"
     return JobView(
-        id=row.id, kind=row.kind, state=row.state, matrix=row.matrix, serial=serial, settings=row.settings,
+        id=row.id, kind=row.kind, state=row.state, matrix=row.matrix, serial=serial,
+        settings=JobSettings(**row.settings),
         progress=ProgressView(**row.progress), parent=row.parent,
         fit=row.id if made and not (diagnosis and row.parent) else None,
         diagnosis=row.id if made and diagnosis else None,
-        problem=row.problem, created_at=row.created_at, ended_at=row.ended_at,
+        problem=None if row.problem is None else JobProblem(**row.problem),
+        created_at=row.created_at, ended_at=row.ended_at,
     )  # fmt: skip

@@ -117,15 +117,14 @@ def fit_rows(jobs: Iterable[JobView], sets: Iterable[ParameterSetView]) -> tuple
 
 
 def _fit_row(job: JobView, made: ParameterSetView | None) -> FitRow:
-    settings: Mapping[str, object] = job.settings
     state, text = _fit_state(job.state, made)
     return FitRow(
         id=job.id,
         state=state,
         state_text=text,
-        model=str(settings.get("model", "")),
-        method=str(settings.get("method", "")),
-        seed=str(settings.get("seed", "")),
+        model=job.settings.model,
+        method=job.settings.method,
+        seed=str(job.settings.seed),
         error_fit=made.error_fit if made else None,
         error_verify=made.error_verify if made else None,
         made=job.created_at,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ident.words.titles import title
-from schemas.fit import JobView
+from schemas.fit import JobProblem, JobView
 
 _OPEN = ("queued", "running")
 
@@ -50,7 +50,7 @@ def job_page(job: JobView) -> JobPageView:
         error=job.progress.error,
         expected=tuple((title(one.effect), one.error) for one in job.progress.expected),
         problem=_problem(job.problem),
-        facts=settings_facts(job.settings),
+        facts=settings_facts(job.settings.model_dump()),
         made=job.created_at,
     )
 
@@ -73,10 +73,9 @@ def _words(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def _problem(problem: dict[str, Any] | None) -> str:
+def _problem(problem: JobProblem | None) -> str:
     """What, where and remedy as sentences."""
-    if not problem:
+    if problem is None:
         return ""
-    where, what, remedy = (str(problem.get(name, "")) for name in ("where", "detail", "remedy"))
-    said = f"{where}: {what}" if where else what
-    return f"{said}. {remedy[:1].upper()}{remedy[1:]}." if remedy else f"{said}."
+    said = f"{problem.where}: {problem.detail}" if problem.where else problem.detail
+    return f"{said}. {problem.remedy[:1].upper()}{problem.remedy[1:]}." if problem.remedy else f"{said}."
