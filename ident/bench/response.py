@@ -1,6 +1,6 @@
 """The compiled simulation of Kononykhin's four blocks, one record at a time.
 
-The same equations stand as text in ``ident/presets/kononykhin.py``; a test holds the two together. Records of a bench
+The same equations stand as text in ``ident/stages/bench.py``; a test holds the two together. Records of a bench
 all differ in length, so that the kernel's sixteen lanes would run nearly empty: here a record costs 20 ns a sample.
 """
 

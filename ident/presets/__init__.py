@@ -10,7 +10,7 @@ from ident.presets.drive import DRIVE
 from ident.presets.first_order import FIRST_ORDER
 from ident.presets.kononykhin import KONONYKHIN
 from ident.presets.open_valve import OPEN_VALVE
-from ident.presets.preset import Preset, Scale
+from ident.presets.preset import Preset
 from ident.presets.qian2014 import QIAN2014
 
 PRESETS: dict[str, Preset] = {preset.name: preset for preset in (QIAN2014, FIRST_ORDER, DRIVE, OPEN_VALVE, KONONYKHIN)}
@@ -36,4 +36,4 @@ def _with_effects(name: str, effects: frozenset[str], custom: tuple[Effect, ...]
     return PRESETS[name].with_effects(tuple(known for known in (*CATALOGUE, *custom) if known.name in effects))
 
 
-__all__ = ["PRESETS", "Preset", "Scale", "preset"]
+__all__ = ["PRESETS", "Preset", "preset"]

@@ -2,8 +2,8 @@
 
 from ident.chain.chain import Chain
 from ident.parameter import Parameter
-from ident.presets.preset import Preset, Scale
-from ident.stages import IDEAL_SENSOR, Quantity
+from ident.presets.preset import Preset
+from ident.stages import IDEAL_SENSOR, Quantity, Scale
 from ident.stages.stage import stage
 
 TRACKING_LAG = stage(
@@ -16,6 +16,11 @@ TRACKING_LAG = stage(
     ("v = (gain * u - x) / tau", "the closed loop follows its command like a single lag"),
     ("x' = v", "position is the integral of speed"),
     ("X = x", "the transducer's frame is rigid"),
+    parameters=(
+        Parameter("gain", "kyr", "1", 1e-2, 1e2, 1.0, "static gain from command to output"),
+        Parameter("tau", "τyr", "s", 1e-4, 1e1, 1e-2, "time constant of the closed loop"),
+    ),
+    scales=(Scale("gain", "1", 1e-2, 1e2), Scale("tau", "1 / W", 1e-3, 1e3)),
 )
 
 FIRST_ORDER = Preset(
@@ -29,9 +34,4 @@ FIRST_ORDER = Preset(
         stages=(TRACKING_LAG, IDEAL_SENSOR),
         outputs={"displacement": "y", "velocity": "y", "load_pressure": "y", "force": "y"},
     ),
-    parameters=(
-        Parameter("gain", "kyr", "1", 1e-2, 1e2, 1.0, "static gain from command to output"),
-        Parameter("tau", "τyr", "s", 1e-4, 1e1, 1e-2, "time constant of the closed loop"),
-    ),
-    scales=(Scale("gain", "1", 1e-2, 1e2), Scale("tau", "1 / W", 1e-3, 1e3)),
 )

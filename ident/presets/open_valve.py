@@ -1,8 +1,7 @@
 """A valve-controlled cylinder in open loop: valve opening → load pressure."""
 
 from ident.chain.chain import Chain
-from ident.parameter import Parameter
-from ident.presets.preset import Combined, Preset, Scale
+from ident.presets.preset import Combined, Preset
 from ident.stages import (
     COMPRESSIBLE,
     FIRST_ORDER_VALVE,
@@ -11,9 +10,8 @@ from ident.stages import (
     MASS_SPRING_DAMPER,
     OPENED_BY_COMMAND,
     RIGID_SPOOL,
+    Scale,
 )
-
-SOURCE = "order of magnitude; searched over scale-free ratios"
 
 OPEN_VALVE = Preset(
     name="open_valve",
@@ -34,20 +32,11 @@ OPEN_VALVE = Preset(
         ),
         outputs={"load_pressure": "P"},
     ),
-    parameters=(
-        Parameter("m0", "m₀", "kg", 1e-2, 1e6, 1.0, "moving mass", SOURCE),
-        Parameter("tau", "τ", "s", 1e-5, 1e2, 1e-2, "time constant of the valve", SOURCE),
-        Parameter("c0", "c₀", "N*s/m", 1e-6, 1e8, 1.0, "viscous damping of the moving mass", SOURCE),
-        Parameter("Ka", "Kₐ", "m^3/Pa", 1e-18, 1e6, 1.0, "compressibility of the oil, Vt/(4 βe)", SOURCE),
-        Parameter("Cl", "Cₗ", "m^3/(s*Pa)", 1e-18, 1e6, 1e-3, "leakage across the piston", SOURCE),
-        Parameter("Z0", "Z₀", "m^4/s", -1e6, 1e6, 1.0, "flow gain of the valve times the piston area", SOURCE),
-    ),
-    scales=(
+    listed=("m0", "tau", "c0", "Ka", "Cl", "Z0"),
+    rescaled=(
         Scale("m0", "1", 1e-2, 1e6),
-        Scale("tau", "1 / W", 1e-3, 3e1),
         Scale("c0", "m0 * W", 1e-4, 1e2),
         Scale("Ka", "A**2 / (m0 * W**2)", 1e-3, 1e3),
-        Scale("Cl", "Ka * W", 1e-5, 1e1),
         Scale("Z0", "A**3 * X / (m0 * W * U)", -3e1, 3e1, logarithmic=False),
     ),
     force_scale="A*X",

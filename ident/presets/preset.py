@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from functools import cached_property
+from typing import Literal, TypeVar
 
 from ident.chain.chain import CONDITIONS, Chain, unfit
 from ident.effects.effect import Effect
@@ -12,30 +13,12 @@ from ident.equations.equation import Equation
 from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.parameter import Parameter
-from ident.stages import MASS_SPRING_DAMPER, MEASURED_LOAD
+from ident.stages import MASS_SPRING_DAMPER, MEASURED_LOAD, Scale
+from ident.stages.scale import OF_THE_RUNS, in_reading_order
 
 Kind = Literal["chain", "bench"]
 """Who serves a model: what fits chains to test runs, or Kononykhin's procedures for the records of a bench."""
-
-
-@dataclass(frozen=True)
-class Scale:
-    """How to search a parameter of a machine of unknown size: value = ratio × `text`, `lower` ≤ ratio ≤ `upper`.
-
-    `text` may read conditions (their typical value over the runs), parameters that stand before it, W, the angular
-    frequency up to which the command excites the machine (rad/s), and X, the output's standard deviation.
-    """
-
-    name: str
-    text: str
-    lower: float
-    upper: float
-    logarithmic: bool = True
-
-    @property
-    def equation(self) -> Equation:
-        """The scale as an equation of the grammar."""
-        return Equation(f"{self.name} = {self.text}")
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -54,7 +37,12 @@ class Combined:
 
 @dataclass(frozen=True)
 class Preset:
-    """A model by name.
+    """A model by name: the stages of `chain`, with the parameters and scales that they bring.
+
+    `stated` are parameters and `rescaled` scales that take the place of the stages', where a paper states other bounds
+    or a machine is measured otherwise. Results list the parameters named in `listed` first, then the stated ones, then
+    those of the stages along the chain; a search takes those named in `searched` first, then the others as they are
+    listed, each after those that its scale reads.
 
     `bounds_hold_for` is the piston area (m²) of the machine that the parameters' bounds were stated for; another
     machine is searched over `scales`. `without_area` gives the name and unit of what a parameter becomes when the
@@ -65,20 +53,23 @@ class Preset:
     Multiplied or divided by one factor, the parameters `share_force` change nothing as long as no force is known: the
     first is then held by convention. `shown` are the two whose search is drawn.
 
-    Raises Unusable where an equation reads what is neither a parameter nor a condition.
+    Raises Unusable where an equation or a scale reads what no stage brings and no condition is, where scales read each
+    other in a circle, where two stages mean different parameters by one name, and where something is stated of a
+    parameter that no stage brings.
     """
 
     name: str
     title: str
     citation: str
     chain: Chain
-    parameters: tuple[Parameter, ...]
-    scales: tuple[Scale, ...]
+    stated: tuple[Parameter, ...] = ()
+    rescaled: tuple[Scale, ...] = ()
+    listed: tuple[str, ...] = ()
+    searched: tuple[str, ...] = ()
     bounds_hold_for: float | None = None
     without_area: Mapping[str, tuple[str, str]] | None = None
     combinations: tuple[Combined, ...] = ()
     notes: tuple[str, ...] = ()
-    effects: tuple[Effect, ...] = ()
     driven_by: str = "command"
     under_control: Preset | None = None
     kind: Kind = "chain"
@@ -90,16 +81,47 @@ class Preset:
     shown: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        names = {parameter.in_equations for parameter in self.parameters}
-        known = names | CONDITIONS.keys()
-        unknown = set(self.chain.symbols) - known
-        if unknown or {scale.name for scale in self.scales} != names:
-            raise Unusable(
-                "bad-preset",
-                f"its equations read {sorted(unknown)}, or a parameter has no scale",
-                f"preset {self.name}",
-                "declare a parameter and a scale for each name",
-            )
+        where, brought = f"preset {self.name}", {p for stage in self.chain.stages for p in stage.parameters}
+        own = [parameter.name for parameter in brought]
+        if twice := {name for name in own if own.count(name) > 1}:
+            raise Unusable("bad-preset", f"its stages mean different parameters by {', '.join(sorted(twice))}", where,
+                           "rename one of them")  # fmt: skip
+        stated = {*self.listed, *self.searched, *(p.name for p in self.stated), *(s.name for s in self.rescaled)}
+        if idle := stated - set(own):
+            raise Unusable("bad-preset", f"no stage brings {', '.join(sorted(idle))}, which it states", where,
+                           "leave it out, or let a stage bring it")  # fmt: skip
+        known = {parameter.in_equations for parameter in self.parameters} | CONDITIONS.keys()
+        if unknown := set(self.chain.symbols) - known:
+            readers = ", ".join(stage.place for stage in self.chain.stages if stage.reads & unknown)
+            raise Unusable("bad-preset", f"no stage brings {', '.join(sorted(unknown))}, read at {readers}",
+                           where, "let a stage bring it as a parameter or publish it")  # fmt: skip
+        for scale in self.scales:
+            if strange := scale.equation.names - known - OF_THE_RUNS:
+                raise Unusable("bad-preset", f"no stage brings {', '.join(sorted(strange))}, read by a scale",
+                               f"{where}, scale of {scale.name}", "measure it by something else")  # fmt: skip
+
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        """The effects added to its chain."""
+        return self.chain.effects
+
+    @cached_property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The parameters of its stages, as stated where they are, and of its effects."""
+        of_stages = {parameter.name: parameter for stage in self.chain.stages for parameter in stage.parameters}
+        stated = {parameter.name: parameter for parameter in self.stated}
+        of_effects = {parameter.name: parameter for effect in self.effects for parameter in effect.added}
+        return _in_order(of_stages | stated | of_effects, (*self.listed, *stated))
+
+    @cached_property
+    def scales(self) -> tuple[Scale, ...]:
+        """How its parameters are searched for a machine of unknown size, in the order of the search."""
+        found = {scale.name: scale for stage in self.chain.stages for scale in stage.scales}
+        found |= {scale.name: scale for scale in self.rescaled}
+        found |= {
+            p.in_equations: scale_of(effect, p, self.force_scale) for effect in self.effects for p in effect.added
+        }
+        return in_reading_order(_in_order(found, (*self.searched, *(p.in_equations for p in self.parameters))))
 
     def with_effects(self, effects: tuple[Effect, ...]) -> Preset:
         """The model with effects added to its chain; their parameters are called effect__parameter in the equations.
@@ -108,21 +130,12 @@ class Preset:
         """
         if not effects:
             return self
-        added = tuple(parameter for effect in effects for parameter in effect.added)
-        known = {parameter.in_equations for parameter in (*self.parameters, *added)} | CONDITIONS.keys()
+        added = {parameter.in_equations for effect in effects for parameter in effect.added}
+        known = {parameter.in_equations for parameter in self.parameters} | added | CONDITIONS.keys()
         for effect in effects:
             if set(self.chain.with_effects((effect,)).symbols) - known:
                 raise unfit(effect)
-        return replace(
-            self,
-            chain=self.chain.with_effects(effects),
-            parameters=(*self.parameters, *added),
-            scales=(
-                *self.scales,
-                *(scale_of(effect, p, self.force_scale) for effect in effects for p in effect.added),
-            ),
-            effects=effects,
-        )
+        return replace(self, chain=self.chain.with_effects(effects))
 
     def for_matrix(self, matrix: Matrix, load: str = "none") -> tuple[Preset, Matrix]:
         """The model that suits a matrix, and the matrix with what drives that model as its command.
@@ -195,6 +208,11 @@ class Preset:
         )
 
 
+def _in_order(found: Mapping[str, T], first: Iterable[str]) -> tuple[T, ...]:
+    """What was found, by these names first."""
+    return tuple(found[name] for name in dict.fromkeys((*first, *found)))
+
+
 _OWN = ("1", None)
 _SCALES = {
     "1": _OWN, "Pa": _OWN, "m/s": _OWN, "s": ("1/W", 3.0), "1/s": ("W", 1.0), "m": ("Kp*X", 0.5),
@@ -220,6 +238,6 @@ def scale_of(effect: Effect, parameter: Parameter, force: str) -> Scale:
         reach = None
     text = text.replace("F", f"({force})")
     if reach is None:
-        return Scale(parameter.in_equations, "1", parameter.lower, parameter.upper, logarithmic=False)
+        return Scale.by_bounds(parameter, logarithmic=False)
     lower = -reach if parameter.lower < 0 else 0.0
     return Scale(parameter.in_equations, text, lower, reach, logarithmic=False)

@@ -2,7 +2,7 @@
 
 from ident.chain.chain import Chain
 from ident.parameter import Parameter
-from ident.presets.preset import Combined, Preset, Scale
+from ident.presets.preset import Combined, Preset
 from ident.stages import (
     COMPRESSIBLE,
     FIRST_ORDER_VALVE,
@@ -11,6 +11,7 @@ from ident.stages import (
     MASS_SPRING_DAMPER,
     PROPORTIONAL,
     RIGID_SPOOL,
+    Scale,
 )
 
 TABLE_2 = "Qian et al. 2014, Tables 2 and 4"
@@ -34,7 +35,7 @@ QIAN2014 = Preset(
         ),
         outputs={"displacement": "y", "load_pressure": "P", "force": "F"},
     ),
-    parameters=(
+    stated=(
         Parameter("Z0", "Z₀", "m^4/s", 1.751e-6, 3.503e-6, 2.592e-6, "gain of valve, spool and piston", TABLE_2),
         Parameter("tau", "τ", "s", 1e-3, 6e-3, 3.6e-3, "time constant of the servo-valve", TABLE_2),
         Parameter("Cl", "Cₗ", "m^3/(s*Pa)", 2e-12, 2e-11, 1e-11, "leakage across the piston", TABLE_2),
@@ -42,14 +43,8 @@ QIAN2014 = Preset(
         Parameter("m0", "m₀", "kg", 1.0, 10.0, 4.25, "mass of rod, piston and what moves with them", TABLE_2),
         Parameter("Ka", "Kₐ", "m^3/Pa", 2e-15, 2e-13, 1.39e-13, "compressibility of the oil, Vt/(4 βe)", TABLE_2),
     ),
-    scales=(
-        Scale("Z0", "A**2 * W / Kp", 1e-3, 1e2),
-        Scale("tau", "1 / W", 1e-3, 3e1),
-        Scale("m0", "mL", 1e-2, 1e3),
-        Scale("c0", "m0 * W", 1e-3, 1e3),
-        Scale("Ka", "A**2 / (m0 * W**2)", 1e-4, 1e2),
-        Scale("Cl", "A**2 / c0", 1e-5, 1e1),
-    ),
+    rescaled=(Scale("Cl", "A**2 / c0", 1e-5, 1e1),),
+    searched=("Z0", "tau", "m0", "c0", "Ka", "Cl"),
     bounds_hold_for=4.97e-4,
     force_scale="(c0 + m0*W)*W*X",
     share_force=("m0", "c0", "Ka", "Cl"),

@@ -2,10 +2,15 @@
 
 from functools import lru_cache
 
+from ident.parameter import Parameter
+from ident.stages.scale import Scale
 from ident.stages.stage import Quantity, stage
 
 FRACTIONS = (0.05, 0.1, 0.25, 0.5, 0.75, 1.0)
 """Where the speed characteristic has its nodes, in rated currents from the zero shift; denser for small signals."""
+SOURCE = "Kononykhin 2019, section 4; a middle actuator"
+GAIN, ASYMMETRY, NONLINEARITY = 0.1, 0.1, 0.05
+"""m/s at rated current; difference of the directions over their mean; distance from the chord over full speed."""
 
 
 @lru_cache
@@ -24,6 +29,8 @@ OPEN_LOOP = stage(
     ("e = r / Ir", "it is counted in rated currents"),
 )
 
+LAG_TIME = Parameter("T", "T", "s", 2e-3, 2e-1, 2e-2, "time constant of amplifier and electronics together", SOURCE)
+
 LAG = stage(
     "valve",
     (
@@ -34,7 +41,12 @@ LAG = stage(
     ("dq = (e - q1) / T", "block a: T I' + I = Iin (Kononykhin, section 4)"),
     ("q1' = dq", "the lag integrates its rate"),
     ("q = q1", "nothing behind the lag"),
+    parameters=(LAG_TIME,),
+    scales=(Scale.by_bounds(LAG_TIME),),
 )
+
+HALF_WIDTH = Parameter("B", "B", "1", 1e-4, 2e-2, 2e-3, "hysteresis: half-width of the play, in rated currents", SOURCE)
+ZERO_SHIFT = Parameter("I0", "I₀", "1", -0.1, 0.1, 0.0, "zero shift: the current at which the speed is 0", SOURCE)
 
 PLAY = stage(
     "spool",
@@ -44,6 +56,8 @@ PLAY = stage(
     ),
     ("wb := clip(wb__old, q - B, q + B)", "block b: play of half-width B (Kononykhin, section 4)"),
     ("w = wb - I0", "counted from the zero shift"),
+    parameters=(HALF_WIDTH, ZERO_SHIFT),
+    scales=(Scale.by_bounds(HALF_WIDTH), Scale.by_bounds(ZERO_SHIFT, logarithmic=False)),
 )
 
 
@@ -52,8 +66,24 @@ def _side(sign: str, names: tuple[str, ...]) -> str:
     return f"monotone(max({sign}w, 0), 0, 0, {nodes})"
 
 
+def middle_speed(fraction: float) -> float:
+    """f of the middle actuator (m/s) at a fraction of the rated current from the zero shift."""
+    side = 1.0 + 0.5 * ASYMMETRY * (1 if fraction > 0 else -1)
+    bend = 4.0 * NONLINEARITY
+    return GAIN * side * fraction * (1.0 + bend - bend * abs(fraction))
+
+
+def _speed(name: str, fraction: float) -> Parameter:
+    value = middle_speed(fraction)
+    lower, upper = sorted((0.2 * value, 5.0 * value))
+    printed = f"V({'+' if fraction > 0 else '−'}{100 * abs(fraction):g} %)"
+    what = f"speed without load and friction at {100 * fraction:+g} % of rated current from the zero shift"
+    return Parameter(name, printed, "m/s", lower, upper, value, what, SOURCE)
+
+
 _NAMES = node_names()
 _HALF = len(FRACTIONS)
+SPEEDS = tuple(map(_speed, _NAMES, (*FRACTIONS, *(-fraction for fraction in FRACTIONS))))
 
 SPEED_CHARACTERISTIC = stage(
     "flow",
@@ -65,7 +95,12 @@ SPEED_CHARACTERISTIC = stage(
     (f"Vf = {_side('', _NAMES[:_HALF])}", "block c: table of the speed characteristic, forward"),
     (f"Vb = {_side('-', _NAMES[_HALF:])}", "block c: table of the speed characteristic, back"),
     ("V0 = Vf - Vb", "block c: V0 = f(I), zero at the zero shift"),
+    parameters=SPEEDS,
+    scales=tuple(Scale.by_bounds(speed, logarithmic=False) for speed in SPEEDS),
 )
+
+PRESSURE_GAIN = Parameter("kp", "kₚ", "Pa", 5e7, 4e9, 4.2e8, "pressure difference a rated current at rest", SOURCE)
+FRICTION = Parameter("dPfr", "ΔP_fr", "Pa", 5e4, 5e6, 5e5, "pressure difference that overcomes friction", SOURCE)
 
 UNLOADED_SPEED = stage(
     "load",
@@ -90,6 +125,8 @@ UNLOADED_SPEED = stage(
     ),
     ("x' = v", "position is the integral of speed"),
     ("X = x", "the transducer's frame is rigid"),
+    parameters=(PRESSURE_GAIN, FRICTION),
+    scales=(Scale.by_bounds(PRESSURE_GAIN), Scale.by_bounds(FRICTION)),
 )
 
 RIGID_TRANSDUCER = stage(

@@ -1,5 +1,7 @@
 """Drives whose force acts on the load directly: open loop, or under a position loop with a speed loop inside."""
 
+from ident.parameter import Parameter
+from ident.stages.scale import ORDER_OF_MAGNITUDE, Scale
 from ident.stages.stage import Quantity, stage
 
 DIRECT_FORCE = stage("pressure", (Quantity("D", "N", "force that drives the load"),), ("D = u", "the recorded force"))
@@ -18,6 +20,13 @@ CASCADE = stage(
     ("y_in = y_fb", "the controller uses the transducer's reading at once"),
     ("v_in = v_fb", "and so its rate"),
     ("e = kv * (kp * (r - y_in) - v_in)", "position loop kp around a speed loop kv"),
+    parameters=(
+        Parameter("kp", "kₚ", "1/s", 1e-2, 1e4, 100.0, "gain of the position loop", ORDER_OF_MAGNITUDE),
+        Parameter(
+            "kv", "kᵥ", "N*s/m", 1e-2, 1e8, 1e3, "gain of the speed loop, from speed to force", ORDER_OF_MAGNITUDE
+        ),
+    ),
+    scales=(Scale("kp", "W", 1e-2, 1e3), Scale("kv", "m0 * W", 1e-2, 1e4)),
 )
 
 IDEAL_DRIVE = stage(

@@ -1,5 +1,9 @@
 """Load: from the driving force to the motion of rod and specimen."""
 
+from dataclasses import replace
+
+from ident.parameter import Parameter
+from ident.stages.scale import ORDER_OF_MAGNITUDE, Scale
 from ident.stages.stage import Quantity, stage
 
 MASS_SPRING_DAMPER = stage(
@@ -32,6 +36,11 @@ MASS_SPRING_DAMPER = stage(
     ("x' = v", "position is the integral of speed"),
     ("F = S + mL * a", "what a load cell between rod and specimen measures"),
     ("X = x", "the transducer's frame is rigid"),
+    parameters=(
+        Parameter("m0", "m₀", "kg", 1e-2, 1e6, 1.0, "moving mass", ORDER_OF_MAGNITUDE),
+        Parameter("c0", "c₀", "N*s/m", 1e-6, 1e8, 1.0, "viscous damping of the moving mass", ORDER_OF_MAGNITUDE),
+    ),
+    scales=(Scale("m0", "mL", 1e-2, 1e3), Scale("c0", "m0 * W", 1e-3, 1e3)),
 )
 
 MEASURED_LOAD = MASS_SPRING_DAMPER.with_equations(
@@ -42,7 +51,13 @@ MEASURED_LOAD = MASS_SPRING_DAMPER.with_equations(
 )
 """The load with the measured force in place of the specimen's equation."""
 
-DRIVEN_MASS = MASS_SPRING_DAMPER.with_equations(
-    ("R = c0 * v + k0 * x", "viscous damping and a spring to the ground"),
+DRIVEN_MASS = replace(
+    MASS_SPRING_DAMPER.with_equations(("R = c0 * v + k0 * x", "viscous damping and a spring to the ground")),
+    parameters=(
+        Parameter("m0", "m₀", "kg", 1e-2, 1e4, 1.0, "moving mass", ORDER_OF_MAGNITUDE),
+        Parameter("c0", "c₀", "N*s/m", 1e-2, 1e6, 1.0, "viscous friction", ORDER_OF_MAGNITUDE),
+        Parameter("k0", "k₀", "N/m", 1e-6, 1e9, 1.0, "stiffness of the spring to the ground", ORDER_OF_MAGNITUDE),
+    ),
+    scales=(Scale("m0", "mL", 1e-2, 1e3), Scale("c0", "m0 * W", 1e-4, 1e3), Scale("k0", "m0 * W**2", 1e-6, 1e2)),
 )
 """A mass with spring and damper of its own, beside the specimen's."""

@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 
 from ident.equations.equation import Equation
 from ident.errors import Unusable
+from ident.parameter import Parameter
+from ident.stages.scale import Scale
 
 PLACES = ("controller", "valve", "spool", "flow", "pressure", "load", "sensor")
 """The seven places, in the order of the signal."""
@@ -25,13 +27,17 @@ class Stage:
     """One place of the chain.
 
     `publishes` names the states and signals that its equations define; other places read them by name. A stage that
-    is exchanged for another must publish what the rest of the chain reads. Raises Unusable where an equation has no
-    published left-hand side, or a published quantity no equation.
+    is exchanged for another must publish what the rest of the chain reads. `parameters` are those that it brings,
+    with bounds for a machine of unknown size, `scales` how they are searched there; a preset may state others. Raises
+    Unusable where an equation has no published left-hand side, a published quantity no equation, or a parameter no
+    scale.
     """
 
     place: str
     publishes: tuple[Quantity, ...]
     equations: tuple[Equation, ...]
+    parameters: tuple[Parameter, ...] = ()
+    scales: tuple[Scale, ...] = ()
 
     def __post_init__(self) -> None:
         published, defined = {q.name for q in self.publishes}, {e.target for e in self.equations}
@@ -42,6 +48,21 @@ class Stage:
                 f"stage {self.place!r}",
                 f"give each published quantity one equation, at one of the places {', '.join(PLACES)}",
             )
+        brought, scaled = [parameter.name for parameter in self.parameters], [scale.name for scale in self.scales]
+        if sorted(brought) != sorted(scaled):
+            raise Unusable(
+                "bad-stage",
+                f"brings {sorted(brought)} but has scales for {sorted(scaled)}",
+                f"stage {self.place!r}",
+                "give each parameter one scale",
+            )
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """What its equations read and it does not bring: of other stages, of the run and its actuator, of the clock."""
+        own = {quantity.name for quantity in self.publishes}
+        own |= {f"{name}__old" for name in own} | {parameter.name for parameter in self.parameters}
+        return frozenset().union(*(equation.names for equation in self.equations)) - own
 
     def with_equations(self, *equations: tuple[str, str]) -> Stage:
         """The stage with other equations for some of its quantities: (text, meaning) pairs."""
@@ -49,6 +70,13 @@ class Stage:
         return replace(self, equations=tuple(other.get(e.target, e) for e in self.equations))
 
 
-def stage(place: str, publishes: tuple[Quantity, ...], *equations: tuple[str, str]) -> Stage:
+def stage(
+    place: str,
+    publishes: tuple[Quantity, ...],
+    *equations: tuple[str, str],
+    parameters: tuple[Parameter, ...] = (),
+    scales: tuple[Scale, ...] = (),
+) -> Stage:
     """A stage from (text, meaning) pairs."""
-    return Stage(place, publishes, tuple(Equation(text, place, meaning) for text, meaning in equations))
+    texts = tuple(Equation(text, place, meaning) for text, meaning in equations)
+    return Stage(place, publishes, texts, parameters, scales)
