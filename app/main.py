@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from importlib import import_module
 from importlib.metadata import version
 
 import uvicorn
@@ -11,29 +12,32 @@ from fastapi import APIRouter, FastAPI
 from fastapi.concurrency import run_in_threadpool
 
 from app import errors
-from app.actuators.endpoints import router as actuators
-from app.catalogue.endpoints import router as catalogue
 from app.context import Context
 from app.database import connect, migrate, sessions
-from app.diagnoses.endpoints import router as diagnoses
 from app.diagnoses.work import DIAGNOSIS
-from app.fits.endpoints import router as fits
 from app.fits.work import FIT
-from app.jobs.endpoints import router as jobs
 from app.jobs.engine import Jobs
 from app.jobs.service import resume
 from app.jobs.steps import GuardedSteps
-from app.matrices.endpoints import router as matrices
-from app.operation.endpoints import router as operation
 from app.pages import router as pages
-from app.parameters.endpoints import router as parameters
-from app.report.endpoints import router as report
 from app.security import Guard
 from app.settings import Settings
 from app.storage import Storage
 from ident.parallel import one_thread
 
 API = "/api/v1"
+FEATURES = (
+    "matrices",
+    "actuators",
+    "fits",
+    "diagnoses",
+    "jobs",
+    "report",
+    "parameters",
+    "catalogue",
+    "operation",
+)
+"""Folders whose endpoints.py has a `router` of the API."""
 
 
 def create_app(settings: Settings) -> FastAPI:
@@ -54,8 +58,8 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.context = make_context(settings)
     errors.install(app)
     api = APIRouter(prefix=API)
-    for router in (matrices, actuators, fits, diagnoses, jobs, report, parameters, catalogue, operation):
-        api.include_router(router)
+    for feature in FEATURES:
+        api.include_router(import_module(f"app.{feature}.endpoints").router)
     app.include_router(api)
     app.include_router(pages)
     app.add_middleware(Guard, settings=settings)

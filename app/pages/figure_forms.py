@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from app.pages.run_view import specimen_of
 from ident.bench.smoothing import METHODS as SMOOTHINGS
-from ident.figures import figures_of, words
+from ident.figures import FIGURES, figures_of, words
 from ident.fit.result import FitResult
 from ident.presets import preset
 from ident.residuals.views import views
@@ -27,18 +27,6 @@ class Field:
     choices: Choices = ()
 
 
-_OF_BENCH = (
-    ("pressure-loop", "Pressure loop", ()),
-    ("frequency-characteristics", "Frequency", ()),
-    (
-        "speed-characteristic",
-        "Speed",
-        (Field("smoothing", "Smoothing", (("", SMOOTHINGS[0]), *((m, m) for m in SMOOTHINGS[1:]))),),
-    ),
-    ("acceptance-sheet", "Acceptance sheet", ()),
-)
-
-
 @dataclass(frozen=True)
 class FigureForm:
     """One figure with its options; `picked` are those that it takes from what is picked out for all figures.
@@ -53,26 +41,29 @@ class FigureForm:
     share: float = 0.76
 
 
+_SHARES = {MAP: 0.66, "bode": 0.79, "time": 0.69, "residual-curve": 0.63, "sensitivity": 0.62, "evolution": 0.63}
+
+
 def forms(runs: Sequence[RunView], fit: FitResult) -> tuple[FigureForm, ...]:
-    """The figures that this fit has: the map of where it fails, then those that follow it in the order of the tabs."""
-    pictures = [
-        FigureForm(MAP, "By run and frequency", _conditions(runs), PICKED, 0.66),
-        FigureForm("bode", "Bode plot", _bode(runs), PICKED, 0.79),
-        FigureForm("time", "Time record", (Field("start", "Start (s)"), Field("seconds", "Length (s)")), PICKED, 0.69),
-        FigureForm(
-            "residual-curve",
-            "Missing characteristic",
-            (Field("view", "Curve", _views(fit)), *_conditions(runs)),
-            PICKED,
-            0.63,
+    """The figures that this fit has, in the order of the tabs, each with the fields that its options have."""
+    fields = {
+        MAP: _conditions(runs),
+        "bode": _bode(runs),
+        "time": (Field("start", "Start (s)"), Field("seconds", "Length (s)")),
+        "residual-curve": (Field("view", "Curve", _views(fit)), *_conditions(runs)),
+        "evolution": _evolution(fit),
+        "speed-characteristic": (
+            Field("smoothing", "Smoothing", (("", SMOOTHINGS[0]), *((m, m) for m in SMOOTHINGS[1:]))),
         ),
-        FigureForm("sensitivity", "Sensitivity", (), PICKED[:1], 0.62),
-    ]
-    if fit.evolution:
-        pictures.insert(5, FigureForm("evolution", "Evolution", _evolution(fit), share=0.63))
-    pictures += [FigureForm(name, title, fields) for name, title, fields in _OF_BENCH]
-    shown = figures_of(fit)
-    return tuple(picture for picture in pictures if picture.name in shown)
+    }
+    drawings = [FIGURES[name] for name in figures_of(fit) if name != "evolution" or fit.evolution]
+    return tuple(
+        FigureForm(
+            drawing.name, drawing.title, fields.get(drawing.name, ()),
+            tuple(name for name in PICKED if name in drawing.options), _SHARES.get(drawing.name, 0.76),
+        )
+        for drawing in drawings
+    )  # fmt: skip
 
 
 def _bode(runs: Sequence[RunView]) -> tuple[Field, ...]:

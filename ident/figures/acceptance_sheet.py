@@ -8,14 +8,16 @@ from typing import Any
 import altair as alt
 import numpy as np
 
-from ident.bench.acceptance import Line, passed
-from ident.bench.analysis import Analysis
-from ident.bench.records import BenchSet
+from ident.bench.acceptance import Line, passed, read_limits, sheet
+from ident.bench.analysis import Analysis, analyse
+from ident.bench.records import BenchSet, bench_set
+from ident.figures.drawing import Drawing, Options
 from ident.figures.frequency_characteristics import frequency_panels
 from ident.figures.look import Look, look
 from ident.figures.pressure_loop import pressure_panel
 from ident.figures.render import Chart, Panel
 from ident.figures.speed_characteristic import speed_panel
+from ident.figures.study import Study
 from ident.matrix import Matrix
 from ident.words.titles import title
 
@@ -106,3 +108,14 @@ def _cell(text: str, x: int, row: int, kind: str) -> dict[str, Any]:
 
 def _short(text: str, most: int = 150) -> str:
     return text if len(text) <= most else text[: most - 1] + "…"
+
+
+def _drawn(study: Study, of: Look, _options: Options) -> Chart:
+    """The records as the procedures judge them: the sheet of `servoident bench`, whatever the fit."""
+    matrix, bench = study.matrix, bench_set(study.matrix)
+    analysis = analyse(bench)
+    lines = sheet(analysis, read_limits(matrix.limits_text, matrix.limits or "limits"))
+    return sheet_chart(matrix, bench, analysis, lines, of)
+
+
+ACCEPTANCE_SHEET = Drawing("acceptance-sheet", "Acceptance sheet", _drawn, of="bench")

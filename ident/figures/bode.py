@@ -14,12 +14,15 @@ import numpy as np
 from ident.comparison.compare import RunComparison
 from ident.errors import Unusable
 from ident.figures import words
-from ident.figures.choose import by_gain, representative
+from ident.figures.candidate import called, candidate_of
+from ident.figures.choose import RUNS, asked, by_gain, chosen, representative
+from ident.figures.drawing import Drawing, Options
 from ident.figures.frame import Filled, Frame, blank, frame
 from ident.figures.look import Look
 from ident.figures.render import Panel
 from ident.figures.responses import Responses
-from ident.figures.selection import HIGH, LOW, OPEN, Band, band_params, band_values, brush, zoomed
+from ident.figures.selection import BAND, HIGH, LOW, OPEN, Band, band_of, band_params, band_values, brush, zoomed
+from ident.figures.study import Study
 from ident.figures.thin import decade_ticks, fine_ticks
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Run
@@ -238,3 +241,16 @@ def _tooltip(alike: _Alike, fields: tuple[str, str, str], title: str) -> list[al
         alt.Tooltip(f"{model}:Q", title=f"{title}, model", format=".4g"),
         alt.Tooltip("c:Q", title="Coherence", format=".3f"),
     ]
+
+
+def _drawn(study: Study, look: Look, options: Options) -> Filled:
+    candidates = chosen(study.matrix, asked(options))
+    runs, other = readable(candidates), candidate_of(options)
+    return bode(
+        study.compared(runs).runs, study.matrix.actuator, study.fit, look,
+        axis=options.get("axis") or "log", candidates=len(candidates), band=band_of(options),
+        others=study.beside(other).compared(runs).runs if other else (), other_name=called(other, study.fit),
+    )  # fmt: skip
+
+
+BODE = Drawing("bode", "Bode plot", _drawn, (*RUNS, *BAND, "axis", "candidate"))

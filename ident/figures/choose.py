@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ident.errors import Unusable
 from ident.figures import words
 from ident.matrix import Matrix, Run
+
+CONDITIONS = ("kp", "amplitude", "specimen", "use")
+RUNS = ("run", *CONDITIONS)
+"""The options of a figure that shows some runs."""
 
 
 @dataclass(frozen=True)
@@ -83,6 +88,16 @@ def chosen(matrix: Matrix, wish: Wish) -> tuple[Run, ...]:
         asked = ", ".join(f"{name} {value}" for name, value in vars(wish).items() if value is not None)
         raise Unusable("no-such-run", f"no run with {asked}", "figure", "choose among the runs of the matrix")
     return runs
+
+
+def asked(options: Mapping[str, Any], names: Sequence[str] = RUNS) -> Wish:
+    """The wish among the options of a figure."""
+    return wish(**{name: options[name] for name in names if name in options})
+
+
+def one(matrix: Matrix, options: Mapping[str, Any]) -> Run | None:
+    """The run that was asked for by its id."""
+    return None if not options.get("run") else chosen(matrix, wish(run=options["run"]))[0]
 
 
 def by_gain(runs: Sequence[Run]) -> dict[float | None, list[Run]]:

@@ -13,8 +13,10 @@ from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.choose import Option
+from ident.figures.drawing import Drawing, Options
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, datasets
+from ident.figures.study import Study
 from ident.figures.thin import significant
 from ident.fit.result import FitResult, Generation
 from ident.matrix import Actuator
@@ -213,3 +215,10 @@ def _history(look: Look, wide: bool) -> Panel:
         .encode(x=x, y=y, color=colour, tooltip=tips)
     )
     return panel
+
+
+def _drawn(study: Study, look: Look, options: Options) -> Chart:
+    return evolution(study.matrix.actuator, study.fit, look, **options)
+
+
+EVOLUTION = Drawing("evolution", "Evolution", _drawn, ("x", "y", "generations"))

@@ -9,11 +9,15 @@ from typing import Any
 import altair as alt
 import numpy as np
 
-from ident.bench.frequency import Response, point
+from ident.bench.frequency import Response, frequency_response, point
 from ident.bench.model import Model
 from ident.bench.records import Record
+from ident.figures import words
+from ident.figures.bench import model_and_records
+from ident.figures.drawing import Drawing, Options
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel
+from ident.figures.study import Study
 
 Rows = list[dict[str, Any]]
 
@@ -64,3 +68,12 @@ def _rows(responses: Sequence[Response]) -> Rows:
 def _of_model(record: Record, model: Model) -> Record:
     answer = model.answer(record.current, record.rate, record.hold, float(record.position[0]))
     return replace(record, position=answer.position)
+
+
+def _drawn(study: Study, look: Look, _options: Options) -> Chart:
+    model, records = model_and_records(study, "frequency characteristics", "frequency")
+    title = words.headline(study.matrix.actuator, "amplitude and phase, measured and model")
+    return frequency_characteristics(frequency_response(records), records, model, look, title)
+
+
+FREQUENCY_CHARACTERISTICS = Drawing("frequency-characteristics", "Frequency", _drawn, of="bench")

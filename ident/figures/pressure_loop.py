@@ -11,8 +11,12 @@ import numpy as np
 from ident.bench.model import Model
 from ident.bench.motion import groups
 from ident.bench.records import Record
+from ident.figures import words
+from ident.figures.bench import model_and_records
+from ident.figures.drawing import Drawing, Options
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel
+from ident.figures.study import Study
 
 NAMES = {0: "static", 1: "moving +", -1: "moving −"}
 _POINTS = 900  # of each record
@@ -60,3 +64,12 @@ def _percent(value: Any) -> float:
 
 def _mega(value: Any) -> float:
     return float(np.round(1e-6 * value, 4))
+
+
+def _drawn(study: Study, look: Look, _options: Options) -> Chart:
+    model, records = model_and_records(study, "pressure loop", "static")
+    title = words.headline(study.matrix.actuator, "hysteresis by the pressure difference, measured and model")
+    return pressure_loop(records, model, look, title)
+
+
+PRESSURE_LOOP = Drawing("pressure-loop", "Pressure loop", _drawn, of="bench")

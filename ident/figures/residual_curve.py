@@ -11,9 +11,14 @@ import altair as alt
 
 from ident.errors import Unusable
 from ident.figures import words
+from ident.figures.candidate import called, candidate_of
+from ident.figures.choose import RUNS, asked, chosen
+from ident.figures.drawing import Drawing, Options
 from ident.figures.frame import Filled, Frame, blank, frame
 from ident.figures.look import Look
 from ident.figures.render import Panel
+from ident.figures.selection import BAND, band_of
+from ident.figures.study import Study
 from ident.figures.thin import significant
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
@@ -169,3 +174,19 @@ def _share(curve: Curve) -> str:
 
 def _axis(title: Any, ticks: int) -> alt.Axis:
     return alt.Axis(title=title, tickCount=ticks, format=".4~g")
+
+
+def _drawn(study: Study, look: Look, options: Options) -> Filled:
+    matrix, view, band, other = study.matrix, options.get("view") or None, band_of(options), candidate_of(options)
+    some = any(map(options.get, RUNS))
+    shown = chosen(matrix, asked(options)) if some else matrix.of_use("fit") or matrix.runs
+    runs = words.describe(shown[0]) if len(shown) == 1 else f"{len(shown)} runs"
+    return residual_curve(
+        study.curves(shown, view, band), matrix.actuator, study.fit, look,
+        candidate=study.curves(shown, view, band, other) if other else (), view=view,
+        runs=f"{runs}, {band.words}" if band else runs,
+        candidate_name=called(other, study.fit),
+    )  # fmt: skip
+
+
+RESIDUAL_CURVE = Drawing("residual-curve", "Missing characteristic", _drawn, (*RUNS, *BAND, "view", "candidate"))

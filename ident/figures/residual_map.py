@@ -10,9 +10,12 @@ import altair as alt
 
 from ident.comparison.compare import Comparison
 from ident.figures import words
+from ident.figures.choose import CONDITIONS, RUNS, asked, chosen
+from ident.figures.drawing import Drawing, Options
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, datasets
-from ident.figures.selection import HIGH, LOW, OPEN, RUN, Band, band_params, brush
+from ident.figures.selection import BAND, HIGH, LOW, OPEN, RUN, Band, band_of, band_params, brush
+from ident.figures.study import Study
 from ident.figures.thin import decade_ticks
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Run
@@ -163,3 +166,13 @@ def _totals(order: Sequence[str], look: Look, height: int) -> Panel:
         )
     )
     return panel
+
+
+def _drawn(study: Study, look: Look, options: Options) -> Chart:
+    """Of every run where none is asked for; the one in `run` is marked."""
+    shown = chosen(study.matrix, asked(options, CONDITIONS)) if any(map(options.get, CONDITIONS)) else study.matrix.runs
+    run = str(options.get("run") or "")
+    return residual_map(study.compared(shown), study.matrix.actuator, study.fit, look, run=run, band=band_of(options))
+
+
+RESIDUAL_MAP = Drawing("residual-map", "By run and frequency", _drawn, (*RUNS, *BAND))

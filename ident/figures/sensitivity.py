@@ -14,9 +14,12 @@ from numpy.typing import NDArray
 from ident.chain.chain import linear_model
 from ident.comparison.compare import fitted, response
 from ident.figures import words
+from ident.figures.choose import one
+from ident.figures.drawing import Drawing, Options
 from ident.figures.frame import Filled, Frame, blank, frame
 from ident.figures.look import Look
 from ident.figures.render import Panel
+from ident.figures.study import Study
 from ident.figures.thin import decade_ticks, excited_band, significant
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Matrix, Run, Specimen
@@ -181,3 +184,11 @@ def _panel(data: alt.NamedData, x: alt.X, y: alt.Y, look: Look, width: int, **he
         .encode(x=x, y=y)
     )
     return alt.layer(lines, own, width=width, height=190, **heading)
+
+
+def _drawn(study: Study, look: Look, options: Options) -> Filled:
+    run = one(study.matrix, options) or loaded(study.matrix.of_use("verify") or study.matrix.runs)
+    return sensitivity(run, study.matrix.actuator, study.fit, look)
+
+
+SENSITIVITY = Drawing("sensitivity", "Sensitivity", _drawn, ("run",))

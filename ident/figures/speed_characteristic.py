@@ -10,9 +10,13 @@ import numpy as np
 
 from ident.bench.model import Model
 from ident.bench.records import Record
-from ident.bench.speed import Level, curve
+from ident.bench.speed import Level, curve, levels
+from ident.figures import words
+from ident.figures.bench import model_and_records
+from ident.figures.drawing import Drawing, Options
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel
+from ident.figures.study import Study
 
 _POINTS = 700
 NAMES = ("measured, against the current given", "measured, current corrected", "fixed levels", "f without friction")
@@ -76,3 +80,12 @@ def _row(current: float, speed: float, name: str, run: str, order: int) -> dict[
         "r": run,
         "o": order,
     }
+
+
+def _drawn(study: Study, look: Look, options: Options) -> Chart:
+    model, records = model_and_records(study, "speed characteristic", "speed-continuous", "speed-levels")
+    title = words.headline(study.matrix.actuator, "speed characteristic, measured and model")
+    return speed_characteristic(records, levels(model, records), model, look, options.get("smoothing") or "iir", title)
+
+
+SPEED_CHARACTERISTIC = Drawing("speed-characteristic", "Speed", _drawn, ("smoothing",), of="bench")

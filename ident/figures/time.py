@@ -12,10 +12,13 @@ import numpy as np
 from ident.comparison.compare import RunComparison
 from ident.errors import Unusable
 from ident.figures import words
+from ident.figures.choose import one
+from ident.figures.drawing import Drawing, Options
 from ident.figures.frame import Filled, Frame, blank, frame
 from ident.figures.look import Look
 from ident.figures.render import Panel
-from ident.figures.selection import OPEN, Band
+from ident.figures.selection import BAND, OPEN, Band, band_of, number
+from ident.figures.study import Study
 from ident.figures.thin import Real, envelope, significant
 from ident.fit.reduction import within
 from ident.fit.result import FitResult
@@ -155,3 +158,13 @@ def _residual(clock: str, look: Look) -> Panel:
         )
     )
     return panel
+
+
+def _drawn(study: Study, look: Look, options: Options) -> Filled:
+    run = one(study.matrix, options) or typical(study.matrix, study.fit)
+    (shown,) = study.compared((run,)).runs
+    start, seconds = number(options, "start"), number(options, "seconds")
+    return time(shown, study.matrix.actuator, study.fit, look, start=start, seconds=seconds, band=band_of(options))
+
+
+TIME = Drawing("time", "Time record", _drawn, ("run", *BAND, "start", "seconds"))

@@ -2,18 +2,23 @@
 
 from collections.abc import Sequence
 from functools import lru_cache
+from importlib import import_module
 
 from ident.effects import CATALOGUE, effect
 from ident.effects.effect import Effect
 from ident.errors import Unusable
-from ident.presets.drive import DRIVE
-from ident.presets.first_order import FIRST_ORDER
-from ident.presets.kononykhin import KONONYKHIN
-from ident.presets.open_valve import OPEN_VALVE
 from ident.presets.preset import Preset
-from ident.presets.qian2014 import QIAN2014
 
-PRESETS: dict[str, Preset] = {preset.name: preset for preset in (QIAN2014, FIRST_ORDER, DRIVE, OPEN_VALVE, KONONYKHIN)}
+_FILES = (
+    "qian2014",
+    "first_order",
+    "drive",
+    "open_valve",
+    "kononykhin",
+)
+"""Each with the preset of its name."""
+_PRESETS: tuple[Preset, ...] = tuple(getattr(import_module(f"ident.presets.{file}"), file.upper()) for file in _FILES)
+PRESETS = {preset.name: preset for preset in _PRESETS}
 
 
 def preset(name: str, effects: Sequence[str] = (), custom: Sequence[Effect] = ()) -> Preset:

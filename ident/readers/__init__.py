@@ -4,34 +4,31 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path, PurePosixPath
 
 from ident.errors import Unusable
 from ident.matrix import Matrix, Run
 from ident.readers.archive import Archive
 from ident.readers.description import Description, describe
-from ident.readers.hdf5 import read_hdf5
 from ident.readers.limits import LIMITS, Limits, check_size
-from ident.readers.mat import read_mat
-from ident.readers.npz import read_npz
-from ident.readers.parquet import read_parquet
 from ident.readers.run import read_run
 from ident.readers.run_description import RunDescription
 from ident.readers.source import DESCRIPTION, Folder, Source
 from ident.readers.table import Table
-from ident.readers.tdms import read_tdms
 from ident.readers.text import read_text
 
 Reader = Callable[[bytes, str, Limits], Table]
 
-BINARY: dict[str, Reader] = {
-    ".parquet": read_parquet,
-    ".npz": read_npz,
-    ".mat": read_mat,
-    ".h5": read_hdf5,
-    ".hdf5": read_hdf5,
-    ".tdms": read_tdms,
+BINARY = {
+    ".parquet": "parquet",
+    ".npz": "npz",
+    ".mat": "mat",
+    ".h5": "hdf5",
+    ".hdf5": "hdf5",
+    ".tdms": "tdms",
 }
+"""Endings of names, each with the file that reads what ends so: `read_npz` in npz.py and the like."""
 TEXT = (".csv", ".tsv", ".txt")
 
 
@@ -114,4 +111,6 @@ def read_table(data: bytes, name: str, run: RunDescription, limits: Limits) -> T
         return read_text(data, name, limits, run.skip_rows)
     if run.skip_rows:
         raise Unusable("bad-rows", "skip_rows is for text files", f"run {run.labels.id} skip_rows", "use rows")
-    return BINARY[ending](data, name, limits)
+    kind = BINARY[ending]
+    read: Reader = getattr(import_module(f"ident.readers.{kind}"), f"read_{kind}")
+    return read(data, name, limits)

@@ -10,12 +10,14 @@ from ident.bench.acceptance import sheet
 from ident.bench.analysis import analyse
 from ident.bench.records import bench_set
 from ident.errors import Unusable
-from ident.figures import BENCH_FIGURES, figures_of, render
+from ident.figures import FIGURES, figures_of, render
 from ident.figures.acceptance_sheet import acceptance_sheet
 from ident.fit.settings import Settings
 from ident.workflows import figure, identify
 from tests.bench.sets import as_matrix
 from tests.reference import kononykhin_reference as reference
+
+OF_BENCH = tuple(name for name, drawing in FIGURES.items() if drawing.of == "bench")
 
 
 @pytest.fixture(scope="module")
@@ -33,11 +35,11 @@ def texts(chart) -> str:
 
 def test_a_fit_of_the_bench_has_its_own_figures(fitted):
     _, fit = fitted
-    assert figures_of(fit) == ("time", "evolution", *BENCH_FIGURES)
+    assert figures_of(fit) == ("time", "evolution", *OF_BENCH)
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
-@pytest.mark.parametrize("name", ["time", "evolution", *BENCH_FIGURES])
+@pytest.mark.parametrize("name", ["time", "evolution", *OF_BENCH])
 def test_every_figure_is_drawn(fitted, name, theme):
     """As SVG, with the actuator's serial in its title."""
     chart = figure(name, *fitted, theme)
