@@ -27,7 +27,7 @@ def compare(
     ] = None,
 ) -> None:
     """Compare a fitted model with every run of a matrix: error, where it fails, and what the error is made of."""
-    from app.cli.where import show_survey
+    from app.cli.survey_tables import show_survey
     from ident.readers import read_matrix
     from ident.residuals.survey import survey
     from ident.workflows import compare as compared

@@ -11,8 +11,8 @@ from typing import Annotated
 
 import typer
 
+from app.cli.data_options import settings
 from app.cli.failures import report
-from app.cli.place import settings
 from app.cli.remote import items, request
 from app.cli.serving import LOOPBACK, address, free_port, run
 from app.cli.upload import files_of

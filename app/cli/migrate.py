@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.cli.place import Data, Database, settings
+from app.cli.data_options import Data, Database, settings
 
 
 def migrate(data: Data = None, database: Database = "") -> None:

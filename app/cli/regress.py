@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from app.cli.data_options import Data, Database, settings
 from app.cli.output import check_target, write_bytes
-from app.cli.place import Data, Database, settings
 from app.cli.progress import shown
 from ident.errors import Unusable
 

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from app.cli.place import Data, Database, settings
+from app.cli.data_options import Data, Database, settings
 from app.cli.serving import LOOPBACK, address, run
 
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from app.cli.place import Data, Database, settings
+from app.cli.data_options import Data, Database, settings
 from ident.errors import Unusable
 
 _PULSE = 0.5  # s, after which Ctrl-C is heard even where another thread has taken the signal
