@@ -18,8 +18,9 @@ from ident.bench.frequency import Response, frequency_response
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import CONSTANTS, Model
 from ident.bench.motion import groups
+from ident.bench.observed import Observed, errors, observe
 from ident.bench.records import BenchSet, Record
-from ident.bench.residual import Observed, Residual, errors, observe
+from ident.bench.residual import Residual
 from ident.bench.speed import Speed, speed
 from ident.bench.speed_table import SpeedTable
 from ident.bench.static import Static, first_values, ranges, static

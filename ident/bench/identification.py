@@ -17,10 +17,11 @@ from ident.bench.analysis import Analysis, analyse
 from ident.bench.least_squares import Solution, solve
 from ident.bench.missing import QUICK, centred, finely, with_effect
 from ident.bench.model import CONSTANTS, Model, Models
+from ident.bench.observed import Observed, observe
 from ident.bench.outputs import errors_of, model_of, noise_floor
 from ident.bench.polish import polished, weak
 from ident.bench.records import bench_set
-from ident.bench.residual import Observed, Residual, observe
+from ident.bench.residual import Residual
 from ident.custom.definition import preset_with
 from ident.fit.ends import distinct
 from ident.fit.result import Estimate, FitResult, RunError, Undetermined

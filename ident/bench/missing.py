@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import CONSTANTS, FAST, Model
+from ident.bench.observed import Observed, observe
 from ident.bench.records import Record
-from ident.bench.residual import Observed, Residual, observe
+from ident.bench.residual import Residual
 from ident.diagnosis.cross_validation import FOLDS, CrossValidation
 from ident.diagnosis.significance import Improvement, improvement
 from ident.effects import CATALOGUE

@@ -13,7 +13,8 @@ import numpy as np
 
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import Model
-from ident.bench.residual import Observed, Residual
+from ident.bench.observed import Observed
+from ident.bench.residual import Residual
 from ident.fit.ends import End, parted
 
 _STEPS = 60  # at most: from afar it takes more than 50

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import Model
+from ident.bench.observed import Observed
 from ident.bench.records import Record
-from ident.bench.residual import Observed, Residual
+from ident.bench.residual import Residual
 from ident.bench.smoothing import METHODS, bezier, differentiated, fir, iir, on_bezier
 from ident.bench.speed_table import SpeedTable
 from ident.bench.straightness import Straightness, straightness

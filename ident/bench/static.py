@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import Model, dead_space
 from ident.bench.motion import groups, onsets
+from ident.bench.observed import Observed, observe
 from ident.bench.quantity import Found
 from ident.bench.records import Record
-from ident.bench.residual import Observed, Residual, observe
+from ident.bench.residual import Residual
 from ident.bench.speed_table import SpeedTable
 from ident.errors import Unusable
 

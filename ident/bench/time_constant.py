@@ -15,8 +15,9 @@ from scipy.optimize import least_squares
 
 from ident.bench.least_squares import solve
 from ident.bench.model import Model
+from ident.bench.observed import Observed
 from ident.bench.quantity import Found
-from ident.bench.residual import Observed, Residual
+from ident.bench.residual import Residual
 from ident.effects.command_delay import COMMAND_DELAY
 
 Array = NDArray[np.float64]

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.chain.dry_friction import dry_friction
 from ident.chain.linearity import LINEAR, OTHER, ZERO, degree
 from ident.effects.effect import Effect
 from ident.equations.equation import Equation
@@ -170,7 +171,7 @@ class Chain:
             return False
         known = dict.fromkeys((*self.states, INPUT, INPUT_RATE), LINEAR) | dict.fromkeys((FORCE, TIME), OTHER)
         for equation in self.signals:
-            dry = friction(equation)
+            dry = dry_friction(equation)
             off = dry is not None and known.get(dry[0]) == ZERO
             known[equation.target] = ZERO if off else degree(equation.tree, known)
         needed = {name for output in self.outputs for name in (e.target for e in self.needed(output))}
@@ -184,7 +185,7 @@ class Chain:
         """
         values = dict(known)
         for equation in self.signals:
-            values[equation.target] = 0.0 if friction(equation) else equation.value(values)
+            values[equation.target] = 0.0 if dry_friction(equation) else equation.value(values)
         return values
 
     @cached_property
@@ -321,23 +322,14 @@ def of_other_unit(effect: Effect, signal: str, unit: str) -> Unusable:
                     f"effect {effect.name}", "choose another effect, or another model")  # fmt: skip
 
 
-def friction(equation: Equation) -> tuple[str, str, str, str] | None:
-    """(limit, speed, acceleration, mass) where the equation is ``f = dry(...)``, else None."""
-    tree = equation.tree
-    if isinstance(tree, ast.Call) and isinstance(tree.func, ast.Name) and tree.func.id == "dry":
-        limit, speed, acceleration, mass = (ast.unparse(argument) for argument in tree.args)
-        return limit, speed, acceleration, mass
-    return None
-
-
 def _needs(equation: Equation) -> frozenset[str]:
     """What must be known before: dry friction does not wait for the acceleration, which is found without it first."""
-    found = friction(equation)
+    found = dry_friction(equation)
     return frozenset({found[0], found[3]}) if found else equation.names
 
 
 def _still(equation: Equation) -> str:
-    return "0.0" if friction(equation) else equation.python
+    return "0.0" if dry_friction(equation) else equation.python
 
 
 def _local_names(effect: Effect, equation: Equation, core: frozenset[str]) -> dict[str, str]:

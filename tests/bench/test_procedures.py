@@ -11,7 +11,7 @@ from scipy.optimize import minimize
 from ident.bench.analysis import analyse
 from ident.bench.frequency import frequency_response
 from ident.bench.motion import groups
-from ident.bench.residual import observe
+from ident.bench.observed import observe
 from ident.bench.sine_fit import as_printed, dominant, fit_sine, gauss_newton
 from ident.bench.smoothing import METHODS, bezier, on_bezier
 from ident.bench.speed import curve

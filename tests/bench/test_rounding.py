@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from ident.bench.motion import groups
+from ident.bench.observed import Observed
 from ident.bench.records import Record, bench_set, resolution
-from ident.bench.residual import Observed
 from ident.bench.speed import _constant
 from tests.bench.sets import as_matrix
 from tests.reference import kononykhin_reference as reference

@@ -6,7 +6,8 @@ import ast
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from ident.chain.chain import FORCE, INPUT, INPUT_RATE, STEP, friction
+from ident.chain.chain import FORCE, INPUT, INPUT_RATE, STEP
+from ident.chain.dry_friction import dry_friction
 from ident.equations.equation import Equation
 from ident.equations.grammar import TIME, tree_of
 from ident.simulation.kernel.layout import HELD, LANES, SHARE, Filter, Kernel, filter_rows
@@ -53,7 +54,7 @@ class Writer(Source):
         fixed: dict[str, ast.expr] = {}
         kept = []
         for original in self.chain.needed(self.output):
-            found, equation = friction(original), original.with_values(fixed)
+            found, equation = dry_friction(original), original.with_values(fixed)
             if found and isinstance(limit := fixed.get(found[0]), ast.Constant) and not limit.value:
                 fixed[equation.target] = ast.Constant(0.0)
                 continue
@@ -144,7 +145,7 @@ class Writer(Source):
 
     def _stage(self, needed: Sequence[Equation], stage: str) -> None:
         for equation in needed:
-            found = friction(equation)
+            found = dry_friction(equation)
             if found and stage == "1":
                 self._friction(equation.target, found, needed)
             elif found:

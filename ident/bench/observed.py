@@ -1,0 +1,188 @@
+"""A record of the bench as it is compared with a model: reduced, with the samples used and their scales.
+
+Each record yields position residuals and, where its cavities were measured at a static test, pressure residuals. What
+a record does not tell is taken off: the mean of each part (where the actuator stood, the offset of a pressure gauge).
+Each residual is divided by what it cannot be below: the step of the converter or the noise of the gauge, and a share
+of the record's own size, so that small signals are not drowned by the table's imperfections at large ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.bench.model import Model, Models, by_chain
+from ident.bench.records import Record
+from ident.bench.response import residuals, rest
+from ident.noise.effective_sample_size import independent_samples
+
+Array = NDArray[np.float64]
+IMPERFECT = 2e-3  # of a record's standard deviation
+_SETTLED = 0.25  # s at the start of a record that its unknown past may have shaped
+_MOVED = 3.0 + 1e-6  # steps of the converter that are no accident; three of them are, however they are rounded
+_NOTHING = np.empty(0)
+
+
+def rate_wanted(record: Record) -> float:
+    """Hz at which a record still holds what the model can show: the lag is exact at any rate."""
+    if record.kind == "static":
+        return 1000.0 if record.jumps else 250.0
+    return max(125.0, 80.0 * (record.frequency or 0.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Observed:
+    """One record as it is compared: reduced, with the samples used and their scales."""
+
+    record: Record
+    parts: tuple[tuple[int, int], ...]
+    position_scale: float
+    pressure_scale: float | None
+    drifting: bool = False
+
+    @classmethod
+    def of(
+        cls, record: Record, position: bool = True, pressure: bool = True, rate: float = 0.0, drifting: bool = False
+    ) -> Observed:
+        """The record with position, pressure or both, at `rate` (Hz) or what it needs.
+
+        `drifting`: a straight line of each part is taken off the positions, not their mean only.
+        """
+        small = record.reduced(rate or rate_wanted(record))
+        skip = _unsettled(small)
+        parts = tuple((max(a, skip), b) for a, b in small.parts if b - max(a, skip) >= 8)
+        used = np.concatenate([small.position[a:b] for a, b in parts]) if parts else small.position
+        scale = float(np.hypot(max(record.resolution / np.sqrt(12.0), 1e-7), IMPERFECT * np.std(used)))
+        noise = None
+        if pressure and small.pressure is not None and small.kind == "static":
+            noise = float(np.std(np.diff(small.pressure)) / np.sqrt(2.0)) + 1.0
+        # A link under a sharp regulator makes thousands of small moves; their sum has as many near-optima.
+        told = position and not (noise is not None and record.jumps)
+        return cls(small, parts, scale if told else np.inf, noise, drifting)
+
+    @property
+    def start(self) -> float:
+        """Where the actuator stands first, m."""
+        return float(self.record.position[0])
+
+    def residual(self, model: Model) -> Array:
+        """Everything compared, scaled: position part by part, then pressure."""
+        return np.asarray(self.residuals(Models.of([model]))[0])
+
+    @property
+    def count(self) -> int:
+        """Samples compared."""
+        outputs = int(np.isfinite(self.position_scale)) + int(self.pressure_scale is not None)
+        return outputs * sum(end - first for first, end in self.parts)
+
+    def error(self, models: Models) -> Array:
+        """The RMS of the residuals of several models, (models,)."""
+        return np.asarray(np.sqrt(np.mean(self.residuals(models) ** 2, axis=1)))
+
+    def residuals(self, models: Models, room: Array | None = None) -> Array:
+        """The residuals of several models, (models, samples compared); in `room`, where that is given."""
+        record, positions = self.record, bool(np.isfinite(self.position_scale))
+        size = len(models) * self.count
+        out = (np.empty(size) if room is None else room[:size]).reshape(len(models), self.count)
+        if models.each[0].chain is not None:
+            self._by_chain(models, out)
+            return out
+        scales = np.array([self.position_scale if positions else 0.0, self.pressure_scale or 0.0])
+        residuals(
+            record.current, 1.0 / record.rate, record.hold == "zoh", models.constants, models.each[0].table.nodes,
+            models.pieces, record.position, record.pressure if record.pressure is not None else _NOTHING,
+            np.array(self.parts, dtype=np.int64).reshape(-1, 2), scales, self.drifting, out,
+        )  # fmt: skip
+        return out
+
+    def _by_chain(self, models: Models, out: Array) -> None:
+        """Fill `out` by a simulation of the chain."""
+        record, at = self.record, 0
+        outputs = [("position", record.position, self.position_scale, self.drifting)]
+        if record.pressure is not None and self.pressure_scale is not None:
+            outputs.append(("pressure", record.pressure, self.pressure_scale, False))
+        for what, measured, scale, drifting in outputs:
+            if not np.isfinite(scale):
+                continue
+            answers = by_chain(models.each, record.current, record.rate, record.hold, self.start, what)
+            for first, end in self.parts:
+                for row, answer in zip(out[:, at : at + end - first], answers, strict=True):
+                    rest(answer, measured, first, end, scale, drifting, row)
+                at += end - first
+
+    @cached_property
+    def power(self) -> float:
+        """Mean square of the position, the mean of each part taken off, in squares of its scale."""
+        rests = np.concatenate([self.record.position[a:b] - self.record.position[a:b].mean() for a, b in self.parts])
+        return float(np.mean((rests / self.position_scale) ** 2))
+
+    @cached_property
+    def size(self) -> float:
+        """Amplitude of the position, m: √2 times the deviation of what is compared."""
+        rests = [self.record.position[first:end] for first, end in self.parts]
+        rests = [straightened(x) if self.drifting else x - x.mean() for x in rests]
+        return float(np.sqrt(2.0) * np.std(np.concatenate(rests)))
+
+    def weighed(self, model: Model) -> Observed:
+        """Itself with the scales that the residual of a fitted model shows: its RMS, and how far it remembers.
+
+        A reading in steps stays off by the same part of a step while the link rests, and nearly so in a slow motion:
+        thousands of samples may tell no more than ten, so that their RMS alone would give them too much weight.
+        """
+        found, count = self.residual(model), sum(end - first for first, end in self.parts)
+        if not np.isfinite(self.position_scale):
+            return self
+        own = [found[:count]] if self.pressure_scale is None else [found[:count], found[count:]]
+        larger = [float(np.std(r)) * np.sqrt(len(r) / independent_samples(r)) for r in own]
+        least = 1e-7 / self.position_scale
+        position = self.position_scale * max(larger[0], least)
+        pressure = None if self.pressure_scale is None else self.pressure_scale * max(larger[-1], 1.0)
+        return replace(self, position_scale=position, pressure_scale=pressure)
+
+    @cached_property
+    def reach(self) -> float:
+        """The largest current, which says what of the table is seen."""
+        return float(np.max(np.abs(self.record.current)))
+
+
+def straightened(x: Array) -> Array:
+    """x less the straight line through it."""
+    t = np.arange(len(x)) - 0.5 * (len(x) - 1)
+    return np.asarray(x - x.mean() - t * ((t @ x) / (t @ t)))
+
+
+def _unsettled(record: Record) -> int:
+    """Samples at the start that the unknown past of lag and play may have shaped.
+
+    A sine is compared from its second period on. Else the play is known once the link has moved: it pushes then.
+    """
+    if record.kind == "frequency" and record.frequency and record.length > 2.2 * record.rate / record.frequency:
+        return round(record.rate / record.frequency)
+    away = np.abs(record.position - record.position[0]) > max(
+        _MOVED * record.resolution, 1e-4 * np.ptp(record.position)
+    )
+    moved = int(np.argmax(away)) if away.any() else 0
+    return min(max(moved, round(_SETTLED * record.rate)), record.length // 3)
+
+
+def observe(
+    records: Sequence[Record], position: bool = True, pressure: bool = True, rate: float = 0.0, drifting: bool = False
+) -> tuple[Observed, ...]:
+    """The records as they are compared."""
+    return tuple(Observed.of(record, position, pressure, rate, drifting) for record in records)
+
+
+def errors(model: Model, observed: Sequence[Observed]) -> dict[str, float]:
+    """RMS position error of each record over the deviation of its position, the mean of each part taken off."""
+    found = {}
+    for given in observed:
+        one = given if np.isfinite(given.position_scale) else replace(given, position_scale=1e-6)
+        count = sum(end - first for first, end in one.parts)
+        measured = np.concatenate([one.record.position[first:end] for first, end in one.parts])
+        difference = one.residual(model)[:count] * one.position_scale
+        found[one.record.id] = float(np.sqrt(np.mean(difference**2)) / np.std(measured))
+    return found
