@@ -15,7 +15,7 @@ import control
 import numpy as np
 
 from benchmarks.table import Table, seconds_of
-from ident.chain.chain import conditions
+from ident.chain.conditions import conditions
 from ident.effects import EFFECTS
 from ident.fit.levenberg_marquardt import levenberg_marquardt
 from ident.fit.settings import Settings

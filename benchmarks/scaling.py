@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.table import Table, seconds_of
-from ident.chain.chain import conditions
+from ident.chain.conditions import conditions
 from ident.effects import EFFECTS
 from ident.figures.look import LOOKS, Look
 from ident.figures.render import Chart, Panel, render

@@ -16,7 +16,7 @@ CHILD = """
 import time
 import numba, numpy, scipy.linalg
 begun = time.perf_counter()
-from ident.chain.chain import conditions
+from ident.chain.conditions import conditions
 from ident.effects import EFFECTS
 from ident.matrix import Actuator, Run, Specimen
 from ident.presets import preset

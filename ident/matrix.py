@@ -129,6 +129,24 @@ class Run:
             return self
         return replace(self, channels={**self.channels, "command": self.channels[channel]})
 
+    @cached_property
+    def motion(self) -> float:
+        """The standard deviation of the position, m: as recorded, else of the integral of the speed without its drift.
+
+        Of a run that records neither it is that of its output.
+        """
+        if "displacement" in self.channels:
+            return float(np.std(self.channels["displacement"]))
+        if "velocity" not in self.channels:
+            return float(np.std(self.measured))
+        way = np.cumsum(self.channels["velocity"]) / self.sample_rate
+        k = np.arange(len(way))
+        return float(np.std(way - np.polyval(np.polyfit(k, way, 1), k)))
+
+    def turned(self, channel: str) -> Run:
+        """The run with the sign of a channel turned."""
+        return replace(self, channels={**self.channels, channel: -self.channels[channel]})
+
     def part(self, first: int, last: int) -> Run:
         """The samples first to last − 1 as a run of their own."""
         return replace(self, channels={name: samples[first:last] for name, samples in self.channels.items()})

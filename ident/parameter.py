@@ -13,7 +13,8 @@ class Parameter:
 
     `name` is what the user calls it, in results and requests; `symbol` how it is written in the literature; `of` the
     effect that it belongs to, none for a model's own. `lower` and `upper` are the physical bounds of the search;
-    `value` is the default (for a strength: 0, off). A range of more than two decades is searched on a logarithmic
+    `value` is the default (for a strength: 0, off), `relative` that of a way on a machine of unknown size, in standard
+    deviations of its motion. A range of more than two decades is searched on a logarithmic
     scale, any other on a linear one.
     """
 
@@ -26,6 +27,7 @@ class Parameter:
     meaning: str
     source: str = ""
     of: str = ""
+    relative: float = 0.0
 
     def __post_init__(self) -> None:
         if not self.lower < self.upper:

@@ -80,6 +80,10 @@ ROOMS = (
 """The files and folders of `ident`; each may use those before it."""
 
 
+WORDS = {"specimen"}
+"""Models called by a word that matrix.yaml has for something else: what a run moves."""
+
+
 def room(module: str) -> str:
     """The room of a module of the library."""
     return module.split(".")[1]
@@ -105,7 +109,7 @@ def test_nothing_outside_the_presets_knows_a_model_by_its_name():
         f"{file.relative_to(ROOT)}:{line}"
         for file in places
         if ROOT / "ident" / "presets" not in file.parents
-        for line in chosen_by_name(ast.parse(file.read_text(encoding="utf-8")), set(PRESETS))
+        for line in chosen_by_name(ast.parse(file.read_text(encoding="utf-8")), PRESETS.keys() - WORDS)
     ]
     assert not found
 

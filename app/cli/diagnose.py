@@ -19,6 +19,7 @@ from app.cli.fit_options import (
     Ranked,
     Seed,
     Values,
+    modelled,
     settings,
 )
 from app.cli.given import read_fit
@@ -36,7 +37,7 @@ def diagnose(
     fit: Annotated[
         Path | None, typer.Option(metavar="FIT.json", help="What `servoident fit --json` wrote; else one is made.")
     ] = None,
-    model: Model = "qian2014",
+    model: Model = None,
     effect: Effects = None,
     custom: Ranked = None,
     method: Method = "ga",
@@ -54,20 +55,22 @@ def diagnose(
     from app.cli.arguments import definitions
     from ident.custom.definition import read_effect, together
     from ident.diagnosis.stepwise import USUAL
+    from ident.fit.settings import Settings
     from ident.readers import read_matrix
     from ident.workflows import diagnose as diagnosed
 
     check_target(json)
-    chosen = settings(model, effect, method, bounds, set_, load, seed, option)
+    read, named = modelled(read_matrix(matrix), model if fit is None else model or Settings().model)
+    chosen = settings(named, effect, method, bounds, set_, load, seed, option)
     given = None if fit is None else given_fit(fit, chosen)
     own = together((), definitions(custom or []))
     if given is not None:
-        model, own = given.model, together(given.settings.get("custom", ()), own)
+        named, own = given.model, together(given.settings.get("custom", ()), own)
         given = given.with_custom(own)
     most = USUAL if max_effects is None else max_effects
-    effects = tuple(read_effect(definition, model=model) for definition in own)
+    effects = tuple(read_effect(definition, model=named) for definition in own)
     with shown() as report:
-        found = diagnosed(read_matrix(matrix), given, replace(chosen, custom=own), most, effects, report)
+        found = diagnosed(read, given, replace(chosen, custom=own), most, effects, report)
     if json is not None:
         write_json(found.to_json(), json)
     if json != STANDARD_OUTPUT:

@@ -18,6 +18,7 @@ from app.cli.fit_options import (
     Options,
     Seed,
     Values,
+    modelled,
     settings,
 )
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
@@ -26,7 +27,7 @@ from app.cli.progress import shown
 
 def fit(
     matrix: MatrixPath,
-    model: Model = "qian2014",
+    model: Model = None,
     effect: Effects = None,
     custom: Custom = None,
     method: Method = "ga",
@@ -42,9 +43,10 @@ def fit(
     from ident.workflows import identify
 
     check_target(json)
-    chosen = settings(model, effect, method, bounds, set_, load, seed, option, custom)
+    read, named = modelled(read_matrix(matrix), model)
+    chosen = settings(named, effect, method, bounds, set_, load, seed, option, custom)
     with shown() as report:
-        result = identify(read_matrix(matrix), chosen, report)
+        result = identify(read, chosen, report)
     if json is not None:
         write_json(result.to_json(), json)
     if json != STANDARD_OUTPUT:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,9 +15,12 @@ from ident.fit.settings import METHODS
 
 if TYPE_CHECKING:
     from ident.fit.settings import Settings
+    from ident.matrix import Matrix
 
 MatrixPath = Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")]
-Model = Annotated[str, typer.Option(help="Model to identify.")]
+Model = Annotated[
+    str | None, typer.Option(help="Model to identify; without it, the likeliest that the channels allow.")
+]
 Effects = Annotated[
     list[str] | None, typer.Option("--effect", metavar="NAME", help="Effect to add to the model; may be repeated.")
 ]
@@ -45,6 +49,18 @@ Options = Annotated[
     list[str] | None,
     typer.Option("--option", metavar="NAME=VALUE", help="Setting of the method, such as keep=0.5; may be repeated."),
 ]
+
+
+def modelled(matrix: Matrix, model: str | None) -> tuple[Matrix, str]:
+    """The model that was named; else the likeliest for the channels, and the matrix with a notice that says so."""
+    from ident.fit.settings import Settings
+    from ident.presets.suited import suited, why
+
+    if model is not None:
+        return matrix, model
+    chosen = suited(matrix)[0]
+    notices = (why(chosen, matrix), *matrix.notices) if chosen.name != Settings().model else matrix.notices
+    return replace(matrix, notices=notices), chosen.name
 
 
 def settings(

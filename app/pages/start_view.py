@@ -63,7 +63,9 @@ def _proposed(matrix: MatrixView) -> str:
     """A bench's records want the bench's model, a measured drive force the drive's."""
     of_bench = any(run.kind in BENCH for run in matrix.runs)
     for model in PRESETS.values():
-        driven = model.driven_by != "command" and all(model.driven_by in run.channels for run in matrix.runs)
+        driven = model.driven_by != "command" and all(
+            model.driven_by in run.channels and run.output in model.chain.outputs for run in matrix.runs
+        )
         if (model.kind == "bench") is of_bench and (driven or of_bench):
             return model.name
     return Settings().model

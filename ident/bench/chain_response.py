@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain.chain import Chain, conditions
+from ident.chain.chain import Chain
+from ident.chain.conditions import conditions
 from ident.matrix import Actuator, Run
 from ident.simulation.simulate import rates, responses, steps_needed
 

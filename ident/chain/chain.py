@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.chain.conditions import conditions
 from ident.chain.dry_friction import dry_friction
 from ident.chain.linearity import LINEAR, OTHER, ZERO, degree
 from ident.effects.effect import Effect
@@ -26,37 +27,13 @@ from ident.equations.equation import Equation
 from ident.equations.grammar import FUNCTIONS, TIME
 from ident.errors import Unusable
 from ident.linear import LinearModel
-from ident.matrix import Actuator, Run, Specimen
-from ident.stages import Quantity, Stage
+from ident.matrix import Actuator, Run
+from ident.stages import Stage
 
 Array = NDArray[np.float64]
 INPUT, INPUT_RATE, FORCE, STEP = "u", "du", "fm", "dt"
 """What drives a chain: the command, its rate, a measured force; and the step of the simulation."""
-CONDITIONS = {
-    "Kp": Quantity("Kp", "1", "gain of the position loop, a dial"),
-    "mL": Quantity("mL", "kg", "mass of the specimen"),
-    "k": Quantity("k", "N/m", "stiffness of the specimen"),
-    "cL": Quantity("cL", "N*s/m", "damping of the specimen"),
-    "A": Quantity("A", "m^2", "piston area"),
-    "Ir": Quantity("Ir", "1", "rated current, in the unit of the record"),
-    "Ps": Quantity("Ps", "Pa", "supply pressure"),
-}
-"""What an equation may read of a run and its actuator."""
 _SMALL, _SHARE = 1e-9, 1e-7  # of a unit, and of what stands there: the step of slopes
-NEVER = 1e12
-"""Pa: a supply pressure that limits nothing."""
-
-
-def conditions(run: Run, actuator: Actuator) -> dict[str, float]:
-    """The values of :data:`CONDITIONS` for a run.
-
-    Without a stated area A = 1 m²: every parameter that is divided by A² in the model is then that ratio. Without a
-    stated rated current 1, without a supply pressure one that never limits.
-    """
-    specimen = run.specimen or Specimen()
-    area = 1.0 if actuator.piston_area is None else actuator.piston_area
-    return {"Kp": run.Kp, "mL": specimen.mass, "k": specimen.stiffness, "cL": specimen.damping, "A": area,
-            "Ir": run.rated_current or 1.0, "Ps": actuator.supply_pressure or NEVER}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -284,23 +261,38 @@ class Chain:
 
     def pattern(self, output: str) -> tuple[tuple[bool, ...], ...]:
         """Which entries of the system matrix can be other than zero, found at generic values of every symbol."""
-        return tuple(tuple(row) for row in self._reads(output, frozenset()).tolist())
+        return tuple(tuple(row) for row in (self._generic(output, frozenset()) != 0).tolist())
 
-    def _reads(self, output: str, zeros: AbstractSet[str]) -> NDArray[np.bool_]:
-        """Which entries of the system matrix are other than zero where the symbols `zeros` are 0, (n + 1, n + 1)."""
+    def _generic(self, output: str, zeros: AbstractSet[str]) -> Array:
+        """The system matrix at generic values of every symbol but the `zeros`, which are 0, (n + 1, n + 1)."""
         generic = {name: 0.0 if name in zeros else np.sqrt(2.0 + i) for i, name in enumerate(self.symbols)}
-        return np.asarray(self.linearise(generic, output).system != 0)
+        return self.linearise(generic, output).system
+
+    def integrates(self, output: str, zeros: AbstractSet[str]) -> bool:
+        """Whether an output has a pole at zero whatever the parameters are, where the symbols `zeros` are 0.
+
+        A cylinder that no loop and no spring holds integrates its flow: no value of a parameter makes it settle.
+        """
+        states = np.array(self.observed(output, zeros), dtype=np.intp)
+        seen = self._generic(output, zeros)[np.ix_(states, states)]
+        return bool(len(states) and np.linalg.matrix_rank(seen) < len(states))
 
     def observed(self, output: str, zeros: AbstractSet[str]) -> tuple[int, ...]:
         """The states that an output depends on, by their places, where the symbols `zeros` are 0.
 
         Without a spring a pressure knows no position: that state integrates beside the rest of the machine.
         """
-        reads, states = self._reads(output, zeros), len(self.states)
+        reads, states = self._generic(output, zeros) != 0, len(self.states)
         found = {j for j in range(states) if reads[states, j]}
         while more := {j for i in found for j in range(states) if reads[i, j]} - found:
             found |= more
         return tuple(sorted(found))
+
+
+def integrates(chain: Chain, run: Run, actuator: Actuator) -> bool:
+    """See :meth:`Chain.integrates`, under the conditions of a run."""
+    zeros = frozenset(name for name, value in conditions(run, actuator).items() if value == 0)
+    return chain.integrates(run.output, zeros)
 
 
 def linear_model(chain: Chain, values: Mapping[str, float], run: Run, actuator: Actuator) -> LinearModel:

@@ -12,6 +12,7 @@ from ident.checks.finding import Finding
 from ident.checks.flat import flat
 from ident.checks.gain import force_sign, gain
 from ident.checks.offset import offset
+from ident.checks.passivity import turned_sign
 from ident.checks.ranges import ranges
 from ident.checks.repeats import repeats
 from ident.checks.response import Response, respond
@@ -54,5 +55,6 @@ def one_run(run: Run, response: Response | None, actuator: Actuator) -> Iterator
     yield from amplitude(run)
     yield from gain(run, response)
     yield from force_sign(run)
+    yield from turned_sign(run)
     yield from offset(run)
     yield from ranges(run, actuator)

@@ -11,6 +11,7 @@ from ident.matrix import Run, Samples
 
 SECONDS = 0.05  # longer than any rest of a rounded signal in a band of tens of Hz
 SAMPLES = 32
+USUAL = 4.0  # times the median change from sample to sample
 MOVED = 0.5  # of the other channel's standard deviation, from end to end of its range meanwhile
 
 
@@ -26,11 +27,23 @@ def flat(run: Run) -> Iterator[Finding]:
             continue  # a command may rest, before and after a run in any case
         if end - first < least or np.ptp(moved) < MOVED * run.channels[other].std():
             continue
+        if name == run.output and starts_again_from_rest(run.channels[name], end):
+            continue
         text = (
             f"{name} of run {run.id} is flat from sample {first} to {end - 1} ({(end - first) / run.sample_rate:.3g} "
             f"{run.time_unit}) while {other} moves; look for a stuck sensor or a filled gap and cut it out with rows"
         )
         yield Finding(run.id, "doubt", "flat", text)
+
+
+def starts_again_from_rest(signal: Samples, end: int) -> bool:
+    """Whether a signal goes on from where it stood: a machine at rest does, a sensor that was stuck jumps.
+
+    A machine stands while its command stays in a dead zone, below friction, or away from its valve's neutral.
+    """
+    changes = np.abs(np.diff(signal))
+    changes = changes[changes > 0]
+    return end < len(signal) and abs(signal[end] - signal[end - 1]) <= USUAL * float(np.median(changes))
 
 
 def longest_rest(signal: Samples) -> tuple[int, int]:

@@ -8,7 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 
-from ident.chain.chain import CONDITIONS, INPUT, INPUT_RATE, STEP
+from ident.chain.chain import INPUT, INPUT_RATE, STEP
+from ident.chain.conditions import CONDITIONS
 from ident.equations.grammar import ALIASES, CONSTANTS, FUNCTIONS, TIME, parsed
 from ident.errors import Unusable
 from ident.presets import Preset

@@ -22,7 +22,6 @@ from ident.diagnosis.suspects import suspects
 from ident.diagnosis.words import verdict_text, why
 from ident.effects.effect import Effect
 from ident.errors import Unusable
-from ident.fit.reduction import excited_band
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.fit.space import Space
@@ -43,7 +42,7 @@ def diagnose(
     """
     begun = time.monotonic()
     given = replace(Settings.from_json(dict(fit.settings)), effects=()) if fit.settings else Settings(model=fit.model)
-    models = ModelFamily.of(matrix, given, excited_band(matrix.of_use("fit")), custom)
+    models = ModelFamily.of(matrix, given, custom)
     work = Diagnoser(models, fit, most, report)
     found = work.diagnosis()
     work.tell(Progress("next run", 0, 1))
@@ -125,7 +124,9 @@ class Diagnoser:
             if name in refit.space.names:
                 error = known.deviation(partial(_value_of, refit.space, name))
                 error = error if np.isfinite(error) and error < 1e3 * max(abs(refit.values[name]), 1e-300) else None
-            found[parameter.name] = Found(refit.values[name], parameter.unit, error, parameter.symbol)
+            found[parameter.name] = Found(
+                refit.values[name], refit.fitness.preset.unit(parameter), error, parameter.symbol
+            )
         return found
 
     def _ranked(self, selection: StepwiseSelection, floor: float | None) -> list[Ranked]:

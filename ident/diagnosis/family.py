@@ -15,10 +15,11 @@ from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.fit.fitness import Local
 from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
+from ident.fit.reduction import excited_band
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.space import Space, search_space
-from ident.matrix import Matrix, Run, over_runs
+from ident.matrix import MOTIONS, Matrix, Run, over_runs
 from ident.noise.effective_sample_size import independent_samples
 from ident.noise.floor import Floors, noise_floors
 from ident.presets import PRESETS, Preset
@@ -81,11 +82,13 @@ class ModelFamily:
     _known: dict[tuple[tuple[str, ...], int, bool], SimulatedFitness] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, matrix: Matrix, given: Settings, band: float, custom: Iterable[Effect] = ()) -> ModelFamily:
+    def of(cls, matrix: Matrix, given: Settings, custom: Iterable[Effect] = ()) -> ModelFamily:
         """The models of the settings' preset with every effect that it has a place for."""
         preset, matrix = PRESETS[given.model].for_matrix(matrix, given.load)
-        known = {effect.name: effect for effect in (*CATALOGUE, *custom) if _fits(preset, effect)}
-        return cls(preset, matrix, given, band, known)
+        there = preset.driven_by in MOTIONS or any(run.specimen or "force" in run.channels for run in matrix.runs)
+        listed = (*(effect for effect in CATALOGUE if there or not effect.of_specimen), *custom)
+        known = {effect.name: effect for effect in listed if _fits(preset, effect)}
+        return cls(preset, matrix, given, excited_band(matrix.of_use("fit")), known)
 
     @property
     def runs(self) -> tuple[Run, ...]:

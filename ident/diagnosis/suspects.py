@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain.chain import conditions
+from ident.chain.conditions import conditions
 from ident.diagnosis.family import ModelFamily, Refit
 from ident.diagnosis.result import LabelErrors, Suspect
 from ident.matrix import Run

@@ -24,7 +24,7 @@ class Effect:
     redefines, for which its strength is made ("": for any): a chain that has such a signal in another unit refuses it.
     `looks` says what the effect looks like in data, `steps` into how many a sample has to be divided so that its kinks
     are met closely enough, `stride` by which share of its range its strength is moved for a sensitivity: far where it
-    acts in jumps.
+    acts in jumps. `of_specimen`: it is a specimen's, and no diagnosis names it where nothing is known of one.
 
     Raises Unusable where place or strength are not of that form.
     """
@@ -40,6 +40,7 @@ class Effect:
     steps: int = 1
     stride: float = 1e-5
     units: Mapping[str, str] = field(default_factory=dict, hash=False)
+    of_specimen: bool = False
 
     def __post_init__(self) -> None:
         _ = self.equations

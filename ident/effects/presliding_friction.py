@@ -14,7 +14,7 @@ PRESLIDING_FRICTION = Effect(
         "R = R + Fd * z",
     ),
     units={"R": "N"},
-    shape=(Parameter("displacement", "xs", "m", 1e-7, 1e-3, 1e-5, "way over which the force builds up"),),
+    shape=(Parameter("displacement", "xs", "m", 1e-7, 1e-3, 1e-5, "way over which the force builds up", relative=0.2),),
     looks="rounded hysteresis at every amplitude; at small motion a spring rather than a stop",
     source="Dahl 1968: z' = (v - |v| z)/xs, here advanced exactly over the way of a step",
     steps=2,

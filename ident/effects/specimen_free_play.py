@@ -12,4 +12,5 @@ SPECIMEN_FREE_PLAY = Effect(
     units={"xk": "m"},
     looks="no stiffness at small displacements, full stiffness beyond; only with springs",
     source="clearance in the joint to the spring",
+    of_specimen=True,
 )

@@ -14,9 +14,10 @@ SPECIMEN_HYSTERESIS = Effect(
     ),
     units={"S": "N"},
     shape=(
-        Parameter("yield_displacement", "xy", "m", 1e-5, 1e-2, 5e-4, "displacement at yield"),
+        Parameter("yield_displacement", "xy", "m", 1e-5, 1e-2, 5e-4, "displacement at yield", relative=0.2),
         Parameter("exponent", "n", "1", 1.0, 5.0, 1.0, "sharpness of the yield"),
     ),
     looks="loops of force over displacement; stiffness that falls with amplitude",
     source="Bouc 1967, Wen 1976",
+    of_specimen=True,
 )

@@ -26,4 +26,5 @@ SPECIMEN_JOINT = Effect(
     units={"xL": "m", "vL": "m/s", "F": "N", "a": "m/s^2", "M": "kg"},
     looks="a second resonance that depends on the specimen's mass; none without specimen",
     source="mL x2'' = kj (x - x2) - S, solved for F = kj (x - x2): regular for s = 1/kj = 0",
+    of_specimen=True,
 )

@@ -10,6 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.chain.chain import integrates
 from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.fit import genetic
@@ -26,7 +27,7 @@ from ident.fit.space import search_space
 from ident.fit.summary import summarise
 from ident.matrix import Matrix
 from ident.noise.floor import noise_floors
-from ident.presets import PRESETS
+from ident.presets import PRESETS, Preset
 from ident.progress import Progress, Report, silent
 
 Array = NDArray[np.float64]
@@ -44,15 +45,18 @@ class Identification:
     def __init__(self, matrix: Matrix, settings: Settings, report: Report = silent) -> None:
         self.settings, self.report = settings, report
         check_settings(settings)
-        _refuse(matrix)
+        if not matrix.of_use("fit"):
+            what = "every run is to verify, none to fit"
+            raise Unusable("no-fit-runs", what, "runs", "mark at least one run use: fit")
         named = preset_with(settings.model, settings.effects, settings.custom)
         self.preset, self.matrix = named.for_matrix(matrix, settings.load)
         matrix = self.matrix
+        _refuse_undriven(self.preset, matrix)
         self._runs = matrix.of_use("fit")
         band = excited_band(self._runs)
         space = search_space(self.preset, matrix, settings, band)
         self.objective: Fitness
-        if not self.preset.is_linear:
+        if not self.preset.is_linear or any(integrates(self.preset.chain, run, matrix.actuator) for run in self._runs):
             self.objective = SimulatedFitness(self.preset, matrix, self._runs, space, band)
             self.searched: Fitness = self.objective.fresh(shortened(self._runs, _SEARCHED))
         else:
@@ -167,13 +171,14 @@ def _not_a_method(settings: Settings) -> Unusable:
     return Unusable("unknown-method", what, "method", f"use it with that model, or use {GENERAL[0]}")
 
 
-def _refuse(matrix: Matrix) -> None:
-    """Raise Unusable for a matrix that cannot be fitted."""
-    if not matrix.of_use("fit"):
-        raise Unusable("no-fit-runs", "every run is to verify, none to fit", "runs", "mark at least one run use: fit")
+def _refuse_undriven(preset: Preset, matrix: Matrix) -> None:
+    """Raise Unusable where a run lacks the channel that drives the model, with the models that its channels drive."""
     for run in matrix.runs:
-        if not {"command", "drive_force"} & run.channels.keys():
-            raise Unusable("missing-channel", "no command channel", f"run {run.id}", "name the column of the command")
+        if "command" not in run.channels:
+            others = [known.name for known in PRESETS.values() if known.driven_by in run.channels]
+            what = f"no {preset.driven_by} channel, which drives the model {preset.name}"
+            remedy = f"name its column, or use the model {' or '.join(others)}" if others else "name its column"
+            raise Unusable("missing-channel", what, f"run {run.id}", remedy)
 
 
 class StepwiseFit(Protocol):

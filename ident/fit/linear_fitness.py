@@ -15,7 +15,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain.chain import conditions
+from ident.chain.conditions import conditions
 from ident.fit.fitness import STEP, UNSTABLE, Local, local
 from ident.fit.normal_matrices import NormalMatrices, normal_matrices
 from ident.fit.reduction import Basis, ReducedRun, reduced

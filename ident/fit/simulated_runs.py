@@ -13,7 +13,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain.chain import Chain, conditions, linear_model
+from ident.chain.chain import Chain, linear_model
+from ident.chain.conditions import conditions
 from ident.effects.effect import Effect
 from ident.fit.normal_matrices import NormalMatrices, first_state, normal_matrices_of
 from ident.fit.products import add_products, completed

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain.chain import conditions
+from ident.chain.conditions import conditions
 from ident.equations.equation import Equation
 from ident.errors import Unusable
 from ident.fit.settings import Settings
@@ -110,7 +110,11 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
         force = float(np.mean([np.std(run.channels["force"]) for run in runs]))
         typical["mL"] = force / (typical["X"] * band**2)
     strengths = {effect.added[0].in_equations for effect in preset.effects}
-    shapes = {p.in_equations: p.value for effect in preset.effects for p in effect.added[1:]}
+    shapes = {
+        p.in_equations: p.relative * typical["L"] if p.relative and preset.motion_scale else p.value
+        for effect in preset.effects
+        for p in effect.added[1:]
+    }
     fixed = {name: value for name, value in shapes.items() if name not in given} | fixed
     convention = None
     forced = preset.driven_by != "command" or settings.load == "force"
@@ -143,7 +147,11 @@ def _typical(matrix: Matrix, runs: tuple[Run, ...]) -> dict[str, float]:
     each = [conditions(run, matrix.actuator) for run in runs]
     mean = {name: float(np.mean([values[name] for values in each])) for name in each[0]}
     mean["Kp"] = float(np.exp(np.mean([np.log(abs(values["Kp"])) for values in each])))
-    mean |= {"X": _size(runs, "measured"), "U": _size(runs, "command")}
+    mean |= {
+        "X": _size(runs, "measured"),
+        "U": _size(runs, "command"),
+        "L": float(np.mean([run.motion for run in runs])),
+    }
     return mean | {"mL": mean["mL"] or 1.0}
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.chain.chain import integrates
 from ident.fit.ends import parted
 from ident.fit.fitness import UNSTABLE, Fitness, Local
 from ident.fit.multistart import Optimum
@@ -22,7 +23,9 @@ from ident.matrix import Run, over_runs
 from ident.noise.floor import Floors
 from ident.presets.preset import Combined
 from ident.simulation.simulate import FASTEST, MOST
+from ident.words.percent import percent
 
+_HARDLY = 0.8  # of the output left: no fit to be trusted
 Array = NDArray[np.float64]
 
 
@@ -106,7 +109,7 @@ def _mean(runs: Sequence[Run], found: Sequence[RunError], what: str) -> float | 
 
 def _labels(objective: Fitness) -> dict[str, tuple[str, str]]:
     """Name and unit under which a parameter is reported: a ratio to the area where the area is unknown."""
-    plain = {p.in_equations: (p.name, p.unit) for p in objective.preset.parameters}
+    plain = {p.in_equations: (p.name, objective.preset.unit(p)) for p in objective.preset.parameters}
     known = objective.matrix.actuator.piston_area is not None
     return plain if known else plain | dict(objective.preset.without_area or {})
 
@@ -170,7 +173,7 @@ def _reason(objective: Fitness, name: str, relative: Mapping[str, float]) -> str
 
 
 def _notes(objective: Fitness, floors: Floors, here: Local) -> list[str]:
-    notes = list(objective.matrix.notices)
+    notes = [*_hardly_explained(objective, here), *objective.matrix.notices]
     if objective.space.scale_free and objective.space.axes:
         notes.append(
             f"Bounds of the preset {objective.preset.name} were not used: they hold for another machine, or piston "
@@ -192,6 +195,21 @@ def _notes(objective: Fitness, floors: Floors, here: Local) -> list[str]:
     if not np.isfinite(here.error):
         notes.append("The model is unstable at these values: its error is reported as 1000.")
     return notes
+
+
+def _hardly_explained(objective: Fitness, here: Local) -> Iterator[str]:
+    """What is said first of a fit that is hardly better than no model, with the likely causes."""
+    if not _HARDLY <= here.error < UNSTABLE:
+        return
+    preset, runs = objective.preset, objective.runs
+    causes = ["a channel with the wrong sign, or of another run", f"another structure than {preset.name} (--model)"]
+    if any(integrates(preset.chain, run, objective.matrix.actuator) for run in runs):
+        causes.insert(
+            0, "a command that is not zero where the machine stands, which the machine integrates (null_bias)"
+        )
+    yield f"The model leaves {percent(here.error)} of the output: hardly better than none. Likely causes: " + (
+        "; ".join(causes) + "."
+    )
 
 
 def _fast_modes(objective: Fitness, point: Array, state: Mapping[str, Any]) -> Iterator[str]:

@@ -14,6 +14,8 @@ _FILES = (
     "first_order",
     "drive",
     "open_valve",
+    "motor",
+    "specimen",
     "kononykhin",
 )
 """Each with the preset of its name."""

@@ -30,7 +30,7 @@ OPEN_VALVE = Preset(
             MASS_SPRING_DAMPER,
             IDEAL_SENSOR,
         ),
-        outputs={"load_pressure": "P"},
+        outputs={"load_pressure": "P", "displacement": "y", "velocity": "v", "force": "F"},
     ),
     listed=("m0", "tau", "c0", "Ka", "Cl", "Z0"),
     rescaled=(

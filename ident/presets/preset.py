@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal, TypeVar
 
-from ident.chain.chain import CONDITIONS, Chain, unfit
+from ident.chain.chain import Chain, unfit
+from ident.chain.conditions import CONDITIONS
 from ident.effects.effect import Effect
 from ident.equations.equation import Equation
 from ident.errors import Unusable
-from ident.matrix import Matrix
+from ident.matrix import MOTIONS, Matrix
 from ident.parameter import Parameter
-from ident.stages import MASS_SPRING_DAMPER, MEASURED_LOAD, Scale
+from ident.presets.passivity import passive
+from ident.stages import MASS_SPRING_DAMPER, MEASURED_LOAD, OPENED_BY_COMMAND, Scale
 from ident.stages.scale import OF_THE_RUNS, in_reading_order
 
 Kind = Literal["chain", "bench"]
@@ -77,6 +80,9 @@ class Preset:
     search: Mapping[str, float] = field(default_factory=dict)
     figures: tuple[str, ...] = ()
     force_scale: str = ""
+    motion_scale: str = ""
+    of_drive: tuple[str, ...] = ()
+    drive_unit: str = "m"
     share_force: tuple[str, ...] = ()
     shown: tuple[str, ...] = ()
 
@@ -119,7 +125,9 @@ class Preset:
         found = {scale.name: scale for stage in self.chain.stages for scale in stage.scales}
         found |= {scale.name: scale for scale in self.rescaled}
         found |= {
-            p.in_equations: scale_of(effect, p, self.force_scale) for effect in self.effects for p in effect.added
+            p.in_equations: scale_of(effect, p, self.force_scale, self.motion_scale)
+            for effect in self.effects
+            for p in effect.added
         }
         return in_reading_order(_in_order(found, (*self.searched, *(p.in_equations for p in self.parameters))))
 
@@ -148,6 +156,10 @@ class Preset:
             preset = self.under_control.with_effects(self.effects)
         if preset.driven_by != "command":
             matrix = replace(matrix, runs=tuple(run.driven_by(preset.driven_by) for run in matrix.runs))
+        elif OPENED_BY_COMMAND in preset.chain.stages and matrix.runs:
+            preset = replace(preset, drive_unit=matrix.runs[0].units.get("command", "m"))
+        if preset.driven_by in MOTIONS:
+            matrix = passive(matrix)
         return (preset.with_measured_load(matrix), matrix) if load == "force" else (preset, matrix)
 
     def with_measured_load(self, matrix: Matrix) -> Preset:
@@ -158,6 +170,12 @@ class Preset:
         self.refuse_without_specimen()
         stages = tuple(MEASURED_LOAD if stage is MASS_SPRING_DAMPER else stage for stage in self.chain.stages)
         return replace(self, chain=replace(self.chain, stages=stages))
+
+    def unit(self, parameter: Parameter) -> str:
+        """The unit of a parameter as it is shown: a metre of the drive signal is a unit of the command in open loop."""
+        of_effect = next((effect for effect in self.effects if effect.name == parameter.of), None)
+        at_drive = of_effect.place in ("controller", "valve", "spool") if of_effect else parameter.name in self.of_drive
+        return re.sub(r"\bm\b", self.drive_unit, parameter.unit) if at_drive else parameter.unit
 
     def refuse_without_specimen(self) -> None:
         """Raise Unusable where the model has no specimen whose force could be measured instead."""
@@ -215,28 +233,28 @@ def _in_order(found: Mapping[str, T], first: Iterable[str]) -> tuple[T, ...]:
 
 _OWN = ("1", None)
 _SCALES = {
-    "1": _OWN, "Pa": _OWN, "m/s": _OWN, "s": ("1/W", 3.0), "1/s": ("W", 1.0), "m": ("Kp*X", 0.5),
-    "1/m": ("1/(Kp*X)", 3.0), "s/m": ("1/(Kp*X*W)", 5.0), "N": ("F", 0.3), "N/m^3": ("F/X**3", 0.3),
-    "N*s^2/m^2": ("F/(W*X)**2", 1.0), "m/Pa": ("Kp*X*A/F", 1.0), "1/Pa": ("A/F", 1.0), "s/m^3": ("1/(A*W*X)", 1.0),
-    "m^3/(s*Pa^0.5)": ("A*W*X/sqrt(F/A)", 1.0), "1/m^2": ("1/X**2", 1.0), "m/N": ("X/F", 1.0),
+    "1": _OWN, "Pa": _OWN, "m/s": _OWN, "s": ("1/W", 3.0), "1/s": ("W", 1.0), "m": ("Kp*L", 0.5),
+    "1/m": ("1/(Kp*L)", 3.0), "s/m": ("1/(Kp*L*W)", 5.0), "N": ("F", 0.3), "N/m^3": ("F/L**3", 0.3),
+    "N*s^2/m^2": ("F/(W*L)**2", 1.0), "m/Pa": ("Kp*L*A/F", 1.0), "1/Pa": ("A/F", 1.0), "s/m^3": ("1/(A*W*L)", 1.0),
+    "m^3/(s*Pa^0.5)": ("A*W*L/sqrt(F/A)", 1.0), "1/m^2": ("1/L**2", 1.0), "m/N": ("L/F", 1.0),
 }  # fmt: skip
 """For a machine of unknown size: what a strength of each unit is measured by, and how much of it is searched.
 
-F stands for the preset's force scale. `_OWN`: within the bounds that it has.
+F and L stand for the preset's scales of force and motion. `_OWN`: within the bounds that it has.
 """
 
 
-def scale_of(effect: Effect, parameter: Parameter, force: str) -> Scale:
+def scale_of(effect: Effect, parameter: Parameter, force: str, motion: str = "") -> Scale:
     """How to search an effect's parameter for a machine of another size than its bounds were stated for.
 
     A user's effect may have a unit of its own: there its own bounds hold. So they do where the model has no force.
     """
     text, reach = _SCALES.get(parameter.unit, _OWN)
     if effect.place not in ("valve", "spool") and parameter.unit == "m":
-        text = "X"
+        text = "L"
     if "F" in text and not force:
         reach = None
-    text = text.replace("F", f"({force})")
+    text = text.replace("F", f"({force})").replace("L", f"({motion})" if motion else "X")
     if reach is None:
         return Scale.by_bounds(parameter, logarithmic=False)
     lower = -reach if parameter.lower < 0 else 0.0

@@ -10,6 +10,8 @@ from ident.errors import Unusable
 from ident.matrix import Samples
 
 STEP_OF_A_GAP = 1.5  # steps of the clock: nearer to two than to one
+UNEVEN = 0.05  # of a step, scatter of the steps: beyond, the clock is told by a busy computer
+STEP_OF_A_LATE_SAMPLE = 3.0  # steps: below, one of an uneven clock is late, not missing
 
 
 @dataclass(frozen=True)
@@ -31,8 +33,12 @@ def read_clock(time: Samples, where: str) -> Clock:
         index = int(np.argmin(steps > 0)) + 1
         what = f"time does not increase at sample {index}"
         raise Unusable("time-not-monotonic", what, where, "give the record in the order of time, without repeats")
-    usual = float(np.mean(steps[steps <= STEP_OF_A_GAP * np.median(steps)]))
-    numbers = np.concatenate([[0.0], np.cumsum(np.maximum(np.rint(steps / usual), 1.0))])
+    near = steps[steps <= STEP_OF_A_GAP * np.median(steps)]
+    usual, uneven = float(np.mean(near)), float(np.std(near)) > UNEVEN * float(np.mean(near))
+    counted = np.maximum(np.rint(steps / usual), 1.0)
+    if uneven:
+        counted[steps < STEP_OF_A_LATE_SAMPLE * usual] = 1.0
+    numbers = np.concatenate([[0.0], np.cumsum(counted)])
     gaps = int(numbers[-1]) - (len(time) - 1)
     centred = numbers - numbers.mean()
     step = float(centred @ (time - time.mean()) / (centred @ centred))

@@ -9,7 +9,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain.chain import Chain, conditions
+from ident.chain.chain import Chain
+from ident.chain.conditions import conditions
 from ident.comparison.compare import Comparison, fitted
 from ident.errors import Unusable
 from ident.fit.normal_matrices import first_state

@@ -10,7 +10,8 @@ from scipy.interpolate import PchipInterpolator
 
 from ident.bench.model import FAST, Model
 from ident.bench.speed_table import FRACTIONS, SpeedTable
-from ident.chain.chain import Chain, conditions
+from ident.chain.chain import Chain
+from ident.chain.conditions import conditions
 from ident.equations.equation import Equation
 from ident.equations.interpolation import interpolated
 from ident.equations.mathml import mathml

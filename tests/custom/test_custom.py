@@ -9,7 +9,7 @@ import warnings
 import numpy as np
 import pytest
 
-from ident.chain.chain import conditions
+from ident.chain.conditions import conditions
 from ident.custom.definition import definition_of, preset_with, read_effect
 from ident.effects.effect import Effect
 from ident.equations.equation import Equation

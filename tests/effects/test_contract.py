@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from ident.chain.chain import conditions
+from ident.chain.conditions import conditions
 from ident.effects import EFFECTS
 from ident.effects.effect import Effect
 from ident.matrix import Actuator, Run, Specimen

@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from ident.chain.chain import conditions
+from ident.chain.conditions import conditions
 from ident.effects import EFFECTS
 from ident.matrix import Actuator, Run, Specimen
 from ident.parallel import each

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from ident.chain.chain import CONDITIONS, FORCE, INPUT, INPUT_RATE
+from ident.chain.chain import FORCE, INPUT, INPUT_RATE
+from ident.chain.conditions import CONDITIONS
 from ident.custom.definition import read_effect
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
@@ -17,10 +18,11 @@ from ident.presets.drive import UNDER_CONTROL
 from tests.effects import dimensions
 
 MODELS = {**PRESETS, "drive under control": UNDER_CONTROL}
-COMMAND = {"current": "1", "drive_force": "N", "command": "m"}
+COMMAND = {"current": "1", "drive_force": "N", "command": "m", "velocity": "m/s"}
 OTHER_UNIT = {
     "qian2014": {"second_lag"},
     "open_valve": {"second_lag"},
+    "motor": {"second_lag"},
     "kononykhin": {"command_limit", "integral_action", "lead", "pressure_feedback", "valve_second_order",
                    "valve_rate_limit", "spool_stiction", "backlash", "null_bias", "dead_zone", "underlap",
                    "gain_asymmetry", "flow_saturation"},

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ident.chain.chain import Chain, conditions
+from ident.chain.chain import Chain
+from ident.chain.conditions import conditions
 from ident.comparison.compare import modelled
 from ident.errors import Unusable
 from ident.fit.settings import Settings

@@ -13,7 +13,7 @@ from tests.test_imports import ROOT
 CODE = """
 import itertools
 import numpy as np
-from ident.chain.chain import conditions
+from ident.chain.conditions import conditions
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Run, Specimen
 from ident.presets import PRESETS, preset

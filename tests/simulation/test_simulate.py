@@ -11,7 +11,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from ident.chain.chain import conditions
+from ident.chain.conditions import conditions
 from ident.fit import simulated_runs
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import Space

@@ -11,8 +11,11 @@ from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.presets import PRESETS, preset
 
-TAKEN = {"qian2014": 33, "first_order": 3, "drive": 13, "open_valve": 30, "kononykhin": 7}
-LOOPS = {"qian2014": {"v", "y"}, "first_order": set(), "drive": set(), "open_valve": {"v"}, "kononykhin": set()}
+TAKEN = {"qian2014": 33, "first_order": 3, "drive": 13, "open_valve": 30, "motor": 22, "specimen": 8, "kononykhin": 7}
+LOOPS = {
+    "qian2014": {"v", "y"}, "first_order": set(), "drive": set(), "open_valve": {"v"}, "motor": set(),
+    "specimen": set(), "kononykhin": set(),
+}  # fmt: skip
 
 
 def fit(model: str, *effects: str) -> FitResult:

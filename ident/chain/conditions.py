@@ -1,0 +1,31 @@
+"""What the equations of a chain may read of a run and of its actuator."""
+
+from __future__ import annotations
+
+from ident.matrix import Actuator, Run, Specimen
+from ident.stages import Quantity
+
+CONDITIONS = {
+    "Kp": Quantity("Kp", "1", "gain of the position loop, a dial"),
+    "mL": Quantity("mL", "kg", "mass of the specimen"),
+    "k": Quantity("k", "N/m", "stiffness of the specimen"),
+    "cL": Quantity("cL", "N*s/m", "damping of the specimen"),
+    "A": Quantity("A", "m^2", "piston area"),
+    "Ir": Quantity("Ir", "1", "rated current, in the unit of the record"),
+    "Ps": Quantity("Ps", "Pa", "supply pressure"),
+}
+"""What an equation may read of a run and its actuator."""
+NEVER = 1e12
+"""Pa: a supply pressure that limits nothing."""
+
+
+def conditions(run: Run, actuator: Actuator) -> dict[str, float]:
+    """The values of :data:`CONDITIONS` for a run.
+
+    Without a stated area A = 1 m²: every parameter that is divided by A² in the model is then that ratio. Without a
+    stated rated current 1, without a supply pressure one that never limits.
+    """
+    specimen = run.specimen or Specimen()
+    area = 1.0 if actuator.piston_area is None else actuator.piston_area
+    return {"Kp": run.Kp, "mL": specimen.mass, "k": specimen.stiffness, "cL": specimen.damping, "A": area,
+            "Ir": run.rated_current or 1.0, "Ps": actuator.supply_pressure or NEVER}  # fmt: skip

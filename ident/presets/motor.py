@@ -1,0 +1,24 @@
+"""A motor in open loop: command → speed, or position."""
+
+from ident.chain.chain import Chain
+from ident.presets.preset import Combined, Preset
+from ident.stages import IDEAL_SENSOR, MASS_SPRING_DAMPER, OPENED_BY_COMMAND, RIGID_SPOOL, Scale
+from ident.stages.motor import INSTANT_AMPLIFIER, TORQUE
+
+MOTOR = Preset(
+    name="motor",
+    title="Motor in open loop",
+    citation="A DC motor whose inductance is small: J ω' + c ω = K u, with c of friction and induced voltage together.",
+    chain=Chain(
+        stages=(OPENED_BY_COMMAND, INSTANT_AMPLIFIER, RIGID_SPOOL, TORQUE, MASS_SPRING_DAMPER, IDEAL_SENSOR),
+        outputs={"velocity": "v", "displacement": "y"},
+    ),
+    rescaled=(Scale("m0", "1", 1e-2, 1e6), Scale("c0", "m0 * W", 1e-4, 1e2)),
+    force_scale="m0*W*L*W",
+    share_force=("m0", "c0", "Kt"),
+    of_drive=("Kt",),
+    combinations=(
+        Combined("Kt / c0", "1/s", "speed for each unit of the command"),
+        Combined("m0 / c0", "s", "time constant"),
+    ),
+)

@@ -1,0 +1,19 @@
+"""A specimen that is moved, without a loop and without a command: speed in, force out."""
+
+from ident.chain.chain import Chain
+from ident.presets.preset import Combined, Preset
+from ident.stages.specimen import MOVED_SPECIMEN
+
+SPECIMEN = Preset(
+    name="specimen",
+    title="Specimen: prescribed motion to force",
+    citation="Spring, damper and mass in parallel; dry friction and hysteresis as effects.",
+    chain=Chain(stages=(MOVED_SPECIMEN,), outputs={"force": "F"}),
+    driven_by="velocity",
+    force_scale="4*X",
+    motion_scale="L",
+    combinations=(
+        Combined("kS / cS", "1/s", "corner from which the damper outweighs the spring"),
+        Combined("cS / mS", "1/s", "corner from which the mass outweighs the damper"),
+    ),
+)

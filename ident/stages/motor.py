@@ -1,0 +1,21 @@
+"""A motor whose voltage or current acts at once, without a loop: from the drive signal to the force on its load."""
+
+from ident.parameter import Parameter
+from ident.stages.scale import ORDER_OF_MAGNITUDE, Scale
+from ident.stages.stage import Quantity, stage
+
+INSTANT_AMPLIFIER = stage(
+    "valve",
+    (Quantity("q", "m", "what the amplifier hands on, in the unit of the drive signal"),),
+    ("q = e", "the amplifier follows at once"),
+)
+
+TORQUE = stage(
+    "pressure",
+    (Quantity("D", "N", "force, or torque, that drives the load"),),
+    ("D = Kt * w", "in proportion to the drive signal; what the speed induces counts as damping"),
+    parameters=(
+        Parameter("Kt", "K_t", "N/m", 1e-12, 1e12, 1.0, "force for each unit of the drive signal", ORDER_OF_MAGNITUDE),
+    ),
+    scales=(Scale("Kt", "c0 * X / U", 1e-2, 1e2),),
+)
