@@ -105,6 +105,15 @@ class GenerationView(BaseModel):
     errors: list[float] = Field(default_factory=list)
 
 
+class StructureView(BaseModel):
+    """A model that the channels allow, fitted where none was named; `parameters` is how many were searched."""
+
+    machine: str
+    error: Errors
+    parameters: int
+    why: str
+
+
 class FitResultView(BaseModel):
     """The contract's fit JSON; `evolution` belongs to the parameters `searched`, in that order.
 
@@ -131,6 +140,7 @@ class FitResultView(BaseModel):
     settings: SettingsView = Field(default_factory=SettingsView)
     searched: list[str] = Field(default_factory=list)
     evolution: list[GenerationView] = Field(default_factory=list)
+    structures: list[StructureView] = Field(default_factory=list)
 
 
 class RefittedView(BaseModel):

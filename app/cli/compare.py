@@ -9,6 +9,7 @@ import typer
 
 from app.cli.given import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
+from ident.errors import Unusable
 
 if TYPE_CHECKING:
     from ident.fit.result import FitResult
@@ -65,9 +66,17 @@ def draw(matrix: Matrix, fit: FitResult, out: Path, candidate: FitResult | None 
     from ident.workflows import figure
 
     out.mkdir(parents=True, exist_ok=True)
+    drawn = []
     for name in figures_of(fit):
         options: dict[str, Any] = {"candidate": candidate} if name == "residual-curve" and candidate is not None else {}
-        chart = figure(name, matrix, fit, **options)
+        try:
+            chart = figure(name, matrix, fit, **options)
+        except Unusable as error:
+            if error.code != "unstable-model":
+                raise
+            print(f"{name} cannot be drawn: {error.what}")
+            continue
         for format_ in FORMATS:
             write_bytes(render(chart, format_), out / f"{name}.{format_}")
-    print(f"wrote {', '.join(figures_of(fit))} to {out}")
+        drawn.append(name)
+    print(f"wrote {', '.join(drawn)} to {out}")

@@ -60,7 +60,8 @@ def diagnose(
     from ident.workflows import diagnose as diagnosed
 
     check_target(json)
-    read, named = modelled(read_matrix(matrix), model if fit is None else model or Settings().model)
+    with shown() as report:
+        read, named, _ = modelled(read_matrix(matrix), model if fit is None else model or Settings().model, report)
     chosen = settings(named, effect, method, bounds, set_, load, seed, option)
     given = None if fit is None else given_fit(fit, chosen)
     own = together((), definitions(custom or []))

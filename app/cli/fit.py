@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -43,10 +44,10 @@ def fit(
     from ident.workflows import identify
 
     check_target(json)
-    read, named = modelled(read_matrix(matrix), model)
-    chosen = settings(named, effect, method, bounds, set_, load, seed, option, custom)
     with shown() as report:
-        result = identify(read, chosen, report)
+        read, named, tried = modelled(read_matrix(matrix), model, report)
+        chosen = settings(named, effect, method, bounds, set_, load, seed, option, custom)
+        result = replace(identify(read, chosen, report), structures=tried)
     if json is not None:
         write_json(result.to_json(), json)
     if json != STANDARD_OUTPUT:

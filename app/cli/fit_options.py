@@ -14,8 +14,10 @@ from app.cli.arguments import values as read_values
 from ident.fit.settings import METHODS
 
 if TYPE_CHECKING:
+    from ident.fit.result import Structure
     from ident.fit.settings import Settings
     from ident.matrix import Matrix
+    from ident.progress import Report
 
 MatrixPath = Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")]
 Model = Annotated[
@@ -51,16 +53,21 @@ Options = Annotated[
 ]
 
 
-def modelled(matrix: Matrix, model: str | None) -> tuple[Matrix, str]:
-    """The model that was named; else the likeliest for the channels, and the matrix with a notice that says so."""
+def modelled(matrix: Matrix, model: str | None, report: Report) -> tuple[Matrix, str, tuple[Structure, ...]]:
+    """The model that was named; else the one that fits, the matrix with a notice that says why, and all tried.
+
+    Raises Unusable where the channels allow none.
+    """
+    from ident.diagnosis.structures import structures
     from ident.fit.settings import Settings
-    from ident.presets.suited import suited, why
 
     if model is not None:
-        return matrix, model
-    chosen = suited(matrix)[0]
-    notices = (why(chosen, matrix), *matrix.notices) if chosen.name != Settings().model else matrix.notices
-    return replace(matrix, notices=notices), chosen.name
+        return matrix, model, ()
+    first, *others = found = structures(matrix, report)
+    if first.machine == Settings().model and not others:
+        return matrix, first.machine, found
+    said = "; ".join(f"{one.machine} {one.why}" for one in found) if others else first.why
+    return replace(matrix, notices=(f"No model was named: {said}.", *matrix.notices)), first.machine, found
 
 
 def settings(

@@ -291,8 +291,18 @@ class Chain:
 
 def integrates(chain: Chain, run: Run, actuator: Actuator) -> bool:
     """See :meth:`Chain.integrates`, under the conditions of a run."""
-    zeros = frozenset(name for name, value in conditions(run, actuator).items() if value == 0)
-    return chain.integrates(run.output, zeros)
+    return chain.integrates(run.output, _zeros(run, actuator))
+
+
+def settles(chain: Chain, values: Mapping[str, float], run: Run, actuator: Actuator) -> bool:
+    """Whether what a run shows of the linearised chain settles: states that it does not depend on do not count."""
+    seen = chain.observed(run.output, _zeros(run, actuator))
+    A = linear_model(chain, values, run, actuator).of_states(seen).A
+    return bool(np.linalg.eigvals(A).real.max(initial=-np.inf) < 0)
+
+
+def _zeros(run: Run, actuator: Actuator) -> frozenset[str]:
+    return frozenset(name for name, value in conditions(run, actuator).items() if value == 0)
 
 
 def linear_model(chain: Chain, values: Mapping[str, float], run: Run, actuator: Actuator) -> LinearModel:

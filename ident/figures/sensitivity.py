@@ -11,8 +11,9 @@ import altair as alt
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain.chain import linear_model
+from ident.chain.chain import settles
 from ident.comparison.compare import fitted, response
+from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.choose import one
 from ident.figures.drawing import Drawing, Options
@@ -50,6 +51,9 @@ def sensitivity(run: Run, actuator: Actuator, fit: FitResult, look: Look) -> Fil
     frequency = np.geomspace(max(lower, upper / 400), 1.25 * upper, POINTS)
     varied = _variations(run)
     stable = {name: _stable(vary, run, actuator, fit) for name, (_, vary) in varied.items()}
+    if not any(stable.values()):
+        what = "the machine does not settle: it integrates its command, or is unstable"
+        raise Unusable("unstable-model", what, "sensitivity", "see the time record instead")
     tables = {
         name: _rows(frequency, {x: response(fit, vary(run, x), actuator, frequency) for x in stable[name]})
         for name, (_, vary) in varied.items()
@@ -108,8 +112,7 @@ def _with_gain(run: Run, factor: float) -> Run:
 def _stable(vary: Varied, run: Run, actuator: Actuator, fit: FitResult) -> list[float]:
     """The multiples at which the closed loop is stable: another one has no frequency response to measure."""
     model, _, values = fitted(fit, Matrix(actuator, (run,)))
-    models = ((x, linear_model(model.core, values, vary(run, x), actuator)) for x in MULTIPLES)
-    return [x for x, linear in models if np.linalg.eigvals(linear.A).real.max() < 0]
+    return [x for x in MULTIPLES if settles(model.core, values, vary(run, x), actuator)]
 
 
 def _without(stable: Sequence[float]) -> str:

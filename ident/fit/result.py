@@ -66,6 +66,16 @@ class Generation:
 
 
 @dataclass(frozen=True)
+class Structure:
+    """A model that the channels allow, fitted where none was named: its error, the parameters searched, what of it."""
+
+    machine: str
+    error: Mapping[str, float | None] = field(default_factory=dict)
+    parameters: int = 0
+    why: str = ""
+
+
+@dataclass(frozen=True)
 class FitResult:
     """A finished fit. Errors are eq. (17) averaged over the runs of a use, from the time domain; fractions, not %.
 
@@ -90,6 +100,7 @@ class FitResult:
     data_hash: str
     notes: tuple[str, ...] = ()
     settings: Mapping[str, Any] = field(default_factory=dict)
+    structures: tuple[Structure, ...] = ()
     searched: tuple[str, ...] = ()
     evolution: tuple[Generation, ...] = ()
 
@@ -104,9 +115,9 @@ class FitResult:
         return replace(self, settings=settings)
 
     def to_json(self) -> dict[str, Any]:
-        """As plain JSON data (no NaN, no infinity)."""
+        """As plain JSON data (no NaN, no infinity); `structures` only where some were compared."""
         data: dict[str, Any] = written(self)
-        return data
+        return data if self.structures else {name: entry for name, entry in data.items() if name != "structures"}
 
     @classmethod
     def from_json(cls, data: object) -> FitResult:

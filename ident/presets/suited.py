@@ -7,6 +7,8 @@ from ident.matrix import BENCH, MOTIONS, Matrix, Run
 from ident.presets import PRESETS, Preset
 from ident.stages import OPENED_BY_COMMAND
 
+_OPEN, _UNLIKELY = 2, 5  # ranks: a command in open loop; a motion that something else may drive
+
 
 def suited(matrix: Matrix) -> tuple[Preset, ...]:
     """The models that every run drives and shows, the likeliest first, of equals that with the fewest parameters.
@@ -20,17 +22,15 @@ def suited(matrix: Matrix) -> tuple[Preset, ...]:
         channels = ", ".join(sorted({name for run in matrix.runs for name in run.channels}))
         raise Unusable("no-model", f"no model is driven by and shows what the runs have: {channels}", "channels",
                        "name command and output, or choose a model")  # fmt: skip
-    looped = any(run.gain is not None for run in matrix.runs) or all(_of_lengths(run) for run in matrix.runs)
-    bare = not any("command" in run.channels for run in matrix.runs)
-    return tuple(sorted(found, key=lambda preset: (_rank(preset, looped, bare), len(preset.parameters))))
+    return tuple(sorted(found, key=lambda preset: (_rank(preset, matrix), len(preset.parameters))))
 
 
-def why(preset: Preset, matrix: Matrix) -> str:
-    """In a sentence, why a model is taken where none is named."""
-    shown = " and ".join(dict.fromkeys(run.output for run in matrix.runs))
-    others = [other.name for other in suited(matrix) if other is not preset]
-    beside = f"; {' and '.join(others)} would take these channels too (--model)" if others else ""
-    return f"No model was named: {preset.name} is driven by {preset.driven_by} and shows {shown}{beside}."
+def in_question(matrix: Matrix) -> tuple[Preset, ...]:
+    """Those of them between which only a fit can decide: one, where the channels say what the machine is."""
+    found = suited(matrix)
+    if _rank(found[0], matrix) < _OPEN:
+        return found[:1]
+    return tuple(preset for preset in found if not preset.chain.reads("Kp"))
 
 
 def _allows(preset: Preset, run: Run) -> bool:
@@ -39,12 +39,15 @@ def _allows(preset: Preset, run: Run) -> bool:
     return preset.driven_by in run.channels and run.output in preset.chain.outputs
 
 
-def _rank(preset: Preset, looped: bool, commandless: bool) -> int:
+def _rank(preset: Preset, matrix: Matrix) -> int:
+    runs = matrix.runs
     if preset.driven_by != "command":
-        return 0 if commandless or preset.driven_by not in MOTIONS else 5
+        bare = not any("command" in run.channels for run in runs)
+        return 0 if bare or preset.driven_by not in MOTIONS else _UNLIKELY
     if preset.chain.reads("Kp"):
-        return 1 if looped else 3
-    return 2 if OPENED_BY_COMMAND in preset.chain.stages else 4
+        looped = any(run.gain is not None for run in runs) or all(_of_lengths(run) for run in runs)
+        return 1 if looped else _UNLIKELY - 1
+    return _OPEN if OPENED_BY_COMMAND in preset.chain.stages else _OPEN + 1
 
 
 def _of_lengths(run: Run) -> bool:

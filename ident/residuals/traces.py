@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain.chain import Chain
+from ident.chain.chain import Chain, settles
 from ident.chain.conditions import conditions
 from ident.comparison.compare import Comparison, fitted
 from ident.errors import Unusable
@@ -105,7 +105,7 @@ def traces(comparison: Comparison, signals: Sequence[str], instead: Mapping[str,
     chain = showing(preset.core, tuple(signals))
     outputs = {run.run.id: run.modelled for run in comparison.runs}
     runs = tuple(run for run in matrix.runs if run.id in outputs and np.all(np.isfinite(outputs[run.id])))
-    known = [run for run in runs if _stable(chain, values, run, matrix.actuator)]
+    known = [run for run in runs if settles(chain, values, run, matrix.actuator)]
     if not known:
         raise Unusable("unstable-model", "the model is unstable at every run", "fit", "fit it to these data first")
     count = stride(known)
@@ -140,11 +140,6 @@ def _settled(run: Run, residual: Array, rate: float) -> int:
 def _linear(chain: Chain, values: Mapping[str, float], run: Run, actuator: Actuator, output: str) -> LinearModel:
     known = conditions(run, actuator) | dict(values)
     return chain.linearise({name: np.array([known[name]]) for name in chain.symbols}, output)
-
-
-def _stable(chain: Chain, values: Mapping[str, float], run: Run, actuator: Actuator) -> bool:
-    A = _linear(chain, values, run, actuator, run.output).A[0]
-    return bool(np.linalg.eigvals(A).real.max() < 0)
 
 
 def _alike(run: Run, rate: float) -> object:

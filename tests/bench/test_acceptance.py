@@ -117,9 +117,13 @@ def test_the_papers_fitter_is_a_method(servoident, folder):
 
 
 def test_the_gradient_method_is_for_the_bench_only(servoident, folder):
-    done = servoident("fit", folder, "--method", "gradient")
+    """Without a name the records of a bench take its model."""
+    done = servoident("fit", folder, "--model", "qian2014", "--method", "gradient")
     assert done.returncode == 2
     assert "gradient" in done.stderr
+    done = servoident("fit", folder, "--method", "gradient", "--json", "-")
+    assert done.returncode == 0
+    assert json.loads(done.stdout)["model"] == "kononykhin"
 
 
 def test_a_held_value_stays(servoident, folder):

@@ -1,0 +1,55 @@
+"""Which machine fits, where no model is named: those that the channels allow, compared on held-out data."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ident.diagnosis.family import ModelFamily
+from ident.fit.identification import Identification, completed
+from ident.fit.result import Structure
+from ident.fit.settings import Settings
+from ident.matrix import Matrix
+from ident.presets.preset import Preset
+from ident.presets.suited import in_question
+from ident.progress import Report, silent
+from ident.words.percent import percent
+
+_WORSE = 1.02  # times the least error on held-out data: less is no reason for another parameter
+
+
+def structures(matrix: Matrix, report: Report = silent) -> tuple[Structure, ...]:
+    """The models in question, the one to take first: the simplest whose held-out error is not worse.
+
+    Raises Unusable where the channels allow none.
+    """
+    models = in_question(matrix)
+    if len(models) == 1:
+        why = f"{models[0].name} is driven by {models[0].driven_by} and shows what was recorded"
+        return (Structure(models[0].name, {"held_out": None}, len(models[0].parameters), why),)
+    runs = replace(matrix, runs=matrix.of_use("fit"))
+    tried = [_tried(model, runs, report) for model in models]
+    least = min(_error(one) for one in tried)
+    good = [one for one in tried if _error(one) <= _WORSE * least]
+    best = min(good, key=lambda one: one.parameters)
+    return (_said(best, "the simplest that is not worse"), *(_said(one, "") for one in tried if one is not best))
+
+
+def _tried(model: Preset, matrix: Matrix, report: Report) -> Structure:
+    settings = Settings(model=model.name)
+    work = Identification(matrix, settings, report)
+    fit = completed(work)
+    family = ModelFamily.of(matrix, settings)
+    start = {family.preset.parameter(name).in_equations: value for name, value in fit.values.items()}
+    refit = family.refit((), start)
+    held_out = refit.held_out.error if refit.finite else None
+    return Structure(model.name, {"held_out": held_out}, len(work.objective.space.axes))
+
+
+def _error(one: Structure) -> float:
+    error = one.error["held_out"]
+    return float("inf") if error is None else error
+
+
+def _said(one: Structure, more: str) -> Structure:
+    what = f"leaves {percent(one.error['held_out'])} of held-out data with {one.parameters} parameters"
+    return replace(one, why=f"{what}: {more}" if more else what)

@@ -1,0 +1,65 @@
+"""Where no model is named: the simplest of those that the channels allow whose held-out error is not worse."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ident.diagnosis.structures import structures
+from ident.fit.result import FitResult
+from ident.fit.settings import Settings
+from ident.matrix import Actuator, Matrix, Run
+from ident.workflows import identify
+from tests.presets.test_machines import motor, specimen
+
+RATE = 100.0
+
+
+def lag(output: str, integrates: bool) -> Matrix:
+    """A lag of 0.1 s, or the integral of what is behind it; solved exactly from sample to sample, noise of 1 %."""
+    runs = []
+    for number, use in enumerate(("fit", "fit", "verify")):
+        rng = np.random.default_rng([3, number])
+        u = np.repeat(rng.uniform(-1, 1, 60), 20)
+        u -= u.mean() if integrates else 0.0
+        y, x, held = np.zeros(len(u)), np.zeros(len(u)), np.exp(-1 / (RATE * 0.1))
+        for k in range(1, len(u)):
+            y[k] = held * y[k - 1] + (1 - held) * u[k - 1]
+            x[k] = x[k - 1] + 0.1 * (1 - held) * (y[k - 1] - u[k - 1]) + u[k - 1] / RATE
+        shown = x if integrates else y
+        shown = shown + 0.01 * shown.std() * rng.standard_normal(len(u))
+        units = {"command": "V", output: "m"}
+        runs.append(Run(f"r{number}", "", RATE, {"command": u, output: shown}, units, hold="zoh", use=use))
+    return Matrix(Actuator("X"), tuple(runs))
+
+
+@pytest.mark.parametrize(("integrates", "model"), [(False, "first_order"), (True, "motor")])
+def test_a_machine_that_settles_is_told_from_one_that_integrates(integrates, model):
+    """Both were recorded alike, command to position; the one that is taken leaves the noise."""
+    first, *others = structures(lag("displacement", integrates))
+    assert first.machine == model
+    assert first.error["held_out"] < 0.0115
+    assert "simplest" in first.why
+    assert {one.machine for one in (first, *others)} == {"first_order", "motor", "open_valve"}
+    wrong = next(one for one in others if one.machine in ("first_order", "motor"))
+    assert wrong.error["held_out"] is None or wrong.error["held_out"] > 3 * first.error["held_out"]
+
+
+def test_of_equals_the_one_with_fewer_parameters_is_taken():
+    """A motor's speed is fitted by a valve-controlled cylinder as well, with four parameters more."""
+    first, *others = structures(motor(8))
+    assert (first.machine, first.parameters) == ("motor", 2)
+    assert next(one for one in others if one.machine == "open_valve").parameters > 2
+
+
+def test_where_the_channels_say_it_nothing_is_compared():
+    (only,) = structures(specimen(1))
+    assert (only.machine, only.error["held_out"]) == ("specimen", None)
+
+
+def test_what_was_compared_is_kept_with_the_fit():
+    fit = replace(identify(motor(8), Settings(model="motor")), structures=structures(motor(8)))
+    assert FitResult.from_json(fit.to_json()) == fit
+    assert "structures" not in replace(fit, structures=()).to_json()
