@@ -16,6 +16,7 @@ MOTOR = Preset(
     rescaled=(Scale("m0", "1", 1e-2, 1e6), Scale("c0", "m0 * W", 1e-4, 1e2)),
     force_scale="m0*W*L*W",
     share_force=("m0", "c0", "Kt"),
+    drive_scale="4*U",
     of_drive=("Kt",),
     combinations=(
         Combined("Kt / c0", "1/s", "speed for each unit of the command"),

@@ -52,9 +52,12 @@ class Preset:
     area is unknown. `driven_by` is the channel that drives the model, the command where a run has none of that name;
     `under_control` the model of the same machine under a controller. `methods` are fitting methods of this model
     alone, `search` the options of its genetic search that differ from the usual ones, `figures` those that it has,
-    every figure of test runs where there are none. `force_scale` is the size of its forces in the words of a scale.
-    Multiplied or divided by one factor, the parameters `share_force` change nothing as long as no force is known: the
-    first is then held by convention. `shown` are the two whose search is drawn.
+    every figure of test runs where there are none. `force_scale` is the size of its forces in the words of a scale,
+    `motion_scale` that of its motion, the output's where none is stated, `drive_scale` that of its drive signal, the
+    motion times the gain where none is stated. `of_drive` are parameters in whose unit a metre is one of the drive
+    signal; it is shown as `drive_unit`, the command's in open loop. Multiplied or divided by
+    one factor, the parameters `share_force` change nothing as long as no force is known: the first is then held by
+    convention. `shown` are the two whose search is drawn.
 
     Raises Unusable where an equation or a scale reads what no stage brings and no condition is, where scales read each
     other in a circle, where two stages mean different parameters by one name, and where something is stated of a
@@ -81,6 +84,7 @@ class Preset:
     figures: tuple[str, ...] = ()
     force_scale: str = ""
     motion_scale: str = ""
+    drive_scale: str = ""
     of_drive: tuple[str, ...] = ()
     drive_unit: str = "m"
     share_force: tuple[str, ...] = ()
@@ -124,12 +128,14 @@ class Preset:
         """How its parameters are searched for a machine of unknown size, in the order of the search."""
         found = {scale.name: scale for stage in self.chain.stages for scale in stage.scales}
         found |= {scale.name: scale for scale in self.rescaled}
-        found |= {
-            p.in_equations: scale_of(effect, p, self.force_scale, self.motion_scale)
-            for effect in self.effects
-            for p in effect.added
-        }
+        found |= {p.in_equations: scale_of(effect, p, self._sizes) for effect in self.effects for p in effect.added}
         return in_reading_order(_in_order(found, (*self.searched, *(p.in_equations for p in self.parameters))))
+
+    @property
+    def _sizes(self) -> dict[str, str]:
+        """Of drive signal, motion and force, in the words of a scale: see :func:`scale_of`."""
+        motion = self.motion_scale or "X"
+        return {"D": self.drive_scale or f"Kp*{motion}", "L": motion, "F": self.force_scale}
 
     def with_effects(self, effects: tuple[Effect, ...]) -> Preset:
         """The model with effects added to its chain; their parameters are called effect__parameter in the equations.
@@ -233,18 +239,18 @@ def _in_order(found: Mapping[str, T], first: Iterable[str]) -> tuple[T, ...]:
 
 _OWN = ("1", None)
 _SCALES = {
-    "1": _OWN, "Pa": _OWN, "m/s": _OWN, "s": ("1/W", 3.0), "1/s": ("W", 1.0), "m": ("Kp*L", 0.5),
-    "1/m": ("1/(Kp*L)", 3.0), "s/m": ("1/(Kp*L*W)", 5.0), "N": ("F", 0.3), "N/m^3": ("F/L**3", 0.3),
-    "N*s^2/m^2": ("F/(W*L)**2", 1.0), "m/Pa": ("Kp*L*A/F", 1.0), "1/Pa": ("A/F", 1.0), "s/m^3": ("1/(A*W*L)", 1.0),
-    "m^3/(s*Pa^0.5)": ("A*W*L/sqrt(F/A)", 1.0), "1/m^2": ("1/L**2", 1.0), "m/N": ("L/F", 1.0),
+    "1": _OWN, "Pa": _OWN, "m/s": _OWN, "s": ("1/W", 3.0), "1/s": ("W", 1.0), "m": ("D", 0.5), "1/m": ("1/D", 3.0),
+    "s/m": ("1/(D*W)", 5.0), "N": ("F", 0.3), "N/m^3": ("F/L**3", 0.3), "N*s^2/m^2": ("F/(W*L)**2", 1.0),
+    "m/Pa": ("D*A/F", 1.0), "1/Pa": ("A/F", 1.0), "s/m^3": ("1/(A*W*L)", 1.0), "1/m^2": ("1/L**2", 1.0),
+    "m^3/(s*Pa^0.5)": ("A*W*L/sqrt(F/A)", 1.0), "m/N": ("L/F", 1.0),
 }  # fmt: skip
 """For a machine of unknown size: what a strength of each unit is measured by, and how much of it is searched.
 
-F and L stand for the preset's scales of force and motion. `_OWN`: within the bounds that it has.
+D, L and F stand for the sizes of its drive signal, its motion and its forces. `_OWN`: within the bounds that it has.
 """
 
 
-def scale_of(effect: Effect, parameter: Parameter, force: str, motion: str = "") -> Scale:
+def scale_of(effect: Effect, parameter: Parameter, sizes: Mapping[str, str]) -> Scale:
     """How to search an effect's parameter for a machine of another size than its bounds were stated for.
 
     A user's effect may have a unit of its own: there its own bounds hold. So they do where the model has no force.
@@ -252,10 +258,10 @@ def scale_of(effect: Effect, parameter: Parameter, force: str, motion: str = "")
     text, reach = _SCALES.get(parameter.unit, _OWN)
     if effect.place not in ("valve", "spool") and parameter.unit == "m":
         text = "L"
-    if "F" in text and not force:
+    if "F" in text and not sizes["F"]:
         reach = None
-    text = text.replace("F", f"({force})").replace("L", f"({motion})" if motion else "X")
     if reach is None:
         return Scale.by_bounds(parameter, logarithmic=False)
+    text = re.sub(r"\b[DLF]\b", lambda found: f"({sizes[found[0]]})", text)
     lower = -reach if parameter.lower < 0 else 0.0
     return Scale(parameter.in_equations, text, lower, reach, logarithmic=False)
