@@ -26,6 +26,7 @@ LONGEST = (
     "fit/test_recovery", "effects/test_contract", "acceptance/test_identification", "cli/test_commands",
     "app/test_bench", "cli/test_service_commands", "residuals/test_curves", "figures/test_figures",
     "bench/test_identification", "bench/test_figures", "effects/test_pairs", "acceptance/test_fitness",
+    "presets/test_machines", "diagnosis/test_structures", "app/test_older_database", "test_additions",
 )  # fmt: skip
 """Files that take longest, the longest first."""
 

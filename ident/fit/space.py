@@ -68,7 +68,7 @@ class Space:
         for i, axis in enumerate(self.axes):
             ratio = float(known[axis.name] / _scale(axis, known, self.typical))
             if axis.logarithmic:
-                point[i] = np.log(ratio / axis.lower) / np.log(axis.upper / axis.lower)
+                point[i] = np.log(max(ratio / axis.lower, 1e-300)) / np.log(axis.upper / axis.lower)
             else:
                 point[i] = (ratio - axis.lower) / (axis.upper - axis.lower)
         return np.clip(point, 0.0, 1.0)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
 
 from ident.diagnosis.structures import structures
-from ident.fit.result import FitResult
+from ident.fit.result import FitResult, Structure
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run
 from ident.workflows import identify
@@ -35,10 +36,20 @@ def lag(output: str, integrates: bool) -> Matrix:
     return Matrix(Actuator("X"), tuple(runs))
 
 
+@cache
+def compared(integrates: bool) -> tuple[Structure, ...]:
+    return structures(lag("displacement", integrates))
+
+
+@cache
+def of_motor() -> tuple[Structure, ...]:
+    return structures(motor(8))
+
+
 @pytest.mark.parametrize(("integrates", "model"), [(False, "first_order"), (True, "motor")])
 def test_a_machine_that_settles_is_told_from_one_that_integrates(integrates, model):
     """Both were recorded alike, command to position; the one that is taken leaves the noise."""
-    first, *others = structures(lag("displacement", integrates))
+    first, *others = compared(integrates)
     assert first.machine == model
     assert first.error["held_out"] < 0.0115
     assert "simplest" in first.why
@@ -49,7 +60,7 @@ def test_a_machine_that_settles_is_told_from_one_that_integrates(integrates, mod
 
 def test_of_equals_the_one_with_fewer_parameters_is_taken():
     """A motor's speed is fitted by a valve-controlled cylinder as well, with four parameters more."""
-    first, *others = structures(motor(8))
+    first, *others = of_motor()
     assert (first.machine, first.parameters) == ("motor", 2)
     assert next(one for one in others if one.machine == "open_valve").parameters > 2
 
@@ -60,6 +71,6 @@ def test_where_the_channels_say_it_nothing_is_compared():
 
 
 def test_what_was_compared_is_kept_with_the_fit():
-    fit = replace(identify(motor(8), Settings(model="motor")), structures=structures(motor(8)))
+    fit = replace(identify(motor(8), Settings(model="motor")), structures=of_motor())
     assert FitResult.from_json(fit.to_json()) == fit
     assert "structures" not in replace(fit, structures=()).to_json()
