@@ -11,6 +11,7 @@ from ident.custom.definition import read_effect
 from ident.diagnosis.result import Ranked
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
+from ident.figures import figures_for
 from ident.presets import preset
 from ident.residuals.views import view_of
 from schemas.matrix import RunView
@@ -31,13 +32,16 @@ def telling_run(runs: Sequence[RunView], errors: Mapping[str, float]) -> str:
 
 
 def evidence(best: Ranked, found: Stored, own: Mapping[str, Any] | None, run: str = "") -> tuple[str, str] | None:
-    """The figure in which the effect shows, with what it predicts; None where it was not refitted.
+    """The figure in which the effect shows, with what it predicts; None where it was not refitted or there is none.
 
     Where no curve shows it, the Bode plot of `run` does.
     """
-    effect = known_effect(best.effect, own)
+    effect, model = known_effect(best.effect, own), preset(found.found.model)
     if effect is None or not best.parameters:
         return None
-    view = view_of(effect, preset(found.found.model))
+    view = view_of(effect, model)
+    drawn = "residual-curve" if view else "bode"
+    if drawn not in figures_for(model):
+        return None
     query = {"candidate": f"{found.id}:{best.effect}", **({"view": view.name} if view else {"run": run})}
-    return "residual-curve" if view else "bode", urlencode({name: text for name, text in query.items() if text})
+    return drawn, urlencode({name: text for name, text in query.items() if text})

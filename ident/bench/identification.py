@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ident.bench.analysis import Analysis, analyse
 from ident.bench.least_squares import Solution, solve
-from ident.bench.missing import QUICK, centred, finely, with_effect
+from ident.bench.missing import centred, finely, with_effect
 from ident.bench.model import CONSTANTS, Model, Models
 from ident.bench.observed import Observed, observe
 from ident.bench.outputs import errors_of, model_of, noise_floor
@@ -23,6 +23,7 @@ from ident.bench.polish import polished, weak
 from ident.bench.records import bench_set
 from ident.bench.residual import Residual
 from ident.custom.definition import preset_with
+from ident.effects.effect import off_values
 from ident.fit.ends import distinct
 from ident.fit.result import Estimate, FitResult, RunError, Undetermined
 from ident.fit.search import Search, State, evolution, options_of
@@ -131,9 +132,9 @@ class BenchIdentification:
         """
         if not self.preset.effects:
             return found.with_values(self.space.fixed), self._fine
-        off = {p.in_equations: p.value for effect in self.preset.effects for p in effect.added}
-        model = model_of({**found.values(), **off, **self.space.fixed}, found.Ps, self.preset)
-        names = tuple(name for name in QUICK if name in self.space.names)
+        values = {**found.values(), **off_values(self.preset.effects), **self.space.fixed}
+        model = model_of(values, found.Ps, self.preset)
+        names = tuple(name for name in CONSTANTS if name in self.space.names)
         for effect in self.preset.effects:
             if (strength := effect.added[0].in_equations) in self.space.names:
                 names = (*names, strength)

@@ -14,14 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.bench.least_squares import Solution, solve
-from ident.bench.model import CONSTANTS, FAST, Model
+from ident.bench.model import CONSTANTS, FAST, Model, beyond_fast
 from ident.bench.observed import Observed, observe
 from ident.bench.records import Record
 from ident.bench.residual import Residual
 from ident.diagnosis.cross_validation import FOLDS, CrossValidation
 from ident.diagnosis.significance import Improvement, improvement
 from ident.effects import CATALOGUE
-from ident.effects.effect import Effect
+from ident.effects.effect import Effect, off_values
 from ident.effects.second_lag import SECOND_LAG
 from ident.effects.spring_load import SPRING_LOAD
 from ident.fit.bounded_step import bounded_step
@@ -36,8 +36,6 @@ def _unsaid(_done: int, _total: int) -> None:
     """Report nothing."""
 
 
-QUICK = CONSTANTS
-"""What a first refit moves beside the strengths."""
 _TRIED = (0.05, 0.2, 0.6)
 _STEPS, _FINAL = 6, 12
 _RATE = 500.0  # Hz
@@ -125,7 +123,7 @@ class Refitter:
     def _candidate(self, base: Refit, name: str) -> Candidate:
         effects = (*base.effects, name)
         model = self._with(base.model, effects)
-        best = with_effect(model, self.effects[name], self._coarse, (*QUICK, *self._strengths(effects)))
+        best = with_effect(model, self.effects[name], self._coarse, (*CONSTANTS, *self._strengths(effects)))
         refit = self._refit(effects, best)
         return Candidate(name, self._error(best), refit, improvement(base.held_out, refit.held_out))
 
@@ -135,9 +133,8 @@ class Refitter:
     def _with(self, model: Model, effects: Sequence[str]) -> Model:
         """The model with these effects, new ones off."""
         on = tuple(effect for name, effect in self.effects.items() if name in effects)
-        off = {p.in_equations: p.value for effect in on for p in effect.added}
-        chain = self.bare.with_effects(on).chain if set(on) - set(FAST) else None
-        return replace(model, strengths=centred(off, self.records) | dict(model.strengths), chain=chain)
+        strengths = centred(off_values(on), self.records) | dict(model.strengths)
+        return replace(model, strengths=strengths, chain=beyond_fast(self.bare.with_effects(on).chain))
 
     def _refit(self, effects: tuple[str, ...], start: Model) -> Refit:
         names = (*CONSTANTS, *start.table.names, *self._strengths(effects))

@@ -30,6 +30,11 @@ _STRENGTHS = tuple(
 )  # fmt: skip
 
 
+def beyond_fast(chain: Chain) -> Chain | None:
+    """The chain of a model, where it has effects that the compiled simulation does not know."""
+    return chain if set(chain.effects) - set(FAST) else None
+
+
 def dead_space(values: Mapping[str, Any]) -> Any:
     """Half of the range of currents in which the actuator stands: B + ΔPfr/kp; of numbers or of arrays."""
     return values["B"] + values["dPfr"] / values["kp"]

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.bench.model import FAST, Model
+from ident.bench.model import Model, beyond_fast
 from ident.bench.records import Record, bench_set
 from ident.bench.speed_table import SpeedTable
 from ident.fit.result import RunError
@@ -24,7 +24,7 @@ def model_of(values: Mapping[str, float], supply: float, preset: Preset | None =
     """
     table = SpeedTable.straight(1.0).with_values(values)
     strengths = {name: value for name, value in values.items() if "__" in name}
-    chain = preset.chain if preset is not None and set(preset.effects) - set(FAST) else None
+    chain = beyond_fast(preset.chain) if preset is not None else None
     return Model(
         values["T"], values["B"], values["I0"], values["kp"], values["dPfr"], table, supply, strengths, chain
     )  # fmt: skip

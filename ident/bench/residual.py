@@ -12,6 +12,7 @@ from ident.bench.model import FAST, Model, Models
 from ident.bench.observed import Observed
 from ident.bench.response import products
 from ident.bench.speed_table import SpeedTable
+from ident.effects.effect import Effect
 from ident.parallel import cores, each
 
 Array = NDArray[np.float64]
@@ -55,16 +56,18 @@ class Residual:
     @cached_property
     def reach(self) -> dict[str, float]:
         """The natural sizes of what may be zero."""
-        effects = self.model.chain.effects if self.model.chain is not None else ()
-        other = {p.in_equations: 0.1 * (p.upper - p.lower) for effect in effects for p in effect.added}
+        other = {p.in_equations: 0.1 * (p.upper - p.lower) for effect in self._beyond_fast for p in effect.added}
         return {**other, **_REACH}
+
+    @property
+    def _beyond_fast(self) -> tuple[Effect, ...]:
+        return self.model.chain.effects if self.model.chain is not None else ()
 
     @cached_property
     def within(self) -> tuple[Array, Array]:
         """Bounds of each axis: a strength of one sign keeps it."""
-        effects = (*FAST, *(self.model.chain.effects if self.model.chain is not None else ()))
-        lower = {p.in_equations: p.lower / self.reach[p.in_equations] for effect in effects for p in effect.added
-                 if p.lower >= 0}  # fmt: skip
+        added = (parameter for effect in (*FAST, *self._beyond_fast) for parameter in effect.added)
+        lower = {p.in_equations: p.lower / self.reach[p.in_equations] for p in added if p.lower >= 0}
         return np.array([lower.get(name, -np.inf) for name in self.names]), np.full(len(self.names), np.inf)
 
     def values(self, points: Array) -> dict[str, Array]:

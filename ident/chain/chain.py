@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain.conditions import conditions
+from ident.chain.conditions import conditions, zeros
 from ident.chain.dry_friction import dry_friction
 from ident.chain.linearity import LINEAR, OTHER, ZERO, degree
 from ident.effects.effect import Effect
@@ -263,46 +263,42 @@ class Chain:
         """Which entries of the system matrix can be other than zero, found at generic values of every symbol."""
         return tuple(tuple(row) for row in (self._generic(output, frozenset()) != 0).tolist())
 
-    def _generic(self, output: str, zeros: AbstractSet[str]) -> Array:
-        """The system matrix at generic values of every symbol but the `zeros`, which are 0, (n + 1, n + 1)."""
-        generic = {name: 0.0 if name in zeros else np.sqrt(2.0 + i) for i, name in enumerate(self.symbols)}
+    def _generic(self, output: str, off: AbstractSet[str]) -> Array:
+        """The system matrix at generic values of every symbol but those `off`, which are 0, (n + 1, n + 1)."""
+        generic = {name: 0.0 if name in off else np.sqrt(2.0 + i) for i, name in enumerate(self.symbols)}
         return self.linearise(generic, output).system
 
-    def integrates(self, output: str, zeros: AbstractSet[str]) -> bool:
-        """Whether an output has a pole at zero whatever the parameters are, where the symbols `zeros` are 0.
+    def integrates(self, output: str, off: AbstractSet[str]) -> bool:
+        """Whether an output has a pole at zero whatever the parameters are, where the symbols `off` are 0.
 
         A cylinder that no loop and no spring holds integrates its flow: no value of a parameter makes it settle.
         """
-        states = np.array(self.observed(output, zeros), dtype=np.intp)
-        seen = self._generic(output, zeros)[np.ix_(states, states)]
+        states = np.array(self.observed(output, off), dtype=np.intp)
+        seen = self._generic(output, off)[np.ix_(states, states)]
         return bool(len(states) and np.linalg.matrix_rank(seen) < len(states))
 
-    def observed(self, output: str, zeros: AbstractSet[str]) -> tuple[int, ...]:
-        """The states that an output depends on, by their places, where the symbols `zeros` are 0.
+    def observed(self, output: str, off: AbstractSet[str]) -> tuple[int, ...]:
+        """The states that an output depends on, by their places, where the symbols `off` are 0.
 
         Without a spring a pressure knows no position: that state integrates beside the rest of the machine.
         """
-        reads, states = self._generic(output, zeros) != 0, len(self.states)
+        reads, states = self._generic(output, off) != 0, len(self.states)
         found = {j for j in range(states) if reads[states, j]}
         while more := {j for i in found for j in range(states) if reads[i, j]} - found:
             found |= more
         return tuple(sorted(found))
 
 
-def integrates(chain: Chain, run: Run, actuator: Actuator) -> bool:
-    """See :meth:`Chain.integrates`, under the conditions of a run."""
-    return chain.integrates(run.output, _zeros(run, actuator))
+def integrates(chain: Chain, runs: Iterable[Run], actuator: Actuator) -> bool:
+    """See :meth:`Chain.integrates`: under the conditions of any of the runs."""
+    return any(chain.integrates(output, off) for output, off in {(run.output, zeros(run, actuator)) for run in runs})
 
 
 def settles(chain: Chain, values: Mapping[str, float], run: Run, actuator: Actuator) -> bool:
     """Whether what a run shows of the linearised chain settles: states that it does not depend on do not count."""
-    seen = chain.observed(run.output, _zeros(run, actuator))
+    seen = chain.observed(run.output, zeros(run, actuator))
     A = linear_model(chain, values, run, actuator).of_states(seen).A
     return bool(np.linalg.eigvals(A).real.max(initial=-np.inf) < 0)
-
-
-def _zeros(run: Run, actuator: Actuator) -> frozenset[str]:
-    return frozenset(name for name, value in conditions(run, actuator).items() if value == 0)
 
 
 def linear_model(chain: Chain, values: Mapping[str, float], run: Run, actuator: Actuator) -> LinearModel:

@@ -29,3 +29,8 @@ def conditions(run: Run, actuator: Actuator) -> dict[str, float]:
     area = 1.0 if actuator.piston_area is None else actuator.piston_area
     return {"Kp": run.Kp, "mL": specimen.mass, "k": specimen.stiffness, "cL": specimen.damping, "A": area,
             "Ir": run.rated_current or 1.0, "Ps": actuator.supply_pressure or NEVER}  # fmt: skip
+
+
+def zeros(run: Run, actuator: Actuator) -> frozenset[str]:
+    """The conditions that are 0 for a run: without a spring, say, less of the chain is to be seen."""
+    return frozenset(name for name, value in conditions(run, actuator).items() if value == 0)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ident.diagnosis.cross_validation import CrossValidation, cross_validated
 from ident.effects import CATALOGUE
-from ident.effects.effect import Effect
+from ident.effects.effect import Effect, off_values
 from ident.errors import Unusable
 from ident.fit.fitness import Local
 from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
@@ -112,7 +112,7 @@ class ModelFamily:
     @cached_property
     def off(self) -> dict[str, float]:
         """The values of all effects' parameters where they are off, by the equations' names."""
-        return {p.in_equations: p.value for effect in self.effects.values() for p in effect.added}
+        return off_values(self.effects.values())
 
     @cached_property
     def fit_together(self) -> bool:

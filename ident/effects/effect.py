@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -69,3 +69,8 @@ class Effect:
     def symbol(self, name: str) -> str:
         """The name of one of its own quantities in the equations of a whole chain."""
         return f"{self.name}__{name}"
+
+
+def off_values(effects: Iterable[Effect]) -> dict[str, float]:
+    """The values of effects' parameters where they are off, by the equations' names."""
+    return {parameter.in_equations: parameter.value for effect in effects for parameter in effect.added}

@@ -14,8 +14,9 @@ from ident.figures.look import look
 from ident.figures.render import MEDIA, Chart, render
 from ident.figures.study import Study
 from ident.fit.result import FitResult
+from ident.presets import Preset
 
-__all__ = ["FIGURES", "MEDIA", "Chart", "Study", "figure", "figures_of", "ladder", "look", "render"]
+__all__ = ["FIGURES", "MEDIA", "Chart", "Study", "figure", "figures_for", "figures_of", "ladder", "look", "render"]
 
 _FILES = (
     "residual_map",
@@ -58,7 +59,11 @@ def figure(name: str, study: Study, theme: str = "light", share: float = 1.0, **
 
 
 def figures_of(fit: FitResult) -> tuple[str, ...]:
-    """Names of the figures that a fit has: those of its kind of model, or those that its preset names."""
+    """Names of the figures that a fit has: those of its model; a bench's evolution where there was a search."""
     model = preset_with(fit.model)
-    names = model.figures or tuple(name for name, drawing in FIGURES.items() if drawing.of == model.kind)
-    return tuple(name for name in names if model.kind == "chain" or fit.evolution or name != "evolution")
+    return tuple(name for name in figures_for(model) if model.kind == "chain" or fit.evolution or name != "evolution")
+
+
+def figures_for(model: Preset) -> tuple[str, ...]:
+    """Names of the figures of a model: those that its preset names, else all of its kind."""
+    return model.figures or tuple(name for name, drawing in FIGURES.items() if drawing.of == model.kind)

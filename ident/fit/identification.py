@@ -56,7 +56,7 @@ class Identification:
         band = excited_band(self._runs)
         space = search_space(self.preset, matrix, settings, band)
         self.objective: Fitness
-        if not self.preset.is_linear or any(integrates(self.preset.chain, run, matrix.actuator) for run in self._runs):
+        if not self.preset.is_linear or integrates(self.preset.chain, self._runs, matrix.actuator):
             self.objective = SimulatedFitness(self.preset, matrix, self._runs, space, band)
             self.searched: Fitness = self.objective.fresh(shortened(self._runs, _SEARCHED))
         else:

@@ -15,7 +15,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain.conditions import conditions
+from ident.chain.conditions import conditions, zeros
 from ident.fit.fitness import STEP, UNSTABLE, Local, local
 from ident.fit.normal_matrices import NormalMatrices, normal_matrices
 from ident.fit.reduction import Basis, ReducedRun, reduced
@@ -143,14 +143,14 @@ class LinearFitness:
 
     def _observed(self, run: Run) -> tuple[tuple[int, ...], Pattern]:
         """The states that a run's output depends on under its conditions, and the pattern of the model of those."""
-        zeros = frozenset(name for name, value in conditions(run, self.matrix.actuator).items() if value == 0)
-        if (run.output, zeros) not in self._known:
+        off = zeros(run, self.matrix.actuator)
+        if (run.output, off) not in self._known:
             model = self.preset.chain
-            states, whole = model.observed(run.output, zeros), model.pattern(run.output)
+            states, whole = model.observed(run.output, off), model.pattern(run.output)
             kept = (*states, len(model.states))
             pattern = tuple(tuple(whole[i][j] for j in kept) for i in kept)
-            self._known[run.output, zeros] = states, pattern
-        return self._known[run.output, zeros]
+            self._known[run.output, off] = states, pattern
+        return self._known[run.output, off]
 
     def approximate(self, point: Array) -> Local:
         """The objective at one point from the reduced runs, with sensitivities by differences."""

@@ -203,7 +203,7 @@ def _hardly_explained(objective: Fitness, here: Local) -> Iterator[str]:
         return
     preset, runs = objective.preset, objective.runs
     causes = ["a channel with the wrong sign, or of another run", f"another structure than {preset.name} (--model)"]
-    if any(integrates(preset.chain, run, objective.matrix.actuator) for run in runs):
+    if integrates(preset.chain, runs, objective.matrix.actuator):
         causes.insert(
             0, "a command that is not zero where the machine stands, which the machine integrates (null_bias)"
         )

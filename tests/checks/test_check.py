@@ -47,6 +47,18 @@ def test_a_displacement_that_stands_still_is_found(faulty):
     assert "from sample 3000 to 3599" in found.text("flat")
 
 
+def test_a_machine_that_stays_at_rest_in_its_dead_zone_is_no_stuck_sensor(faulty):
+    """It goes on from where it stood; a sensor that was stuck jumps to where the machine meanwhile is."""
+    command = faulty.matrix.runs[2].command
+    pushed = np.sign(command) * np.maximum(np.abs(command) - 0.7 * command.std(), 0.0)
+    pushed[3000:3600] = 0.0
+    moved = np.cumsum(pushed) / 40
+    assert ("run-2", "flat") not in faulty.channel(2, "displacement", moved).found()
+    stuck = np.cumsum(command) / 40
+    stuck[3000:3600] = stuck[3000]
+    assert faulty.channel(2, "displacement", stuck).found()["run-2", "flat"] == "doubt"
+
+
 def test_a_command_that_stands_still_is_found_inside_a_run_but_not_at_its_ends(faulty):
     samples = faulty.matrix.runs[2].command.copy()
     samples[3000:3600] = samples[3000]

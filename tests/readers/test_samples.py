@@ -122,3 +122,20 @@ def test_a_time_printed_with_few_digits_is_no_gap():
     assert clock.gaps == 0
     assert clock.rate == pytest.approx(4096, rel=1e-5)
     assert clock.jitter < 0.5
+
+
+def test_a_late_sample_of_an_uneven_clock_is_not_missing():
+    """A busy computer's clock: every step is another, some are twice as long, and no sample was lost."""
+    random = np.random.default_rng(3)
+    steps = 0.05 + 0.008 * random.uniform(-1, 1, 2000)
+    steps[[300, 301, 700, 1500]] = 0.11
+    assert read_clock(np.append(0.0, np.cumsum(steps)), "t").gaps == 0
+
+
+def test_a_sample_that_an_even_clock_lacks_is_missing_and_so_is_a_long_gap_of_an_uneven_one():
+    steps = np.full(2000, 0.05)
+    steps[300] = 0.10
+    assert read_clock(np.append(0.0, np.cumsum(steps)), "t").gaps == 1
+    uneven = 0.05 + 0.008 * np.random.default_rng(4).uniform(-1, 1, 2000)
+    uneven[300] = 0.50
+    assert read_clock(np.append(0.0, np.cumsum(uneven)), "t").gaps == 9

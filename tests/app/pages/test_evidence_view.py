@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from app.pages.evidence_view import evidence, telling_run
@@ -21,6 +23,13 @@ from tests.app.pages.test_diagnosis_view import candidate, found
 )
 def test_a_curve_shows_the_effect_or_else_the_bode_plot_of_one_run(effect, shown):
     assert evidence(read(Ranked, candidate(effect, 0.01)), found(), None, "r7") == shown
+
+
+def test_a_model_without_such_a_figure_shows_none():
+    """A bench has no Bode plot of commands and no residual curve: a card there asked for one that was refused."""
+    bench = replace(found(), found=replace(found().found, model="kononykhin"))
+    for effect in ("command_delay", "spring_load", "dead_zone"):
+        assert evidence(read(Ranked, candidate(effect, 0.01)), bench, None, "r7") is None
 
 
 def test_the_telling_run_is_the_worst_of_the_smallest_amplitude():
