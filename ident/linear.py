@@ -54,6 +54,23 @@ class LinearModel:
             return self
         return LinearModel(self.system[np.ix_((*states, last), (*states, last))])
 
+    def standing(self, u: Array | float, y: Array | float) -> Array:
+        """The states (..., n) that stand under a command held at u: 0 = A z + B u.
+
+        What integrates and drives nothing, a position that no spring and no loop holds, may be anywhere: it is where
+        the output is y. Zero where nothing stands.
+        """
+        A, B, C = self.A, self.B, self.C
+        idle = np.all(A == 0, axis=tuple(range(A.ndim - 1)))
+        z, kept = np.zeros(B.shape), np.flatnonzero(~idle)
+        with np.errstate(all="ignore"):
+            drive = -B[..., kept, None] * np.asarray(u)[..., None, None]
+            z[..., kept] = np.linalg.solve(A[..., kept[:, None], kept], drive)[..., 0]
+        z = np.where(np.isfinite(z), z, 0.0)
+        left, shown = np.asarray(y) - (C * z).sum(axis=-1) - self.D * u, C[..., idle]
+        z[..., idle] = np.divide(left[..., None], shown, out=np.zeros(shown.shape), where=shown != 0)
+        return z
+
     def frequency_response(self, frequency: Array) -> NDArray[np.complex128]:
         """G(jω) = C (jωI − A)⁻¹ B + D at `frequency` in Hz, shape (f,) → (..., f).
 

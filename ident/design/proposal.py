@@ -183,7 +183,7 @@ def _so_far(rivals: Sequence[Rival]) -> float | None:
         return None
     found: dict[frozenset[int], float] = {}
     for (i, a), (j, b) in permutations(enumerate(rivals), 2):
-        runs = [run for run in b.runs if run.starts_at_rest]
+        runs = [run for run in b.runs if run.begins == "at rest"]
         outputs = a.outputs(runs) if runs else {}
         if not runs or not all(_sound(outputs[run.id], run) for run in runs):
             return None

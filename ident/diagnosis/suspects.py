@@ -143,12 +143,9 @@ def _outputs(models: ModelFamily, fitted: Refit, run: Run, changed: Mapping[str,
     known |= {name: np.array([[value]]) for name, value in {**fitness.space.fixed, **fitted.values}.items()}
     known |= {name: np.asarray(values)[None] for name, values in changed.items()}
     vectors = max(np.shape(value)[1] for value in known.values())
-    start = None
-    if not run.starts_at_rest:
-        fresh = replace(fitness, runs=(run,), starts=dict(fitness.starts))
-        fresh.begin(fitted.values)
-        start = np.repeat(fresh.start(run)[None, None], vectors, axis=1)
+    fresh = replace(fitness, runs=(run,), starts=dict(fitness.starts))
+    fresh.begin(fitted.values)
     steps = max((effect.steps for effect in fitness.preset.effects), default=1)
     values = {name: np.broadcast_to(known[name], (1, vectors)) for name in fitness.chain.symbols}
-    simulation = Simulation(fitness.chain, (run,), values, steps, start)
+    simulation = Simulation(fitness.chain, (run,), values, steps, fresh.first_states(run, values))
     return np.concatenate([rows[:, 0] for rows, _, _ in simulation.outputs()])

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ident.chain.conditions import conditions, zeros
 from ident.fit.fitness import STEP, UNSTABLE, Local, local
-from ident.fit.normal_matrices import NormalMatrices, normal_matrices
+from ident.fit.normal_matrices import NormalMatrices, errors_of, normal_matrices
 from ident.fit.reduction import Basis, ReducedRun, reduced
 from ident.fit.space import Space
 from ident.fit.transfer import Pattern, values_at
@@ -29,6 +29,9 @@ from ident.presets import Preset
 Array = NDArray[np.float64]
 Outcome = TypeVar("Outcome")
 _TRUSTED = 0.05  # of the error: a doubt below this moves the error by less than 0.13 %
+_SAME = 0.01  # by how much fast and exact errors may differ at the best model
+_BETTER = 0.7  # times the error at which they were compared: then they are again
+_IN_BAND = ("blwn", "multisine")  # commands without power beyond their band
 _WRONG = 0.2  # beyond it the fast error can be off by more than half a percent
 
 
@@ -46,6 +49,8 @@ class LinearFitness:
     basis: Basis
     evaluations: int = 0
     unstable: int = 0
+    reduces: bool = True
+    _checked: float = np.inf
     _reduced: list[ReducedRun] = field(default_factory=list)
     _known: dict[tuple[str, frozenset[str]], tuple[tuple[int, ...], Pattern]] = field(default_factory=dict)
 
@@ -55,14 +60,30 @@ class LinearFitness:
             each(lambda basis: (basis.expansion, basis.check), [self.basis])  # on one thread too
             self._reduced = each(lambda run: reduced(run, self.basis), self.runs)
 
+    def _still_reduces(self, points: Array, errors: Array) -> bool:
+        """Whether the reduced runs say of the best model what the records say; asked again where it is much better.
+
+        The steps of a held command have power far beyond the band of any noise; what a model does there is not seen.
+        """
+        best = int(np.argmin(errors))
+        if all(run.kind in _IN_BAND for run in self.runs) or errors[best] > _BETTER * self._checked:
+            return self.reduces
+        self._checked = float(errors[best])
+        exact = self.exact(points[best], sensitivities=False).error
+        return bool(abs(exact / errors[best] - 1.0) <= _SAME)
+
     def errors(self, points: Array) -> Array:
         """Eq. (17) averaged over runs at points of the space, (v, p) → (v,), fast.
 
         Those that the basis cannot represent are evaluated exactly instead: all of them where they are few, as in the
         bounds of a known machine, else the leading ones.
         """
-        errors, doubt = self._fast(points)
         self.evaluations += len(points)
+        errors, doubt = self._fast(points) if self.reduces else (self._one_by_one(points), np.zeros(len(points)))
+        if self.reduces and not self._still_reduces(points, errors):
+            self.reduces = False
+            errors = self._one_by_one(points)
+            doubt[:] = 0.0
         self.unstable += int(np.sum(errors >= UNSTABLE))
         few = max(1, len(points) // 20)
         leading = np.argsort(errors, kind="stable")[:few]
@@ -75,6 +96,29 @@ class LinearFitness:
             errors[index] = exact if np.isfinite(exact) else UNSTABLE
         return errors
 
+    def _one_by_one(self, points: Array) -> Array:
+        """The same from the records themselves."""
+        values = self.space.values(points)
+
+        def of_share(share: Sequence[int]) -> list[tuple[int, Array]]:
+            out = []
+            for number in share:
+                run = self.runs[number]
+                model = LinearModel(self._models([run], values).system[:, :, 0])
+                stable = np.linalg.eigvals(model.of_states(self._observed(run)[0]).A).real.max(axis=-1) < 0
+                out.append((number, np.where(stable, errors_of(run, model), np.inf)))
+            return out
+
+        shares = [range(core, len(self.runs), cores()) for core in range(min(cores(), len(self.runs)))]
+        found = dict(chain.from_iterable(each(of_share, shares)))
+        by_run = np.array([found[number] for number in range(len(self.runs))])
+        return self._averaged(by_run)
+
+    def _averaged(self, by_run: Array) -> Array:
+        """Errors (runs, v) averaged over runs, (v,)."""
+        errors = np.where(np.all(np.isfinite(by_run), axis=0), over_runs(by_run, self.runs), UNSTABLE)
+        return np.minimum(errors, UNSTABLE)
+
     def _fast(self, points: Array) -> tuple[Array, Array]:
         """Errors averaged over runs, and the largest doubt of a run."""
 
@@ -84,8 +128,7 @@ class LinearFitness:
 
         found = self._over_runs(points, measures)
         by_run = np.array([errors for errors, _ in found])
-        errors = np.where(np.all(np.isfinite(by_run), axis=0), over_runs(by_run, self.runs), UNSTABLE)
-        return np.minimum(errors, UNSTABLE), np.max([doubt for _, doubt in found], axis=0)
+        return self._averaged(by_run), np.max([doubt for _, doubt in found], axis=0)
 
     def _over_runs(self, points: Array, measure: Callable[[int, Array, NDArray[np.bool_]], Outcome]) -> list[Outcome]:
         """`measure`(run, values at the nodes, stable) of every run, in order; shared out to the cores.
@@ -154,6 +197,8 @@ class LinearFitness:
 
     def approximate(self, point: Array) -> Local:
         """The objective at one point from the reduced runs, with sensitivities by differences."""
+        if not self.reduces:
+            return self.exact(point)
         p = len(point)
         signs = np.where(point + STEP > 1.0, -1.0, 1.0)
         self.evaluations += p + 1

@@ -8,7 +8,7 @@ and, where it starts moving, the decay of its unknown first state).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,10 +54,22 @@ class NormalMatrices:
 
 def normal_matrices(run: Run, model: LinearModel, strides: Array) -> NormalMatrices:
     """The moments of a run for a batch of models (1 + p,): the model, and p neighbours, each a stride (p,) away."""
-    systems = discretise(model, run.sample_rate, run.hold)
-    if not run.starts_at_rest:
-        systems = _with_releases(systems)
+    systems = _begun(run, model)
     return normal_matrices_of([run], _products(run, systems, strides)[None], len(strides))[0]
+
+
+def errors_of(run: Run, model: LinearModel) -> Array:
+    """Eq. (17) of each model of a batch, (v,), infinite where it ran away: many at once, without sensitivities."""
+    if run.begins == "moving":  # each has decays of its own
+        parts = (LinearModel(model.system[..., i : i + 1]) for i in range(len(model.B)))
+        return np.array([normal_matrices(run, part, np.empty(0)).error for part in parts])
+    measured, sums = run.measured - run.measured.mean(), np.zeros((2, len(model.B)))
+    for rows, first, last in responses(_begun(run, model), run.command):
+        with np.errstate(over="ignore", invalid="ignore"):
+            residual = measured[first:last, None] - rows[: last - first, : len(model.B)]
+            sums += residual.sum(axis=0), np.einsum("nv,nv->v", residual, residual)
+            found = np.sqrt(np.maximum(sums[1] - sums[0] ** 2 / run.length, 0.0) / np.sum(measured**2))
+    return np.where(np.isfinite(found), found, np.inf)
 
 
 def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[NormalMatrices]:
@@ -89,10 +101,10 @@ def _escaped(p: int, blocks: int) -> NormalMatrices:
 
 
 def first_state(run: Run, model: LinearModel) -> Array:
-    """The state in which the record begins, (n,): zero where the run starts at rest, else the one that fits best."""
-    if run.starts_at_rest:
-        return np.zeros(len(model.B[0]))
-    systems = _with_releases(discretise(model, run.sample_rate, run.hold))
+    """The state in which the record begins, (n,): at rest, in equilibrium, or where it starts moving what fits best."""
+    systems = _begun(run, model)
+    if run.begins != "moving":
+        return np.asarray(systems.start[0])
     released = normal_matrices_of([run], _products(run, systems, np.empty(0))[None], 0)[0].release
     if not len(released):  # unstable: no state fits
         return np.zeros(len(model.B[0]))
@@ -104,16 +116,23 @@ def output(run: Run, model: LinearModel) -> Array:
 
     The offset between model and record is left in: it is a result of its own.
     """
-    systems = discretise(model, run.sample_rate, run.hold)
-    if not run.starts_at_rest:
-        systems = _with_releases(systems)
-    y = respond(systems, run.command)
+    y = respond(_begun(run, model), run.command)
     if len(y) == 1:
         return np.asarray(y[0])
     free = np.column_stack([*y[1:], np.ones(run.length)])
     size = np.maximum(np.linalg.norm(free, axis=0), 1e-300)
     coefficients = np.linalg.lstsq(free / size, run.measured - y[0], rcond=1e-12)[0] / size
     return np.asarray(y[0] + coefficients[:-1] @ y[1:])
+
+
+def _begun(run: Run, model: LinearModel) -> Recursion:
+    """The batch as a run begins: at rest, in equilibrium with its first command, or with what is free behind it."""
+    systems = discretise(model, run.sample_rate, run.hold)
+    if run.begins == "moving":
+        return _with_releases(systems)
+    if run.begins == "at rest":
+        return systems
+    return replace(systems, start=model.standing(run.command[0], run.measured[0]))
 
 
 def _with_releases(systems: Recursion) -> Recursion:

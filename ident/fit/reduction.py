@@ -13,7 +13,7 @@ holds for any model whose G the filters can represent; :meth:`Basis.doubt` says 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -184,7 +184,9 @@ def _gram(run: Run, basis: Basis) -> tuple[Array, float]:
     Only the products of the filters with command, record and 1 are summed sample by sample; see :func:`_products`.
     """
     filters = discretise(basis.filters, run.sample_rate, run.hold)
-    systems = filters if run.starts_at_rest else filters.beside(_decays(filters))
+    if run.begins == "standing":
+        filters = replace(filters, start=basis.filters.standing(run.command[0], 0.0))
+    systems = filters.beside(_decays(filters)) if run.begins == "moving" else filters
     # The mean of a record would cost digits in the sums of squares, so it goes first; the model is blind to it anyway.
     measured = run.measured - run.measured.mean()
     now, then = np.append(run.command[:-1], 0.0), np.append(run.command[1:], 0.0)

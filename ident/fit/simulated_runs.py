@@ -21,6 +21,7 @@ from ident.fit.products import add_products, completed
 from ident.matrix import Matrix, Run
 from ident.parallel import cores, each
 from ident.presets import Preset
+from ident.simulation.equilibrium import equilibrium
 from ident.simulation.simulate import Simulation, rates, steps_needed
 
 Array = NDArray[np.float64]
@@ -63,7 +64,7 @@ class SimulatedRuns:
         """Find the first states of runs that start moving; the values as a vector of one, and the steps a sample."""
         vector = {name: np.array([value]) for name, value in values.items()}
         steps = int(self.steps(vector).max())
-        if not all(run.starts_at_rest for run in self.runs):
+        if any(run.begins == "moving" for run in self.runs):
             self.begin(values)
             with np.errstate(over="ignore", invalid="ignore"):
                 self.settled(vector, np.empty(0), steps)
@@ -110,7 +111,7 @@ class SimulatedRuns:
 
     def released(self, runs: tuple[Run, ...], values: Mapping[str, Array], steps: int) -> Simulation:
         """A simulation of vectors and, where runs start moving, of the first with each of its first states moved."""
-        if all(run.starts_at_rest for run in runs):
+        if runs[0].begins != "moving":
             return self.simulation(runs, values, steps)
         vectors, states = len(next(iter(values.values()))), len(self.chain.states)
         wide = {name: np.concatenate([value, np.repeat(value[:1], states)]) for name, value in values.items()}
@@ -125,11 +126,33 @@ class SimulatedRuns:
         known = [conditions(run, self.matrix.actuator) for run in runs]
         stacked = {name: np.array([entry[name] for entry in known])[:, None] for name in known[0]}
         vectors = len(next(iter(values.values())))
-        if start is None and not all(run.starts_at_rest for run in runs):
+        at = stacked | {name: value[None] for name, value in values.items()}
+        if start is None and runs[0].begins == "standing":
+            start = self._standing(runs, at)
+        elif start is None and runs[0].begins == "moving":
             start = np.repeat(np.array([self.start(run) for run in runs])[:, None], vectors, axis=1)
-        return Simulation(self.chain, runs, stacked | {n: v[None] for n, v in values.items()}, steps, start)
+        return Simulation(self.chain, runs, at, steps, start)
 
     # First states -----------------------------------------------------------------------------------------------
+
+    def first_states(self, run: Run, values: Mapping[str, Array]) -> Array | None:
+        """The states in which a run begins for values (1, v) of every symbol, (1, v, n); None where it is at rest."""
+        if run.begins == "standing":
+            return self._standing((run,), values)
+        vectors = np.broadcast_shapes(*(np.shape(value) for value in values.values()))[1]
+        return np.repeat(self.start(run)[None, None], vectors, axis=1) if run.begins == "moving" else None
+
+    def _standing(self, runs: tuple[Run, ...], values: Mapping[str, Array]) -> Array:
+        """The states in which runs of one kind stand at first, near those of the linear chain, (runs, v, n)."""
+        core, output = self.preset.core, runs[0].output
+        u, y = (
+            np.array([[samples[0]] for samples in of])
+            for of in zip(*((r.command, r.measured) for r in runs), strict=True)
+        )
+        linear = core.linearise({name: values[name] for name in core.symbols}, output).standing(u, y)
+        near = np.zeros((*linear.shape[:-1], len(self.chain.states)))
+        near[..., [self.chain.states.index(name) for name in core.states]] = linear
+        return equilibrium(self.chain, output, values, u, runs[0].sample_rate, near)
 
     def start(self, run: Run) -> Array:
         """The states in which a run begins, (n,)."""
@@ -139,7 +162,7 @@ class SimulatedRuns:
         """Take the first states that are not known yet from the linear model at `values`."""
         core = self.preset.core
         for run in self.runs:
-            if not run.starts_at_rest and run.id not in self.starts:
+            if run.begins == "moving" and run.id not in self.starts:
                 found = first_state(run, linear_model(core, values, run, self.matrix.actuator))
                 known = dict(zip(core.states, found, strict=True))
                 self.starts[run.id] = np.array([known.get(name, 0.0) for name in self.chain.states])
@@ -162,7 +185,7 @@ class SimulatedRuns:
         """Runs that are simulated in one go: of one length, sample rate, output and kind of start."""
         groups: dict[tuple[object, ...], list[Run]] = {}
         for run in self.runs:
-            groups.setdefault((run.length, run.sample_rate, run.output, run.starts_at_rest), []).append(run)
+            groups.setdefault((run.length, run.sample_rate, run.output, run.begins), []).append(run)
         for runs in groups.values():
             most = max(1, lanes // vectors)
             shares = -(-len(runs) // most)

@@ -15,6 +15,7 @@ from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Matrix, Run
 from ident.presets import Preset
+from ident.simulation.simulate import FASTEST
 
 Array = NDArray[np.float64]
 _SAME_AREA = 0.02  # relative difference of piston areas that still is the same machine
@@ -97,7 +98,8 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     """What to search for this machine.
 
     The bounds of the preset hold for the machine they were stated for: the same piston area, with gain and specimen
-    of every run known. Any other machine is searched over scale-free ratios. Bounds and values of the user come first.
+    of every run known. Any other machine is searched over scale-free ratios, without modes so fast for the sample time
+    that they could not be followed. Bounds and values of the user come first.
     """
     runs = matrix.of_use("fit")
     given = {preset.parameter(name).in_equations: bounds for name, bounds in settings.bounds.items()}
@@ -122,7 +124,7 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     if free & set(preset.share_force[:1]) and not (same or forced or _loaded(runs)):
         convention = preset.share_force[0]
         fixed[convention] = typical["mL"]
-    axes = []
+    axes, fastest = [], FASTEST * min(run.sample_rate for run in runs)
     for scale in preset.scales:
         if scale.name in fixed:
             continue
@@ -132,7 +134,7 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
             parameter = parameter.within(lower, upper)
             axes.append(Axis(scale.name, lower, upper, parameter.logarithmic))
         else:
-            axes.append(Axis(scale.name, scale.lower, scale.upper, scale.logarithmic, scale.equation))
+            axes.append(Axis(scale.name, *scale.slower_than(fastest / band), scale.logarithmic, scale.equation))
     _refuse_bad_values(fixed, strengths | shapes.keys())
     order = tuple(scale.name for scale in preset.scales)
     return Space(tuple(axes), order, fixed, typical, convention, scale_free=not same)

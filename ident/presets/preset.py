@@ -15,6 +15,7 @@ from ident.equations.equation import Equation
 from ident.errors import Unusable
 from ident.matrix import MOTIONS, Matrix
 from ident.parameter import Parameter
+from ident.presets.neutral import from_neutral
 from ident.presets.passivity import passive
 from ident.stages import MASS_SPRING_DAMPER, MEASURED_LOAD, OPENED_BY_COMMAND, Scale
 from ident.stages.scale import OF_THE_RUNS, in_reading_order
@@ -166,6 +167,8 @@ class Preset:
             preset = replace(preset, drive_unit=matrix.runs[0].units.get("command", "m"))
         if preset.driven_by in MOTIONS:
             matrix = passive(matrix)
+        elif preset.kind == "chain" and preset.driven_by == "command":
+            matrix = from_neutral(matrix, preset.core)
         return (preset.with_measured_load(matrix), matrix) if load == "force" else (preset, matrix)
 
     def with_measured_load(self, matrix: Matrix) -> Preset:

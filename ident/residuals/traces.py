@@ -134,7 +134,7 @@ def traces(comparison: Comparison, signals: Sequence[str], instead: Mapping[str,
 
 def _settled(run: Run, residual: Array, rate: float) -> int:
     """Samples that are left away in a record that starts moving: what acted before it still rings."""
-    return 0 if run.starts_at_rest else min(len(residual) // 4, round(0.5 * rate))
+    return min(len(residual) // 4, round(0.5 * rate)) if run.begins == "moving" else 0
 
 
 def _linear(chain: Chain, values: Mapping[str, float], run: Run, actuator: Actuator, output: str) -> LinearModel:
@@ -190,7 +190,7 @@ def _simulated(
         name, run = entry
         known = conditions(run, matrix.actuator) | values
         at = {symbol: np.array([[value]]) for symbol, value in known.items()}
-        start = None if run.starts_at_rest else simulated.start(run)[None, None]
+        start = simulated.first_states(run, at)
         named = replace(run, output=name, channels={**run.channels, name: run.measured})
         blocks = Simulation(chain, (named,), at, steps, start).outputs()
         return np.concatenate([rows[:, 0, 0] for rows, _, _ in blocks])

@@ -192,7 +192,7 @@ def _fine(run: Run, channel: str, steps: int, before: int) -> Array:
         fine = np.interp(np.arange((len(samples) - 1) * steps + 1) / steps, np.arange(len(samples)), samples)
     else:
         fine = samples
-    front = np.full(before, 0.0 if channel == INPUT and run.starts_at_rest else fine[0])
+    front = np.full(before, 0.0 if channel == INPUT and run.begins == "at rest" else fine[0])
     if run.hold == "linear":
         front[-1] -= _jump_share(np.array(2.0)) * (fine[0] - front[-1])
     return np.concatenate([front, fine, np.full(steps + 2, fine[-1])])

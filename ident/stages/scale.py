@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from ident.equations.equation import Equation
 from ident.errors import Unusable
 from ident.parameter import Parameter
@@ -39,6 +41,29 @@ class Scale:
     def equation(self) -> Equation:
         """The scale as an equation of the grammar."""
         return Equation(f"{self.name} = {self.text}")
+
+    @cached_property
+    def power(self) -> float:
+        """n, where the scale goes with Wⁿ: −1 for a time constant, 1 for a rate, 2 for a stiffness over a mass.
+
+        0 for what a signal's size measures: that is no mode's speed alone.
+        """
+        if self.equation.names & (OF_THE_RUNS - {"W"}):
+            return 0.0
+        known = dict.fromkeys(self.equation.names, 1.0)
+        return float(np.log2(self.equation.value({**known, "W": 2.0}) / self.equation.value(known)))
+
+    def slower_than(self, ratio: float) -> tuple[float, float]:
+        """Its bounds where nothing is to go faster than `ratio` times W; one decade is left of them at least.
+
+        A mode that is over within a small part of a sample shows in no record, and no simulation in steps follows it.
+        """
+        edge = ratio**self.power
+        if not self.logarithmic or self.power == 0:
+            return self.lower, self.upper
+        if self.power < 0:
+            return min(max(self.lower, edge), self.upper / 10.0), self.upper
+        return self.lower, max(min(self.upper, edge), self.lower * 10.0)
 
 
 def in_reading_order(scales: Iterable[Scale]) -> tuple[Scale, ...]:

@@ -29,7 +29,7 @@ def run_of(samples: int = 4000, hold: str = "linear") -> Run:
 def test_a_reduced_run_has_the_error_that_its_filters_have_sample_by_sample(hold, moving):
     run = run_of(hold=hold)
     run = run.part(700, 3700) if moving else run
-    assert run.starts_at_rest is not moving
+    assert run.begins == ("moving" if moving else "at rest")
     basis = Basis(2 * np.pi * 120)
     found = reduced(run, basis)
     g = np.random.default_rng(2).standard_normal(2 * len(basis.nodes))

@@ -1,0 +1,39 @@
+"""The neutral of a command: what it is held at while a machine that integrates it stands still."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ident.chain.chain import Chain, integrates
+from ident.matrix import Matrix, Run
+from ident.words.engineering import with_unit
+
+_FELT = 1e-3  # of the command's standard deviation
+
+
+def held(run: Run) -> float | None:
+    """The value at which the command is held first, while the output stands; None where it is not, or moves."""
+    return float(run.command[0]) if run.stands else None
+
+
+def from_neutral(matrix: Matrix, chain: Chain) -> Matrix:
+    """The matrix with commands counted from their neutral, where the chain integrates them.
+
+    A null bias, a dead zone that is not in the middle and a recorder's zero are one thing there, and any of them makes
+    the model run away. One machine has one neutral: the middle one of the runs that show it.
+    """
+    if not integrates(chain, matrix.runs, matrix.actuator):
+        return matrix
+    shown = [value for run in matrix.runs if (value := held(run)) is not None]
+    neutral = float(np.median(shown)) if shown else 0.0
+    if abs(neutral) <= _FELT * max(float(np.std(run.command)) for run in matrix.runs):
+        return matrix
+    text = with_unit(f"{neutral:.4g}", matrix.runs[0].units.get("command", "1"))
+    said = (
+        f"The command is counted from {text}, at which it is held first while the output stands: that is the neutral "
+        f"of a machine that integrates it."
+    )
+    runs = tuple(replace(run, channels={**run.channels, "command": run.command - neutral}) for run in matrix.runs)
+    return replace(matrix, runs=runs, notices=(said, *matrix.notices))

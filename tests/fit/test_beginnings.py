@@ -1,0 +1,139 @@
+"""How a run begins: at rest, standing elsewhere, or moving; simulated here by SciPy's own integrator.
+
+What begins away from zero was taken for moving: its first state was free, and explained what it should not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from ident.diagnosis.family import ModelFamily
+from ident.fit.identification import Identification, completed
+from ident.fit.settings import Settings
+from ident.matrix import Actuator, Matrix, Run
+from ident.simulation.simulate import FASTEST
+from ident.workflows import compare, diagnose, identify
+
+RATE = 50.0
+
+
+def staircase(seed: int, first: float, lowest: float = -5.0, highest: float = 5.0) -> np.ndarray:
+    """Levels of 3 s each, the first one given."""
+    levels = np.random.default_rng(seed).uniform(lowest, highest, 14)
+    levels[0] = first
+    return np.repeat(levels, int(3 * RATE))
+
+
+def run_of(command: np.ndarray, rates, start, shown: int, output: str, use: str = "fit", noise: float = 0.01) -> Run:
+    """A held command into ordinary differential equations ż = rates(z, u), integrated level by level."""
+    edges = [0, *(np.flatnonzero(np.diff(command)) + 1), len(command)]
+    states, z = [], np.asarray(start, dtype=float)
+    for begin, end in pairwise(edges):
+        at = np.arange(end - begin + 1) / RATE
+        found = solve_ivp(lambda _, z, u=command[begin]: rates(z, u), (0, at[-1]), z, t_eval=at, rtol=1e-9, atol=1e-11)
+        states.append(found.y[:, :-1])
+        z = found.y[:, -1]
+    record = np.concatenate(states, axis=1)[shown]
+    record = record + noise * record.std() * np.random.default_rng(len(use)).standard_normal(len(record))
+    units = {"command": "V", output: {"velocity": "rad/s", "displacement": "m"}[output]}
+    return Run(use, "", RATE, {"command": command, output: record}, units, hold="zoh", output=output, use=use)
+
+
+def motor(seed: int, first: float, drag: float = 0.0) -> Matrix:
+    """0.3 ω' + ω + drag ω|ω| = 3.5 u, which has stood under the first command for long."""
+
+    def rates(z, u):
+        return [(3.5 * u - z[0] - drag * z[0] * abs(z[0])) / 0.3]
+
+    def standing(u: float) -> float:
+        x = 3.5 * abs(u)
+        return float(np.sign(u) * (x if drag == 0 else (np.sqrt(1 + 4 * drag * x) - 1) / (2 * drag)))
+
+    runs = [run_of(staircase(seed + i, level), rates, [standing(level)], 0, "velocity", use)
+            for i, (level, use) in enumerate(((first, "fit"), (-first, "verify")))]  # fmt: skip
+    return Matrix(Actuator("MOTOR"), tuple(runs))
+
+
+def cylinder(seed: int, neutral: float, place: float = 0.0) -> Matrix:
+    """ẋ = q, 0.1 q̇ = 0.02 (u − neutral) − q: a valve's lag and a cylinder in open loop, of any neutral."""
+    runs = []
+    for i, use in enumerate(("fit", "verify")):
+        command = neutral + staircase(seed + i, 0.0)
+        command[-int(1.5 * RATE) :] = neutral
+        runs.append(run_of(command, lambda z, u: [z[1], (0.02 * (u - neutral) - z[1]) / 0.1], [place, 0.0], 0,
+                           "displacement", use, 0.005))  # fmt: skip
+    return Matrix(Actuator("CYLINDER"), tuple(runs))
+
+
+def test_the_three_ways_to_begin():
+    first = motor(1, 3.0).runs[0]
+    assert first.begins == "standing"
+    assert first.stands == 150
+    assert motor(1, 0.0).runs[0].begins == "at rest"
+    assert first.part(155, first.length).begins == "moving"
+    assert first.part(290, first.length).begins == "moving"  # it stands, but for fewer samples than a late step needs
+    still = replace(
+        first, channels={**first.channels, "command": first.command + 1e-2 * np.sin(np.arange(first.length))}
+    )
+    assert still.begins == "moving"  # a command that moves meanwhile
+
+
+def test_a_motor_that_runs_at_first_is_found_and_its_offset_is_nothing():
+    fit = identify(motor(2, 3.0), Settings(model="motor"))
+    assert fit.values["Kt"] / fit.values["c0"] == pytest.approx(3.5, rel=0.005)
+    assert fit.values["m0"] / fit.values["c0"] == pytest.approx(0.3, rel=0.01)
+    assert max(fit.error["fit"], fit.error["verify"]) < 0.0115
+    assert abs(fit.offset["fit"]) < 0.01
+
+
+@pytest.mark.parametrize("first", [3.0, 0.0])
+def test_search_fit_comparison_and_diagnosis_have_one_error(first):
+    """Of a record of steps, whose power beyond the band of the search made it promise a fifth less."""
+    matrix, settings = motor(3, first, drag=0.05), Settings(model="motor")
+    work = Identification(matrix, settings)
+    state = work.start()
+    while not work.finished(state):
+        state = work.advance(state, 50)
+    fit = work.finish(state)
+    assert fit.error["fit"] <= min(state["history"][-1]["errors"]) * 1.001
+    family = ModelFamily.of(matrix, settings)
+    start = {family.preset.parameter(name).in_equations: value for name, value in fit.values.items()}
+    assert family.refit((), start).error == pytest.approx(fit.error["fit"], rel=1e-6)
+    compared = {run.run.id: run.error for run in compare(matrix, fit).runs}
+    assert compared == pytest.approx({run.id: run.error for run in fit.runs}, rel=1e-6)
+
+
+def test_the_standstill_of_a_nonlinear_machine_is_where_it_begins():
+    """ω|ω| takes a third of the speed: begun where the linear model stands, the run would begin with a transient."""
+    fit = completed(Identification(motor(4, 4.0, drag=0.05), Settings(model="motor", effects=("quadratic_damping",))))
+    assert max(fit.error["fit"], fit.error["verify"]) < 0.0115
+    drag = fit.parameters["quadratic_damping.coefficient"].value / fit.values["c0"]
+    assert drag == pytest.approx(0.05, rel=0.02)
+
+
+@pytest.mark.parametrize(("neutral", "place"), [(0.0, 0.0), (2.5, 0.0), (2.5, 0.4)])
+def test_a_command_is_counted_from_where_it_is_held_while_the_cylinder_stands(neutral, place):
+    matrix = cylinder(5, neutral, place)
+    fit = identify(matrix, Settings(model="open_valve"))
+    assert max(fit.error["fit"], fit.error["verify"]) < 0.01
+    assert abs(fit.offset["fit"]) < 0.1
+    said = [note for note in fit.notes if "counted from" in note]
+    assert bool(said) is (neutral != 0)
+    assert all("2.5 V" in note for note in said)
+
+
+def test_a_lag_far_below_the_sample_time_is_not_searched_and_the_diagnosis_follows_the_fit():
+    """The time constant went to microseconds at a sample of milliseconds; then no simulation followed the fit."""
+    matrix = motor(6, 3.0)
+    quick = [replace(run, channels={**run.channels, "velocity": 3.5 * np.append(run.command[:1], run.command[:-1])})
+             for run in matrix.runs]  # fmt: skip
+    for model in ("first_order", "open_valve"):
+        fit = identify(replace(matrix, runs=tuple(quick)), Settings(model=model))
+        assert fit.values["tau"] >= 0.99 / (FASTEST * RATE)
+        found = diagnose(replace(matrix, runs=tuple(quick)), fit, most=0)
+        assert found.baseline.error["fit"] == pytest.approx(fit.error["fit"], rel=0.02)
