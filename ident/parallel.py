@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from functools import lru_cache
 from typing import Any, TypeVar
 
+import numpy as np
 import scipy.linalg  # noqa: F401  its library is held too, and only what is loaded is found
 from threadpoolctl import ThreadpoolController
 
@@ -85,11 +86,19 @@ def _pool() -> ThreadPoolExecutor:
 
 
 def each(function: Callable[[Item], Outcome], items: Iterable[Item]) -> list[Outcome]:
-    """`function` of every item, in order; the compiled parts run side by side, linear algebra in :func:`one_thread`."""
+    """`function` of every item, in order; the compiled parts run side by side, linear algebra in :func:`one_thread`.
+
+    Values that overflow are what a model that runs away gives: they are judged as such, and not warned of.
+    """
     todo = list(items)
+
+    def of(item: Item) -> Outcome:
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            return function(item)
+
     if threading.current_thread().name.startswith(_NAME):  # already side by side with others, and they hold the pool
-        return [function(item) for item in todo]
+        return [of(item) for item in todo]
     with one_thread():
         if cores() == 1 or len(todo) < 2:
-            return [function(item) for item in todo]
-        return list(_pool().map(function, todo))
+            return [of(item) for item in todo]
+        return list(_pool().map(of, todo))

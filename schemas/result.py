@@ -1,6 +1,6 @@
 """What a fit and a diagnosis hold, in the contract's words: one JSON over HTTP and in the files of the commands."""
 
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -209,9 +209,15 @@ class SuspectView(BaseModel):
 
 
 class VerdictView(BaseModel):
-    """What to add, what the data cannot tell apart, whose label is doubted, whether something is left."""
+    """What to add, what the data cannot tell apart, whose label is doubted, whether something is left.
+
+    `standing` is found where the error is at the noise floor, stand_in where something is left, contradicted where
+    the error rises with an effect (`contradicted_by`) on runs to verify, nothing where no effect helps.
+    """
 
     effects: list[str]
+    standing: Literal["found", "stand_in", "contradicted", "nothing"] | None
+    contradicted_by: list[str]
     indistinguishable: list[list[str]]
     suspects: list[SuspectView]
     unexplained: bool

@@ -71,7 +71,9 @@ def _failing(ratio: float, verdict: Verdict | None, at: str) -> Next:
     if verdict is None:
         return Next(f"{fails}: the model lacks something.", "Find what is missing", at)
     if verdict.effects:
-        return Next(f"The model lacks {_listed(verdict.effects)}.", "See and add", at)
+        sure = verdict.standing in (None, "found")
+        said = "The model lacks" if sure else "Not all of it is explained; what helps is"
+        return Next(f"{said} {_listed(verdict.effects)}.", "See and add", at)
     if verdict.suspects:
         return Next(f"{fails}; a label is doubted.", "Look and mend", at)
     return Next(f"{fails}; no listed effect explains it.", "See what is left", at)

@@ -15,6 +15,7 @@ from ident.bench.records import Record, bench_set
 from ident.comparison.compare import fitted
 from ident.diagnosis.result import Baseline, Diagnosis, Found, Ranked, Rung, Verdict
 from ident.diagnosis.significance import Improvement, improvement
+from ident.diagnosis.standing import standing
 from ident.diagnosis.words import verdict_text, why_of_gain
 from ident.effects.effect import Effect
 from ident.fit.result import FitResult
@@ -55,13 +56,16 @@ class BenchDiagnoser:
         errors, before = self._errors(found), self._errors(base)
         unexplained = bool(self.floor["fit"] and (errors["fit"] or 0.0) > _NEAR_FLOOR * self.floor["fit"])
         added = found.effects[len(base.effects) :]
-        text = verdict_text(added, groups, (), unexplained, errors, float(before["fit"] or 0.0))
+        text = verdict_text(
+            added, groups, (), unexplained, errors, float(before["fit"] or 0.0), floor=self.floor["fit"]
+        )
         return Diagnosis(
             model=self.fit.model, effects=base.effects, baseline=Baseline(before, self._offset(base)),
             noise_floor={"fit": self.floor["fit"], "held_out": None, "verify": self.floor["verify"]},
             candidates=tuple(self._ranked(c, group, base, i == 0) for i, c in enumerate(first)),
             ladder=tuple(self._rung(step, steps[i - 1] if i else None) for i, step in enumerate(steps)),
-            verdict=Verdict(added, groups, (), unexplained, text), seed=self.fit.seed,
+            verdict=Verdict(added, standing(added, unexplained, ()), (), groups, (), unexplained, text),
+            seed=self.fit.seed,
             seconds=time.monotonic() - self.begun, version=version("servoident"), data_hash=self.matrix.data_hash,
             settings=dict(self.fit.settings),
         )  # fmt: skip

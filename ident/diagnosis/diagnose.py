@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from importlib.metadata import version
@@ -17,6 +17,7 @@ from ident.diagnosis.family import ModelFamily, Refit
 from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.result import Baseline, Diagnosis, Found, Ranked, Rung, Suspect, Verdict
 from ident.diagnosis.significance import improvement
+from ident.diagnosis.standing import Contradiction, contradiction, standing
 from ident.diagnosis.stepwise import StepwiseSelection
 from ident.diagnosis.suspects import suspects
 from ident.diagnosis.words import verdict_text, why
@@ -30,6 +31,8 @@ from ident.matrix import Matrix, over_runs
 from ident.progress import Expected, Progress, Report, silent
 
 _NOISE_LIKE = 0.5  # correlation of neighbouring residuals that noise may have, where there is no floor
+Steps = Sequence[tuple[str | None, Refit]]
+"""From the fitted model to the last, what each step added."""
 
 
 def diagnose(
@@ -64,13 +67,16 @@ class Diagnoser:
         if doubted:
             selection = self._added(self.models.without(suspect.run for suspect in doubted))
             doubted = self._doubted(selection)
-        ladder = self._ladder(selection)
+        steps = selection.ladder()
+        ladder = self._ladder(selection.models, steps)
         floor = selection.models.floors.of_use(self.models.matrix)
         unexplained = self._unexplained(selection)
         groups = tuple(tuple(c.effect for c in group) for group in selection.groups.values() if len(group) > 1)
         base = selection.base
+        against = tuple(self._contradictions(selection.models, steps))
         text = verdict_text(selection.added, groups, doubted, unexplained, ladder[-1].error, base.error,
-                            repeats=selection.models.floors.measured)  # fmt: skip
+                            selection.models.floors.measured, floor["fit"], against)  # fmt: skip
+        stands = standing(selection.added, unexplained, against)
         return Diagnosis(
             model=self.fit.model,
             effects=base.effects,
@@ -78,7 +84,8 @@ class Diagnoser:
             noise_floor=floor,
             candidates=tuple(self._ranked(selection, floor["fit"])),
             ladder=tuple(ladder),
-            verdict=Verdict(selection.added, groups, tuple(doubted), unexplained, text),
+            verdict=Verdict(selection.added, stands, tuple(one.effect for one in against), groups, tuple(doubted),
+                            unexplained, text),
             seed=self.fit.seed,
             version=version("servoident"),
             data_hash=self.models.matrix.data_hash,
@@ -149,17 +156,30 @@ class Diagnoser:
             ))  # fmt: skip
         return listed
 
-    def _ladder(self, selection: StepwiseSelection) -> list[Rung]:
+    def _ladder(self, models: ModelFamily, steps: Steps) -> list[Rung]:
         rungs: list[Rung] = []
         before: Refit | None = None
-        for added, refit in selection.ladder():
+        for added, refit in steps:
             found = None if before is None else improvement(before.held_out, refit.held_out).nats
             rungs.append(Rung(
-                added=added, error=self._errors(selection.models, refit), offset=refit.held_out.offset, nats=found,
-                parameters=self._parameters(selection.models, refit),
+                added=added, error=self._errors(models, refit), offset=refit.held_out.offset, nats=found,
+                parameters=self._parameters(models, refit),
             ))  # fmt: skip
             before = refit
         return rungs
+
+    def _contradictions(self, models: ModelFamily, steps: Steps) -> Iterator[Contradiction]:
+        """The effects of the ladder with which the error rises on verify runs."""
+        runs = models.matrix.of_use("verify")
+        if not runs:
+            return
+        before: list[NDArray[np.float64]] | None = None
+        for added, refit in steps:
+            outputs = refit.fitness.fresh(runs).outputs(refit.point)
+            after = [run.measured - outputs[run.id] for run in runs]
+            if added and before and (found := contradiction(added, runs, before, after)):
+                yield found
+            before = after
 
     def _unexplained(self, selection: StepwiseSelection) -> bool:
         """Whether the error is still above the noise: its floor, or where that is not known, its lack of memory."""

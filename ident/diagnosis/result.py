@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from ident.diagnosis.standing import Standing
 from ident.errors import Unusable
 from ident.matrix import Specimen
 from ident.plain import Misfit, read, written
@@ -88,9 +89,15 @@ class Suspect:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What to add, what the data cannot tell apart, whose label is doubted, and whether something is left."""
+    """What to add, what the data cannot tell apart, whose label is doubted, and whether something is left.
+
+    `standing` says how sure the effects are, see :data:`ident.diagnosis.standing.Standing`; None where it was not
+    asked. `contradicted_by` are those with which the error rises on runs to verify.
+    """
 
     effects: tuple[str, ...] = ()
+    standing: Standing | None = None
+    contradicted_by: tuple[str, ...] = ()
     indistinguishable: tuple[tuple[str, ...], ...] = ()
     suspects: tuple[Suspect, ...] = ()
     unexplained: bool = False

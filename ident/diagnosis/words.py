@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.result import Suspect
 from ident.diagnosis.significance import Improvement
+from ident.diagnosis.standing import Contradiction
 from ident.effects.effect import Effect
 from ident.words.percent import percent
 from ident.words.titles import title
@@ -38,17 +39,29 @@ def why_of_gain(
 
 def verdict_text(
     added: Sequence[str], groups: Sequence[tuple[str, ...]], suspects: Sequence[Suspect], unexplained: bool,
-    errors: Mapping[str, float | None], before: float, repeats: bool = True,
+    errors: Mapping[str, float | None], before: float, repeats: bool = True, floor: float | None = None,
+    against: Sequence[Contradiction] = (),
 ) -> str:  # fmt: skip
-    """The verdict in a few sentences; without `repeats` nobody knows how much noise lies in the command's band."""
-    parts = []
+    """The verdict in a few sentences, what speaks against it first.
+
+    Without `repeats` nobody knows how much noise lies in the command's band.
+    """
+    parts = [
+        f"With {title(one.effect)} the error on verify runs rises from {percent(one.before)} to {percent(one.after)}, "
+        f"{one.deviations:.1f} standard errors: it may stand for something else."
+        for one in against
+    ]
     if added:
         names = " and ".join(", ".join(map(title, added)).rsplit(", ", 1))
         them = "it" if len(added) == 1 else "them"
+        lacks = "What helps on the fitted runs is" if against or unexplained else "The model lacks"
         parts.append(
-            f"The model lacks {names}: with {them} the error falls from {percent(before)} to {percent(errors['fit'])}"
+            f"{lacks} {names}: with {them} the error falls from {percent(before)} to {percent(errors['fit'])}"
             + (f" ({percent(errors['verify'])} on verify runs)." if errors.get("verify") is not None else ".")
         )
+    elif not unexplained and floor is None:
+        parts.append(f"Nothing is seen to be missing: what is left, {percent(before)}, has no memory from sample to "
+                     "sample. How much of it is noise is not known.")  # fmt: skip
     elif not unexplained:
         parts.append(f"Nothing is missing: the error of {percent(before)} is the noise's.")
     else:

@@ -1,0 +1,82 @@
+"""What runs that no fit saw say of what was named: they may take away the word found, and nothing else.
+
+An effect that helps where it was fitted and harms elsewhere stands for something that the catalogue does not hold, or
+that behaves otherwise there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.matrix import Run, over_runs
+from ident.noise.effective_sample_size import independent_samples
+
+Array = NDArray[np.float64]
+Standing = Literal["found", "stand_in", "contradicted", "nothing"]
+"""found: the error is at the floor; stand_in: it fell, something is left; contradicted: it rises on verify runs."""
+_SURE = 2.0  # standard errors
+_MEMORY = 10.0  # correlation times in a chunk
+_LEAST = 4  # chunks of a run
+_RESAMPLED = 400
+
+
+@dataclass(frozen=True)
+class Contradiction:
+    """An effect with which the verify error rises, from and to which, and by how many of its standard errors."""
+
+    effect: str
+    before: float
+    after: float
+    deviations: float
+
+
+def contradiction(
+    effect: str, runs: Sequence[Run], before: Sequence[Array], after: Sequence[Array]
+) -> Contradiction | None:
+    """Whether the error of eq. (17) over `runs` rises by more than two of its standard errors; None where not.
+
+    `before` and `after` are the residuals x_m − x of each run without the effect and with it, (n,). The standard error
+    is that of the difference, by a bootstrap over chunks of ten correlation times (Künsch 1989), at least four a run.
+    """
+    if not all(np.isfinite(r).all() for r in (*before, *after)):
+        return None
+    random = np.random.default_rng(0)
+    drawn = {"before": np.empty((len(runs), _RESAMPLED)), "after": np.empty((len(runs), _RESAMPLED))}
+    whole = {"before": np.empty(len(runs)), "after": np.empty(len(runs))}
+    for i, (run, old, new) in enumerate(zip(runs, before, after, strict=True)):
+        chunks = _chunks(old)
+        picked = random.integers(len(chunks), size=(_RESAMPLED, len(chunks)))
+        size = float(np.std(run.measured))
+        for name, residual in (("before", old), ("after", new)):
+            r = residual - residual.mean()
+            sums = np.array([np.sum(r[chunk] ** 2) for chunk in chunks])
+            counts = np.array([chunk.stop - chunk.start for chunk in chunks])
+            drawn[name][i] = np.sqrt(sums[picked].sum(axis=1) / counts[picked].sum(axis=1)) / size
+            whole[name][i] = np.sqrt(np.mean(r**2)) / size
+    change = over_runs(drawn["after"], runs) - over_runs(drawn["before"], runs)
+    first, last = (float(over_runs(whole[name], runs)) for name in ("before", "after"))
+    error = float(np.std(change))
+    if not last - first > _SURE * error:
+        return None
+    return Contradiction(effect, first, last, (last - first) / max(error, 1e-300))
+
+
+def _chunks(residual: Array) -> list[slice]:
+    """Neighbouring samples that tell together about as much as ten that know nothing of each other."""
+    n = len(residual)
+    length = int(np.clip(_MEMORY * n / independent_samples(residual), 1, max(n // _LEAST, 1)))
+    return [slice(first, min(first + length, n)) for first in range(0, n, length)]
+
+
+def standing(added: Sequence[str], unexplained: bool, against: Sequence[Contradiction]) -> Standing:
+    """How what was added stands."""
+    if not added:
+        return "nothing"
+    if against:
+        return "contradicted"
+    return "stand_in" if unexplained else "found"
