@@ -114,6 +114,13 @@ class StructureView(BaseModel):
     why: str
 
 
+class WindowView(BaseModel):
+    """What a machine that integrates is fitted over, s, and the errors of a model that begins each where it was."""
+
+    horizon: float
+    error: Errors
+
+
 class FitResultView(BaseModel):
     """The contract's fit JSON; `evolution` belongs to the parameters `searched`, in that order.
 
@@ -140,6 +147,8 @@ class FitResultView(BaseModel):
     settings: SettingsView = Field(default_factory=SettingsView)
     searched: list[str] = Field(default_factory=list)
     evolution: list[GenerationView] = Field(default_factory=list)
+    anchored_error: Errors = Field(default_factory=dict)
+    window: WindowView | None = None
     structures: list[StructureView] = Field(default_factory=list)
 
 
@@ -266,6 +275,7 @@ class DiagnosisResult(BaseModel):
     effects: list[str]
     baseline: BaselineView
     noise_floor: Errors
+    horizon: float | None = None
     budget: ErrorBudget | Nothing
     candidates: list[CandidateView]
     ladder: list[RungView]

@@ -20,7 +20,7 @@ def show_diagnosis(found: Diagnosis) -> None:
     """Print a diagnosis: errors, ranking, ladder, suspects, verdict."""
     console = output()
     uses = tuple(USES.values())
-    console.print(table(("error (eq. 17)", *uses), error_rows(found), numbers=uses))
+    console.print(table((_measure(found), *uses), error_rows(found), numbers=uses))
     header = ("effect", "predicted", "held out", "verify", "strength", "group")
     console.print(table(header, ranking_rows(found), numbers=header[1:4]))
     if rest := unconfirmed(found):
@@ -36,6 +36,10 @@ def show_diagnosis(found: Diagnosis) -> None:
         console.print(f"note: {note}", markup=False)
     console.print(found.verdict.text, markup=False)
     console.print(f"seed {found.seed}: {found.seconds:.2f} s")
+
+
+def _measure(found: Diagnosis) -> str:
+    return "error (eq. 17)" if found.horizon is None else f"error over {found.horizon:.3g} s"
 
 
 def error_rows(found: Diagnosis) -> Iterator[Row]:

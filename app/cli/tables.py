@@ -62,6 +62,9 @@ def error_rows(result: FitResult) -> Iterator[tuple[str, ...]]:
     """Error, offset and noise floor by use, in per cent."""
     uses = ("fit", "held_out", "verify")
     yield "model", *(percent(result.error.get(use)) for use in uses)
+    if result.window:
+        over = result.window.error
+        yield f"over {result.window.horizon:.3g} s", *(percent(over.get(use)) for use in uses)
     yield "noise floor", *(percent(result.noise_floor.get(use)) for use in uses)
     yield "offset", *(percent(result.offset.get(use)) for use in uses)
 

@@ -45,7 +45,7 @@ def diagnose(
     """
     begun = time.monotonic()
     given = replace(Settings.from_json(dict(fit.settings)), effects=()) if fit.settings else Settings(model=fit.model)
-    models = ModelFamily.of(matrix, given, custom)
+    models = ModelFamily.of(matrix, given, custom, fit.window.horizon if fit.window else None)
     work = Diagnoser(models, fit, most, report)
     found = work.diagnosis()
     work.tell(Progress("next run", 0, 1))
@@ -82,6 +82,7 @@ class Diagnoser:
             effects=base.effects,
             baseline=Baseline(dict(ladder[0].error), base.offset),
             noise_floor=floor,
+            horizon=self.models.horizon,
             candidates=tuple(self._ranked(selection, floor["fit"])),
             ladder=tuple(ladder),
             verdict=Verdict(selection.added, stands, tuple(one.effect for one in against), groups, tuple(doubted),
@@ -176,7 +177,7 @@ class Diagnoser:
         before: list[NDArray[np.float64]] | None = None
         for added, refit in steps:
             outputs = refit.fitness.fresh(runs).outputs(refit.point)
-            after = [run.measured - outputs[run.id] for run in runs]
+            after = [refit.fitness.left(run, outputs[run.id]) for run in runs]
             if added and before and (found := contradiction(added, runs, before, after)):
                 yield found
             before = after
@@ -187,7 +188,7 @@ class Diagnoser:
         if models.floor is not None:
             return not models.at_floor(found)
         outputs = found.fitness.outputs(found.point)
-        residuals = [run.measured - outputs[run.id] for run in models.runs]
+        residuals = [found.fitness.left(run, outputs[run.id]) for run in models.runs]
         memory = [float(np.corrcoef(r[1:], r[:-1])[0, 1]) for r in residuals]
         return bool(np.median(memory) > _NOISE_LIKE)
 

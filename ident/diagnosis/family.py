@@ -47,7 +47,7 @@ class Refit:
     def held_out(self) -> CrossValidation:
         """Its errors on blocks that were left out in turn."""
         outputs = self.fitness.outputs(self.point)
-        independent = sum(independent_samples(run.measured - outputs[run.id]) for run in self.fitness.runs)
+        independent = sum(independent_samples(self.fitness.left(run, outputs[run.id])) for run in self.fitness.runs)
         return cross_validated(self.point, self.here, self.fitness.exact, independent)
 
     @property
@@ -70,7 +70,8 @@ class Refit:
 class ModelFamily:
     """The models of a preset for the fit runs of a matrix, with effects of the catalogue and of the user.
 
-    `given` are what the user holds fixed or bounds; `left_out` the ids of runs that are not fitted.
+    `given` are what the user holds fixed or bounds; `left_out` the ids of runs that are not fitted; `horizon` (s) the
+    length of the windows over which a machine that integrates is fitted, None for whole runs.
     """
 
     preset: Preset
@@ -79,16 +80,19 @@ class ModelFamily:
     band: float
     effects: Mapping[str, Effect]
     left_out: frozenset[str] = frozenset()
+    horizon: float | None = None
     _known: dict[tuple[tuple[str, ...], int, bool], SimulatedFitness] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, matrix: Matrix, given: Settings, custom: Iterable[Effect] = ()) -> ModelFamily:
+    def of(
+        cls, matrix: Matrix, given: Settings, custom: Iterable[Effect] = (), horizon: float | None = None
+    ) -> ModelFamily:
         """The models of the settings' preset with every effect that it has a place for."""
         preset, matrix = PRESETS[given.model].for_matrix(matrix, given.load)
         there = preset.driven_by in MOTIONS or any(run.specimen or "force" in run.channels for run in matrix.runs)
         listed = (*(effect for effect in CATALOGUE if there or not effect.of_specimen), *custom)
         known = {effect.name: effect for effect in listed if _fits(preset, effect)}
-        return cls(preset, matrix, given, excited_band(matrix.of_use("fit")), known)
+        return cls(preset, matrix, given, excited_band(matrix.of_use("fit")), known, horizon=horizon)
 
     @property
     def runs(self) -> tuple[Run, ...]:
@@ -136,7 +140,7 @@ class ModelFamily:
             given = replace(self.given, fixed={**self.given.fixed, **off})
             space = search_space(model, self.matrix, given, self.band)
             runs = shortened(self.runs, samples) if samples else self.runs
-            self._known[key] = SimulatedFitness(model, self.matrix, runs, space, self.band)
+            self._known[key] = SimulatedFitness(model, self.matrix, runs, space, self.band, horizon=self.horizon)
         known = self._known[key]
         return known.fresh(known.runs)  # no search goes on from the first states in which another one ended
 

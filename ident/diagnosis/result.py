@@ -134,13 +134,15 @@ class NextRun:
 class Diagnosis:
     """Everything that was found about one fit of one matrix; `effects` are those that the fit had.
 
-    `budget` is None where the model is unstable at every run, `next_experiment` where no run can be proposed.
+    `budget` is None where the model is unstable at every run, `next_experiment` where no run can be proposed. With a
+    `horizon` (s) every error is that over windows of this length, as `window` of the fit says it.
     """
 
     model: str = "qian2014"
     effects: tuple[str, ...] = ()
     baseline: Baseline = Baseline()
     noise_floor: Errors = field(default_factory=dict)
+    horizon: float | None = None
     budget: Budget | None = None
     candidates: tuple[Ranked, ...]
     ladder: tuple[Rung, ...] = ()

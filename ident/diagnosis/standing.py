@@ -40,7 +40,8 @@ def contradiction(
 ) -> Contradiction | None:
     """Whether the error of eq. (17) over `runs` rises by more than two of its standard errors; None where not.
 
-    `before` and `after` are the residuals x_m − x of each run without the effect and with it, (n,). The standard error
+    `before` and `after` are what the model leaves of each run without the effect and with it, (n,), less its mean or
+    over windows. The standard error
     is that of the difference, by a bootstrap over chunks of ten correlation times (Künsch 1989), at least four a run.
     """
     if not all(np.isfinite(r).all() for r in (*before, *after)):
@@ -53,11 +54,10 @@ def contradiction(
         picked = random.integers(len(chunks), size=(_RESAMPLED, len(chunks)))
         size = float(np.std(run.measured))
         for name, residual in (("before", old), ("after", new)):
-            r = residual - residual.mean()
-            sums = np.array([np.sum(r[chunk] ** 2) for chunk in chunks])
+            sums = np.array([np.sum(residual[chunk] ** 2) for chunk in chunks])
             counts = np.array([chunk.stop - chunk.start for chunk in chunks])
             drawn[name][i] = np.sqrt(sums[picked].sum(axis=1) / counts[picked].sum(axis=1)) / size
-            whole[name][i] = np.sqrt(np.mean(r**2)) / size
+            whole[name][i] = np.sqrt(np.mean(residual**2)) / size
     change = over_runs(drawn["after"], runs) - over_runs(drawn["before"], runs)
     first, last = (float(over_runs(whole[name], runs)) for name in ("before", "after"))
     error = float(np.std(change))

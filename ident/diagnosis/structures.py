@@ -10,7 +10,7 @@ from ident.fit.result import Structure
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.presets.preset import Preset
-from ident.presets.suited import in_question
+from ident.presets.suited import in_question, unusual
 from ident.progress import Report, silent
 from ident.words.percent import percent
 
@@ -19,6 +19,8 @@ _WORSE = 1.02  # times the least error on held-out data: less is no reason for a
 
 def structures(matrix: Matrix, report: Report = silent) -> tuple[Structure, ...]:
     """The models in question, the one to take first: the simplest whose held-out error is not worse.
+
+    Of a machine that moves along a way the simplest that is not a motor, where one is no worse.
 
     Raises Unusable where the channels allow none.
     """
@@ -30,7 +32,8 @@ def structures(matrix: Matrix, report: Report = silent) -> tuple[Structure, ...]
     tried = [_tried(model, runs, report) for model in models]
     least = min(_error(one) for one in tried)
     good = [one for one in tried if _error(one) <= _WORSE * least]
-    best = min(good, key=lambda one: one.parameters)
+    strange = {model.name for model in models if unusual(model, matrix)}
+    best = min(good, key=lambda one: (one.machine in strange, one.parameters))
     return (_said(best, "the simplest that is not worse"), *(_said(one, "") for one in tried if one is not best))
 
 

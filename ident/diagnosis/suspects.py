@@ -131,8 +131,8 @@ def _of_channel(models: ModelFamily, fitted: Refit, run: Run) -> list[tuple[str,
 def _errors(models: ModelFamily, fitted: Refit, run: Run, changed: Mapping[str, Array]) -> Array:
     """Eq. (17) of a run for each value of a changed label, (v,)."""
     with np.errstate(over="ignore", invalid="ignore"):
-        residual = run.measured[:, None] - _outputs(models, fitted, run, changed)
-        errors = residual.std(axis=0) / run.measured.std()
+        left = fitted.fitness.left(run, _outputs(models, fitted, run, changed))
+        errors = np.sqrt(np.mean(left**2, axis=0)) / run.measured.std()
     return np.where(np.isfinite(errors), errors, np.inf)
 
 

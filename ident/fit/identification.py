@@ -25,6 +25,7 @@ from ident.fit.settings import GENERAL, Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.space import search_space
 from ident.fit.summary import summarise
+from ident.fit.windows import in_windows
 from ident.matrix import Matrix
 from ident.noise.floor import noise_floors
 from ident.presets import PRESETS, Preset
@@ -138,6 +139,8 @@ class Identification:
         else:
             members = np.concatenate([np.array(state["best"])[None], np.array(state["population"])])
             found = multistart(self.searched, objective, distinct(members, _CANDIDATES), self.report)
+            if integrates(self.preset.chain, self._runs, self.matrix.actuator):
+                found = in_windows(found, self.report)
         self.report(Progress("uncertainty", 0, 1, found.here.error))
         seconds = time.monotonic() - self._started
         result = summarise(self.settings, found, state, self.floors, seconds)

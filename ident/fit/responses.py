@@ -73,6 +73,7 @@ class Sensitivities:
                     Z[:, :-2, first:last] = outputs[:, 1:] - outputs[:, :1]
                     Z[:, -1, first:last] = measured[:, first:last] - outputs[:, 0]
                 Z[:, : len(strides)] /= strides[:, None]
+                Z = fitness.shown(runs[0], Z.transpose(2, 0, 1)).transpose(1, 2, 0).copy()
                 gram = Z @ Z.transpose(0, 2, 1)
                 unsound = ~(np.diagonal(gram, axis1=1, axis2=2) < _LARGEST)
             Z[unsound] = 0.0
@@ -89,7 +90,8 @@ class Sensitivities:
         """Σ of products of [J, r] of each run, (runs, p+1, p+1), and their means, (runs, p+1)."""
         found = [self.columns[run.id] for run in self.fitness.runs]
         means = np.array([-known.remove[-2] for known in found])
-        means[:, -1] += [run.measured.mean() for run in self.fitness.runs]
+        if self.fitness.horizon is None:  # else each window begins anew, and no mean is left
+            means[:, -1] += [run.measured.mean() for run in self.fitness.runs]
         return np.array([without(known.remove, known.gram) for known in found]), means
 
     def beside(self, values: Mapping[str, Array]) -> Responses:
@@ -121,7 +123,7 @@ class Sensitivities:
         lanes = {name: np.append(self.values[name][:1], value[changes]) for name, value in values.items()}
         cross = np.zeros((len(runs), Z.shape[1], len(changes)))
         power = np.zeros((len(runs), len(changes)))
-        for rows, first, last in self.fitness.simulation(runs, lanes, steps).outputs():
+        for rows, first, last in self.fitness.outputs_of(self.fitness.simulation(runs, lanes, steps)):
             _add(rows, Z[:, :, first:last], cross, power)
         sound = power < _LARGEST  # false where it is not a number
         cross, power = np.where(sound[:, None], cross, 0.0), np.where(sound, power, 0.0)

@@ -76,10 +76,22 @@ class Structure:
 
 
 @dataclass(frozen=True)
+class Window:
+    """What a machine that integrates is fitted over, s, and the errors of a model that begins each where it was.
+
+    The error is the root mean square of x_m − x, counted from the beginning of each window, over std(x_m).
+    """
+
+    horizon: float
+    error: Mapping[str, float | None] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
 class FitResult:
     """A finished fit. Errors are eq. (17) averaged over the runs of a use, from the time domain; fractions, not %.
 
-    `evolution` belongs to the parameters `searched`, in that order.
+    `anchored_error` is RMS(x − x_m)/std(x_m), which sees the means that eq. (17) does not; `window` is there where the
+    fit was made over windows. `evolution` belongs to the parameters `searched`, in that order.
     """
 
     model: str
@@ -100,6 +112,8 @@ class FitResult:
     data_hash: str
     notes: tuple[str, ...] = ()
     settings: Mapping[str, Any] = field(default_factory=dict)
+    anchored_error: Mapping[str, float | None] = field(default_factory=dict)
+    window: Window | None = None
     structures: tuple[Structure, ...] = ()
     searched: tuple[str, ...] = ()
     evolution: tuple[Generation, ...] = ()
@@ -115,9 +129,9 @@ class FitResult:
         return replace(self, settings=settings)
 
     def to_json(self) -> dict[str, Any]:
-        """As plain JSON data (no NaN, no infinity); `structures` only where some were compared."""
+        """As plain JSON data (no NaN, no infinity); `structures` and `window` only where there are any."""
         data: dict[str, Any] = written(self)
-        return data if self.structures else {name: entry for name, entry in data.items() if name != "structures"}
+        return {name: entry for name, entry in data.items() if entry or name not in ("structures", "window")}
 
     @classmethod
     def from_json(cls, data: object) -> FitResult:

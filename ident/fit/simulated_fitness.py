@@ -52,16 +52,17 @@ class SimulatedFitness(SimulatedRuns):
     def _errors(self, values: Mapping[str, Array], vectors: int, steps: int) -> Array:
         def of_runs(runs: tuple[Run, ...]) -> Array:
             measured = np.column_stack([run.measured for run in runs])[:, :, None]
-            sums = np.zeros((2, len(runs), vectors))
-            mean = measured.mean(axis=0)
-            for rows, first, last in self.simulation(runs, values, steps).outputs():
+            sums, size = np.zeros((2, len(runs), vectors)), np.std(measured, axis=0)
+            measured = self.shown(runs[0], measured)
+            mean = measured.mean(axis=0) if self.horizon is None else np.zeros_like(size)
+            for rows, first, last in self.outputs_of(self.simulation(runs, values, steps)):
                 residual = measured[first:last] - mean - rows
                 sums[0] += residual.sum(axis=0)
                 sums[1] += np.einsum("nrv,nrv->rv", residual, residual)
             n = len(measured)
             with np.errstate(invalid="ignore", over="ignore"):
-                variance = sums[1] / n - (sums[0] / n) ** 2
-                found = np.sqrt(np.maximum(variance, 0.0)) / np.std(measured, axis=0)
+                variance = sums[1] / n - ((sums[0] / n) ** 2 if self.horizon is None else 0.0)
+                found = np.sqrt(np.maximum(variance, 0.0)) / size
             return np.where(np.isfinite(found), found, np.inf)
 
         todo = list(self.together(vectors))
@@ -85,7 +86,8 @@ class SimulatedFitness(SimulatedRuns):
         self.begin({name: float(value[0]) for name, value in values.items()})
         with np.errstate(over="ignore", invalid="ignore"):
             found = self.settled(values, strides, steps)
-        return local([found[run.id] for run in self.runs], with_means=len({run.output for run in self.runs}) == 1)
+        with_means = self.horizon is None and len({run.output for run in self.runs}) == 1
+        return local([found[run.id] for run in self.runs], with_means)
 
     def accept(self, here: Local) -> None:
         """Go on from the first states that were found at a point."""

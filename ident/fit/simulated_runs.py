@@ -7,8 +7,9 @@ with each step of a fit, by the sensitivities to it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,7 @@ Array = NDArray[np.float64]
 _TOGETHER = 256  # lanes simulated in one go: memory stays small, the cores stay busy
 _BLOCKS = 32  # of a record: see ident.fit.normal_matrices
 _REACH = 1e-3  # of a state's size, for sensitivities to the first state
+_BLOCK = 4096  # samples simulated at a time
 _SETTLING = 3  # rounds in which the first states of a model are found
 
 
@@ -35,13 +37,15 @@ _SETTLING = 3  # rounds in which the first states of a model are found
 class SimulatedRuns:
     """Runs of a matrix as a preset simulates them; `starts` are the first states that are known, by the run's id.
 
-    Values are by the equations' names, SI: numbers, or arrays of v parameter vectors side by side.
+    Values are by the equations' names, SI: numbers, or arrays of v parameter vectors side by side. With a `horizon` (s)
+    the moments are those of windows of that length, each begun where it was measured: see :mod:`ident.fit.windows`.
     """
 
     preset: Preset
     matrix: Matrix
     runs: tuple[Run, ...]
     starts: dict[str, Array] = field(default_factory=dict, kw_only=True)
+    horizon: float | None = field(default=None, kw_only=True)
 
     @property
     def chain(self) -> Chain:
@@ -93,7 +97,9 @@ class SimulatedRuns:
         self, runs: tuple[Run, ...], values: Mapping[str, Array], strides: Array, steps: int
     ) -> list[NormalMatrices]:
         """The moments of runs of one length, from one simulation of all of them."""
-        return normal_matrices_of(runs, self._products(runs, values, strides, steps), len(strides))
+        found = normal_matrices_of(runs, self._products(runs, values, strides, steps), len(strides))
+        # Where each window begins anew no mean is left that would tell an offset.
+        return found if self.horizon is None else [replace(run, offset=0.0, means=run.means[:0]) for run in found]
 
     def _products(self, runs: tuple[Run, ...], values: Mapping[str, Array], strides: Array, steps: int) -> Array:
         """Σ of products of [J, N, 1, r] of runs of one length and of each block of them, (runs, blocks, q, q).
@@ -101,13 +107,41 @@ class SimulatedRuns:
         J are the differences of the vectors behind the first to it, over `strides`.
         """
         released = self.released(runs, values, steps)
-        length = max(16, -(-runs[0].length // _BLOCKS))
+        length, window = max(16, -(-runs[0].length // _BLOCKS)), self.window(runs[0])
         records = np.column_stack([run.measured - run.measured.mean() for run in runs])
+        if window:
+            length, records = -(-length // window) * window, anchored(records, window)
         q = released.shape[1] + 1
         sums = np.zeros((-(-runs[0].length // length), len(runs), q, q))
         for block, (rows, first, last) in enumerate(released.outputs(length)):
-            add_products(rows, records[first:last], q - 2, sums[block])
+            add_products(anchored(rows, window), records[first:last], q - 2, sums[block])
+        if window:
+            sums[..., -2, :] = sums[..., :, -2] = 0.0  # no mean is free: each window begins where it was measured
         return completed(sums, strides).transpose(1, 0, 2, 3)
+
+    def window(self, run: Run) -> int:
+        """The samples of a window, 0 for the whole run."""
+        return 0 if self.horizon is None else max(2, round(self.horizon * run.sample_rate))
+
+    def outputs_of(self, simulation: Simulation) -> Iterator[tuple[Array, int, int]]:
+        """The outputs of a simulation in blocks, as its windows show them: see :meth:`Simulation.outputs`."""
+        window = self.window(simulation.runs[0])
+        length = max(_BLOCK // window, 1) * window if window else _BLOCK
+        for rows, first, last in simulation.outputs(length):
+            yield anchored(rows, window), first, last
+
+    def left(self, run: Run, output: Array) -> Array:
+        """What an output (n, …) leaves of a run: less its mean, which eq. (17) does not see, or over windows."""
+        residual = run.measured.reshape(-1, *[1] * (output.ndim - 1)) - output
+        return residual - residual.mean(axis=0) if self.horizon is None else self.shown(run, residual)
+
+    def shown(self, run: Run, signal: Array) -> Array:
+        """A signal of a run along its first axis, as its windows show it."""
+        return anchored(signal, self.window(run))
+
+    def whole(self) -> Self:
+        """The same over whole runs."""
+        return replace(self, horizon=None, starts=dict(self.starts))
 
     def released(self, runs: tuple[Run, ...], values: Mapping[str, Array], steps: int) -> Simulation:
         """A simulation of vectors and, where runs start moving, of the first with each of its first states moved."""
@@ -224,3 +258,8 @@ class SimulatedRuns:
             if key not in chosen or run.Kp > chosen[key].Kp:
                 chosen[key] = run
         return tuple(chosen.values())
+
+
+def anchored(signal: Array, window: int) -> Array:
+    """A signal (n, …) counted from where each window of so many samples begins; as it is where there is none."""
+    return signal - signal[np.arange(len(signal)) // window * window] if window else signal

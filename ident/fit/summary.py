@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from ident.chain.chain import integrates
 from ident.fit.ends import parted
-from ident.fit.fitness import UNSTABLE, Fitness, Local
+from ident.fit.fitness import UNSTABLE, Fitness
 from ident.fit.multistart import Optimum
 from ident.fit.normal_matrices import NormalMatrices
-from ident.fit.result import Combination, Estimate, FitResult, RunError, Undetermined
+from ident.fit.result import Combination, Estimate, FitResult, RunError, Undetermined, Window
 from ident.fit.search import evolution
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
@@ -33,13 +33,19 @@ def summarise(
     settings: Settings, optimum: Optimum, state: Mapping[str, Any], floors: Floors, seconds: float
 ) -> FitResult:
     """The result of a fit that ended at an optimum; `floors` are the noise floors of the runs."""
-    objective, point, here = optimum.fitness, optimum.point, optimum.here
+    over_windows, point, here = optimum.fitness, optimum.point, optimum.here
+    objective = over_windows.whole() if isinstance(over_windows, SimulatedFitness) else over_windows
     space, matrix, preset = objective.space, objective.matrix, objective.preset
     values = {name: float(found[0]) for name, found in space.values(point[None]).items()}
+    window = _window(over_windows, point)
     verify_runs = matrix.of_use("verify")
     verify = objective.fresh(verify_runs).exact(point, sensitivities=False).runs if verify_runs else ()
     fit_runs = matrix.of_use("fit")
-    own = here.runs if preset.is_linear else objective.fresh(fit_runs).exact(point, sensitivities=False).runs
+    own = (
+        here.runs
+        if preset.is_linear and not window
+        else objective.fresh(fit_runs).exact(point, sensitivities=False).runs
+    )
     fit_errors, verify_errors = _run_errors(fit_runs, own), _run_errors(verify_runs, verify)
     found = covariance(here, point, optimum.as_good)
     strengths = {p.in_equations for p in preset.parameters if p.of}
@@ -76,6 +82,8 @@ def summarise(
             "fit": _mean(fit_runs, fit_errors, "offset"),
             "verify": _mean(verify_runs, verify_errors, "offset"),
         },
+        anchored_error={"fit": _anchored(fit_runs, fit_errors), "verify": _anchored(verify_runs, verify_errors)},
+        window=window,
         noise_floor=floors.of_use(matrix),
         runs=(*fit_errors, *verify_errors),
         method=settings.method,
@@ -85,7 +93,7 @@ def summarise(
         version=version("servoident"),
         data_hash=matrix.data_hash,
         notes=(
-            *_notes(objective, floors, here),
+            *_notes(objective, floors, fit_errors),
             *told,
             *_fast_modes(objective, point, state),
             *_bad_runs(fit_errors, optimum.left_out),
@@ -105,6 +113,24 @@ def _run_errors(runs: Sequence[Run], found: Sequence[NormalMatrices]) -> tuple[R
 
 def _mean(runs: Sequence[Run], found: Sequence[RunError], what: str) -> float | None:
     return float(over_runs([getattr(of_run, what) for of_run in found], runs)) if runs else None
+
+
+def _anchored(runs: Sequence[Run], found: Sequence[RunError]) -> float | None:
+    """RMS(x − x_m)/std(x_m), averaged over runs."""
+    both = [float(np.hypot(run.error, run.offset)) for run in found]
+    return float(over_runs(both, runs)) if runs else None
+
+
+def _window(fitness: Fitness, point: Array) -> Window | None:
+    """The windows of a fit that was made over them, and the errors there."""
+    if not isinstance(fitness, SimulatedFitness) or fitness.horizon is None:
+        return None
+    error: dict[str, float | None] = {"fit": None, "held_out": None, "verify": None}
+    for use in ("fit", "verify"):
+        if runs := fitness.matrix.of_use(use):
+            found = fitness.fresh(runs).exact(point, sensitivities=False).runs
+            error[use] = float(over_runs([min(run.error, UNSTABLE) for run in found], runs))
+    return Window(fitness.horizon, error)
 
 
 def _labels(objective: Fitness) -> dict[str, tuple[str, str]]:
@@ -172,8 +198,9 @@ def _reason(objective: Fitness, name: str, relative: Mapping[str, float]) -> str
     return f"{size}; other parameters make up for it (see what is determined)"
 
 
-def _notes(objective: Fitness, floors: Floors, here: Local) -> list[str]:
-    notes = [*_hardly_explained(objective, here), *objective.matrix.notices]
+def _notes(objective: Fitness, floors: Floors, found: Sequence[RunError]) -> list[str]:
+    error = float(over_runs([run.error for run in found], objective.matrix.of_use("fit")))
+    notes = [*_hardly_explained(objective, error), *objective.matrix.notices]
     if objective.space.scale_free and objective.space.axes:
         notes.append(
             f"Bounds of the preset {objective.preset.name} were not used: they hold for another machine, or piston "
@@ -192,14 +219,14 @@ def _notes(objective: Fitness, floors: Floors, here: Local) -> list[str]:
         notes.append("Noise floor from the spectrum above the command's band, taken as white: a lower bound.")
     if objective.unstable:
         notes.append(f"{objective.unstable} of the tried parameter vectors made the loop unstable; they cost, no more.")
-    if not np.isfinite(here.error):
+    if not error < UNSTABLE:
         notes.append("The model is unstable at these values: its error is reported as 1000.")
     return notes
 
 
-def _hardly_explained(objective: Fitness, here: Local) -> Iterator[str]:
+def _hardly_explained(objective: Fitness, error: float) -> Iterator[str]:
     """What is said first of a fit that is hardly better than no model, with the likely causes."""
-    if not _HARDLY <= here.error < UNSTABLE:
+    if not _HARDLY <= error < UNSTABLE:
         return
     preset, runs = objective.preset, objective.runs
     causes = ["a channel with the wrong sign, or of another run", f"another structure than {preset.name} (--model)"]
@@ -207,7 +234,7 @@ def _hardly_explained(objective: Fitness, here: Local) -> Iterator[str]:
         causes.insert(
             0, "a command that is not zero where the machine stands, which the machine integrates (null_bias)"
         )
-    yield f"The model leaves {percent(here.error)} of the output: hardly better than none. Likely causes: " + (
+    yield f"The model leaves {percent(error)} of the output: hardly better than none. Likely causes: " + (
         "; ".join(causes) + "."
     )
 

@@ -17,6 +17,7 @@ MOTOR = Preset(
     force_scale="m0*W*L*W",
     share_force=("m0", "c0", "Kt"),
     drive_scale="4*U",
+    turns=True,
     of_drive=("Kt",),
     combinations=(
         Combined("Kt / c0", "1/s", "speed for each unit of the command"),

@@ -56,9 +56,9 @@ class Preset:
     every figure of test runs where there are none. `force_scale` is the size of its forces in the words of a scale,
     `motion_scale` that of its motion, the output's where none is stated, `drive_scale` that of its drive signal, the
     motion times the gain where none is stated. `of_drive` are parameters in whose unit a metre is one of the drive
-    signal; it is shown as `drive_unit`, the command's in open loop. Multiplied or divided by
-    one factor, the parameters `share_force` change nothing as long as no force is known: the first is then held by
-    convention. `shown` are the two whose search is drawn.
+    signal; it is shown as `drive_unit`, the command's in open loop. `turns`: the motion of such a machine is an angle
+    as a rule. Multiplied or divided by one factor, the parameters `share_force` change nothing as long as no force is
+    known: the first is then held by convention. `shown` are the two whose search is drawn.
 
     Raises Unusable where an equation or a scale reads what no stage brings and no condition is, where scales read each
     other in a circle, where two stages mean different parameters by one name, and where something is stated of a
@@ -88,6 +88,7 @@ class Preset:
     drive_scale: str = ""
     of_drive: tuple[str, ...] = ()
     drive_unit: str = "m"
+    turns: bool = False
     share_force: tuple[str, ...] = ()
     shown: tuple[str, ...] = ()
 

@@ -33,6 +33,12 @@ def in_question(matrix: Matrix) -> tuple[Preset, ...]:
     return tuple(preset for preset in found if not preset.chain.reads("Kp"))
 
 
+def unusual(preset: Preset, matrix: Matrix) -> bool:
+    """Whether a machine of this kind moves otherwise as a rule: a motor turns, a cylinder goes along a way."""
+    units = {run.units.get(run.output, "1") for run in matrix.runs}
+    return bool(units <= {"m", "m/s"} and preset.turns)
+
+
 def _allows(preset: Preset, run: Run) -> bool:
     if preset.kind == "bench" or run.kind in BENCH:
         return preset.kind == "bench" and run.kind in BENCH

@@ -1,0 +1,105 @@
+"""A machine that integrates disturbances is fitted over windows; the data come from recursions of their own."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ident.diagnosis.family import ModelFamily
+from ident.fit.settings import Settings
+from ident.fit.windows import unforeseen
+from ident.matrix import Actuator, Matrix, Run
+from ident.workflows import diagnose, identify
+
+RATE, GAIN, LAG = 20.0, 0.05, 0.15
+
+
+def cylinder(
+    seed: int, wander: float, dead: float = 0.0, seconds: float = 120.0, uses: tuple[str, ...] = ("fit", "verify")
+) -> Matrix:
+    """LAG q̇ + q = GAIN u, x[k+1] = x[k] + q dt + wander: exact for held commands. The noise is 0.2 mm."""
+    runs = []
+    for number, use in enumerate(uses):
+        random = np.random.default_rng([seed, number])
+        u = np.repeat(random.uniform(-1, 1, int(seconds / 1.5)), int(1.5 * RATE))
+        u[:40] = 0.0
+        driven = np.sign(u) * np.maximum(np.abs(u) - dead, 0.0)
+        decay, x, q, place = np.exp(-1 / RATE / LAG), np.zeros(len(u)), 0.0, 0.0
+        for k in range(len(u) - 1):
+            target = GAIN * driven[k]
+            place += target / RATE + (q - target) * LAG * (1 - decay) + wander * random.standard_normal()
+            q = target + (q - target) * decay
+            x[k + 1] = place
+        x += 2e-4 * random.standard_normal(len(u))
+        channels, units = {"command": u, "displacement": x}, {"command": "V", "displacement": "m"}
+        runs.append(Run(use, "", RATE, channels, units, hold="zoh", use=use))
+    return Matrix(Actuator("CYLINDER"), tuple(runs))
+
+
+def gain(fit) -> float:
+    return fit.values["Kt"] / fit.values["c0"]
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_what_an_integrator_sums_up_does_not_move_its_gain(seed):
+    """Over whole runs the gain is where the disturbances took the record; its own error does not know of them."""
+    matrix = cylinder(seed, wander=1e-3)
+    fit = identify(matrix, Settings(model="motor"))
+    assert gain(fit) == pytest.approx(GAIN, rel=0.08)  # four standard errors
+    assert fit.window is not None
+    assert 0.5 < fit.window.horizon < 3.0
+    assert fit.window.error["fit"] < 0.5 * fit.error["fit"]
+    assert fit.window.error["verify"] < 0.5 * fit.error["verify"]
+
+
+def test_without_disturbances_the_whole_run_is_fitted():
+    fit = identify(cylinder(4, wander=0.0), Settings(model="motor"))
+    assert fit.window is None
+    assert gain(fit) == pytest.approx(GAIN, rel=2e-3)
+    assert "window" not in fit.to_json()
+
+
+def test_the_error_over_windows_is_counted_from_where_each_was_measured():
+    matrix = cylinder(5, wander=1e-3)
+    fit = identify(matrix, Settings(model="motor"))
+    family = ModelFamily.of(matrix, Settings(model="motor"), horizon=fit.window.horizon)
+    start = {family.preset.parameter(name).in_equations: value for name, value in fit.values.items()}
+    refit = family.refit((), start)
+    assert refit.error == pytest.approx(fit.window.error["fit"], rel=1e-3)
+    (run,) = family.runs
+    e = run.measured - refit.fitness.outputs(refit.point)[run.id]
+    n = round(fit.window.horizon * RATE)
+    parts = np.concatenate([e[k : k + n] - e[k] for k in range(0, len(e), n)])
+    assert np.sqrt(np.mean(parts**2)) / run.measured.std() == pytest.approx(refit.error, rel=1e-6)
+
+
+def test_a_dead_zone_is_found_below_the_disturbances():
+    """In whole runs it takes nothing off an error of tens of per cent. Friction of a load without mass is the same."""
+    found = diagnose(cylinder(6, wander=1e-3, dead=0.2), settings=Settings(model="motor"), most=1)
+    assert found.horizon is not None
+    best = found.candidates[0]
+    assert "dead_zone" in {best.effect, *best.group}
+    assert found.ladder[-1].nats > 10
+    width = next(c for c in found.candidates if c.effect == "dead_zone").parameters["dead_zone.half_width"]
+    assert width.value == pytest.approx(0.2, abs=0.03)
+
+
+def test_white_noise_on_a_wandering_level_is_foreseen_but_for_its_innovations():
+    """The local level's steady gain: K² / (1 − K) = q / r; the innovations' variance is r / (1 − K)."""
+    random = np.random.default_rng(7)
+    noise, wander = random.standard_normal(20_000), 0.3 * random.standard_normal(20_000)
+    ratio = 0.09
+    k = (-ratio + np.sqrt(ratio**2 + 4 * ratio)) / 2
+    assert unforeseen(noise + np.cumsum(wander)) == pytest.approx(1 / (1 - k), rel=0.03)
+    assert unforeseen(noise) == pytest.approx(1.0, rel=0.03)
+    assert unforeseen(np.cumsum(wander)) == pytest.approx(0.09, rel=0.03)
+
+
+def test_runs_of_two_lengths_and_rates_have_windows_of_one_time():
+    matrix = cylinder(8, wander=1e-3)
+    first = matrix.runs[0]
+    short = replace(first.part(0, 1500), id="short")
+    fit = identify(replace(matrix, runs=(first, short)), Settings(model="motor"))
+    assert gain(fit) == pytest.approx(GAIN, rel=0.08)
