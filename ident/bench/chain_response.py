@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,7 @@ def chain_response(
 
     `current` is in rated currents, `values` maps what the chain's equations read to arrays (vectors,), SI.
     """
-    shown = replace(chain, outputs={what: SHOWN[what]})
+    shown = _showing(chain, what)
     run = Run("", "", rate, {"command": current, what: current}, output=what, hold=hold, rated_current=1.0)
     at: dict[str, Any] = conditions(run, Actuator("", supply_pressure=supply if np.isfinite(supply) else None)) | dict(
         values
@@ -40,3 +41,9 @@ def chain_response(
     for name, value in (("q1", current[0]), ("x", start)):
         states[..., shown.states.index(name)] = value
     return responses(shown, [run], stacked, steps, states)[:, 0].T
+
+
+@lru_cache(maxsize=64)
+def _showing(chain: Chain, what: str) -> Chain:
+    """The chain with one answer as its output; a chain keeps what is derived from its equations."""
+    return replace(chain, outputs={what: SHOWN[what]})

@@ -7,6 +7,7 @@ slopes of F. N. Fritsch, J. Butland (1984), as scipy's PchipInterpolator has the
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -73,13 +74,28 @@ def interpolated(kind: str, x: Any, *table: Any) -> Any:
 
 def coefficient(kind: str, piece: int, power: int, *table: Any) -> Any:
     """One coefficient of one piece of the table x1, y1, x2, y2, …, for a kernel; power −1 is the slope at the end."""
-    return np.asarray(_coefficients(kind, table)[power if power >= 0 else 4][piece])
+    return _coefficients(kind, _Table(table))[power if power >= 0 else 4][piece]
 
 
-def _coefficients(kind: str, table: Sequence[Any]) -> list[Array]:
-    shape = np.broadcast_shapes(*map(np.shape, table))
-    nodes = np.array([np.broadcast_to(node, shape) for node in table[::2]], dtype=float)
-    values = np.array([np.broadcast_to(value, shape) for value in table[1::2]], dtype=float)
+class _Table:
+    """A table that is known by its numbers: a kernel asks for each coefficient of each piece of it in turn."""
+
+    def __init__(self, entries: Sequence[Any]) -> None:
+        self.entries = [np.asarray(entry, dtype=float) for entry in entries]
+        self.key = tuple((entry.shape, entry.tobytes()) for entry in self.entries)
+
+    def __hash__(self) -> int:
+        return hash(self.key)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Table) and self.key == other.key
+
+
+@lru_cache(maxsize=16)
+def _coefficients(kind: str, table: _Table) -> list[Array]:
+    shape = np.broadcast_shapes(*(entry.shape for entry in table.entries))
+    nodes = np.array([np.broadcast_to(node, shape) for node in table.entries[::2]])
+    values = np.array([np.broadcast_to(value, shape) for value in table.entries[1::2]])
     pieces = piece_coefficients(nodes, values, kind)
     width = np.diff(nodes, axis=0)
     end = pieces[..., 1] + width * (2 * pieces[..., 2] + 3 * width * pieces[..., 3])
