@@ -27,8 +27,19 @@ def addresses(matrix: str, fitted: str) -> dict[str, str]:
 
 @pytest.mark.parametrize("name", ["actuators", "actuator", "upload", "matrix", "jobs", "fit"])
 def test_a_page_fits_desk_and_tablet_in_both_themes_and_shuts_nobody_out(name, page, site, matrix, fitted, screenshots):
+    """Every field has a label and every column of a table a heading."""
     page.goto(site.address + addresses(matrix, fitted)[name])
     expect(page.locator("h1")).to_have_count(1)
+    unlabelled = page.evaluate(
+        """[...document.querySelectorAll("input:not([type=hidden]), select")]
+             .filter((field) => field.labels.length === 0 && !field.ariaLabel).map((field) => field.outerHTML)"""
+    )
+    assert unlabelled == []
+    ragged = page.evaluate(
+        """[...document.querySelectorAll("table")].filter((table) => [...table.tBodies[0].rows]
+             .some((row) => row.cells.length !== table.tHead.rows[0].cells.length)).length"""
+    )
+    assert ragged == 0
     everywhere(page, screenshots, name)
 
 
@@ -83,21 +94,6 @@ def test_what_shuts_somebody_out_is_found(page, site):
     page.evaluate("document.querySelector('label[for=files]').remove()")
     page.evaluate("document.querySelector('h1').remove()")  # only of moderate impact
     assert [barrier.split(":")[0] for barrier in barriers(page)] == ["label", "page-has-heading-one"]
-
-
-@pytest.mark.parametrize("name", ["actuators", "actuator", "upload", "matrix", "jobs", "fit"])
-def test_every_field_has_a_label_and_every_table_column_a_heading(name, page, site, matrix, fitted):
-    page.goto(site.address + addresses(matrix, fitted)[name])
-    unlabelled = page.evaluate(
-        """[...document.querySelectorAll("input:not([type=hidden]), select")]
-             .filter((field) => field.labels.length === 0 && !field.ariaLabel).map((field) => field.outerHTML)"""
-    )
-    assert unlabelled == []
-    ragged = page.evaluate(
-        """[...document.querySelectorAll("table")].filter((table) => [...table.tBodies[0].rows]
-             .some((row) => row.cells.length !== table.tHead.rows[0].cells.length)).length"""
-    )
-    assert ragged == 0
 
 
 def test_the_fit_page_shows_the_stored_parameters_and_errors(page, site, fitted):

@@ -85,6 +85,7 @@ def the_first_page_leads_to_the_comparison(page, site):
 
 
 def test_a_new_user_finds_what_is_missing_adds_it_and_sees_the_error_fall(page, site, watch, screenshots):
+    page.goto(site.address)
     the_first_page_says_what_to_do(page, screenshots)
     before = page.url
     card = story.search(page, screenshots and screenshots / "searching.png")
