@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import pytest
 
 from ident.diagnosis.result import Diagnosis, Verdict
 from ident.diagnosis.rivals import rivals
 from ident.errors import Unusable
+from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.workflows import diagnose, identify
@@ -21,21 +23,33 @@ SI = {"delay": 1.0, "second_lag": 1.0, "stiction": 1e6, "load": 1e9}
 CALLED = {"delay": "command_delay", "load": "spring_load"}  # where the reference has another name
 
 
-def matrix_with(seed: int = SEED, **hidden: float) -> Matrix:
+@cache
+def matrix_with(*names: str) -> Matrix:
     """A set of an actuator with effects that the model does not have."""
-    truth = reference.scattered(seed)._replace(**hidden)
-    return as_matrix(truth, reference.full_set(truth, seed))
+    truth = reference.scattered(SEED)._replace(**{name: HIDDEN[name] for name in names})
+    return as_matrix(truth, reference.full_set(truth, SEED))
 
 
-def diagnosed(matrix: Matrix, most: int = 2) -> Diagnosis:
-    """The diagnosis of what the procedures found."""
-    return diagnose(matrix, identify(matrix, Settings(model="kononykhin", method="gradient")), most=most)
+def fitted(matrix: Matrix, *effects: str) -> FitResult:
+    """What the procedures find."""
+    return identify(matrix, Settings(model="kononykhin", method="gradient", effects=effects))
+
+
+@cache
+def plain(*names: str) -> FitResult:
+    """The fit of a set without the effects that are hidden in it."""
+    return fitted(matrix_with(*names))
+
+
+def diagnosed(*names: str, most: int = 2) -> Diagnosis:
+    """The diagnosis of such a fit."""
+    return diagnose(matrix_with(*names), plain(*names), most=most)
 
 
 @pytest.mark.parametrize("name", HIDDEN)
 def test_a_hidden_effect_is_named_with_its_strength(name):
     """In the first group by the held-out error, alone in the verdict; its own strength within 10 % of the truth."""
-    found = diagnosed(matrix_with(**{name: HIDDEN[name]}))
+    found = diagnosed(name)
     first, called = found.candidates[0], CALLED.get(name, name)
     assert called in {first.effect, *first.group}
     own = next(candidate for candidate in found.candidates if candidate.effect == called)
@@ -51,30 +65,27 @@ def test_a_hidden_effect_is_named_with_its_strength(name):
 @pytest.mark.parametrize("name", HIDDEN)
 def test_an_effect_that_was_named_is_added_to_the_fit_and_the_error_falls_to_the_noise(name, full):
     """Its strength within 5 %; a diagnosis of that fit (with --full of each) finds nothing missing."""
-    matrix, called = matrix_with(**{name: HIDDEN[name]}), CALLED.get(name, name)
-    plain, mended = (
-        identify(matrix, Settings(model="kononykhin", method="gradient", effects=effects))
-        for effects in ((), (called,))
-    )
+    called = CALLED.get(name, name)
+    mended = fitted(matrix_with(name), called)
     (strength,) = (p for n, p in mended.parameters.items() if "." in n and not p.fixed)
     assert strength.value == pytest.approx(HIDDEN[name] * SI[name], rel=0.05)
-    assert mended.error["fit"] < 0.95 * plain.error["fit"]
+    assert mended.error["fit"] < 0.95 * plain(name).error["fit"]
     if name != "load" and not full:
         return
-    again = diagnose(matrix, mended, most=1)
+    again = diagnose(matrix_with(name), mended, most=1)
     assert (again.effects, again.verdict.effects, again.verdict.unexplained) == ((called,), (), False)
 
 
 def test_an_effect_that_only_the_chain_knows_is_fitted_too():
     """A lag of the recorder stands where the second lag is hidden: the same to 3 %, by the chain's own simulation."""
-    matrix = matrix_with(second_lag=HIDDEN["second_lag"])
+    matrix = matrix_with("second_lag")
     few = replace(matrix, runs=tuple(run for i, run in enumerate(matrix.runs) if run.kind == "frequency" or i % 3 == 0))
-    fit = identify(few, Settings(model="kononykhin", method="gradient", effects=("acquisition_lag",)))
+    fit = fitted(few, "acquisition_lag")
     assert fit.parameters["acquisition_lag.time_constant"].value == pytest.approx(HIDDEN["second_lag"], rel=0.03)
 
 
 def test_nothing_is_named_where_nothing_is_hidden():
-    found = diagnosed(matrix_with())
+    found = diagnosed()
     assert found.verdict.effects == ()
     assert not found.verdict.unexplained
     assert not [c for c in found.candidates if c.evidence["beyond_chance"]]
@@ -83,9 +94,10 @@ def test_nothing_is_named_where_nothing_is_hidden():
 
 def test_runs_to_verify_report_only():
     """A sine that no fit saw gets an error of its own, which the missing load shows and the refit takes away."""
-    matrix = matrix_with(load=HIDDEN["load"])
+    matrix = matrix_with("load")
     kept = tuple(replace(run, use="verify") if run.id == "sine-50-0.5" else run for run in matrix.runs)
-    found = diagnosed(replace(matrix, runs=kept), most=1)
+    matrix = replace(matrix, runs=kept)
+    found = diagnose(matrix, fitted(matrix), most=1)
     assert found.verdict.effects == ("spring_load",)
     assert found.ladder[1].error["verify"] < 0.5 * found.ladder[0].error["verify"]
 
