@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import io
 import json
-import subprocess
-import sys
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -16,9 +14,9 @@ from ident.fit.settings import Settings
 from ident.presets import PRESETS
 from ident.readers import read_matrix
 from ident.workflows import identify
+from tests.conftest import Program
 from tests.running import process
 
-ROOT = Path(__file__).parents[2]
 FIT, VERIFY = 0.041, 0.0375  # the authors' own linear model leaves 0.052
 
 
@@ -35,10 +33,10 @@ def by_library(folder: Path) -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def by_command(folder: Path) -> dict[str, Any]:
+def by_command(folder: Path, servoident: Program) -> dict[str, Any]:
     """The fit as `servoident fit MATRIX --json -` writes it."""
-    command = [sys.executable, "-m", "app.cli", "fit", str(folder), "--json", "-"]
-    done = subprocess.run(command, check=True, capture_output=True, text=True, timeout=300, cwd=ROOT)
+    done = servoident("fit", folder, "--json", "-")
+    assert done.returncode == 0, done.stderr
     answer: dict[str, Any] = json.loads(done.stdout)
     return answer
 

@@ -36,7 +36,7 @@ def the_next_run_is_proposed(page):
     assert download.value.suggested_filename.startswith("next-experiment-")
 
 
-def an_own_effect_is_tried(page, watch, folder):
+def an_own_effect_is_tried(page, watch):
     """Refused at its character, then shown as mathematics."""
     own = page.locator("form[data-own]")
     for label, text in (("Name", "overlap"), ("Strength, symbol", "h"), ("Unit", "mm"), ("Largest", "1")):
@@ -49,7 +49,6 @@ def an_own_effect_is_tried(page, watch, folder):
     own.get_by_label("Equation").fill("w = w - clip(w, -h, h)")
     own.get_by_role("button", name="Check").click()
     expect(own.locator("math")).to_have_count(1, timeout=story.LONG)
-    everywhere(page, folder, "own")
 
 
 def the_first_page_says_what_to_do(page, screenshots):
@@ -98,11 +97,11 @@ def test_a_new_user_finds_what_is_missing_adds_it_and_sees_the_error_fall(page, 
     assert card.locator("math").count() == 1
     the_error_falls_at_each_step(page)
     page.get_by_text("others that do not help beyond chance").click()
-    everywhere(page, screenshots, "missing")
     if screenshots:
         page.locator("#missing").screenshot(path=screenshots / "cards.png")
     the_next_run_is_proposed(page)
-    an_own_effect_is_tried(page, watch, screenshots)
+    an_own_effect_is_tried(page, watch)
+    everywhere(page, screenshots, "missing")
 
     first, second = story.add(page, page.locator("#missing"), "coulomb friction, dead zone")
     assert first > 20 * NOISE

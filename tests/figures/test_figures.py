@@ -15,6 +15,7 @@ from ident.workflows import figure
 from tests.figures.conftest import make_comparison
 
 OF_CHAINS = tuple(name for name, drawing in FIGURES.items() if drawing.of == "chain")
+DRAWN: dict[tuple[object, ...], bytes] = {}
 
 
 @pytest.fixture(autouse=True)
@@ -28,7 +29,11 @@ def hand_made(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def drawn(name, matrix, fit, theme="light", **options):
-    return json.loads(render(figure(name, matrix, fit, theme, **options), "json"))
+    """A figure of the one matrix and fit of these tests, drawn once for all that look at it."""
+    key = (name, theme, *sorted(options.items()))
+    if key not in DRAWN:
+        DRAWN[key] = render(figure(name, matrix, fit, theme, **options), "json")
+    return json.loads(DRAWN[key])
 
 
 def every(spec, key):
