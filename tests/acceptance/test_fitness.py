@@ -42,7 +42,7 @@ def test_the_fitness_is_equation_17(kind, hold, seconds, full):
     the full form, fewer in the short one); a model that is unstable at some run is given up by both."""
     records = records_of(seconds, hold)
     fit = [record for record in records if record.trial.use == "fit"]
-    chosen = vectors(kind, 100 if full else 30)
+    chosen = vectors(kind, 100 if full else 10)
     found = program_errors(records, hold, chosen)
     for vector, ours in zip(chosen, found, strict=True):
         theirs = reference.mean_error(fit, reference.Plant(*vector), hold, step=0.5)
