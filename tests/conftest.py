@@ -26,12 +26,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 LONGEST = (
-    "diagnosis/test_diagnose", "browser/test_linked", "bench/test_diagnosis", "app/test_diagnoses",
-    "browser/test_workbench", "browser/test_pages", "faults/test_kill", "test_project", "cli/test_postgresql",
-    "fit/test_recovery", "effects/test_contract", "acceptance/test_identification", "cli/test_commands",
-    "app/test_bench", "cli/test_service_commands", "residuals/test_curves", "figures/test_figures",
-    "bench/test_identification", "bench/test_figures", "effects/test_pairs", "acceptance/test_fitness",
-    "presets/test_machines", "diagnosis/test_structures", "app/test_older_database", "test_additions",
+    "diagnosis/test_diagnose", "browser/test_linked", "browser/test_workbench", "bench/test_diagnosis",
+    "browser/test_pages", "test_project", "presets/test_machines", "app/test_diagnoses", "diagnosis/test_measured",
+    "acceptance/test_identification", "bench/test_model", "browser/test_matrix_page", "effects/test_contract",
+    "app/test_bench", "diagnosis/test_structures", "bench/test_figures", "cli/test_commands", "fit/test_recovery",
+    "bench/test_identification", "residuals/test_curves", "faults/test_kill", "cli/test_postgresql",
+    "fit/test_nonlinear_core", "fit/test_outputs", "fit/test_custom_fit", "figures/test_figures",
+    "acceptance/test_measured", "app/test_contract", "reference/test_nonlinear_reference", "effects/test_pairs",
 )  # fmt: skip
 """Files that take longest, the longest first."""
 
@@ -53,6 +54,25 @@ def _rounding() -> Iterator[None]:
 def full(request: pytest.FixtureRequest) -> bool:
     """True where the full forms were asked for, by ``--full`` or SERVOIDENT_FULL=1."""
     return bool(request.config.getoption("--full")) or os.environ.get("SERVOIDENT_FULL") == "1"
+
+
+FEW = {
+    "backlash", "coulomb_friction", "dead_zone", "gain_asymmetry", "null_bias", "pressure_flow", "quadratic_damping",
+    "sensor_lag",
+}  # fmt: skip
+
+
+@pytest.fixture
+def few_effects(full: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In the short form a diagnosis ranks eight effects of the catalogue, of several places.
+
+    For a chain or an output of one test alone, the kernels of the whole catalogue take half a minute to compile.
+    """
+    if not full:
+        from ident.diagnosis import family
+
+        monkeypatch.setattr(family, "CATALOGUE", tuple(effect for effect in family.CATALOGUE if effect.name in FEW))
+        assert len(family.CATALOGUE) == len(FEW)
 
 
 @pytest.fixture(scope="session")

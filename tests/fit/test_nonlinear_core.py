@@ -25,7 +25,7 @@ def orifice(monkeypatch):
     monkeypatch.setitem(PRESETS, "orifice", made)
 
 
-@pytest.mark.usefixtures("orifice")
+@pytest.mark.usefixtures("orifice", "few_effects")
 def test_a_core_with_a_square_root_is_fitted_compared_and_diagnosed():
     """The reference's flow at this supply: with the nonlinear core the error is the noise, and nothing is missing."""
     data = matrix("pressure_flow", 1 / SUPPLY, seed=7, seconds=0.5, every=4)
