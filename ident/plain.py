@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields, is_dataclass
 from functools import cache
 from types import NoneType, UnionType
-from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 T = TypeVar("T")
 _HUGE = 10**300  # no float reaches whole numbers much beyond
@@ -79,6 +79,8 @@ def _reader(annotation: Any) -> Reader:
     origin, inner = get_origin(annotation), get_args(annotation)
     if origin in (Union, UnionType):
         return _one_of(tuple(inner))
+    if origin is Literal:
+        return _word(inner)
     if origin is tuple:
         return _list(_reader(inner[0])) if inner[-1] is Ellipsis else _row(tuple(map(_reader, inner)))
     if isinstance(origin, type) and issubclass(origin, Mapping):
@@ -86,6 +88,17 @@ def _reader(annotation: Any) -> Reader:
     if is_dataclass(annotation):
         return _dataclass(kind)
     raise TypeError(f"no reader of {annotation}")
+
+
+def _word(known: tuple[Any, ...]) -> Reader:
+    """One of the words that are known."""
+
+    def one(data: Any) -> Any:
+        if data not in known:
+            raise Misfit(f"is none of {', '.join(map(str, known))}")
+        return data
+
+    return one
 
 
 def _at(where: str, reader: Reader, data: Any) -> Any:

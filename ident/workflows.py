@@ -6,7 +6,7 @@ Who serves which kind of model stands in one table here; the rooms below take a 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,7 @@ from ident.custom.definition import preset_with
 from ident.diagnosis import diagnose as diagnosis
 from ident.diagnosis.result import Diagnosis
 from ident.diagnosis.stepwise import MOST, USUAL
+from ident.diagnosis.structures import ChosenFit, chosen
 from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.figures import Chart, Study
@@ -62,9 +63,13 @@ def _served(model: str) -> Served:
 def identification(matrix: Matrix, settings: Settings, report: Report = silent) -> StepwiseFit:
     """The steps of a fit: of test runs, of the records of a bench, or by regression.
 
-    Raises Unusable for settings that no matrix could be fitted with, and where the matrix does not allow the fit.
+    Without a model that which fits is taken, of those that the channels allow. Raises Unusable for settings that no
+    matrix could be fitted with, and where the matrix does not allow the fit.
     """
     check_settings(settings)
+    if not settings.model:
+        matrix, tried = chosen(matrix, report)
+        return ChosenFit(identification(matrix, replace(settings, model=tried[0].machine), report), tried)
     served = _served(settings.model)
     return served.by_method.get(settings.method, served.fitter)(matrix, settings, report)
 

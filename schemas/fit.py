@@ -12,11 +12,12 @@ Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 class Chosen(BaseModel):
     """What may be chosen about a fit; `bounds` and `set` may carry units ("1 ms"), plain numbers are SI.
 
-    `custom` adds effects of one's own: definitions as `POST /custom-effects` takes them.
+    Without a `model` that which fits is taken, of those that the channels allow; with effects, bounds or values the
+    likeliest. `custom` adds effects of one's own: definitions as `POST /custom-effects` takes them.
     """
 
     model_config = ConfigDict(extra="forbid")
-    model: str = "qian2014"
+    model: str | None = None
     effects: list[str] = Field(default_factory=list, max_length=50)
     custom: list[dict[str, Any] | str] = Field(default_factory=list, max_length=10)
     method: str = "ga"

@@ -15,7 +15,7 @@ class FindingView(BaseModel):
 
 
 class RunView(BaseModel):
-    """One run: conditions in SI."""
+    """One run: conditions in SI; `units` are the SI units of its channels."""
 
     id: str
     use: str
@@ -31,6 +31,7 @@ class RunView(BaseModel):
     stiffness: float | None
     damping: float | None
     channels: list[str]
+    units: dict[str, str] = Field(default_factory=lambda: {"command": "m", "displacement": "m"})
 
 
 class MatrixView(BaseModel):

@@ -225,8 +225,8 @@ class VerdictView(BaseModel):
     """
 
     effects: list[str]
-    standing: Literal["found", "stand_in", "contradicted", "nothing"] | None
-    contradicted_by: list[str]
+    standing: Literal["found", "stand_in", "contradicted", "nothing"] | None = None
+    contradicted_by: list[str] = Field(default_factory=list)
     indistinguishable: list[list[str]]
     suspects: list[SuspectView]
     unexplained: bool

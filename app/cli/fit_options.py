@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -58,16 +57,12 @@ def modelled(matrix: Matrix, model: str | None, report: Report) -> tuple[Matrix,
 
     Raises Unusable where the channels allow none.
     """
-    from ident.diagnosis.structures import structures
-    from ident.fit.settings import Settings
+    from ident.diagnosis.structures import chosen
 
     if model is not None:
         return matrix, model, ()
-    first, *others = found = structures(matrix, report)
-    if first.machine == Settings().model and not others:
-        return matrix, first.machine, found
-    said = "; ".join(f"{one.machine} {one.why}" for one in found) if others else first.why
-    return replace(matrix, notices=(f"No model was named: {said}.", *matrix.notices)), first.machine, found
+    matrix, found = chosen(matrix, report)
+    return matrix, found[0].machine, found
 
 
 def settings(

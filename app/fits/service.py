@@ -15,7 +15,8 @@ from app.tables import FitRow
 from ident.custom.definition import definition_of, preset_with
 from ident.fit.identification import check_settings
 from ident.fit.result import FitResult
-from ident.fit.settings import Settings
+from ident.fit.settings import GENERAL, Settings
+from ident.presets.suited import in_question
 from ident.residuals.budget import budget
 from ident.residuals.survey import survey
 from ident.units.quantity import parameter_value
@@ -28,6 +29,7 @@ from schemas.fit import (
     FitView,
     JobView,
 )
+from schemas.matrix import RunView
 from schemas.result import ErrorBudget, FitResultView
 
 
@@ -59,7 +61,7 @@ def submit(context: Context, request: FitRequest, job: str) -> JobView:
     matrix = matrices.find(context, request.matrix)
     if request.parent is not None:
         find(context, request.parent)
-    return queue(context, job, matrix.id, settings_of(request), request.parent)
+    return queue(context, job, matrix.id, settings_of(request, matrices.view(matrix).runs), request.parent)
 
 
 def queue(context: Context, job: str, matrix: str, settings: Settings, parent: str | None) -> JobView:
@@ -68,11 +70,14 @@ def queue(context: Context, job: str, matrix: str, settings: Settings, parent: s
     return jobs.record(context, job, matrix, settings.to_json(), parent, "fit")
 
 
-def settings_of(request: Chosen) -> Settings:
+def settings_of(request: Chosen, runs: Sequence[RunView]) -> Settings:
     """The library's settings: numbers are SI, text may carry a unit. Raises Unusable."""
+    named = request.model or _model(request, runs)
+    if not named:
+        return Settings(model="", method=request.method, seed=request.seed, load=request.load, options=request.options)
     own = tuple(definition_of(definition) for definition in request.custom)
     effects = tuple(dict.fromkeys((*request.effects, *(str(definition["name"]) for definition in own))))
-    model = preset_with(request.model, effects, own)
+    model = preset_with(named, effects, own)
 
     def si(name: str, value: float | str) -> float:
         return parameter_value(value, model.parameter(name).unit, name)
@@ -81,10 +86,17 @@ def settings_of(request: Chosen) -> Settings:
     for name, (lower, upper) in bounds.items():
         model.parameter(name).within(lower, upper)
     return Settings(
-        model=request.model, effects=effects, custom=own, method=request.method, seed=request.seed, bounds=bounds,
+        model=named, effects=effects, custom=own, method=request.method, seed=request.seed, bounds=bounds,
         fixed={name: si(name, value) for name, value in request.set.items()}, load=request.load,
         options=request.options,
     )  # fmt: skip
+
+
+def _model(request: Chosen, runs: Sequence[RunView]) -> str:
+    """The model where none is named: "" where the fit is to choose it, the likeliest where something belongs to it."""
+    likeliest, *others = in_question(runs)
+    belongs = request.effects or request.custom or request.bounds or request.set or request.method not in GENERAL
+    return likeliest.name if belongs or (not others and likeliest.name == Settings().model) else ""
 
 
 def yardsticks(context: Context, fits: Sequence[str]) -> dict[str, Yardstick]:

@@ -195,6 +195,7 @@ def _run(run: Run) -> dict[str, Any]:
         "amplitude": run.amplitude, "mass": specimen.mass if specimen else None,
         "stiffness": specimen.stiffness if specimen else None, "damping": specimen.damping if specimen else None,
         "channels": list(run.channels),
+        "units": dict(run.units),
     }  # fmt: skip
 
 

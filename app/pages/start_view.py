@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
-from ident.fit.settings import METHODS, Settings
-from ident.matrix import BENCH
+from ident.errors import Unusable
+from ident.fit.settings import METHODS
 from ident.presets import PRESETS, Preset
+from ident.presets.suited import in_question
 from ident.stages import PLACES
 from ident.words.engineering import power_of, with_unit
 from ident.words.number import trimmed
@@ -28,10 +30,11 @@ class ModelChoice:
 
 @dataclass(frozen=True)
 class StartView:
-    """The form; the first model is the one proposed, `says` what one button does."""
+    """The form; `says` what one button does: fit the first model or, where it is to be `chosen`, the one that fits."""
 
     matrix: str
     says: str
+    chosen: bool
     models: tuple[ModelChoice, ...]
     methods: tuple[str, ...]
     effects: tuple[tuple[str, tuple[Effect, ...]], ...]
@@ -41,15 +44,16 @@ class StartView:
 
 def start_view(matrix: MatrixView) -> StartView:
     """The form for this matrix."""
-    proposed = _proposed(matrix)
     uses = Counter(run.use for run in matrix.runs)
+    models = _in_question(matrix)
     others = f"{uses['verify']} verify it" if uses["verify"] else "none is left to verify it"
     return StartView(
         matrix=matrix.id,
-        says=f"{PRESETS[proposed].title}, by genetic search: {_counted(uses['fit'])} fit it, {others}.",
-        models=tuple(sorted(map(_model, PRESETS.values()), key=lambda model: model.name != proposed)),
+        says=f"{_proposed(models)}, by genetic search: {_counted(uses['fit'])} fit it, {others}.",
+        chosen=len(models) > 1,
+        models=tuple(map(_model, (*models, *(known for known in PRESETS.values() if known not in models)))),
         methods=METHODS,
-        effects=tuple((place, found) for place in PLACES if (found := tuple(e for e in CATALOGUE if e.place == place))),
+        effects=tuple((place, found) for place in PLACES if (found := tuple(_taken(models, place)))),
         force=any("force" in run.channels for run in matrix.runs),
         runs=tuple((run.id, run.use) for run in matrix.runs),
     )
@@ -59,16 +63,34 @@ def _counted(runs: int) -> str:
     return "1 run" if runs == 1 else f"{runs} runs"
 
 
-def _proposed(matrix: MatrixView) -> str:
-    """A bench's records want the bench's model, a measured drive force the drive's."""
-    of_bench = any(run.kind in BENCH for run in matrix.runs)
-    for model in PRESETS.values():
-        driven = model.driven_by != "command" and all(
-            model.driven_by in run.channels and run.output in model.chain.outputs for run in matrix.runs
-        )
-        if (model.kind == "bench") is of_bench and (driven or of_bench):
-            return model.name
-    return Settings().model
+def _in_question(matrix: MatrixView) -> tuple[Preset, ...]:
+    """The models that the channels allow; where they allow none, all there are: a fit of any says what is missing."""
+    try:
+        return in_question(matrix.runs)
+    except Unusable:
+        return tuple(PRESETS.values())
+
+
+def _taken(models: Sequence[Preset], place: str) -> Iterator[Effect]:
+    """The effects of a place that one of the models takes."""
+    for effect in CATALOGUE:
+        if effect.place == place and any(_takes(model, effect) for model in models):
+            yield effect
+
+
+def _takes(model: Preset, effect: Effect) -> bool:
+    try:
+        model.with_effects((effect,))
+    except Unusable:
+        return False
+    return True
+
+
+def _proposed(models: Sequence[Preset]) -> str:
+    """What one button fits."""
+    if len(models) == 1:
+        return models[0].title
+    return f"The model that fits of {len(models)} that the channels allow, compared on held-out data"
 
 
 def _model(preset: Preset) -> ModelChoice:

@@ -156,8 +156,12 @@ class Diagnosis:
     notes: tuple[str, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
-        """As plain JSON data (no NaN, no infinity)."""
+        """As plain JSON data (no NaN, no infinity); what an earlier version did not tell is left out."""
         data: dict[str, Any] = written(self)
+        if self.horizon is None:
+            del data["horizon"]
+        if self.verdict.standing is None:
+            del data["verdict"]["standing"], data["verdict"]["contradicted_by"]
         return data | {name: data[name] or {} for name in ("budget", "next_experiment")}
 
     @classmethod

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ident.diagnosis.family import ModelFamily
-from ident.fit.identification import Identification, completed
-from ident.fit.result import Structure
+from ident.fit.identification import Identification, StepwiseFit, completed
+from ident.fit.result import FitResult, Structure
+from ident.fit.search import State
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.presets.preset import Preset
@@ -24,7 +25,7 @@ def structures(matrix: Matrix, report: Report = silent) -> tuple[Structure, ...]
 
     Raises Unusable where the channels allow none.
     """
-    models = in_question(matrix)
+    models = in_question(matrix.runs)
     if len(models) == 1:
         why = f"{models[0].name} is driven by {models[0].driven_by} and shows what was recorded"
         return (Structure(models[0].name, {"held_out": None}, len(models[0].parameters), why),)
@@ -32,9 +33,49 @@ def structures(matrix: Matrix, report: Report = silent) -> tuple[Structure, ...]
     tried = [_tried(model, runs, report) for model in models]
     least = min(_error(one) for one in tried)
     good = [one for one in tried if _error(one) <= _WORSE * least]
-    strange = {model.name for model in models if unusual(model, matrix)}
+    strange = {model.name for model in models if unusual(model, matrix.runs)}
     best = min(good, key=lambda one: (one.machine in strange, one.parameters))
     return (_said(best, "the simplest that is not worse"), *(_said(one, "") for one in tried if one is not best))
+
+
+def chosen(matrix: Matrix, report: Report = silent) -> tuple[Matrix, tuple[Structure, ...]]:
+    """The models in question as :func:`structures` has them, and the matrix with a notice that says why the first.
+
+    Nothing is said where it is the usual model and no other could be meant.
+    """
+    first, *others = found = structures(matrix, report)
+    if first.machine == Settings().model and not others:
+        return matrix, found
+    said = "; ".join(f"{one.machine} {one.why}" for one in found) if others else first.why
+    return replace(matrix, notices=(f"No model was named: {said}.", *matrix.notices)), found
+
+
+class ChosenFit:
+    """A fit of the model that was chosen, a step at a time; its result says what else was tried."""
+
+    def __init__(self, fit: StepwiseFit, tried: tuple[Structure, ...]) -> None:
+        self._fit, self._tried = fit, tried
+
+    @property
+    def generations(self) -> int:
+        """Upper bound of the search's generations."""
+        return self._fit.generations
+
+    def start(self) -> State:
+        """The state before the first generation."""
+        return self._fit.start()
+
+    def finished(self, state: State) -> bool:
+        """True when the search is over and only :meth:`finish` remains."""
+        return self._fit.finished(state)
+
+    def advance(self, state: State, generations: int) -> State:
+        """The state after at most `generations` more."""
+        return self._fit.advance(state, generations)
+
+    def finish(self, state: State) -> FitResult:
+        """The result, with the structures."""
+        return replace(self._fit.finish(state), structures=self._tried)
 
 
 def _tried(model: Preset, matrix: Matrix, report: Report) -> Structure:

@@ -150,6 +150,9 @@ class Identification:
 
 def check_settings(settings: Settings) -> None:
     """Raise Unusable for settings that no matrix could be fitted with."""
+    if not settings.model:
+        _check_without_model(settings)
+        return
     preset = preset_with(settings.model, settings.effects, settings.custom)
     if settings.method not in (*GENERAL, *preset.methods):
         raise _not_a_method(settings)
@@ -160,6 +163,16 @@ def check_settings(settings: Settings) -> None:
     for name in (*settings.bounds, *settings.fixed):
         preset.parameter(name)
     options_of(settings, preset)
+
+
+def _check_without_model(settings: Settings) -> None:
+    """Raise Unusable for what belongs to a model where none is named."""
+    for what, given in (("effects", settings.effects), ("bounds", settings.bounds), ("values", settings.fixed)):
+        if given:
+            raise Unusable("no-model", f"{what} are given for no model", "model", "name the model that they belong to")
+    if settings.method not in GENERAL:
+        raise Unusable("unknown-method", f"method {settings.method!r} for no model", "method",
+                       f"choose from {', '.join(GENERAL)}, or name a model")  # fmt: skip
 
 
 def _not_a_method(settings: Settings) -> Unusable:

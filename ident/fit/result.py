@@ -10,6 +10,8 @@ from typing import Any
 from ident.errors import Unusable
 from ident.plain import Misfit, read, written
 
+_WHERE_KNOWN = ("structures", "window", "anchored_error")
+
 
 @dataclass(frozen=True)
 class Estimate:
@@ -129,9 +131,9 @@ class FitResult:
         return replace(self, settings=settings)
 
     def to_json(self) -> dict[str, Any]:
-        """As plain JSON data (no NaN, no infinity); `structures` and `window` only where there are any."""
+        """As plain JSON data (no NaN, no infinity); what is not known of it is left out."""
         data: dict[str, Any] = written(self)
-        return {name: entry for name, entry in data.items() if entry or name not in ("structures", "window")}
+        return {name: entry for name, entry in data.items() if entry or name not in _WHERE_KNOWN}
 
     @classmethod
     def from_json(cls, data: object) -> FitResult:

@@ -20,7 +20,8 @@ class Settings:
 
     `custom` holds the definitions of effects of the user, as plain JSON data: those that `effects` names are in the
     model, like those of the catalogue. `bounds` maps a parameter's name to (lower, upper), `fixed` to the value it is
-    held at, all SI. With every parameter fixed nothing is searched and the result is the error of that model.
+    held at, all SI. With every parameter fixed nothing is searched and the result is the error of that model. Without a
+    `model` ("") that which fits is taken, of those that the channels allow.
     """
 
     model: str = "qian2014"

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from ident.diagnosis.result import Diagnosis
 from ident.diagnosis.standing import contradiction
+from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Run
 from ident.workflows import diagnose
@@ -69,6 +71,14 @@ def test_verify_changes_nothing_that_was_found(other):
     assert alone.verdict.effects == other.verdict.effects
     assert alone.ladder[-1].parameters == other.ladder[-1].parameters
     assert [c.effect for c in alone.candidates] == [c.effect for c in other.candidates]
+
+
+def test_the_standing_is_read_back_and_an_unknown_one_is_refused(other):
+    written = other.to_json()
+    assert Diagnosis.from_json(written).verdict.standing == "contradicted"
+    assert Diagnosis.from_json({**written, "verdict": {"effects": []}}).verdict.standing is None  # of an older version
+    with pytest.raises(Unusable, match="is none of found, stand_in, contradicted, nothing"):
+        Diagnosis.from_json({**written, "verdict": {**written["verdict"], "standing": "sure"}})
 
 
 def test_with_nothing_missing_nothing_stands():

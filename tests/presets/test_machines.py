@@ -75,7 +75,7 @@ def motor(seed: int, half_width: float = 0.0) -> Matrix:
 def test_a_moved_specimen_is_found(seed):
     """Stiffness and damping within 1 % and four standard errors; the error is the noise."""
     matrix = specimen(seed)
-    assert suited(matrix)[0].name == "specimen"
+    assert suited(matrix.runs)[0].name == "specimen"
     fit = identify(matrix, Settings(model="specimen"))
     for name, true in (("kS", 3e3), ("cS", 400.0)):
         found = fit.parameters[name]
@@ -113,7 +113,7 @@ def test_hidden_friction_of_a_specimen_is_named_and_the_error_falls_to_the_noise
 def test_a_motor_is_found(seed):
     """Speed gain and time constant: the mass is one by convention. Units are those of the command."""
     matrix = motor(seed)
-    assert suited(matrix)[0].name == "motor"
+    assert suited(matrix.runs)[0].name == "motor"
     fit = identify(matrix, Settings(model="motor"))
     assert fit.values["Kt"] / fit.values["c0"] == pytest.approx(3.5, rel=0.005)
     assert fit.values["m0"] / fit.values["c0"] == pytest.approx(0.3, rel=0.01)
@@ -144,7 +144,7 @@ def test_a_fit_that_explains_hardly_anything_says_so_first():
 def test_where_no_model_is_driven_by_what_was_recorded_the_channels_are_named():
     run = Run("r", "", RATE, {"force": TIME, "displacement": TIME})
     with pytest.raises(Unusable, match="displacement, force"):
-        suited(Matrix(Actuator(""), (run,)))
+        suited([run])
     with pytest.raises(Unusable, match="use the model specimen"):
         identify(specimen(1), Settings())
 
@@ -155,7 +155,7 @@ def test_where_no_model_is_driven_by_what_was_recorded_the_channels_are_named():
      ("mts_actuator", "qian2014")],
 )  # fmt: skip
 def test_the_model_that_is_taken_for_measured_machines(measured_data, name, model):
-    assert suited(read_matrix(measured_data / name))[0].name == model
+    assert suited(read_matrix(measured_data / name).runs)[0].name == model
 
 
 def test_a_measured_damper_lacks_friction_that_yields_first(measured_data):

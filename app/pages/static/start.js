@@ -41,7 +41,7 @@ form.addEventListener("submit", (event) => {
   event.preventDefault();
   guarded(form.querySelector("button"), form.querySelector("[role=alert]"), async () => {
     const fields = new FormData(form);
-    const wanted = { model: fields.get("model"), method: fields.get("method"), seed: Number(fields.get("seed")) };
+    const wanted = { model: fields.get("model") || null, method: fields.get("method"), seed: Number(fields.get("seed")) };
     wanted.effects = fields.getAll("effects");
     wanted.bounds = bounds(fields);
     if (fields.has("load")) wanted.load = fields.get("load");
