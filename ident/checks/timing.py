@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from ident.checks.finding import Finding
 from ident.checks.response import Response
 from ident.matrix import Run
@@ -12,6 +14,9 @@ JITTER = 0.5  # samples; a time printed with too few digits stays below, a real 
 JITTER_TO_NAME = 0.1  # samples: 0.7 degrees of phase at 80 Hz and 4096 Hz
 SAMPLES_A_CYCLE = 10.0  # of the highest excited frequency; below, the command between samples decides the fit
 POWER = 0.95
+QUICK, SETTLED = 2, 10  # samples behind a step: most of the answer, and all of it
+MOST = 0.8  # of the answer
+STEPS = 3  # at least, to tell it by
 
 
 def timing(run: Run, response: Response | None) -> Iterator[Finding]:
@@ -30,10 +35,33 @@ def timing(run: Run, response: Response | None) -> Iterator[Finding]:
         yield Finding(run.id, "doubt" if run.clock_jitter > JITTER else "note", "clock-jitter", text)
     if response is None or run.time_unit != "s":
         return
+    if run.hold == "zoh":  # between the samples it is known
+        yield from _too_quick(run)
+        return
     highest = response.below(POWER)
     if run.sample_rate < SAMPLES_A_CYCLE * highest:
         text = (
             f"run {run.id} has {run.sample_rate / highest:.2g} samples a cycle at {highest:.3g} Hz, below which "
             f"{POWER:.0%} of the command's power lies; sample at {SAMPLES_A_CYCLE * highest:.3g} Hz or more"
+        )
+        yield Finding(run.id, "doubt", "sample-rate", text)
+
+
+def _too_quick(run: Run) -> Iterator[Finding]:
+    """A held command's steps that are answered within two samples: how the machine goes there is not recorded."""
+    size = np.abs(np.diff(run.command))
+    steps = np.flatnonzero(size > 0.5 * np.std(run.command))
+    alone = [k for k in steps if k + 1 + SETTLED < run.length and not size[k + 1 : k + 1 + SETTLED].any()]
+    x = run.measured
+    whole = np.array([x[k + 1 + SETTLED] - x[k] for k in alone])
+    told = np.abs(whole) > 0.2 * np.std(x)
+    if told.sum() < STEPS:
+        return
+    early = np.array([x[k + 1 + QUICK] - x[k] for k in alone])
+    share = float(np.median(early[told] / whole[told]))
+    if share > MOST:
+        text = (
+            f"run {run.id} answers a step of its command by {share:.0%} within {QUICK} samples: how it goes is not "
+            f"recorded; sample at {4 * run.sample_rate:.3g} Hz or more"
         )
         yield Finding(run.id, "doubt", "sample-rate", text)

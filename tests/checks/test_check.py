@@ -10,7 +10,7 @@ import pytest
 from ident.checks.check import check, describe
 from ident.checks.delay import delay
 from ident.checks.response import respond
-from ident.matrix import Matrix
+from ident.matrix import Actuator, Matrix, Run
 from ident.readers import read_matrix
 
 from .conftest import SPECIMENS, displacement_of, noise_of
@@ -148,6 +148,21 @@ def test_a_sample_rate_too_low_for_the_band_is_found(faulty):
     moved = displacement_of(command, SPECIMENS[0], 5.0, 400.0)
     found = faulty.run(0, sample_rate=400.0, channels={"command": command, "displacement": moved}).found()
     assert found["run-0", "sample-rate"] == "doubt"
+
+
+@pytest.mark.parametrize(("lag", "doubted"), [(1.0, True), (10.0, False)])
+def test_held_steps_are_doubted_only_where_they_are_answered_within_two_samples(lag, doubted):
+    """A held command is known between the samples, whatever its spectrum; how the machine follows must be seen."""
+    command = np.repeat(np.random.default_rng(52).uniform(-1, 1, 60), 40)
+    output, held = np.zeros(len(command)), np.exp(-1 / lag)
+    for k in range(1, len(command)):
+        output[k] = held * output[k - 1] + (1 - held) * command[k - 1]
+    channels = {"command": command, "displacement": output}
+    run = Run("r", "", 10.0, channels, dict.fromkeys(channels, "m"), hold="zoh")
+    found = [
+        finding.code for finding in check(Matrix(Actuator("X"), (run,))) if finding.run and finding.severity != "note"
+    ]
+    assert found == (["sample-rate"] if doubted else [])
 
 
 def test_the_column_of_another_run_is_found(faulty):
