@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from markupsafe import Markup, escape
@@ -96,23 +96,26 @@ def _remarks(entry: Estimate, undetermined: bool) -> Iterator[str]:
 
 
 def error_rows(fit: FitResult) -> tuple[ErrorRow, ...]:
-    """Errors by use, with the noise floor under each."""
-    rows = []
+    """Errors by use, with the noise floor beside each; then those over windows, where the fit was made over some."""
+    over = f" over {quantity(fit.window.horizon, 's')}" if fit.window else ""
+    return (*_errors(fit, fit.error, "", fit.offset), *(_errors(fit, fit.window.error, over, {}) if fit.window else ()))
+
+
+def _errors(
+    fit: FitResult, errors: Mapping[str, float | None], over: str, offset: Mapping[str, float | None]
+) -> Iterator[ErrorRow]:
     for use in ("fit", "held_out", "verify"):
-        error, floor = fit.error.get(use), fit.noise_floor.get(use)
+        error, floor = errors.get(use), fit.noise_floor.get(use)
         if error is None:
             continue
-        rows.append(
-            ErrorRow(
-                use=title(use),
-                runs=sum(run.use == use for run in fit.runs),
-                error=percent_in_print(error),
-                floor="unknown" if floor is None else percent_in_print(floor),
-                ratio=f"{error / floor:.2f} ×" if floor else "–",
-                offset=percent_in_print(fit.offset.get(use), 2),
-            )
+        yield ErrorRow(
+            use=title(use) + over,
+            runs=sum(run.use == use for run in fit.runs),
+            error=percent_in_print(error),
+            floor="unknown" if floor is None else percent_in_print(floor),
+            ratio=f"{error / floor:.2f} ×" if floor else "–",
+            offset=percent_in_print(offset.get(use), 2) if offset else "–",
         )
-    return tuple(rows)
 
 
 def combination_rows(fit: FitResult) -> tuple[Determined, ...]:

@@ -139,7 +139,9 @@ class Identification:
         else:
             members = np.concatenate([np.array(state["best"])[None], np.array(state["population"])])
             found = multistart(self.searched, objective, distinct(members, _CANDIDATES), self.report)
-            if integrates(self.preset.chain, self._runs, self.matrix.actuator):
+            # A measured motion that a specimen integrates is known; only what a command drives is disturbed on its way.
+            driven = self.preset.driven_by == "command"
+            if driven and integrates(self.preset.chain, self._runs, self.matrix.actuator):
                 found = in_windows(found, self.report)
         self.report(Progress("uncertainty", 0, 1, found.here.error))
         seconds = time.monotonic() - self._started

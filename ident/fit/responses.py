@@ -73,7 +73,8 @@ class Sensitivities:
                     Z[:, :-2, first:last] = outputs[:, 1:] - outputs[:, :1]
                     Z[:, -1, first:last] = measured[:, first:last] - outputs[:, 0]
                 Z[:, : len(strides)] /= strides[:, None]
-                Z = fitness.shown(runs[0], Z.transpose(2, 0, 1)).transpose(1, 2, 0).copy()
+                if fitness.horizon is not None:
+                    Z = fitness.shown(runs[0], Z.transpose(2, 0, 1)).transpose(1, 2, 0).copy()
                 gram = Z @ Z.transpose(0, 2, 1)
                 unsound = ~(np.diagonal(gram, axis1=1, axis2=2) < _LARGEST)
             Z[unsound] = 0.0

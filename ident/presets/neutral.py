@@ -22,11 +22,12 @@ def from_neutral(matrix: Matrix, chain: Chain) -> Matrix:
     """The matrix with commands counted from their neutral, where the chain integrates them.
 
     A null bias, a dead zone that is not in the middle and a recorder's zero are one thing there, and any of them makes
-    the model run away. One machine has one neutral: the middle one of the runs that show it.
+    the model run away. One machine has one neutral: the middle one of the runs to fit that show it.
     """
     if not integrates(chain, matrix.runs, matrix.actuator):
         return matrix
-    shown = [value for run in matrix.runs if (value := held(run)) is not None]
+    told = matrix.of_use("fit") or matrix.runs
+    shown = [value for run in told if (value := held(run)) is not None]
     neutral = float(np.median(shown)) if shown else 0.0
     if abs(neutral) <= _FELT * max(float(np.std(run.command)) for run in matrix.runs):
         return matrix
