@@ -122,7 +122,7 @@ def _fit_row(job: JobView, made: ParameterSetView | None) -> FitRow:
         id=job.id,
         state=state,
         state_text=text,
-        model=job.settings.model,
+        model=made.model if made else job.settings.model,
         method=job.settings.method,
         seed=str(job.settings.seed),
         error_fit=made.error_fit if made else None,

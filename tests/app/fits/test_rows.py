@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from xml.dom.minidom import parseString
 
 from app.fits.rows import combination_rows, error_rows, parameter_rows
-from ident.fit.result import Combination, Estimate, FitResult, RunError, Undetermined
+from ident.fit.result import Combination, Estimate, FitResult, RunError, Undetermined, Window
+from ident.words.engineering import quantity
 
 
 def fit() -> FitResult:
@@ -49,3 +51,11 @@ def test_a_combination_is_mathematics_and_what_is_none_is_escaped_text():
     assert parseString(str(formula.expression)).getElementsByTagName("mfrac")
     assert str(odd.expression) == "a ? b"
     assert formula.relative == "4.0 %"
+
+
+def test_errors_over_windows_stand_below_those_of_the_free_run():
+    rows = error_rows(replace(fit(), window=Window(0.85, {"fit": 0.078, "held_out": None, "verify": 0.054})))
+    length = quantity(0.85, "s")
+    assert [row.use for row in rows] == ["fit", "verify", f"fit over {length}", f"verify over {length}"]
+    assert [row.error for row in rows[2:]] == ["7.80 %", "5.40 %"]
+    assert (rows[2].ratio, rows[2].offset) == ("3.90 ×", "–")
