@@ -29,8 +29,7 @@ from ident.presets import Preset
 Array = NDArray[np.float64]
 Outcome = TypeVar("Outcome")
 _TRUSTED = 0.05  # of the error: a doubt below this moves the error by less than 0.13 %
-_SAME = 0.01  # by how much fast and exact errors may differ at the best model
-_BETTER = 0.7  # times the error at which they were compared: then they are again
+_FEW = 100_000  # samples of all runs that are simulated for whole populations
 _IN_BAND = ("blwn", "multisine")  # commands without power beyond their band
 _WRONG = 0.2  # beyond it the fast error can be off by more than half a percent
 
@@ -49,8 +48,6 @@ class LinearFitness:
     basis: Basis
     evaluations: int = 0
     unstable: int = 0
-    reduces: bool = True
-    _checked: float = np.inf
     _reduced: list[ReducedRun] = field(default_factory=list)
     _known: dict[tuple[str, frozenset[str]], tuple[tuple[int, ...], Pattern]] = field(default_factory=dict)
 
@@ -60,17 +57,15 @@ class LinearFitness:
             each(lambda basis: (basis.expansion, basis.check), [self.basis])  # on one thread too
             self._reduced = each(lambda run: reduced(run, self.basis), self.runs)
 
-    def _still_reduces(self, points: Array, errors: Array) -> bool:
-        """Whether the reduced runs say of the best model what the records say; asked again where it is much better.
+    @cached_property
+    def _reduces(self) -> bool:
+        """Whether the reduced runs say what the records say; where not, whole populations are evaluated exactly.
 
-        The steps of a held command have power far beyond the band of any noise; what a model does there is not seen.
+        The steps of a held command have power far beyond the band of any noise: what a model does there is not seen.
+        Long records, and those with a first state of each model's own, would take too long.
         """
-        best = int(np.argmin(errors))
-        if all(run.kind in _IN_BAND for run in self.runs) or errors[best] > _BETTER * self._checked:
-            return self.reduces
-        self._checked = float(errors[best])
-        exact = self.exact(points[best], sensitivities=False).error
-        return bool(abs(exact / errors[best] - 1.0) <= _SAME)
+        long = sum(run.length for run in self.runs) > _FEW or any(run.begins == "moving" for run in self.runs)
+        return long or all(run.kind in _IN_BAND for run in self.runs)
 
     def errors(self, points: Array) -> Array:
         """Eq. (17) averaged over runs at points of the space, (v, p) → (v,), fast.
@@ -79,11 +74,7 @@ class LinearFitness:
         bounds of a known machine, else the leading ones.
         """
         self.evaluations += len(points)
-        errors, doubt = self._fast(points) if self.reduces else (self._one_by_one(points), np.zeros(len(points)))
-        if self.reduces and not self._still_reduces(points, errors):
-            self.reduces = False
-            errors = self._one_by_one(points)
-            doubt[:] = 0.0
+        errors, doubt = self._fast(points) if self._reduces else (self._one_by_one(points), np.zeros(len(points)))
         self.unstable += int(np.sum(errors >= UNSTABLE))
         few = max(1, len(points) // 20)
         leading = np.argsort(errors, kind="stable")[:few]
@@ -197,7 +188,7 @@ class LinearFitness:
 
     def approximate(self, point: Array) -> Local:
         """The objective at one point from the reduced runs, with sensitivities by differences."""
-        if not self.reduces:
+        if not self._reduces:
             return self.exact(point)
         p = len(point)
         signs = np.where(point + STEP > 1.0, -1.0, 1.0)
