@@ -65,7 +65,7 @@ class LinearFitness:
         Long records, and those with a first state of each model's own, would take too long.
         """
         long = sum(run.length for run in self.runs) > _FEW or any(run.begins == "moving" for run in self.runs)
-        return long or all(run.kind in _IN_BAND for run in self.runs)
+        return long or not any(run.hold == "zoh" and run.kind not in _IN_BAND for run in self.runs)
 
     def errors(self, points: Array) -> Array:
         """Eq. (17) averaged over runs at points of the space, (v, p) → (v,), fast.
