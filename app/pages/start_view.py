@@ -74,16 +74,8 @@ def _in_question(matrix: MatrixView) -> tuple[Preset, ...]:
 def _taken(models: Sequence[Preset], place: str) -> Iterator[Effect]:
     """The effects of a place that one of the models takes."""
     for effect in CATALOGUE:
-        if effect.place == place and any(_takes(model, effect) for model in models):
+        if effect.place == place and any(model.takes(effect) for model in models):
             yield effect
-
-
-def _takes(model: Preset, effect: Effect) -> bool:
-    try:
-        model.with_effects((effect,))
-    except Unusable:
-        return False
-    return True
 
 
 def _proposed(models: Sequence[Preset]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -91,7 +91,7 @@ class ModelFamily:
         preset, matrix = PRESETS[given.model].for_matrix(matrix, given.load)
         there = preset.driven_by in MOTIONS or any(run.specimen or "force" in run.channels for run in matrix.runs)
         listed = (*(effect for effect in CATALOGUE if there or not effect.of_specimen), *custom)
-        known = {effect.name: effect for effect in listed if _fits(preset, effect)}
+        known = {effect.name: effect for effect in listed if preset.takes(effect)}
         return cls(preset, matrix, given, excited_band(matrix.of_use("fit")), known, horizon=horizon)
 
     @property
@@ -121,7 +121,11 @@ class ModelFamily:
     @cached_property
     def fit_together(self) -> bool:
         """Whether one chain can hold every effect: in a drive without a valve some close a circle of signals."""
-        return _sound(lambda: self._whole)
+        try:
+            _ = self._whole.chain.signals
+        except Unusable:
+            return False
+        return True
 
     def strength(self, effect: str) -> str:
         """The name of an effect's strength in the equations."""
@@ -203,17 +207,3 @@ class ModelFamily:
             return fitness.exact(point, sensitivities=False).error
 
         return self.refit(effects, min(starts, key=error), _TRIAL)
-
-
-def _fits(preset: Preset, effect: Effect) -> bool:
-    """Whether the model has a place for an effect and no circle of signals with it."""
-    return _sound(lambda: preset.with_effects((effect,)))
-
-
-def _sound(model: Callable[[], Preset]) -> bool:
-    """Whether a model can be made and no signal waits for itself."""
-    try:
-        _ = model().chain.signals
-    except Unusable:
-        return False
-    return True

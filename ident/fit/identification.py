@@ -57,7 +57,8 @@ class Identification:
         band = excited_band(self._runs)
         space = search_space(self.preset, matrix, settings, band)
         self.objective: Fitness
-        if not self.preset.is_linear or integrates(self.preset.chain, self._runs, matrix.actuator):
+        self._integrates = integrates(self.preset.chain, self._runs, matrix.actuator)
+        if not self.preset.is_linear or self._integrates:
             self.objective = SimulatedFitness(self.preset, matrix, self._runs, space, band)
             self.searched: Fitness = self.objective.fresh(shortened(self._runs, _SEARCHED))
         else:
@@ -140,8 +141,7 @@ class Identification:
             members = np.concatenate([np.array(state["best"])[None], np.array(state["population"])])
             found = multistart(self.searched, objective, distinct(members, _CANDIDATES), self.report)
             # A measured motion that a specimen integrates is known; only what a command drives is disturbed on its way.
-            driven = self.preset.driven_by == "command"
-            if driven and integrates(self.preset.chain, self._runs, self.matrix.actuator):
+            if self._integrates and self.preset.driven_by == "command":
                 found = in_windows(found, self.report)
         self.report(Progress("uncertainty", 0, 1, found.here.error))
         seconds = time.monotonic() - self._started

@@ -52,8 +52,8 @@ class LinearFitness:
     _known: dict[tuple[str, frozenset[str]], tuple[tuple[int, ...], Pattern]] = field(default_factory=dict)
 
     def prepare(self) -> None:
-        """Reduce every run; once."""
-        if not self._reduced:
+        """Reduce every run, where that serves; once."""
+        if self._reduces and not self._reduced:
             each(lambda basis: (basis.expansion, basis.check), [self.basis])  # on one thread too
             self._reduced = each(lambda run: reduced(run, self.basis), self.runs)
 

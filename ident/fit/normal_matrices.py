@@ -65,10 +65,9 @@ def errors_of(run: Run, model: LinearModel) -> Array:
         return np.array([normal_matrices(run, part, np.empty(0)).error for part in parts])
     measured, sums = run.measured - run.measured.mean(), np.zeros((2, len(model.B)))
     for rows, first, last in responses(_begun(run, model), run.command):
-        with np.errstate(over="ignore", invalid="ignore"):
-            residual = measured[first:last, None] - rows[: last - first, : len(model.B)]
-            sums += residual.sum(axis=0), np.einsum("nv,nv->v", residual, residual)
-            found = np.sqrt(np.maximum(sums[1] - sums[0] ** 2 / run.length, 0.0) / np.sum(measured**2))
+        residual = measured[first:last, None] - rows[: last - first, : len(model.B)]
+        sums += residual.sum(axis=0), np.einsum("nv,nv->v", residual, residual)
+    found = np.sqrt(np.maximum(sums[1] - sums[0] ** 2 / run.length, 0.0) / np.sum(measured**2))
     return np.where(np.isfinite(found), found, np.inf)
 
 

@@ -7,15 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from ident.chain.chain import Chain, integrates
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
 from ident.words.engineering import with_unit
 
 _FELT = 1e-3  # of the command's standard deviation
-
-
-def held(run: Run) -> float | None:
-    """The value at which the command is held first, while the output stands; None where it is not, or moves."""
-    return float(run.command[0]) if run.stands else None
 
 
 def from_neutral(matrix: Matrix, chain: Chain) -> Matrix:
@@ -24,12 +19,10 @@ def from_neutral(matrix: Matrix, chain: Chain) -> Matrix:
     A null bias, a dead zone that is not in the middle and a recorder's zero are one thing there, and any of them makes
     the model run away. One machine has one neutral: the middle one of the runs to fit that show it.
     """
-    if not integrates(chain, matrix.runs, matrix.actuator):
-        return matrix
-    told = matrix.of_use("fit") or matrix.runs
-    shown = [value for run in told if (value := held(run)) is not None]
+    shown = [run.command[0] for run in matrix.of_use("fit") or matrix.runs if run.stands]
     neutral = float(np.median(shown)) if shown else 0.0
-    if abs(neutral) <= _FELT * max(float(np.std(run.command)) for run in matrix.runs):
+    felt = neutral and abs(neutral) > _FELT * max(float(np.std(run.command)) for run in matrix.runs)
+    if not felt or not integrates(chain, matrix.runs, matrix.actuator):
         return matrix
     text = with_unit(f"{neutral:.4g}", matrix.runs[0].units.get("command", "1"))
     said = (

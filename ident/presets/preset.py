@@ -153,6 +153,14 @@ class Preset:
                 raise unfit(effect)
         return replace(self, chain=self.chain.with_effects(effects))
 
+    def takes(self, effect: Effect) -> bool:
+        """Whether the model has a place for an effect and no circle of signals with it."""
+        try:
+            _ = self.with_effects((effect,)).chain.signals
+        except Unusable:
+            return False
+        return True
+
     def for_matrix(self, matrix: Matrix, load: str = "none") -> tuple[Preset, Matrix]:
         """The model that suits a matrix, and the matrix with what drives that model as its command.
 

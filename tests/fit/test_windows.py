@@ -68,6 +68,7 @@ def test_the_error_over_windows_is_counted_from_where_each_was_measured():
     start = {family.preset.parameter(name).in_equations: value for name, value in fit.values.items()}
     refit = family.refit((), start)
     assert refit.error == pytest.approx(fit.window.error["fit"], rel=1e-3)
+    assert refit.fitness.errors(refit.point[None])[0] == pytest.approx(refit.error, rel=1e-6)
     (run,) = family.runs
     e = run.measured - refit.fitness.outputs(refit.point)[run.id]
     n = round(fit.window.horizon * RATE)
