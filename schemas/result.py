@@ -114,6 +114,13 @@ class StructureView(BaseModel):
     why: str
 
 
+class StartsView(BaseModel):
+    """From how many points the polish started, and how many ended at the error of the fit."""
+
+    tried: int
+    agree: int
+
+
 class WindowView(BaseModel):
     """What a machine that integrates is fitted over, s, and the errors of a model that begins each where it was."""
 
@@ -149,6 +156,7 @@ class FitResultView(BaseModel):
     evolution: list[GenerationView] = Field(default_factory=list)
     anchored_error: Errors = Field(default_factory=dict)
     window: WindowView | None = None
+    starts: StartsView | None = None
     structures: list[StructureView] = Field(default_factory=list)
 
 

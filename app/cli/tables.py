@@ -37,7 +37,9 @@ def show_fit(result: FitResult) -> None:
         console.print(f"not determined: {entry.name}: {entry.reason}", markup=False)
     for note in result.notes:
         console.print(f"note: {note}", markup=False)
-    console.print(f"{result.method}, seed {result.seed}: {result.evaluations} evaluations in {result.seconds:.2f} s")
+    starts = f", {result.starts}" if result.starts else ""
+    made = f"{result.method}, seed {result.seed}: {result.evaluations} evaluations in {result.seconds:.2f} s{starts}"
+    console.print(made, soft_wrap=True)
 
 
 def table(header: Sequence[str], rows: Iterable[Sequence[str]], numbers: Container[str]) -> Table:

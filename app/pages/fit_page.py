@@ -169,6 +169,7 @@ def _facts(fit: FitResult) -> tuple[tuple[str, str], ...]:
     return (
         *settings_facts(dict(fit.settings)),
         ("Evaluations", f"{fit.evaluations:,}".replace(",", "\u2009")),
+        *((("Starts", str(fit.starts)),) if fit.starts else ()),
         ("Computing time", quantity(fit.seconds, "s")),
         ("Version", fit.version),
         ("Data, SHA-256", fit.data_hash),

@@ -146,9 +146,10 @@ def _data(matrix: Matrix) -> Iterator[Block]:
 
 def _provenance(fit: FitResult, citation: str) -> tuple[tuple[str, str], ...]:
     taken = quantity(fit.seconds, "s")
+    starts = f"; {fit.starts}" if fit.starts else ""
     return (
         ("Model", f"{fit.model}: {citation}"),
-        ("Method", f"{fit.method}, seed {fit.seed}, {fit.evaluations} evaluations in {taken}"),
+        ("Method", f"{fit.method}, seed {fit.seed}, {fit.evaluations} evaluations in {taken}{starts}"),
         ("Data, SHA-256", fit.data_hash),
     )
 

@@ -8,7 +8,7 @@ GAIN_ASYMMETRY = Effect(
     place="spool",
     meaning="the flow gain differs between the directions, as with a single-rod cylinder",
     strength=Parameter(
-        "asymmetry", "a", "1", -0.3, 0.3, 0.0, "relative difference of the flow gain of the two directions"
+        "asymmetry", "a", "1", -0.6, 0.6, 0.0, "relative difference of the flow gain of the two directions"
     ),
     texts=("w = w * (1 + a * sgn(w))",),
     units={"w": "m"},

@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 _APART = 0.1  # of an axis, from which on two starts are distinct
 _SAME = 1e-6  # relative difference of errors that is none
+_AGREE = 1e-3  # relative difference of errors of one optimum, found twice
+_BOUND = 1e-6  # of an axis
+SETTLED = 3  # starts that end together
 _NEAR = 0.01  # relative difference of errors that is no reason to prefer one end to another
 
 
@@ -37,6 +40,16 @@ def distinct(points: Iterable[Array], most: int) -> list[Array]:
 def valley(ends: Sequence[End]) -> list[Array]:
     """The points of the ends that have the error of the first: what differs among them the data do not determine."""
     return [end.point for end in ends if end.error <= ends[0].error * (1 + _SAME)]
+
+
+def agreeing(ends: Sequence[End], best: End) -> int:
+    """How many ends have the error of the best."""
+    return sum(bool(end.error <= best.error * (1 + _AGREE)) for end in ends)
+
+
+def at_bound(end: End) -> bool:
+    """Whether an axis ended at its bound."""
+    return bool(np.any((end.point < _BOUND) | (end.point > 1 - _BOUND)))
 
 
 def rivals(ends: Sequence[End]) -> list[End]:

@@ -33,6 +33,7 @@ from ident.progress import Progress, Report, silent
 
 Array = NDArray[np.float64]
 _SEARCHED = 65_536  # samples of a search with effects; the polish takes every sample
+_FURTHER = 16  # members of the first generation that it starts from, too, where those do not settle it
 _CANDIDATES = 5  # distinct vectors of the last generation from which the polish starts
 
 
@@ -81,7 +82,10 @@ class Identification:
         """The state before the first generation."""
         state, space = self.search.start(), self.objective.space
         if self.preset.effects and space.axes:
-            state["linear"] = self._linear_values()
+            linear = self._linear_fit()
+            values = {self.preset.parameter(name).in_equations: value for name, value in linear.values.items()}
+            state["linear"] = {p.in_equations: 0.0 for p in self.preset.parameters if p.of} | values
+            state["horizon"] = linear.window.horizon if linear.window else None
             if self.settings.method == "ga" and self.settings.load == "none":
                 centre = space.point({**space.fixed, **state["linear"]})
                 state = genetic.around(state, centre, self._of_effects)
@@ -96,8 +100,8 @@ class Identification:
     def _linear(self) -> set[str]:
         return {parameter.in_equations for parameter in self.preset.parameters if not parameter.of}
 
-    def _linear_values(self) -> dict[str, float]:
-        """What the model without effects finds, every strength at zero."""
+    def _linear_fit(self) -> FitResult:
+        """What the model without effects finds."""
 
         def own(given: Mapping[str, Any]) -> dict[str, Any]:
             return {name: value for name, value in given.items() if not self.preset.parameter(name).of}
@@ -106,13 +110,16 @@ class Identification:
             self.settings, effects=(), custom=(), method="ga", load="none", options={},
             bounds=own(self.settings.bounds), fixed=own(self.settings.fixed),
         )  # fmt: skip
-        found = completed(Identification(self.matrix, settings, self.report))
-        values = {self.preset.parameter(name).in_equations: value for name, value in found.values.items()}
-        return {p.in_equations: 0.0 for p in self.preset.parameters if p.of} | values
+        return completed(Identification(self.matrix, settings, self.report))
 
     def _take_up(self, state: State) -> None:
         """What every process has to know of a search that may have begun in another."""
-        if isinstance(self.searched, SimulatedFitness) and "linear" in state:
+        if "linear" not in state:
+            return
+        for fitness in (self.searched, self.objective):
+            if isinstance(fitness, SimulatedFitness):
+                fitness.horizon = state.get("horizon")
+        if isinstance(self.searched, SimulatedFitness):
             self.searched.begin(state["linear"])
 
     def finished(self, state: State) -> bool:
@@ -139,9 +146,11 @@ class Identification:
             found = Optimum(objective, point, objective.exact(point), nothing)
         else:
             members = np.concatenate([np.array(state["best"])[None], np.array(state["population"])])
-            found = multistart(self.searched, objective, distinct(members, _CANDIDATES), self.report)
+            # The last of the first generation were drawn over the whole space.
+            drawn = np.array(state["history"][0]["population"])[: -_FURTHER - 1 : -1]
+            found = multistart(self.searched, objective, distinct(members, _CANDIDATES), self.report, drawn)
             # A measured motion that a specimen integrates is known; only what a command drives is disturbed on its way.
-            if self._integrates and self.preset.driven_by == "command":
+            if self._integrates and self.preset.driven_by == "command" and not state.get("horizon"):
                 found = in_windows(found, self.report)
         self.report(Progress("uncertainty", 0, 1, found.here.error))
         seconds = time.monotonic() - self._started

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.fit.ends import End, rivals, valley
+from ident.fit.ends import SETTLED, End, agreeing, at_bound, rivals, valley
 from ident.fit.fitness import Fitness, Local
 from ident.fit.levenberg_marquardt import STEPS, levenberg_marquardt
+from ident.fit.result import Starts
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.matrix import Run
 from ident.progress import Progress, Report
@@ -32,12 +33,19 @@ class Optimum:
     here: Local
     as_good: Array
     ends: tuple[End, ...] = ()
+    starts: Starts | None = None
     left_out: tuple[str, ...] = ()
 
 
-def multistart(searched: Fitness, objective: Fitness, starts: Sequence[Array], report: Report) -> Optimum:
-    """The optimum of `objective` near starts that the fitness `searched` chose."""
-    ends = sorted((_end(searched, start, report, searched.approximate)[0] for start in starts), key=_error)
+def multistart(
+    searched: Fitness, objective: Fitness, starts: Sequence[Array], report: Report, further: Iterable[Array] = ()
+) -> Optimum:
+    """The optimum of `objective` near starts that the fitness `searched` chose.
+
+    Where those do not end together, or end at a bound, `further` starts are tried until three of them agree with the
+    best: a search that narrowed has seen one basin, and the ones beside it lie where it did not look.
+    """
+    ends = sorted(_all_ends(searched, starts, further, report), key=_error)
     first, here = _end(objective, ends[0].point, report)
     others = [_elsewhere(objective, end, report) for end in rivals(ends)[:_RIVALS]]
     least = min([first, *others], key=_error)
@@ -49,7 +57,23 @@ def multistart(searched: Fitness, objective: Fitness, starts: Sequence[Array], r
         objective = replace(objective, runs=tuple(run for run in objective.runs if run.id not in left_out))
         again, here = _end(objective, point, report)
         point = again.point
-    return Optimum(objective, point, here, np.array(valley(ends)), (first, *others), left_out)
+    starts_of = Starts(len(ends), agreeing(ends, ends[0]))
+    return Optimum(objective, point, here, np.array(valley(ends)), (first, *others), starts_of, left_out)
+
+
+def _all_ends(searched: Fitness, starts: Sequence[Array], further: Iterable[Array], report: Report) -> Iterator[End]:
+    """Where every start ends that is worth a try."""
+    ends = [_end(searched, start, report, searched.approximate)[0] for start in starts]
+    yield from ends
+    best = min(ends, key=_error)
+    if agreeing(ends, best) == len(ends) and not at_bound(best):
+        return
+    later: list[End] = []
+    for start in further:
+        later.append(_end(searched, start, report, searched.approximate)[0])
+        yield later[-1]
+        if agreeing(later, min([best, *later], key=_error)) >= SETTLED:
+            return
 
 
 def _end(

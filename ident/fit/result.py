@@ -10,7 +10,7 @@ from typing import Any
 from ident.errors import Unusable
 from ident.plain import Misfit, read, written
 
-_WHERE_KNOWN = ("structures", "window", "anchored_error")
+_WHERE_KNOWN = ("structures", "window", "anchored_error", "starts")
 
 
 @dataclass(frozen=True)
@@ -89,6 +89,17 @@ class Window:
 
 
 @dataclass(frozen=True)
+class Starts:
+    """From how many points of the search the polish started, and how many ended at the error of the fit."""
+
+    tried: int
+    agree: int
+
+    def __str__(self) -> str:
+        return f"{self.agree} of {self.tried} starts agree"
+
+
+@dataclass(frozen=True)
 class FitResult:
     """A finished fit. Errors are eq. (17) averaged over the runs of a use, from the time domain; fractions, not %.
 
@@ -116,6 +127,7 @@ class FitResult:
     settings: Mapping[str, Any] = field(default_factory=dict)
     anchored_error: Mapping[str, float | None] = field(default_factory=dict)
     window: Window | None = None
+    starts: Starts | None = None
     structures: tuple[Structure, ...] = ()
     searched: tuple[str, ...] = ()
     evolution: tuple[Generation, ...] = ()

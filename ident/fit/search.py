@@ -63,7 +63,7 @@ class Search:
         for _ in range(generations):
             if state["done"]:
                 break
-            state = _STEPS[self.method](state, self.errors, dict(self.options))
+            state = state | _STEPS[self.method](state, self.errors, dict(self.options))
             self._tell(len(state["history"]), min(state["history"][-1]["errors"]))
         return state
 

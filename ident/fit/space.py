@@ -153,6 +153,7 @@ def _typical(matrix: Matrix, runs: tuple[Run, ...]) -> dict[str, float]:
         "X": _size(runs, "measured"),
         "U": _size(runs, "command"),
         "L": float(np.mean([run.motion for run in runs])),
+        "M": max(float(np.max(np.abs(run.command))) for run in runs),
     }
     return mean | {"mL": mean["mL"] or 1.0}
 

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.chain.chain import integrates
-from ident.fit.ends import parted
+from ident.fit.ends import SETTLED, parted
 from ident.fit.fitness import UNSTABLE, Fitness
 from ident.fit.multistart import Optimum
 from ident.fit.normal_matrices import NormalMatrices
-from ident.fit.result import Combination, Estimate, FitResult, RunError, Undetermined, Window
+from ident.fit.result import Combination, Estimate, FitResult, RunError, Starts, Undetermined, Window
 from ident.fit.search import evolution
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
@@ -84,6 +84,7 @@ def summarise(
         },
         anchored_error={"fit": _anchored(fit_runs, fit_errors), "verify": _anchored(verify_runs, verify_errors)},
         window=window,
+        starts=optimum.starts,
         noise_floor=floors.of_use(matrix),
         runs=(*fit_errors, *verify_errors),
         method=settings.method,
@@ -95,6 +96,7 @@ def summarise(
         notes=(
             *_notes(objective, floors, fit_errors),
             *told,
+            *_alone(optimum.starts),
             *_fast_modes(objective, point, state),
             *_bad_runs(fit_errors, optimum.left_out),
         ),
@@ -251,6 +253,15 @@ def _fast_modes(objective: Fitness, point: Array, state: Mapping[str, Any]) -> I
     here = float(objective.fastest(objective.space.values(point[None]))[0])
     if here > FASTEST:
         yield f"The fastest mode at these values goes {here:.3g} radians a sample: {roughly}"
+
+
+def _alone(starts: Starts | None) -> Iterator[str]:
+    """What is said of an optimum that hardly a start came to."""
+    if starts and starts.agree < min(SETTLED, starts.tried):
+        yield (
+            f"Of {starts.tried} starts {starts.agree} ended at this error, the others above it: a better optimum may "
+            "have been missed. Another seed starts elsewhere."
+        )
 
 
 def _bad_runs(errors: Sequence[RunError], left_out: tuple[str, ...]) -> Iterator[str]:

@@ -137,7 +137,9 @@ class Preset:
     def _sizes(self) -> dict[str, str]:
         """Of drive signal, motion and force, in the words of a scale: see :func:`scale_of`."""
         motion = self.motion_scale or "X"
-        return {"D": self.drive_scale or f"Kp*{motion}", "L": motion, "F": self.force_scale}
+        drive = self.drive_scale or f"Kp*{motion}"
+        widest = "0.9*M" if OPENED_BY_COMMAND in self.chain.stages else f"0.5*{drive}"
+        return {"D": drive, "Z": widest, "L": motion, "F": self.force_scale}
 
     def with_effects(self, effects: tuple[Effect, ...]) -> Preset:
         """The model with effects added to its chain; their parameters are called effect__parameter in the equations.
@@ -174,6 +176,8 @@ class Preset:
             matrix = replace(matrix, runs=tuple(run.driven_by(preset.driven_by) for run in matrix.runs))
         elif OPENED_BY_COMMAND in preset.chain.stages and matrix.runs:
             preset = replace(preset, drive_unit=matrix.runs[0].units.get("command", "m"))
+        if preset.force_scale and {run.output for run in matrix.runs} == {"load_pressure"}:
+            preset = replace(preset, force_scale="A*X")  # its forces are measured
         if preset.driven_by in MOTIONS:
             matrix = passive(matrix)
         elif preset.kind == "chain" and preset.driven_by == "command":
@@ -251,14 +255,15 @@ def _in_order(found: Mapping[str, T], first: Iterable[str]) -> tuple[T, ...]:
 
 _OWN = ("1", None)
 _SCALES = {
-    "1": _OWN, "Pa": _OWN, "m/s": _OWN, "s": ("1/W", 3.0), "1/s": ("W", 1.0), "m": ("D", 0.5), "1/m": ("1/D", 3.0),
+    "1": _OWN, "Pa": _OWN, "m/s": _OWN, "s": ("1/W", 3.0), "1/s": ("W", 1.0), "m": ("Z", 1.0), "1/m": ("1/D", 3.0),
     "s/m": ("1/(D*W)", 5.0), "N": ("F", 0.3), "N/m^3": ("F/L**3", 0.3), "N*s^2/m^2": ("F/(W*L)**2", 1.0),
     "m/Pa": ("D*A/F", 1.0), "1/Pa": ("A/F", 1.0), "s/m^3": ("1/(A*W*L)", 1.0), "1/m^2": ("1/L**2", 1.0),
     "m^3/(s*Pa^0.5)": ("A*W*L/sqrt(F/A)", 1.0), "m/N": ("L/F", 1.0),
 }  # fmt: skip
 """For a machine of unknown size: what a strength of each unit is measured by, and how much of it is searched.
 
-D, L and F stand for the sizes of its drive signal, its motion and its forces. `_OWN`: within the bounds that it has.
+D, L and F stand for the sizes of its drive signal, its motion and its forces, Z for the widest zone that lets some of
+the drive signal through. `_OWN`: within the bounds that it has.
 """
 
 
@@ -269,11 +274,11 @@ def scale_of(effect: Effect, parameter: Parameter, sizes: Mapping[str, str]) -> 
     """
     text, reach = _SCALES.get(parameter.unit, _OWN)
     if effect.place not in ("valve", "spool") and parameter.unit == "m":
-        text = "L"
+        text, reach = "L", 0.5
     if "F" in text and not sizes["F"]:
         reach = None
     if reach is None:
         return Scale.by_bounds(parameter, logarithmic=False)
-    text = re.sub(r"\b[DLF]\b", lambda found: f"({sizes[found[0]]})", text)
+    text = re.sub(r"\b[DZLF]\b", lambda found: f"({sizes[found[0]]})", text)
     lower = -reach if parameter.lower < 0 else 0.0
     return Scale(parameter.in_equations, text, lower, reach, logarithmic=False)

@@ -50,16 +50,22 @@ ONE_SIDED = {
 }  # fmt: skip
 
 
-def test_each_effect_of_a_measured_crane_helps_on_its_second_half(data):
-    """Free run, RMSE in the record's unit: the linear chain, the effect that a diagnosis adds, two more of choice."""
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_each_effect_of_a_measured_crane_helps_on_its_second_half(data, seed):
+    """Free run, RMSE in the record's unit: the linear chain, the effect that a diagnosis adds, two more of choice.
+
+    With three effects there are many optima, and the search narrows into another than the best.
+    """
     matrix = read_matrix(data / "crane_actuator")
     chains = ((), ("gain_asymmetry",), ("gain_asymmetry", "dead_zone", "one_sided_limit"))
     found = []
     for effects in chains:
         custom = (ONE_SIDED,) if "one_sided_limit" in effects else ()
-        fit = identify(matrix, Settings(model="open_valve", effects=effects, custom=custom))
+        fit = identify(matrix, Settings(model="open_valve", effects=effects, custom=custom, seed=seed))
         (second,) = (run for run in compare(matrix, fit).runs if run.run.use == "verify")
         found.append(float(np.sqrt(np.mean((second.run.measured - second.modelled) ** 2))))
     assert found[0] == pytest.approx(1.01, abs=0.05)
     assert found[1] < 0.85
     assert found[2] < 0.7
+    assert fit.starts is not None
+    assert fit.starts.agree >= 3

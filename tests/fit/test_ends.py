@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
@@ -10,6 +10,7 @@ import pytest
 from ident.fit.ends import End, distinct, parted, rivals, valley
 from ident.fit.fitness import Local
 from ident.fit.multistart import multistart
+from ident.fit.result import Starts
 from ident.fit.space import Axis, Space
 from ident.progress import silent
 
@@ -18,16 +19,17 @@ LABEL = {"a": "a", "b": "b/A^2"}
 
 @dataclass
 class Wells:
-    """A fitness of one parameter with two wells, at 0.2 and 0.8; `depths` are their errors, as searched and exactly."""
+    """A fitness of one parameter with two wells at `places`; `depths` are their errors, as searched and exactly."""
 
     depths: tuple[float, float]
     searched: tuple[float, float]
     space: Space = field(default_factory=lambda: Space((Axis("a", 0.0, 1.0, False),), ("a",), {}, {}))
     runs: tuple[()] = ()
     evaluations: int = 0
+    places: tuple[float, float] = (0.2, 0.8)
 
     def _at(self, point: np.ndarray, depths: tuple[float, float]) -> Local:
-        place, depth = (0.2, depths[0]) if point[0] < 0.5 else (0.8, depths[1])
+        place, depth = list(zip(self.places, depths, strict=True))[int(point[0] >= 0.5)]
         off = point - place
         self.evaluations += 1
         return Local(depth + 50 * float(off @ off), 100 * off, 100 * np.eye(1), ())
@@ -42,12 +44,37 @@ class Wells:
         """Nothing is to be remembered."""
 
     def fresh(self, runs: tuple[()]) -> Wells:
-        return Wells(self.depths, self.searched, self.space, runs)
+        return replace(self, runs=runs, evaluations=0)
 
 
 def found(depths: tuple[float, float], searched: tuple[float, float]):
     fitness = Wells(depths, searched)
     return multistart(fitness, fitness, [np.array([0.3]), np.array([0.7])], silent)
+
+
+def tried_from(*starts: float, depths: tuple[float, float] = (1.0, 0.4)):
+    """Polished from these and, where they do not settle it, from both wells in turn."""
+    fitness = Wells(depths, depths)
+    further = [np.array([place]) for place in (0.1, 0.9, 0.3, 0.7, 0.15, 0.95, 0.25, 0.75)]
+    return multistart(fitness, fitness, [np.array([start]) for start in starts], silent, further)
+
+
+def test_starts_that_disagree_are_begun_again_until_three_agree_with_the_best():
+    optimum = tried_from(0.3, 0.7)
+    assert optimum.starts == Starts(tried=8, agree=4)  # the sixth of the further ones is the third in the lower well
+    assert optimum.point == pytest.approx([0.8])
+
+
+def test_starts_that_agree_within_the_bounds_are_enough():
+    assert tried_from(0.1, 0.3).starts == Starts(tried=2, agree=2)
+
+
+def test_an_optimum_at_a_bound_is_begun_again():
+    """The first well lies at the bound; every start of the search ended there."""
+    fitness = Wells((1.0, 0.4), (1.0, 0.4), places=(0.0, 0.8))
+    optimum = multistart(fitness, fitness, [np.array([0.1])], silent, [np.array([0.7])])
+    assert optimum.starts == Starts(tried=2, agree=1)
+    assert optimum.point == pytest.approx([0.8])
 
 
 def said(ends, deviation: float = 0.1) -> list[str]:

@@ -54,6 +54,25 @@ def test_what_an_integrator_sums_up_does_not_move_its_gain(seed):
     assert fit.window.error["verify"] < 0.5 * fit.error["verify"]
 
 
+@pytest.mark.parametrize("dead", [0.15, 0.6])
+def test_a_fit_with_an_effect_is_made_over_the_windows_of_the_fit_without(dead):
+    """One objective from the search to the result, and that of a diagnosis; a dead zone may take most of the command.
+
+    In V of a command of 1 V at most: half of its deviation was the widest that a search allowed.
+    """
+    matrix = cylinder(6, wander=1e-3, dead=dead)
+    plain = identify(matrix, Settings(model="motor"))
+    fit = identify(matrix, Settings(model="motor", effects=("dead_zone",)))
+    assert fit.window is not None
+    assert plain.window is not None
+    assert fit.window.horizon == plain.window.horizon
+    found = fit.parameters["dead_zone.half_width"]
+    assert found.value == pytest.approx(dead, abs=0.04)
+    assert found.upper == pytest.approx(0.9 * max(np.abs(matrix.runs[0].command)))
+    assert fit.window.error["fit"] == pytest.approx(min(fit.evolution[-1].errors), rel=0.05)
+    assert fit.window.error["fit"] <= min(fit.evolution[-1].errors)
+
+
 def test_without_disturbances_the_whole_run_is_fitted():
     fit = identify(cylinder(4, wander=0.0), Settings(model="motor"))
     assert fit.window is None
