@@ -16,3 +16,7 @@ class Unusable(ValueError):
 
 class Cancelled(Exception):
     """Raised by a caller's progress report to stop long work; nothing is stored."""
+
+
+class TimeIsUp(Exception):
+    """Raised by the course of a diagnosis when its time is over; what was found so far is the result."""

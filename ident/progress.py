@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Expected:
-    """An effect, and the error (eq. 17) that the model is expected to have with it, before any refit."""
+    """An effect, and the error (eq. 17) that the model has with it, or is expected to have before any refit."""
 
     effect: str
     error: float
@@ -19,7 +19,8 @@ class Progress:
     """One report of long work.
 
     `stage` is a phrase for the user ("search", "polish"), `done` of `total` its steps, `error` the best value of
-    eq. (17) so far, where there is one. `expected` is a diagnosis's first sight: the effects that promise most, first.
+    eq. (17) so far, where there is one. `expected` is a diagnosis's first sight: the effects that promise most, first;
+    `added` are those that it has added so far, each with the held-out error since.
     """
 
     stage: str
@@ -27,6 +28,7 @@ class Progress:
     total: int
     error: float | None = None
     expected: tuple[Expected, ...] = ()
+    added: tuple[Expected, ...] = ()
 
 
 Report = Callable[[Progress], None]

@@ -19,6 +19,7 @@ from ident.comparison import compare as comparison
 from ident.comparison.compare import Comparison, Simulator
 from ident.custom.definition import preset_with
 from ident.diagnosis import diagnose as diagnosis
+from ident.diagnosis.course import Course
 from ident.diagnosis.result import Diagnosis
 from ident.diagnosis.stepwise import MOST, USUAL
 from ident.diagnosis.structures import ChosenFit, chosen
@@ -35,7 +36,7 @@ from ident.progress import Report, silent
 from ident.readers import read_matrix
 
 Fitter = Callable[[Matrix, Settings, Report], StepwiseFit]
-Diagnoser = Callable[[Matrix, FitResult, int, Sequence[Effect], Report], Diagnosis]
+Diagnoser = Callable[[Matrix, FitResult, Sequence[Effect], Course], Diagnosis]
 
 
 @dataclass(frozen=True)
@@ -98,18 +99,23 @@ def figure(
 
 def diagnose(
     matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None, most: int = USUAL,
-    custom: Sequence[Effect] = (), report: Report = silent,
+    custom: Sequence[Effect] = (), report: Report = silent, seconds: float | None = None,
+    found: Callable[[Diagnosis], None] | None = None,
 ) -> Diagnosis:  # fmt: skip
     """Rank what the fitted model lacks, add what helps beyond chance, and say what is left.
 
     Without a `fit` the model of `settings` is fitted first. `most` is the largest number of effects to add, `custom`
-    are effects beside the catalogue's. Verify runs only report. Raises Unusable where matrix, fit or settings do not
-    go together.
+    are effects beside the catalogue's. Verify runs only report. After `seconds`, that of a fit included, nothing more
+    is tried; `found` is told of the diagnosis as it stands after each effect. Raises Unusable where matrix, fit or
+    settings do not go together.
     """
     if not 0 <= most <= MOST:
         raise Unusable("bad-option", f"{most} effects", "max-effects", f"give 0 to {MOST}")
+    if seconds is not None and not seconds > 0:
+        raise Unusable("bad-option", f"{seconds:g} s", "time", "give the seconds that it may take")
+    course = Course(most, seconds, report, found)
     fit = fit or identify(matrix, settings, report)
-    return _served(fit.model).diagnoser(matrix, fit, most, custom, report)
+    return _served(fit.model).diagnoser(matrix, fit, custom, course)
 
 
 @dataclass(frozen=True)

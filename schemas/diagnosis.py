@@ -9,12 +9,14 @@ from schemas.result import DiagnosisResult
 class DiagnosisRequest(Chosen):
     """A diagnosis to be queued: of a stored `fit`, or of a `matrix`, whose fit with these settings is made first.
 
-    The effects that `custom` defines are ranked beside those of the catalogue.
+    The effects that `custom` defines are ranked beside those of the catalogue. After `time` seconds nothing more is
+    tried: what was found by then is the diagnosis.
     """
 
     fit: str | None = None
     matrix: str | None = None
     max_effects: int | None = Field(default=None, ge=0)
+    time: float | None = Field(default=None, gt=0)
 
 
 class DiagnosisView(DiagnosisResult):

@@ -48,7 +48,7 @@ class EffectsRequest(BaseModel):
 
 
 class ExpectedView(BaseModel):
-    """An effect, and the error (eq. 17) that a fit is expected to have with it, before any refit."""
+    """An effect, and the error (eq. 17) that a fit has with it, or is expected to have before any refit."""
 
     effect: str
     error: float
@@ -57,7 +57,8 @@ class ExpectedView(BaseModel):
 class ProgressView(BaseModel):
     """Where a job is: `done` of `total` steps of `stage`; `error` is the best eq. (17) so far.
 
-    `expected` is what a diagnosis sees at once: the effects that promise most, first, while it confirms them.
+    `expected` is what a diagnosis sees at once: the effects that promise most, first, while it confirms them; `added`
+    are those that it has added so far, each with the held-out error since.
     """
 
     stage: str = ""
@@ -65,12 +66,14 @@ class ProgressView(BaseModel):
     total: int = 0
     error: float | None = None
     expected: list[ExpectedView] = Field(default_factory=list)
+    added: list[ExpectedView] = Field(default_factory=list)
 
 
 class JobSettings(SettingsView):
-    """What a job was asked for: the fit, and of a diagnosis how much to add at most and a search made anew."""
+    """What a job was asked for: the fit, and of a diagnosis what to add at most, its time, and a search made anew."""
 
     max_effects: int | None = None
+    time: float | None = None
     reseed: int | None = None
 
 

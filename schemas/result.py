@@ -288,6 +288,7 @@ class DiagnosisResult(BaseModel):
     candidates: list[CandidateView]
     ladder: list[RungView]
     verdict: VerdictView
+    complete: bool = True
     next_experiment: ProposalView | Nothing
     settings: SettingsView
     seed: int

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -25,11 +28,21 @@ from app.cli.fit_options import (
 from app.cli.given import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
-from ident.errors import Unusable
+from ident.errors import Cancelled, Unusable
 
 if TYPE_CHECKING:
+    from ident.diagnosis.result import Diagnosis
     from ident.fit.result import FitResult
     from ident.fit.settings import Settings
+
+
+Limit = Annotated[
+    float | None, typer.Option(metavar="S", help="Seconds after which nothing more is tried: what was found is told.")
+]
+Target = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="Write the diagnosis as JSON, from its first step on; - is stdout, at its end."),
+]
 
 
 def diagnose(
@@ -49,7 +62,8 @@ def diagnose(
         int | None, typer.Option(min=0, metavar="N", help="Largest number of effects that may be added.")
     ] = None,
     seed: Seed = 0,
-    json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the diagnosis as JSON; - is stdout.")] = None,
+    time: Limit = None,
+    json: Target = None,
 ) -> None:
     """Find what a model lacks. Effects are ranked by their error on held-out data, and added while they help."""
     from app.cli.arguments import definitions
@@ -60,6 +74,7 @@ def diagnose(
     from ident.workflows import diagnose as diagnosed
 
     check_target(json)
+    begun = monotonic()
     with shown() as report:
         read, named, _ = modelled(read_matrix(matrix), model if fit is None else model or Settings().model, report)
     chosen = settings(named, effect, method, bounds, set_, load, seed, option)
@@ -71,13 +86,40 @@ def diagnose(
     most = USUAL if max_effects is None else max_effects
     effects = tuple(read_effect(definition, model=named) for definition in own)
     with shown() as report:
-        found = diagnosed(read, given, replace(chosen, custom=own), most, effects, report)
-    if json is not None:
-        write_json(found.to_json(), json)
-    if json != STANDARD_OUTPUT:
+        left = None if time is None else max(time - (monotonic() - begun), 1e-3)
+        with followed(json) as follow:
+            found = diagnosed(read, given, replace(chosen, custom=own), most, effects, report, left, follow)
+    _tell(found, json)
+
+
+def _tell(found: Diagnosis, target: Path | None) -> None:
+    if target is not None:
+        write_json(found.to_json(), target)
+    if target != STANDARD_OUTPUT:
         from app.cli.diagnosis_tables import show_diagnosis
 
         show_diagnosis(found)
+
+
+@contextmanager
+def followed(target: Path | None) -> Iterator[Callable[[Diagnosis], None] | None]:
+    """What writes a diagnosis to a file from its first step on; work that is stopped says that it is there."""
+    if target is None or target == STANDARD_OUTPUT:
+        yield None
+        return
+    steps = 0
+
+    def write(found: Diagnosis) -> None:
+        nonlocal steps
+        write_json(found.to_json(), target)
+        steps += 1
+
+    try:
+        yield write
+    except (KeyboardInterrupt, Cancelled):
+        if not steps:
+            raise
+        raise Cancelled(f"{target} holds what was found until then") from None
 
 
 def given_fit(path: Path, chosen: Settings) -> FitResult:

@@ -40,6 +40,8 @@ def silence() -> None:
 def explain(error: BaseException) -> tuple[int, str]:
     """The exit status of `error` and its line: what, where, and the remedy."""
     match error:
+        case Cancelled() if error.args:
+            return INTERRUPTED, f"interrupted; {error}"
         case KeyboardInterrupt() | Cancelled():
             return INTERRUPTED, "interrupted; nothing was written"
         case Unusable():

@@ -22,15 +22,15 @@ def shown() -> Iterator[Report]:
     from ident.simulation.compiled import watching
 
     with bar() if sys.stderr.isatty() else nullcontext((Lines(), _plain)) as (show, say):
-        told = False
+        told: set[str] = set()
 
         def report(progress: Progress) -> None:
-            nonlocal told
             heed()
             show(progress)
-            if progress.expected and not told:
-                told = True
-                say(first_sight(progress))
+            for line in (first_sight(progress), added(progress)):
+                if line and line not in told:
+                    told.add(line)
+                    say(line)
 
         with watching(lambda: report(COMPILING)):
             yield report
@@ -85,9 +85,19 @@ def _plain(line: str) -> None:
 
 
 def first_sight(progress: Progress) -> str:
-    """What a diagnosis sees before it confirms anything, in a line."""
+    """What a diagnosis sees before it confirms anything, in a line; nothing of other work."""
+    if not progress.expected:
+        return ""
     seen = ", ".join(f"{one.effect} {percent(one.error)}" for one in progress.expected)
     return f"at first sight, before any refit, the error would be: {seen}"
+
+
+def added(progress: Progress) -> str:
+    """What a diagnosis has added so far, in a line; nothing before."""
+    if not progress.added:
+        return ""
+    steps = ", ".join(f"{one.effect} {percent(one.error)}" for one in progress.added)
+    return f"added so far, with the error on held-out data: {steps}"
 
 
 def error_text(progress: Progress) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from time import monotonic
 
 from sqlalchemy.orm import Session
 
@@ -16,8 +17,9 @@ from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.workflows import diagnose, identify
 
-OWN = ("max_effects", "reseed")
+OWN = ("max_effects", "time", "reseed")
 """What the settings of a diagnosis hold beside those of its fit."""
+_LEAST = 1e-3  # s that are left to a diagnosis whose fit took all of its time
 
 
 class DiagnosisWork(Work):
@@ -28,7 +30,7 @@ class DiagnosisWork(Work):
 
     def finish(self, state: State) -> State:  # noqa: ARG002  nothing comes before it
         """The diagnosis, and the fit that was made for it."""
-        chosen, matrix, report = self.task.settings, self.task.matrix, self.task.report
+        chosen, matrix, report, begun = self.task.settings, self.task.matrix, self.task.report, monotonic()
         given = self._given()
         if given is None:
             settings = Settings.from_json({name: value for name, value in chosen.items() if name not in OWN})
@@ -37,7 +39,9 @@ class DiagnosisWork(Work):
             given = given.with_custom(chosen.get("custom", ()))
             fit = given if chosen["reseed"] is None else _reseeded(given, chosen["reseed"])
         own = tuple(read_effect(definition, model=fit.model) for definition in fit.settings.get("custom", ()))
-        found = diagnose(matrix, fit, most=chosen["max_effects"], custom=own, report=report)
+        seconds = chosen.get("time")
+        left = None if seconds is None else max(seconds - (monotonic() - begun), _LEAST)
+        found = diagnose(matrix, fit, most=chosen["max_effects"], custom=own, report=report, seconds=left)
         return {"diagnosis": found.to_json(), "fit": None if given else fit.to_json()}
 
     def _given(self) -> FitResult | None:

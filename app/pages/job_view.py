@@ -28,6 +28,7 @@ class JobPageView:
     total: int
     error: float | None
     expected: tuple[tuple[str, float], ...]
+    added: tuple[tuple[str, float], ...]
     problem: str
     facts: tuple[tuple[str, str], ...]
     made: str
@@ -49,6 +50,7 @@ def job_page(job: JobView) -> JobPageView:
         total=job.progress.total,
         error=job.progress.error,
         expected=tuple((title(one.effect), one.error) for one in job.progress.expected),
+        added=tuple((title(one.effect), one.error) for one in job.progress.added),
         problem=_problem(job.problem),
         facts=settings_facts(job.settings.model_dump()),
         made=job.created_at,
@@ -57,7 +59,7 @@ def job_page(job: JobView) -> JobPageView:
 
 def settings_facts(settings: dict[str, Any]) -> tuple[tuple[str, str], ...]:
     """What the user chose, as far as it is not empty."""
-    names = ("model", "effects", "method", "seed", "bounds", "fixed", "load", "options", "max_effects")
+    names = ("model", "effects", "method", "seed", "bounds", "fixed", "load", "options", "max_effects", "time")
     chosen = ((name, settings.get(name)) for name in names)
     return tuple(
         (title(name).capitalize(), _words(value)) for name, value in chosen if value not in (None, [], {}, "none")

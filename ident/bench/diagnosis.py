@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from importlib.metadata import version
 from typing import Any
 
@@ -13,33 +13,33 @@ from ident.bench.missing import Candidate, Refit, Refitter
 from ident.bench.outputs import errors_of, model_of, noise_floor
 from ident.bench.records import Record, bench_set
 from ident.comparison.compare import fitted
+from ident.diagnosis.course import Course
 from ident.diagnosis.result import Baseline, Diagnosis, Found, Ranked, Rung, Verdict
 from ident.diagnosis.significance import Improvement, improvement
 from ident.diagnosis.standing import standing
 from ident.diagnosis.words import verdict_text, why_of_gain
 from ident.effects.effect import Effect
+from ident.errors import TimeIsUp
 from ident.fit.result import FitResult
 from ident.matrix import Matrix
 from ident.presets import preset
-from ident.progress import Progress, Report, silent
+from ident.progress import Expected, Progress
 
 _NEAR_FLOOR = 1.25
 """Times the converter's part of the error, up to which an error is its noise: a reading that rests is off for long."""
 
 
-def diagnose_bench(
-    matrix: Matrix, fit: FitResult, most: int, custom: Sequence[Effect] = (), report: Report = silent
-) -> Diagnosis:
+def diagnose_bench(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], course: Course) -> Diagnosis:
     """Rank the effects of a bench and the user's own, add what helps beyond chance, and say what is left."""
-    return BenchDiagnoser(matrix, fit, most, tuple(custom), report).diagnosis()
+    return BenchDiagnoser(matrix, fit, tuple(custom), course).diagnosis()
 
 
 class BenchDiagnoser:
     """One diagnosis of bench records."""
 
-    def __init__(self, matrix: Matrix, fit: FitResult, most: int, custom: tuple[Effect, ...], report: Report) -> None:
-        self.matrix, self.fit, self.most, self.report = matrix, fit, most, report
-        self.begun = time.monotonic()
+    def __init__(self, matrix: Matrix, fit: FitResult, custom: tuple[Effect, ...], course: Course) -> None:
+        self.matrix, self.fit, self.course = matrix, fit, course
+        self.complete = False
         bench = bench_set(matrix)
         self.records = {use: tuple(r for r in bench.records if r.use == use) for use in ("fit", "verify")}
         self.preset, _, values = fitted(fit, matrix)
@@ -49,45 +49,59 @@ class BenchDiagnoser:
 
     def diagnosis(self) -> Diagnosis:
         """The whole of it."""
-        base = self.refitter.base
-        first, steps = self._added(base)
+        first: list[Candidate] = []
+        steps = [self.refitter.base]
+        with suppress(TimeIsUp):
+            self._add(first, steps)
+            self.complete = True
+        self.course.conclude()
+        return self._said(first, steps)
+
+    def _said(self, first: list[Candidate], steps: list[Refit]) -> Diagnosis:
+        """What was found so far, by the first ranking and the refits from the fitted model on."""
+        base = steps[0]
         found, group = steps[-1], _alike(first)
         groups = (group,) if len(group) > 1 and group[0] in found.effects else ()
         errors, before = self._errors(found), self._errors(base)
         unexplained = bool(self.floor["fit"] and (errors["fit"] or 0.0) > _NEAR_FLOOR * self.floor["fit"])
         added = found.effects[len(base.effects) :]
         text = verdict_text(
-            added, groups, (), unexplained, errors, float(before["fit"] or 0.0), floor=self.floor["fit"]
-        )
+            added, groups, (), unexplained, errors, float(before["fit"] or 0.0), floor=self.floor["fit"],
+            complete=self.complete,
+        )  # fmt: skip
         return Diagnosis(
             model=self.fit.model, effects=base.effects, baseline=Baseline(before, self._offset(base)),
             noise_floor={"fit": self.floor["fit"], "held_out": None, "verify": self.floor["verify"]},
             candidates=tuple(self._ranked(c, group, base, i == 0) for i, c in enumerate(first)),
             ladder=tuple(self._rung(step, steps[i - 1] if i else None) for i, step in enumerate(steps)),
             verdict=Verdict(added, standing(added, unexplained, ()), (), groups, (), unexplained, text),
-            seed=self.fit.seed,
-            seconds=time.monotonic() - self.begun, version=version("servoident"), data_hash=self.matrix.data_hash,
+            complete=self.complete, seed=self.fit.seed, seconds=self.course.taken,
+            version=version("servoident"), data_hash=self.matrix.data_hash,
             settings=dict(self.fit.settings),
         )  # fmt: skip
 
-    def _added(self, base: Refit) -> tuple[list[Candidate], list[Refit]]:
-        """The first ranking, and the refits from the fitted model to the last, each with one effect more."""
-        first: list[Candidate] = []
-        steps = [base]
-        while len(steps) <= self.most and (names := self._names(steps[-1])):
-            ranking = self.refitter.rank(steps[-1], names, self._progress)
-            first = first or ranking
-            if not ranking[0].gain.beyond_chance:
-                break
+    def _add(self, first: list[Candidate], steps: list[Refit]) -> None:
+        """Fill the first ranking, and the refits from the fitted model to the last, each with one effect more."""
+        first += self.refitter.rank(steps[0], self._names(steps[0]), self._progress)
+        ranking = first
+        while len(steps) <= self.course.most and ranking and ranking[0].gain.beyond_chance:
             steps.append(ranking[0].refit)
-        return first or self.refitter.rank(base, self._names(base), self._progress), steps
+            self._heard(first, steps)
+            names = self._names(steps[-1])
+            ranking = self.refitter.rank(steps[-1], names, self._progress) if len(steps) <= self.course.most else []
+
+    def _heard(self, first: list[Candidate], steps: list[Refit]) -> None:
+        """Tell of a step."""
+        self.course.added = tuple(Expected(step.effects[-1], step.held_out_error) for step in steps[1:])
+        if self.course.found is not None:
+            self.course.found(self._said(first, steps))
 
     def _names(self, refit: Refit) -> list[str]:
         """What may be added."""
         return [name for name in self.refitter.effects if name not in refit.effects]
 
     def _progress(self, done: int, total: int) -> None:
-        self.report(Progress("confirming", done, total))
+        self.course.tell(Progress("confirming", done, total))
 
     # What is said ----------------------------------------------------------------------------------------------
 

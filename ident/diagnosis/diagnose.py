@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -13,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.diagnosis.advice import error_budget, next_run
+from ident.diagnosis.course import Course
 from ident.diagnosis.family import ModelFamily, Refit
 from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.result import Baseline, Diagnosis, Found, Ranked, Rung, Suspect, Verdict
@@ -22,51 +22,52 @@ from ident.diagnosis.stepwise import StepwiseSelection
 from ident.diagnosis.suspects import suspects
 from ident.diagnosis.words import verdict_text, why
 from ident.effects.effect import Effect
-from ident.errors import Unusable
+from ident.errors import TimeIsUp, Unusable
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.fit.space import Space
 from ident.fit.uncertainty import covariance
 from ident.matrix import Matrix, over_runs
-from ident.progress import Expected, Progress, Report, silent
+from ident.progress import Expected, Progress
 
 _NOISE_LIKE = 0.5  # correlation of neighbouring residuals that noise may have, where there is no floor
 Steps = Sequence[tuple[str | None, Refit]]
 """From the fitted model to the last, what each step added."""
 
 
-def diagnose(
-    matrix: Matrix, fit: FitResult, most: int, custom: Sequence[Effect] = (), report: Report = silent
-) -> Diagnosis:
+def diagnose(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], course: Course) -> Diagnosis:
     """Rank what the fitted model lacks, add what helps beyond chance, and say what is left.
 
-    `most` is the largest number of effects to add, `custom` are effects beside the catalogue's. Verify runs only
-    report. Raises Unusable where matrix and fit do not go together.
+    `custom` are effects beside the catalogue's. Verify runs only report. Raises Unusable where matrix and fit do not
+    go together.
     """
-    begun = time.monotonic()
     given = replace(Settings.from_json(dict(fit.settings)), effects=()) if fit.settings else Settings(model=fit.model)
     models = ModelFamily.of(matrix, given, custom, fit.window.horizon if fit.window else None)
-    work = Diagnoser(models, fit, most, report)
-    found = work.diagnosis()
-    work.tell(Progress("next run", 0, 1))
-    advised = replace(found, budget=error_budget(matrix, fit), next_experiment=next_run(matrix, found, custom))
-    return replace(advised, seconds=time.monotonic() - begun)
+    found = Diagnoser(models, fit, course).diagnosis()
+    course.tell(Progress("next run", 0, 1))
+    if found.complete:
+        found = replace(found, next_experiment=next_run(matrix, found, custom))
+    return replace(found, budget=error_budget(matrix, fit), seconds=course.taken)
 
 
 class Diagnoser:
     """One diagnosis: the additions, the suspects, and what is said of them."""
 
-    def __init__(self, models: ModelFamily, fit: FitResult, most: int, report: Report) -> None:
-        self.models, self.fit, self.most, self.report = models, fit, most, report
-        self.expected: tuple[Expected, ...] = ()
+    def __init__(self, models: ModelFamily, fit: FitResult, course: Course) -> None:
+        self.models, self.fit, self.course = models, fit, course
 
     def diagnosis(self) -> Diagnosis:
-        """The whole of it."""
+        """The whole of it, or what of it there was time for."""
         selection = self._added(self.models)
         doubted = self._doubted(selection)
         if doubted:
             selection = self._added(self.models.without(suspect.run for suspect in doubted))
             doubted = self._doubted(selection)
+        self.course.conclude()
+        return self._said(selection, doubted)
+
+    def _said(self, selection: StepwiseSelection, doubted: Sequence[Suspect]) -> Diagnosis:
+        """What a search found so far."""
         steps = selection.ladder()
         ladder = self._ladder(selection.models, steps)
         floor = selection.models.floors.of_use(self.models.matrix)
@@ -75,7 +76,7 @@ class Diagnoser:
         base = selection.base
         against = tuple(self._contradictions(selection.models, steps))
         text = verdict_text(selection.added, groups, doubted, unexplained, ladder[-1].error, base.error,
-                            selection.models.floors.measured, floor["fit"], against)  # fmt: skip
+                            selection.models.floors.measured, floor["fit"], against, selection.complete)  # fmt: skip
         stands = standing(selection.added, unexplained, against)
         return Diagnosis(
             model=self.fit.model,
@@ -87,6 +88,7 @@ class Diagnoser:
             ladder=tuple(ladder),
             verdict=Verdict(selection.added, stands, tuple(one.effect for one in against), groups, tuple(doubted),
                             unexplained, text),
+            complete=selection.complete,
             seed=self.fit.seed,
             version=version("servoident"),
             data_hash=self.models.matrix.data_hash,
@@ -99,15 +101,22 @@ class Diagnoser:
         base = models.refit(tuple(self.fit.effects), start)
         if not base.finite:
             raise Unusable("bad-fit", "the fitted model is unstable on a run", "fit", "fit the model to this matrix")
-        return StepwiseSelection(models, base, self.most, self.tell).run()
+        return StepwiseSelection(models, base, self.course.most, self.course.tell, self._heard).run()
 
-    def tell(self, progress: Progress) -> None:
-        """Report; the first sight of the fitted model stays with all that follows."""
-        self.expected = self.expected or progress.expected
-        self.report(replace(progress, expected=self.expected))
+    def _heard(self, selection: StepwiseSelection) -> None:
+        """Tell of a step."""
+        steps = selection.ladder()
+        self.course.added = tuple(Expected(name, refit.held_out.error) for name, refit in steps if name)
+        if self.course.found is not None:
+            self.course.found(replace(self._said(selection, ()), seconds=self.course.taken))
 
     def _doubted(self, selection: StepwiseSelection) -> list[Suspect]:
-        self.tell(Progress("labels", 0, 1))
+        try:
+            self.course.tell(Progress("labels", 0, 1))
+        except TimeIsUp:
+            selection.complete = False
+        if not selection.complete:
+            return []
         return suspects(selection.models, selection.found, self.models.floors.by_run)
 
     # What is said ----------------------------------------------------------------------------------------------

@@ -135,7 +135,8 @@ class Diagnosis:
     """Everything that was found about one fit of one matrix; `effects` are those that the fit had.
 
     `budget` is None where the model is unstable at every run, `next_experiment` where no run can be proposed. With a
-    `horizon` (s) every error is that over windows of this length, as `window` of the fit says it.
+    `horizon` (s) every error is that over windows of this length, as `window` of the fit says it. Not `complete`, it is
+    what had been found when the search was stopped, or goes on.
     """
 
     model: str = "qian2014"
@@ -147,6 +148,7 @@ class Diagnosis:
     candidates: tuple[Ranked, ...]
     ladder: tuple[Rung, ...] = ()
     verdict: Verdict
+    complete: bool = True
     next_experiment: NextRun | None = None
     settings: Mapping[str, Any] = field(default_factory=dict)
     seed: int = 0
@@ -160,6 +162,8 @@ class Diagnosis:
         data: dict[str, Any] = written(self)
         if self.horizon is None:
             del data["horizon"]
+        if self.complete:
+            del data["complete"]
         if self.verdict.standing is None:
             del data["verdict"]["standing"], data["verdict"]["contradicted_by"]
         return data | {name: data[name] or {} for name in ("budget", "next_experiment")}

@@ -8,13 +8,15 @@ are tried, far from where the search stands, and two at a time in the place of o
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import combinations
 
 from ident.diagnosis.family import ModelFamily, Refit
 from ident.diagnosis.ranking import Candidate, rank
 from ident.diagnosis.significance import improvement
+from ident.errors import TimeIsUp
 from ident.progress import Progress, Report
 
 MOST = 6  # effects that are added
@@ -30,16 +32,21 @@ class StepwiseSelection:
     """The way from the fitted model to the one that explains the data.
 
     `steps` are the refits, the fitted model first; `ranking` the first ranking; `groups` for each added effect the
-    effects that the data cannot tell from it, itself included, best first.
+    effects that the data cannot tell from it, itself included, best first. `report` may end the search with TimeIsUp:
+    then not `complete`, it has what was found until there. `heard` hears of each step; `between` are refits of the
+    ladder that were no step of the search.
     """
 
     models: ModelFamily
     base: Refit
     most: int
     report: Report
+    heard: Callable[[StepwiseSelection], None] = lambda _selection: None
     steps: list[Refit] = field(default_factory=list)
     ranking: list[Candidate] = field(default_factory=list)
     groups: dict[str, list[Candidate]] = field(default_factory=dict)
+    between: dict[frozenset[str], Refit] = field(default_factory=dict)
+    complete: bool = False
 
     @property
     def found(self) -> Refit:
@@ -54,12 +61,21 @@ class StepwiseSelection:
     def run(self) -> StepwiseSelection:
         """Add, take out, replace, until nothing helps; where the noise is not reached, look farther and go on."""
         self.steps = [self.base]
+        with suppress(TimeIsUp):
+            self._search()
+            self.complete = True
+        self._learned()
+        return self
+
+    def _search(self) -> None:
         self._rounds()
         for farther in (self._weighed, self._stronger, self._paired):
             if self.models.floor is not None and not self.models.at_floor(self.found) and farther():
                 self._rounds()
-        self._learned()
-        return self
+
+    def _step(self, refit: Refit) -> None:
+        self.steps.append(refit)
+        self.heard(self)
 
     def _learned(self) -> None:
         """Rank by what was met on the way: an effect alone, at a better optimum than the ranking found for it."""
@@ -89,7 +105,7 @@ class StepwiseSelection:
     def ladder(self) -> list[tuple[str | None, Refit]]:
         """From the fitted model to the last, one effect a step, without the detours: what was added, and the refit."""
         rungs: list[tuple[str | None, Refit]] = [(None, self.base)]
-        known = {frozenset(step.effects): step for step in self.steps}
+        known = self.between | {frozenset(step.effects): step for step in self.steps}
         for i, name in enumerate(self.added):
             effects = (*self.base.effects, *self.added[: i + 1])
             step = known.get(frozenset(effects))
@@ -97,7 +113,7 @@ class StepwiseSelection:
                 values = dict(self.found.values)
                 for other in self.added[i + 1 :]:
                     values = _without(values, other)
-                step = self.models.refit(effects, values)
+                step = self.between[frozenset(effects)] = self.models.refit(effects, values)
             rungs.append((name, step))
         return rungs
 
@@ -114,7 +130,7 @@ class StepwiseSelection:
             best = next((candidate for candidate in ranking if candidate.helps), None)
             if best is None or best.refit is None:
                 break
-            self.steps.append(best.refit)
+            self._step(best.refit)
             if self._backward(best.effect):
                 break
 
@@ -130,7 +146,7 @@ class StepwiseSelection:
         best = next((candidate for candidate in ranking if candidate.helps), None)
         if best is None or best.refit is None:
             return False
-        self.steps.append(best.refit)
+        self._step(best.refit)
         self._backward(best.effect)
         return True
 
@@ -154,7 +170,7 @@ class StepwiseSelection:
         refit = self.models.refit(best.effects, best.values)
         if not refit.finite or not improvement(self.found.held_out, refit.held_out).beyond_chance:
             return False
-        self.steps.append(refit)
+        self._step(refit)
         return True
 
     def _both(self, first: Refit, second: Refit) -> Refit:
@@ -179,9 +195,9 @@ class StepwiseSelection:
             less = self.models.refit(effects, _without(here.values, name))
             if less.finite and not improvement(less.held_out, here.held_out).beyond_chance:
                 known = [i for i, step in enumerate(self.steps) if set(step.effects) == set(effects)]
-                self.steps.append(less)
+                self._step(less)
                 if known:
-                    self.steps.append(min(self.steps[known[0] :], key=lambda step: step.held_out.score))
+                    self._step(min(self.steps[known[0] :], key=lambda step: step.held_out.score))
                     return True
         return False
 
@@ -195,7 +211,7 @@ class StepwiseSelection:
             if best is None or best.refit is None:
                 continue
             if best.effect != name and improvement(here.held_out, best.refit.held_out).beyond_chance:
-                self.steps.append(best.refit)
+                self._step(best.refit)
                 self._backward(best.effect)
                 return True
             self.groups[name] = _group(name, here, ranking)

@@ -40,17 +40,20 @@ def why_of_gain(
 def verdict_text(
     added: Sequence[str], groups: Sequence[tuple[str, ...]], suspects: Sequence[Suspect], unexplained: bool,
     errors: Mapping[str, float | None], before: float, repeats: bool = True, floor: float | None = None,
-    against: Sequence[Contradiction] = (),
+    against: Sequence[Contradiction] = (), complete: bool = True,
 ) -> str:  # fmt: skip
     """The verdict in a few sentences, what speaks against it first.
 
-    Without `repeats` nobody knows how much noise lies in the command's band.
+    Without `repeats` nobody knows how much noise lies in the command's band. Not `complete`, the search was stopped.
     """
     parts = [
         f"With {title(one.effect)} the error on verify runs rises from {percent(one.before)} to {percent(one.after)}, "
         f"{one.deviations:.1f} standard errors: it may stand for something else."
         for one in against
     ]
+    if not complete:
+        parts.append("The search was not over: what else is missing, and what could stand in the place of what was "
+                     "found, was not looked at.")  # fmt: skip
     if added:
         names = " and ".join(", ".join(map(title, added)).rsplit(", ", 1))
         them = "it" if len(added) == 1 else "them"
@@ -59,6 +62,8 @@ def verdict_text(
             f"{lacks} {names}: with {them} the error falls from {percent(before)} to {percent(errors['fit'])}"
             + (f" ({percent(errors['verify'])} on verify runs)." if errors.get("verify") is not None else ".")
         )
+    elif not complete:
+        parts.append(f"No effect was confirmed that lowers the error of {percent(before)}.")
     elif not unexplained and floor is None:
         parts.append(f"Nothing is seen to be missing: what is left, {percent(before)}, has no memory from sample to "
                      "sample. How much of it is noise is not known.")  # fmt: skip
@@ -72,7 +77,9 @@ def verdict_text(
     for suspect in suspects:
         parts.append(f"Run {suspect.run} is doubted ({suspect.what}): {suspect.evidence}.")
     if unexplained:
-        parts.append("Something is left that none of the listed effects explains.")
+        parts.append(
+            "Something is left that none of the listed effects explains." if complete else "Something is left."
+        )
         if not repeats:
             parts.append("No command was measured twice: part of it may be noise in the command's band, "
                          "which a repeated run would tell.")  # fmt: skip

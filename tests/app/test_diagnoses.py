@@ -55,6 +55,8 @@ def diagnosis(service: TestClient, linear: str) -> dict[str, Any]:
     seen = job["progress"]["expected"]  # at first sight, while the rest was under way
     assert seen[0] == {"effect": "dead_zone", "error": found["candidates"][0]["predicted_error"]}
     assert [one["error"] for one in seen] == sorted(one["error"] for one in seen)
+    assert [one["effect"] for one in job["progress"]["added"]] == ["dead_zone"]
+    assert job["progress"]["added"][0]["error"] == found["ladder"][1]["error"]["held_out"]
     return found
 
 
@@ -218,3 +220,11 @@ def test_an_own_effect_is_ranked_beside_the_catalogue_and_added(service, linear)
     assert fit["parameters"]["overlap.h"]["value"] == pytest.approx(HALF_WIDTH, rel=0.02)
     bad = {"fit": linear, "custom": [OWN | {"equation": "w = w +"}]}
     assert service.post(f"{API}/diagnoses", json=bad).json()["where"] == "equation, character 8"
+
+
+def test_a_diagnosis_whose_time_is_over_is_what_was_found(service, linear):
+    job = ended(service, service.post(f"{API}/diagnoses", json={"fit": linear, "time": 0.001}))
+    assert job["settings"]["time"] == 0.001
+    found = service.get(f"{API}/diagnoses/{job['diagnosis']}").json()
+    assert (found["complete"], found["verdict"]["effects"], found["next_experiment"]) == (False, [], {})
+    assert service.post(f"{API}/diagnoses", json={"fit": linear, "time": 0}).status_code == 422

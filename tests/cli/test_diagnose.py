@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from app.cli import interrupts, output
 from tests import hidden_dead_zone
 
 
@@ -24,6 +25,7 @@ def told(servoident, matrix, tmp_path_factory) -> tuple[str, dict]:
     assert done.returncode == 0, done.stderr
     assert "confirming" in done.stderr
     assert "at first sight, before any refit, the error would be: dead_zone" in done.stderr
+    assert "added so far, with the error on held-out data: dead_zone" in done.stderr
     return done.stdout, json.loads(file.read_text())
 
 
@@ -66,6 +68,33 @@ def test_an_own_effect_is_ranked_beside_the_catalogue(servoident, matrix, tmp_pa
     done = servoident("diagnose", matrix, "--custom", own)
     assert done.returncode == 2
     assert f"{own} equation, character" in done.stderr
+
+
+def test_a_search_whose_time_is_over_tells_what_it_has(servoident, matrix, tmp_path):
+    file = tmp_path / "found.json"
+    done = servoident("diagnose", matrix, "--time", 0.001, "--json", file)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(file.read_text())
+    assert (found["complete"], found["verdict"]["effects"]) == (False, [])
+    assert found["verdict"]["text"].startswith("The search was not over")
+    assert " ".join(found["verdict"]["text"].split()) in " ".join(done.stdout.split())
+
+
+def test_what_was_found_is_not_lost_with_what_was_to_come(servoident, matrix, tmp_path, monkeypatch):
+    """Ctrl-C after the first step."""
+    file = tmp_path / "found.json"
+    written = output.write_json
+
+    def pressed(data: object, target: Path) -> None:
+        written(data, target)
+        interrupts._pressed.set()
+
+    monkeypatch.setattr("app.cli.diagnose.write_json", pressed)
+    done = servoident("diagnose", matrix, "--json", file)
+    assert done.returncode == 130
+    assert f"interrupted; {file} holds what was found until then" in done.stderr
+    found = json.loads(file.read_text())
+    assert (found["complete"], found["verdict"]["effects"]) == (False, ["dead_zone"])
 
 
 def test_a_fit_from_a_file_is_diagnosed_as_it_is(servoident, matrix, tmp_path):

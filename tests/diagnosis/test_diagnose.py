@@ -31,10 +31,45 @@ def most(full: bool) -> dict[str, int]:
     return {} if full else {"most": 1}
 
 
+ON_THE_WAY: list[Diagnosis] = []
+
+
 @pytest.fixture(scope="module")
 def dead_zone() -> Diagnosis:
     """A dead zone of 0.25 mm is hidden."""
-    return diagnose(measured(dead_zone=2.5e-4))
+    return diagnose(measured(dead_zone=2.5e-4), found=ON_THE_WAY.append)
+
+
+def test_each_step_is_told_as_it_is_found(dead_zone):
+    assert ON_THE_WAY
+    first = ON_THE_WAY[0]
+    assert not first.complete
+    assert first.verdict.effects == ("dead_zone",)
+    assert first.ladder == dead_zone.ladder[: len(first.ladder)]
+    assert first.verdict.text.startswith("The search was not over")
+    assert Diagnosis.from_json(first.to_json()) == first
+    assert dead_zone.complete
+    assert "complete" not in dead_zone.to_json()
+
+
+def test_what_was_found_when_the_time_is_over_is_the_diagnosis(monkeypatch):
+    """The clock stands still until something was added."""
+    matrix, clock, steps = measured(dead_zone=2.5e-4), [0.0], []
+    monkeypatch.setattr("ident.diagnosis.course.time.monotonic", lambda: clock[0])
+
+    def heard(found: Diagnosis) -> None:
+        steps.append(found)
+        clock[0] = 61.0
+
+    found = diagnose(matrix, seconds=60.0, found=heard)
+    assert len(steps) == 1
+    assert found.verdict.effects == ("dead_zone",)
+    assert found.ladder == steps[0].ladder
+    assert not found.complete
+    assert found.next_experiment is None
+    assert "and what could stand in the place of what was found, was not looked at" in found.verdict.text
+    with pytest.raises(Unusable, match="give the seconds"):
+        diagnose(matrix, seconds=0.0)
 
 
 def test_a_hidden_effect_is_named_first_and_alone(dead_zone):

@@ -5,7 +5,8 @@ import "./progress.js";
 
 for (const form of document.querySelectorAll("form[data-diagnose]")) {
   onSubmit(form, async () => {
-    await send("POST", form.action, { fit: form.dataset.diagnose });
+    const time = Number(form.elements.time.value);
+    await send("POST", form.action, { fit: form.dataset.diagnose, ...(time > 0 && { time }) });
     location.hash = "missing";
     location.reload();
   });

@@ -13,6 +13,7 @@ function follow(live) {
   const trace = live.querySelector(".trace polyline");
   const cancel = live.querySelector("button");
   const sight = live.querySelector("[data-sight]");
+  const soFar = live.querySelector("[data-so-far]");
   const seen = [];
 
   function report(progress) {
@@ -29,10 +30,8 @@ function follow(live) {
       seen.push(progress.error);
       trace?.setAttribute("points", line(seen));
     }
-    if (progress.expected?.length && sight.hidden) {
-      sight.querySelector("[data-expected]").replaceChildren(...progress.expected.map(expectation));
-      sight.hidden = false;
-    }
+    if (sight.hidden) list(sight, progress.expected);
+    list(soFar, progress.added);
   }
 
   // Each event is the job as it is now.
@@ -60,7 +59,13 @@ function follow(live) {
   );
 }
 
-// An effect that promises to help, and the error with it.
+function list(paragraph, effects) {
+  if (!effects?.length) return;
+  paragraph.lastElementChild.replaceChildren(...effects.map(expectation));
+  paragraph.hidden = false;
+}
+
+// An effect that helps or promises to, and the error with it.
 function expectation({ effect, error }) {
   const shown = document.createElement("span"), value = document.createElement("b");
   value.textContent = `${(100 * error).toPrecision(3)} %`;
