@@ -128,10 +128,14 @@ class Run:
         )
 
     def driven_by(self, channel: str) -> Run:
-        """The run with a channel in the place of its command; unchanged where it has none of that name."""
-        if channel not in self.channels:
-            return self
-        return replace(self, channels={**self.channels, "command": self.channels[channel]})
+        """The run with a channel in the place of its command; unchanged where it has none of that name.
+
+        A speed that was not recorded is the rate of the position.
+        """
+        samples = self.channels.get(channel)
+        if samples is None and channel == "velocity" and "displacement" in self.channels:
+            samples = np.gradient(self.channels["displacement"]) * self.sample_rate
+        return self if samples is None else replace(self, channels={**self.channels, "command": samples})
 
     @cached_property
     def motion(self) -> float:
@@ -236,6 +240,7 @@ class Matrix:
     limits: str | None = None
     limits_text: str = ""  # what the file `limits` holds
     notices: tuple[str, ...] = ()  # what reading changed or assumed, in words
+    machine: str = ""  # the name of the model that the description puts together from stages
 
     def of_use(self, use: str) -> tuple[Run, ...]:
         """The runs of one use, "fit" or "verify"."""

@@ -35,7 +35,7 @@ class RunView(BaseModel):
 
 
 class MatrixView(BaseModel):
-    """A stored matrix."""
+    """A stored matrix; `machine` is the model that its description puts together from stages, where it does."""
 
     id: str
     serial: str
@@ -45,6 +45,7 @@ class MatrixView(BaseModel):
     runs: list[RunView]
     findings: list[FindingView]
     notices: list[str]
+    machine: str = ""
 
 
 class MatrixPage(BaseModel):

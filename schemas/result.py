@@ -114,6 +114,20 @@ class StructureView(BaseModel):
     why: str
 
 
+class MachineView(BaseModel):
+    """What a machine that was put together from stages has at each place, what is recorded, and the gains known."""
+
+    controller: str = "none"
+    of: str = "displacement"
+    valve: str = "none"
+    spool: str = "rigid"
+    flow: str = "none"
+    pressure: str = "none"
+    load: str = "none"
+    sensor: list[str]
+    gains: dict[str, float] = Field(default_factory=dict)
+
+
 class StartsView(BaseModel):
     """From how many points the polish started, and how many ended at the error of the fit."""
 
@@ -157,6 +171,7 @@ class FitResultView(BaseModel):
     anchored_error: Errors = Field(default_factory=dict)
     window: WindowView | None = None
     starts: StartsView | None = None
+    machine: MachineView | None = None
     structures: list[StructureView] = Field(default_factory=list)
 
 

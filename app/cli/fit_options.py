@@ -18,9 +18,14 @@ if TYPE_CHECKING:
     from ident.matrix import Matrix
     from ident.progress import Report
 
+_LARGEST = 65_536  # bytes of a file that describes a machine
 MatrixPath = Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")]
 Model = Annotated[
-    str | None, typer.Option(help="Model to identify; without it, the likeliest that the channels allow.")
+    str | None,
+    typer.Option(
+        metavar="NAME|FILE.yaml",
+        help="Model to identify, or a file that puts one together from stages; without it, the one that fits.",
+    ),
 ]
 Effects = Annotated[
     list[str] | None, typer.Option("--effect", metavar="NAME", help="Effect to add to the model; may be repeated.")
@@ -60,9 +65,22 @@ def modelled(matrix: Matrix, model: str | None, report: Report) -> tuple[Matrix,
     from ident.diagnosis.structures import chosen
 
     if model is not None:
-        return matrix, model, ()
+        return matrix, _named(model), ()
     matrix, found = chosen(matrix, report)
     return matrix, found[0].machine, found
+
+
+def _named(model: str) -> str:
+    """The name of a model; of a file that puts one together from stages the machine's. Raises Unusable."""
+    from ident.presets import preset
+    from ident.presets.description import described
+    from ident.readers.strict_yaml import read_yaml
+
+    if not model.endswith((".yaml", ".yml")):
+        return model
+    data = read_yaml(Path(model).read_bytes()[:_LARGEST], model)
+    inner = data.get("machine", data) if isinstance(data, dict) else data
+    return preset(described(inner, model).name).name
 
 
 def settings(

@@ -70,8 +70,8 @@ def _wanted(context: Context, request: DiagnosisRequest) -> tuple[str, dict[str,
         return row.matrix, _with_own(FitResult.from_json(row.result), request)
     if request.matrix is None:
         raise Failure(422, "bad-request", "neither a fit nor a matrix is given", "fit", "give one of them")
-    runs = matrices.view(matrices.find(context, request.matrix)).runs
-    settings = replace(fits.settings_of(request, runs), effects=tuple(request.effects))
+    matrix = matrices.view(matrices.find(context, request.matrix))
+    settings = replace(fits.settings_of(request, matrix), effects=tuple(request.effects))
     check_settings(settings)
     return request.matrix, settings.to_json()
 

@@ -29,7 +29,7 @@ from schemas.fit import (
     FitView,
     JobView,
 )
-from schemas.matrix import RunView
+from schemas.matrix import MatrixView
 from schemas.result import ErrorBudget, FitResultView
 
 
@@ -61,7 +61,7 @@ def submit(context: Context, request: FitRequest, job: str) -> JobView:
     matrix = matrices.find(context, request.matrix)
     if request.parent is not None:
         find(context, request.parent)
-    return queue(context, job, matrix.id, settings_of(request, matrices.view(matrix).runs), request.parent)
+    return queue(context, job, matrix.id, settings_of(request, matrices.view(matrix)), request.parent)
 
 
 def queue(context: Context, job: str, matrix: str, settings: Settings, parent: str | None) -> JobView:
@@ -70,9 +70,9 @@ def queue(context: Context, job: str, matrix: str, settings: Settings, parent: s
     return jobs.record(context, job, matrix, settings.to_json(), parent, "fit")
 
 
-def settings_of(request: Chosen, runs: Sequence[RunView]) -> Settings:
+def settings_of(request: Chosen, matrix: MatrixView | None) -> Settings:
     """The library's settings: numbers are SI, text may carry a unit. Raises Unusable."""
-    named = request.model or _model(request, runs)
+    named = request.model or _model(request, matrix)
     if not named:
         return Settings(model="", method=request.method, seed=request.seed, load=request.load, options=request.options)
     own = tuple(definition_of(definition) for definition in request.custom)
@@ -92,9 +92,13 @@ def settings_of(request: Chosen, runs: Sequence[RunView]) -> Settings:
     )  # fmt: skip
 
 
-def _model(request: Chosen, runs: Sequence[RunView]) -> str:
+def _model(request: Chosen, matrix: MatrixView | None) -> str:
     """The model where none is named: "" where the fit is to choose it, the likeliest where something belongs to it."""
-    likeliest, *others = in_question(runs)
+    if matrix is None:
+        return Settings().model
+    if matrix.machine:
+        return matrix.machine
+    likeliest, *others = in_question(matrix.runs)
     belongs = request.effects or request.custom or request.bounds or request.set or request.method not in GENERAL
     return likeliest.name if belongs or (not others and likeliest.name == Settings().model) else ""
 

@@ -184,6 +184,7 @@ def summary(matrix: Matrix) -> dict[str, Any]:
         "runs": [_run(run) for run in matrix.runs],
         "findings": [asdict(finding) for finding in check(matrix)],
         "notices": list(matrix.notices),
+        "machine": matrix.machine,
     }
 
 
@@ -205,5 +206,5 @@ def view(row: MatrixRow) -> MatrixView:
     return MatrixView(
         id=row.id, serial=row.serial, parent=row.parent, created_at=row.created_at, data_hash=shown["data_hash"],
         runs=[RunView(**run) for run in shown["runs"]], findings=[FindingView(**f) for f in shown["findings"]],
-        notices=shown["notices"],
+        notices=shown["notices"], machine=shown.get("machine", ""),
     )  # fmt: skip

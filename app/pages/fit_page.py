@@ -22,7 +22,7 @@ from ident.custom.definition import HANDED_ON, preset_with
 from ident.equations.equation import Equation
 from ident.equations.mathml import mathml
 from ident.fit.result import FitResult, Undetermined
-from ident.presets import PRESETS, Preset
+from ident.presets import Preset, preset
 from ident.words.engineering import quantity
 from ident.words.percent import percent_in_print
 from ident.words.titles import with_effects
@@ -127,7 +127,7 @@ def fit_page(
         worst="fault" if any(entry.severity == "fault" for entry in serious) else "doubt",
         others=tuple((other.id, _other(other)) for other in others if other.id != stored.id),
         again=json.dumps(fit_request(fit, stored.id)),
-        on_bench=PRESETS[fit.model].kind == "bench",
+        on_bench=preset(fit.model).kind == "bench",
     )
 
 

@@ -66,7 +66,7 @@ def _counted(runs: int) -> str:
 def _in_question(matrix: MatrixView) -> tuple[Preset, ...]:
     """The models that the channels allow; where they allow none, all there are: a fit of any says what is missing."""
     try:
-        return in_question(matrix.runs)
+        return in_question(matrix.runs, matrix.machine)
     except Unusable:
         return tuple(PRESETS.values())
 

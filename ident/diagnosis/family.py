@@ -22,7 +22,8 @@ from ident.fit.space import Space, search_space
 from ident.matrix import MOTIONS, Matrix, Run, over_runs
 from ident.noise.effective_sample_size import independent_samples
 from ident.noise.floor import Floors, noise_floors
-from ident.presets import PRESETS, Preset
+from ident.presets import Preset
+from ident.presets import preset as preset_named
 
 Array = NDArray[np.float64]
 _TRIAL = 131_072  # samples of a first refit; the finalists take every sample
@@ -88,7 +89,7 @@ class ModelFamily:
         cls, matrix: Matrix, given: Settings, custom: Iterable[Effect] = (), horizon: float | None = None
     ) -> ModelFamily:
         """The models of the settings' preset with every effect that it has a place for."""
-        preset, matrix = PRESETS[given.model].for_matrix(matrix, given.load)
+        preset, matrix = preset_named(given.model).for_matrix(matrix, given.load)
         there = preset.driven_by in MOTIONS or any(run.specimen or "force" in run.channels for run in matrix.runs)
         listed = (*(effect for effect in CATALOGUE if there or not effect.of_specimen), *custom)
         known = {effect.name: effect for effect in listed if preset.takes(effect)}

@@ -25,7 +25,9 @@ def structures(matrix: Matrix, report: Report = silent) -> tuple[Structure, ...]
 
     Raises Unusable where the channels allow none.
     """
-    models = in_question(matrix.runs)
+    models = in_question(matrix.runs, matrix.machine)
+    if matrix.machine:
+        return (Structure(matrix.machine, {"held_out": None}, len(models[0].parameters), "the matrix describes it"),)
     if len(models) == 1:
         why = f"{models[0].name} is driven by {models[0].driven_by} and shows what was recorded"
         return (Structure(models[0].name, {"held_out": None}, len(models[0].parameters), why),)
@@ -44,7 +46,7 @@ def chosen(matrix: Matrix, report: Report = silent) -> tuple[Matrix, tuple[Struc
     Nothing is said where it is the usual model and no other could be meant.
     """
     first, *others = found = structures(matrix, report)
-    if first.machine == Settings().model and not others:
+    if first.machine in (Settings().model, matrix.machine) and not others:
         return matrix, found
     said = "; ".join(f"{one.machine} {one.why}" for one in found) if others else first.why
     return replace(matrix, notices=(f"No model was named: {said}.", *matrix.notices)), found

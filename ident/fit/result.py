@@ -10,7 +10,7 @@ from typing import Any
 from ident.errors import Unusable
 from ident.plain import Misfit, read, written
 
-_WHERE_KNOWN = ("structures", "window", "anchored_error", "starts")
+_WHERE_KNOWN = ("structures", "window", "anchored_error", "starts", "machine")
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,8 @@ class FitResult:
     """A finished fit. Errors are eq. (17) averaged over the runs of a use, from the time domain; fractions, not %.
 
     `anchored_error` is RMS(x − x_m)/std(x_m), which sees the means that eq. (17) does not; `window` is there where the
-    fit was made over windows. `evolution` belongs to the parameters `searched`, in that order.
+    fit was made over windows, `machine` where the model was put together from stages. `evolution` belongs to the
+    parameters `searched`, in that order.
     """
 
     model: str
@@ -128,6 +129,7 @@ class FitResult:
     anchored_error: Mapping[str, float | None] = field(default_factory=dict)
     window: Window | None = None
     starts: Starts | None = None
+    machine: Mapping[str, Any] = field(default_factory=dict)
     structures: tuple[Structure, ...] = ()
     searched: tuple[str, ...] = ()
     evolution: tuple[Generation, ...] = ()

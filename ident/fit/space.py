@@ -117,7 +117,8 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
         for effect in preset.effects
         for p in effect.added[1:]
     }
-    fixed = {name: value for name, value in shapes.items() if name not in given} | fixed
+    known = shapes | {name: value for name, value in preset.gains.items() if name != "Kp"}
+    fixed = {name: value for name, value in known.items() if name not in given} | fixed
     convention = None
     forced = preset.driven_by != "command" or settings.load == "force"
     free = {scale.name for scale in preset.scales} - fixed.keys() - given.keys()
@@ -135,7 +136,7 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
             axes.append(Axis(scale.name, lower, upper, parameter.logarithmic))
         else:
             axes.append(Axis(scale.name, *scale.slower_than(fastest / band), scale.logarithmic, scale.equation))
-    _refuse_bad_values(fixed, strengths | shapes.keys())
+    _refuse_bad_values(fixed, strengths | known.keys())
     order = tuple(scale.name for scale in preset.scales)
     return Space(tuple(axes), order, fixed, typical, convention, scale_free=not same)
 
@@ -159,8 +160,10 @@ def _typical(matrix: Matrix, runs: tuple[Run, ...]) -> dict[str, float]:
 
 
 def _size(runs: tuple[Run, ...], of: str) -> float:
-    """Of the displacements, where some runs record them and others something else."""
-    moved = tuple(run for run in runs if run.output == "displacement") or runs
+    """Of the displacements, where some runs record them and others something else; else of the first run's output."""
+    outputs = {run.output for run in runs}
+    first = "displacement" if "displacement" in outputs else runs[0].output
+    moved = tuple(run for run in runs if run.output == first)
     return float(np.mean([np.std(getattr(run, of)) for run in moved]))
 
 

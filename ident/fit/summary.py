@@ -21,6 +21,7 @@ from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
 from ident.matrix import Run, over_runs
 from ident.noise.floor import Floors
+from ident.presets.description import description
 from ident.presets.preset import Combined
 from ident.simulation.simulate import FASTEST, MOST
 from ident.words.percent import percent
@@ -49,6 +50,7 @@ def summarise(
     fit_errors, verify_errors = _run_errors(fit_runs, own), _run_errors(verify_runs, verify)
     found = covariance(here, point, optimum.as_good)
     strengths = {p.in_equations for p in preset.parameters if p.of}
+    strengths |= {axis.name for axis in space.axes if axis.lower == 0}  # what may be nothing has no relative error
     relative = {name: found.relative(_value(objective, name)) for name in space.names if name not in strengths}
     deviation = {name: values[name] * error for name, error in relative.items()}
     deviation |= {name: found.deviation(_value(objective, name)) for name in space.names if name in strengths}
@@ -85,6 +87,7 @@ def summarise(
         anchored_error={"fit": _anchored(fit_runs, fit_errors), "verify": _anchored(verify_runs, verify_errors)},
         window=window,
         starts=optimum.starts,
+        machine=description(preset.name),
         noise_floor=floors.of_use(matrix),
         runs=(*fit_errors, *verify_errors),
         method=settings.method,
@@ -191,7 +194,7 @@ def _determined(
 
 def _reason(objective: Fitness, name: str, relative: Mapping[str, float]) -> str:
     if name == objective.space.convention:
-        return "no specimen of known mass, stiffness or damping gives forces a scale; held at 1 kg by convention"
+        return "no specimen of known mass, stiffness or damping gives forces a scale; held by convention"
     if objective.space.convention and name in objective.preset.share_force:
         return "known at best as a ratio to the moving mass, which is a convention here"
     if name not in relative:

@@ -7,6 +7,8 @@ from importlib import import_module
 from ident.effects import CATALOGUE, effect
 from ident.effects.effect import Effect
 from ident.errors import Unusable
+from ident.presets.description import is_machine
+from ident.presets.machine import machine
 from ident.presets.preset import Preset
 
 _FILES = (
@@ -16,6 +18,7 @@ _FILES = (
     "open_valve",
     "motor",
     "specimen",
+    "force_loop",
     "kononykhin",
 )
 """Each with the preset of its name."""
@@ -26,9 +29,10 @@ PRESETS = {preset.name: preset for preset in _PRESETS}
 def preset(name: str, effects: Sequence[str] = (), custom: Sequence[Effect] = ()) -> Preset:
     """The preset called `name` with these effects, of the catalogue or among `custom`; those come last.
 
-    Raises Unusable with the names there are.
+    A machine put together from stages has its description for a name. Raises Unusable with the names there are, or
+    where two stages do not go together.
     """
-    if name not in PRESETS:
+    if name not in PRESETS and not is_machine(name):
         raise Unusable("unknown-model", f"no model {name!r}", "model", f"choose from {', '.join(PRESETS)}")
     return _with_effects(name, frozenset(effects), tuple(custom))
 
@@ -40,7 +44,8 @@ def _with_effects(name: str, effects: frozenset[str], custom: tuple[Effect, ...]
         raise Unusable("name-taken", "two effects have the same name", "custom effects", "rename one of them")
     for wanted in effects - own:
         effect(wanted)
-    return PRESETS[name].with_effects(tuple(known for known in (*CATALOGUE, *custom) if known.name in effects))
+    bare = machine(name) if is_machine(name) else PRESETS[name]
+    return bare.with_effects(tuple(known for known in (*CATALOGUE, *custom) if known.name in effects))
 
 
 __all__ = ["PRESETS", "Preset", "preset"]

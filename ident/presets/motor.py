@@ -2,15 +2,14 @@
 
 from ident.chain.chain import Chain
 from ident.presets.preset import Combined, Preset
-from ident.stages import IDEAL_SENSOR, MASS_SPRING_DAMPER, OPENED_BY_COMMAND, RIGID_SPOOL, Scale
-from ident.stages.motor import INSTANT_AMPLIFIER, TORQUE
+from ident.stages import IDEAL_SENSOR, INSTANT_VALVE, MASS_SPRING_DAMPER, OPENED_BY_COMMAND, RIGID_SPOOL, TORQUE, Scale
 
 MOTOR = Preset(
     name="motor",
     title="Motor in open loop",
     citation="A DC motor whose inductance is small: J ω' + c ω = K u, with c of friction and induced voltage together.",
     chain=Chain(
-        stages=(OPENED_BY_COMMAND, INSTANT_AMPLIFIER, RIGID_SPOOL, TORQUE, MASS_SPRING_DAMPER, IDEAL_SENSOR),
+        stages=(OPENED_BY_COMMAND, INSTANT_VALVE, RIGID_SPOOL, TORQUE, MASS_SPRING_DAMPER, IDEAL_SENSOR),
         outputs={"velocity": "v", "displacement": "y"},
     ),
     rescaled=(Scale("m0", "1", 1e-2, 1e6), Scale("c0", "m0 * W", 1e-4, 1e2)),

@@ -57,8 +57,10 @@ class Preset:
     `motion_scale` that of its motion, the output's where none is stated, `drive_scale` that of its drive signal, the
     motion times the gain where none is stated. `of_drive` are parameters in whose unit a metre is one of the drive
     signal; it is shown as `drive_unit`, the command's in open loop. `turns`: the motion of such a machine is an angle
-    as a rule. Multiplied or divided by one factor, the parameters `share_force` change nothing as long as no force is
-    known: the first is then held by convention. `shown` are the two whose search is drawn.
+    as a rule. `compares` is the channel that its controller does, nothing without one; `gains` are gains of it that
+    are known, Kp that of runs that state none. Multiplied or divided by one factor, the parameters `share_force` change
+    nothing as long as no force is known: the first is then held by convention. `shown` are the two whose search is
+    drawn.
 
     Raises Unusable where an equation or a scale reads what no stage brings and no condition is, where scales read each
     other in a circle, where two stages mean different parameters by one name, and where something is stated of a
@@ -89,6 +91,8 @@ class Preset:
     of_drive: tuple[str, ...] = ()
     drive_unit: str = "m"
     turns: bool = False
+    compares: str = ""
+    gains: Mapping[str, float] = field(default_factory=dict)
     share_force: tuple[str, ...] = ()
     shown: tuple[str, ...] = ()
 
@@ -172,6 +176,10 @@ class Preset:
         preset = self
         if matrix.controller is not None and self.under_control is not None:
             preset = self.under_control.with_effects(self.effects)
+        if "Kp" in preset.gains:
+            known = preset.gains["Kp"]
+            stated = (run if run.gain is not None else replace(run, gain=known) for run in matrix.runs)
+            matrix = replace(matrix, runs=tuple(stated))
         if preset.driven_by != "command":
             matrix = replace(matrix, runs=tuple(run.driven_by(preset.driven_by) for run in matrix.runs))
         elif OPENED_BY_COMMAND in preset.chain.stages and matrix.runs:

@@ -55,7 +55,9 @@ def read_source(source: Source, limits: Limits = LIMITS) -> Matrix:
     described = describe(text, limits)
     runs, notices, digest = read_runs(source, described, text, limits)
     stated = "" if described.limits is None else limits_text(source, described.limits, limits)
-    return Matrix(described.actuator, runs, digest, described.controller, described.limits, stated, notices)
+    return Matrix(
+        described.actuator, runs, digest, described.controller, described.limits, stated, notices, described.machine
+    )
 
 
 def limits_text(source: Source, name: str, limits: Limits) -> str:

@@ -8,6 +8,8 @@ from typing import Any
 
 from ident.errors import Unusable
 from ident.matrix import Actuator, Controller
+from ident.presets import preset
+from ident.presets.description import described
 from ident.readers.fields import Fields
 from ident.readers.limits import Limits
 from ident.readers.run_description import RunDescription, describe_run
@@ -15,7 +17,7 @@ from ident.readers.source import DESCRIPTION, inside
 from ident.readers.strict_yaml import read_yaml
 from ident.units.quantity import shown
 
-TOP = ("actuator", "runs", "controller", "limits")
+TOP = ("actuator", "runs", "controller", "machine", "limits")
 ACTUATOR = ("serial", "name", "batch", "piston_area", "stroke", "supply_pressure", "servo_valve", "notes")
 
 
@@ -27,6 +29,7 @@ class Description:
     runs: tuple[RunDescription, ...]
     controller: Controller | None
     limits: str | None
+    machine: str
 
 
 def describe(text: bytes, limits: Limits) -> Description:
@@ -39,7 +42,10 @@ def describe(text: bytes, limits: Limits) -> Description:
     runs = describe_runs(top.need("runs", "add a list of runs"), limits)
     controller = describe_controller(top.data["controller"]) if "controller" in top else None
     bounds = inside(top.text("limits"), top.place("limits")) if "limits" in top else None
-    return Description(actuator, runs, controller, bounds)
+    machine = described(top.data["machine"]).name if "machine" in top else ""
+    if machine:
+        preset(machine)
+    return Description(actuator, runs, controller, bounds, machine)
 
 
 def describe_actuator(data: Any) -> Actuator:

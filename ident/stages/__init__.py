@@ -1,33 +1,47 @@
 """A place of the chain in, its core out: the equations that a preset picks there, with the parameters they bring."""
 
-from ident.stages.controller import OPENED_BY_COMMAND, PROPORTIONAL
+from ident.stages.controller import OPENED_BY_COMMAND, PI, PID, PROPORTIONAL, SPEED_INSIDE
 from ident.stages.drive import CASCADE, DIRECT_FORCE, IDEAL_DRIVE
-from ident.stages.flow import LINEAR_FLOW, SQUARE_ROOT_FLOW
-from ident.stages.load import DRIVEN_MASS, MASS_SPRING_DAMPER, MEASURED_LOAD
+from ident.stages.flow import FLOW_TO_SPEED, LINEAR_FLOW, SQUARE_ROOT_FLOW
+from ident.stages.load import BLOCKED, DRIVEN_MASS, FOLLOWING, MASS_SPRING_DAMPER, MEASURED_LOAD, PRESSED_SPECIMEN
+from ident.stages.motor import TORQUE
 from ident.stages.pressure import COMPRESSIBLE
 from ident.stages.scale import Scale
-from ident.stages.sensor import IDEAL_SENSOR
+from ident.stages.sensor import IDEAL_SENSOR, transducer
+from ident.stages.specimen import MOVED_SPECIMEN
 from ident.stages.spool import RIGID_SPOOL
 from ident.stages.stage import PLACES, Quantity, Stage
-from ident.stages.valve import FIRST_ORDER_VALVE
+from ident.stages.valve import FIRST_ORDER_VALVE, INSTANT_VALVE, SECOND_ORDER_VALVE
 
 __all__ = [
+    "BLOCKED",
     "CASCADE",
     "COMPRESSIBLE",
     "DIRECT_FORCE",
     "DRIVEN_MASS",
     "FIRST_ORDER_VALVE",
+    "FLOW_TO_SPEED",
+    "FOLLOWING",
     "IDEAL_DRIVE",
     "IDEAL_SENSOR",
+    "INSTANT_VALVE",
     "LINEAR_FLOW",
     "MASS_SPRING_DAMPER",
     "MEASURED_LOAD",
+    "MOVED_SPECIMEN",
     "OPENED_BY_COMMAND",
+    "PI",
+    "PID",
     "PLACES",
+    "PRESSED_SPECIMEN",
     "PROPORTIONAL",
     "RIGID_SPOOL",
+    "SECOND_ORDER_VALVE",
+    "SPEED_INSIDE",
     "SQUARE_ROOT_FLOW",
+    "TORQUE",
     "Quantity",
     "Scale",
     "Stage",
+    "transducer",
 ]

@@ -1,6 +1,8 @@
 """Controller: from command and fed-back position to the valve's drive signal."""
 
-from ident.stages.stage import Quantity, stage
+from ident.parameter import Parameter
+from ident.stages.scale import ORDER_OF_MAGNITUDE, Scale
+from ident.stages.stage import Quantity, Stage, stage
 
 PROPORTIONAL = stage(
     "controller",
@@ -29,3 +31,42 @@ OPENED_BY_COMMAND = stage(
     ("dr = du", "its rate"),
     ("e = r", "no loop: the command opens the valve"),
 )
+
+_INTEGRAL = Parameter("KI", "K_I", "1/s", 0.0, 1e6, 0.0, "integral gain, in the unit of the dial", ORDER_OF_MAGNITUDE)
+_DERIVATIVE = Parameter("KD", "K_D", "s", 0.0, 1e6, 0.0, "derivative gain, in the unit of the dial", ORDER_OF_MAGNITUDE)
+_FILTER = Parameter("Tf", "T_f", "s", 1e-6, 1e2, 1e-3, "time constant of the derivative's filter", ORDER_OF_MAGNITUDE)
+_OF_SPEED = Parameter("kp", "kₚ", "1/s", 1e-2, 1e4, 100.0, "gain of the position loop around the speed loop",
+                      ORDER_OF_MAGNITUDE)  # fmt: skip
+
+
+def _law(
+    text: str, meaning: str, states: tuple[tuple[Quantity, str, str], ...] = (), parameters: tuple[Parameter, ...] = (),
+    scales: tuple[Scale, ...] = (),
+) -> Stage:  # fmt: skip
+    """The controller with another law, whose states integrate what their equations say."""
+    made = PROPORTIONAL.with_equations((text, meaning))
+    extra = stage("controller", tuple(q for q, _, _ in states), *((line, said) for _, line, said in states))
+    return Stage(
+        "controller", (*made.publishes, *extra.publishes), (*made.equations, *extra.equations), parameters, scales
+    )
+
+
+_ERROR_SUM = (Quantity("ei", "m*s", "integral of the error"), "ei' = r - y_in", "the error is integrated")
+_ERROR_LAG = (Quantity("ef", "m", "error behind the filter"), "ef' = (r - y_in - ef) / Tf", "the error is filtered")
+
+PI = _law(
+    "e = Kp * (r - y_in) + KI * ei", "proportional and integral", (_ERROR_SUM,), (_INTEGRAL,),
+    (Scale("KI", "Kp * W", 0.0, 1e1, logarithmic=False),),
+)  # fmt: skip
+
+PID = _law(
+    "e = Kp * (r - y_in) + KI * ei + KD * (r - y_in - ef) / Tf", "proportional, integral, and filtered derivative",
+    (_ERROR_SUM, _ERROR_LAG), (_INTEGRAL, _DERIVATIVE, _FILTER),
+    (Scale("KI", "Kp * W", 0.0, 1e1, logarithmic=False), Scale("KD", "Kp / W", 0.0, 1e1, logarithmic=False),
+     Scale("Tf", "1 / W", 1e-2, 1e0)),
+)  # fmt: skip
+
+SPEED_INSIDE = _law(
+    "e = Kp * (kp * (r - y_in) - v_in)", "position loop kp around a speed loop, whose gain is the dial's",
+    parameters=(_OF_SPEED,), scales=(Scale("kp", "W", 1e-2, 1e3),),
+)  # fmt: skip

@@ -22,3 +22,13 @@ SQUARE_ROOT_FLOW = LINEAR_FLOW.with_equations(
         "turbulent flow through the valve's edges, by the pressure left across them (Merritt 1967, eq. 5-30)",
     ),
 )
+
+FLOW_TO_SPEED = stage(
+    "flow",
+    (Quantity("Vq", "m/s", "speed that the flow asks for"),),
+    ("Vq = Kv * w", "the flow moves the piston at once: oil and mass are stiff enough"),
+    parameters=(
+        Parameter("Kv", "K_v", "1/s", -1e9, 1e9, 1.0, "speed for each unit of the opening", ORDER_OF_MAGNITUDE),
+    ),
+    scales=(Scale("Kv", "W / Kp", 1e-3, 1e2),),
+)

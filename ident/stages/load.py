@@ -61,3 +61,43 @@ DRIVEN_MASS = replace(
     scales=(Scale("m0", "mL", 1e-2, 1e3), Scale("c0", "m0 * W", 1e-4, 1e3), Scale("k0", "m0 * W**2", 1e-6, 1e2)),
 )
 """A mass with spring and damper of its own, beside the specimen's."""
+
+PRESSED_SPECIMEN = replace(
+    MASS_SPRING_DAMPER.with_equations(
+        ("S = (k + kS) * xk + (cL + cS) * v", "spring and damper of the specimen, with what is not stated of them"),
+    ),
+    parameters=(
+        *MASS_SPRING_DAMPER.parameters,
+        Parameter(
+            "kS", "k_S", "N/m", 1e-9, 1e12, 1.0, "stiffness of the specimen beyond the stated", ORDER_OF_MAGNITUDE
+        ),
+        Parameter(
+            "cS", "c_S", "N*s/m", 1e-9, 1e9, 1.0, "damping of the specimen beyond the stated", ORDER_OF_MAGNITUDE
+        ),
+    ),
+    scales=(*MASS_SPRING_DAMPER.scales, Scale("kS", "m0 * W**2", 1e-6, 1e4), Scale("cS", "m0 * W", 1e-6, 1e3)),
+)
+"""A specimen whose spring and damper nobody stated: without a force on it there is none to control."""
+
+BLOCKED = stage(
+    "load",
+    (
+        Quantity("v", "m/s", "piston speed"),
+        Quantity("F", "N", "force on the stop"),
+    ),
+    ("v = 0", "a rigid stop holds the piston"),
+    ("F = D", "which takes the whole force"),
+)
+
+FOLLOWING = stage(
+    "load",
+    (
+        Quantity("v", "m/s", "piston speed"),
+        Quantity("x", "m", "piston position"),
+        Quantity("X", "m", "position of what the transducer is fixed to"),
+    ),
+    ("v = Vq", "the piston is as fast as the flow asks for"),
+    ("x' = v", "position is the integral of speed"),
+    ("X = x", "the transducer's frame is rigid"),
+)
+"""Nothing that the flow would have to push: its speed is the piston's."""

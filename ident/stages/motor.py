@@ -1,14 +1,8 @@
-"""A motor whose voltage or current acts at once, without a loop: from the drive signal to the force on its load."""
+"""A motor whose voltage or current acts at once: from the drive signal to the force on its load."""
 
 from ident.parameter import Parameter
 from ident.stages.scale import ORDER_OF_MAGNITUDE, Scale
 from ident.stages.stage import Quantity, stage
-
-INSTANT_AMPLIFIER = stage(
-    "valve",
-    (Quantity("q", "m", "what the amplifier hands on, in the unit of the drive signal"),),
-    ("q = e", "the amplifier follows at once"),
-)
 
 TORQUE = stage(
     "pressure",

@@ -1,6 +1,6 @@
 """Sensor: from the piston's position to what the controller and the recorder see."""
 
-from ident.stages.stage import Quantity, stage
+from ident.stages.stage import Quantity, Stage, stage
 
 IDEAL_SENSOR = stage(
     "sensor",
@@ -13,3 +13,10 @@ IDEAL_SENSOR = stage(
     ("v_fb = v", "it follows the rod at once"),
     ("y = y_fb", "the recorder sees what the transducer reads"),
 )
+
+
+def transducer(shown: str, rate: str) -> Stage:
+    """A transducer in the loop that reads another signal than the position, and its rate."""
+    return IDEAL_SENSOR.with_equations(
+        (f"y_fb = {shown}", "ideal transducer in the loop"), (f"v_fb = {rate}", "the rate of its reading")
+    )

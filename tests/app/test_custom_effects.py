@@ -57,7 +57,7 @@ def test_a_fit_with_an_own_effect_is_stored_with_it(service: TestClient, matrix:
     assert service.get(f"/api/v1/fits/{fit}/budget").json() == compared.json()["budget"]
     assert service.get(f"/fits/{fit}").status_code == 200
     again = FitRequest(matrix=matrix, **fit_request(FitResult.from_json(result), fit))
-    assert settings_of(again, []).to_json() == result["settings"]  # what the page sends to fit it again
+    assert settings_of(again, None).to_json() == result["settings"]  # what the page sends to fit it again
     assert again.parent == fit
     bad = service.post("/api/v1/fits", json=body | {"custom": [OWN | {"equation": "w = w +"}]})
     assert (bad.status_code, bad.json()["where"]) == (422, "equation, character 8")

@@ -180,3 +180,24 @@ def test_a_measured_motor_has_a_dead_zone(measured_data):
     values = {name: found.ladder[-1].parameters[name].value for name in ("Kt", "c0", "m0")}
     assert 33 < values["Kt"] / values["c0"] * 60 / (2 * np.pi) < 35  # rpm/V
     assert 0.29 < values["m0"] / values["c0"] < 0.33
+
+
+def test_a_specimen_that_is_moved_in_position_is_one_that_is_moved_in_speed():
+    """Its speed is the rate of the position that was recorded."""
+    by_speed = specimen(3)
+
+    def moved(run: Run) -> Run:
+        v = run.channels["velocity"]
+        x = np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]))]) / RATE
+        return replace(
+            run,
+            channels={"displacement": x, "force": run.channels["force"]},
+            units={"displacement": "m", "force": "N"},
+        )
+
+    by_position = replace(by_speed, runs=tuple(map(moved, by_speed.runs)))
+    assert suited(by_position.runs)[0].name == "specimen"
+    fits = [identify(matrix, Settings(model="")) for matrix in (by_speed, by_position)]
+    assert fits[1].model == "specimen"
+    for name in ("cS", "kS"):
+        assert fits[1].values[name] == pytest.approx(fits[0].values[name], rel=0.01)

@@ -11,10 +11,19 @@ from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.presets import PRESETS, preset
 
-TAKEN = {"qian2014": 33, "first_order": 3, "drive": 13, "open_valve": 30, "motor": 22, "specimen": 8, "kononykhin": 7}
+TAKEN = {
+    "qian2014": 33,
+    "first_order": 3,
+    "drive": 13,
+    "open_valve": 30,
+    "motor": 22,
+    "specimen": 8,
+    "force_loop": 33,
+    "kononykhin": 7,
+}
 LOOPS = {
     "qian2014": {"v", "y"}, "first_order": set(), "drive": set(), "open_valve": {"v"}, "motor": set(),
-    "specimen": set(), "kononykhin": set(),
+    "specimen": set(), "force_loop": {"v", "y"}, "kononykhin": set(),
 }  # fmt: skip
 
 
