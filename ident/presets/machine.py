@@ -13,6 +13,7 @@ from ident.chain.chain import Chain
 from ident.errors import Unusable
 from ident.presets.description import CHOICES, GAINS, Description, described, description
 from ident.presets.preset import Preset
+from ident.presets.specimen import SPECIMEN
 from ident.stages import (
     BLOCKED,
     COMPRESSIBLE,
@@ -24,7 +25,6 @@ from ident.stages import (
     LINEAR_FLOW,
     MASS_SPRING_DAMPER,
     MEASURED_LOAD,
-    MOVED_SPECIMEN,
     OPENED_BY_COMMAND,
     PI,
     PID,
@@ -97,15 +97,7 @@ def _moved(of: Description, name: str) -> Preset:
                       "leave out what drives, or let the load be moved by it")  # fmt: skip
     if of.sensor not in (("force",), ("displacement",)):
         raise _misfit("load", of["load"], "sensor", of.sensor[0], "the motion is known", "record the force")
-    return Preset(
-        name=name or replace(of, sensor=("force",)).name,
-        title="Specimen: prescribed motion to force",
-        citation="Spring, damper and mass in parallel; dry friction and hysteresis as effects.",
-        chain=Chain((MOVED_SPECIMEN,), {"force": "F"}),
-        driven_by="velocity",
-        force_scale="4*X",
-        motion_scale="L",
-    )
+    return replace(SPECIMEN, name=name or replace(of, sensor=("force",)).name)
 
 
 def _refuse_misfits(of: Description) -> None:
