@@ -99,6 +99,16 @@ class Run:
         return self.channels["command"]
 
     @property
+    def stepped(self) -> bool:
+        """Whether the command is held from the first sample to the last: a step from nothing, before the record."""
+        return bool(np.all(self.command == self.command[0]))
+
+    @property
+    def drive(self) -> float:
+        """The size of the command: its standard deviation, of a step its height."""
+        return abs(float(self.command[0])) if self.stepped else float(np.std(self.command))
+
+    @property
     def measured(self) -> Samples:
         """The channel that a model must reproduce, shape (n,)."""
         return self.channels[self.output]
@@ -176,6 +186,8 @@ class Run:
         slope, value = np.polyfit(np.arange(n), x[:n], 1)
         # Differences of fourth order leave the noise of a well sampled record (their gain on white noise is √70).
         noise = min(float(np.std(np.diff(x, 4))) / np.sqrt(70.0), 0.03 * float(np.std(x))) if len(x) > 8 else 0.0
+        if "command" in self.channels and self.stepped and abs(x[0]) <= max(0.05 * float(np.std(x)), 4 * noise):
+            return "at rest"  # the step comes with the first sample, and what follows it is its answer
         spread = np.arange(n) - (n - 1) / 2
         slope_error = noise / np.sqrt(np.sum(spread**2))
         value_error = np.hypot(noise / np.sqrt(n), slope_error * (n - 1) / 2)

@@ -121,19 +121,23 @@ def means_of(runs: Sequence[NormalMatrices], error: float) -> NormalMatrices | N
     """The means of the runs as one more record, a run a sample, with the transducer's zero as its nuisance.
 
     Eq. (17) is blind to them, but a bias shows in nothing else: it moves them in proportion to 1/Kp. They enter as
-    log |r̄|, with as many observations as there are runs: the likelihood of means whose scatter is not known. Two
-    runs, or runs of one gain, tell nothing beside the zero: then there is nothing to add.
+    log |r̄|, with as many observations as there are runs: the likelihood of means whose scatter is not known, but not
+    below what white noise of the records' size gives a mean. Two runs, or runs of one gain, tell nothing beside the
+    zero: then there is nothing to add.
     """
     if len(runs) < 3:
         return None
     z = np.array([run.means for run in runs])
     z = z - z.mean(axis=0)
-    least = 1e-14 * runs[0].total / runs[0].length
+    # However well they meet, a mean is not known better than the noise of its record lets it be.
+    noise = np.array([run.gram[-1, -1] / run.length**2 for run in runs])
+    least = float(noise.sum()) + 1e-14 * runs[0].total / runs[0].length
     gram = z.T @ z
     gram[-1, -1] += least
     samples = sum(run.length for run in runs) / len(runs)
     weight = samples / (max(error, 1e-12) * len(runs))  # of the record's norm, so that weight_of gives its due
-    return NormalMatrices(gram, z[:, :-1] * z[:, -1:], float(gram[-1, -1] * weight**2), 0.0)
+    scores = z[:, :-1] * np.copysign(np.hypot(z[:, -1], np.sqrt(noise)), z[:, -1])[:, None]
+    return NormalMatrices(gram, scores, float(gram[-1, -1] * weight**2), 0.0)
 
 
 def weight_of(run: NormalMatrices) -> float:

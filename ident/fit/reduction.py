@@ -147,7 +147,9 @@ def excited_band(runs: Sequence[Run]) -> float:
 
     def edge(run: Run) -> float:
         segment = min(run.length, max(256, run.length // 4), 16384)
-        frequency, power = power_density(run.command, run.sample_rate, segment)
+        # A step has the power of what it steps to after as long at nothing.
+        command = np.concatenate([np.zeros(run.length), run.command]) if run.stepped else run.command
+        frequency, power = power_density(command, run.sample_rate, segment)
         share = np.cumsum(power)
         return float(frequency[max(1, np.searchsorted(share, 0.99 * share[-1]))])
 

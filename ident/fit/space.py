@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
@@ -151,20 +151,20 @@ def _typical(matrix: Matrix, runs: tuple[Run, ...]) -> dict[str, float]:
     mean = {name: float(np.mean([values[name] for values in each])) for name in each[0]}
     mean["Kp"] = float(np.exp(np.mean([np.log(abs(values["Kp"])) for values in each])))
     mean |= {
-        "X": _size(runs, "measured"),
-        "U": _size(runs, "command"),
+        "X": _size(runs, lambda run: float(np.std(run.measured))),
+        "U": _size(runs, lambda run: run.drive),
         "L": float(np.mean([run.motion for run in runs])),
         "M": max(float(np.max(np.abs(run.command))) for run in runs),
     }
     return mean | {"mL": mean["mL"] or 1.0}
 
 
-def _size(runs: tuple[Run, ...], of: str) -> float:
+def _size(runs: tuple[Run, ...], of: Callable[[Run], float]) -> float:
     """Of the displacements, where some runs record them and others something else; else of the first run's output."""
     outputs = {run.output for run in runs}
     first = "displacement" if "displacement" in outputs else runs[0].output
     moved = tuple(run for run in runs if run.output == first)
-    return float(np.mean([np.std(getattr(run, of)) for run in moved]))
+    return float(np.mean([of(run) for run in moved]))
 
 
 def _refuse_bad_values(fixed: Mapping[str, float], of_effects: AbstractSet[str]) -> None:

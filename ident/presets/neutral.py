@@ -21,7 +21,7 @@ def from_neutral(matrix: Matrix, chain: Chain) -> Matrix:
     """
     shown = [run.command[0] for run in matrix.of_use("fit") or matrix.runs if run.stands]
     neutral = float(np.median(shown)) if shown else 0.0
-    felt = neutral and abs(neutral) > _FELT * max(float(np.std(run.command)) for run in matrix.runs)
+    felt = neutral and abs(neutral) > _FELT * max(run.drive for run in matrix.runs)
     if not felt or not integrates(chain, matrix.runs, matrix.actuator):
         return matrix
     text = with_unit(f"{neutral:.4g}", matrix.runs[0].units.get("command", "1"))

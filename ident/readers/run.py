@@ -36,7 +36,8 @@ def read_run(described: RunDescription, table: Table) -> Run:
         for name, channel in described.channels.items()
     }
     for name in {"command", *described.outputs} & set(channels):
-        check_moves(channels[name], places[name])
+        if name != "command" or not channels[name][0]:  # one that is held is a step from nothing at its first sample
+            check_moves(channels[name], places[name])
     if described.time is None:
         return replace(labels, channels=channels)
     scale = Scale(described.time.factor, 0.0, "s")

@@ -45,10 +45,17 @@ def test_columns_of_unequal_length_are_refused(matrix, kind):
     assert "command 400, displacement 300" in str(refused)
 
 
-@pytest.mark.parametrize("name", ["u", "x"])
-def test_a_channel_that_never_moves_is_refused(matrix, name):
-    matrix.columns[name][:] = 0.3
+@pytest.mark.parametrize(("name", "value"), [("u", 0.0), ("x", 0.3)])
+def test_a_channel_that_never_moves_is_refused(matrix, name, value):
+    matrix.columns[name][:] = value
     assert refusal(matrix.write()).code == "zero-variance"
+
+
+def test_a_command_that_is_held_is_a_step_from_nothing(matrix):
+    matrix.columns["u"][:] = 0.3
+    run = read_matrix(matrix.write()).runs[0]
+    assert run.stepped
+    assert run.drive == pytest.approx(abs(run.command[0]))
 
 
 def test_a_missing_run_file_is_named(matrix):

@@ -1,0 +1,41 @@
+"""Records of one step each: a motor whose voltage is held from the first sample on, solved exactly here."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ident.fit.settings import Settings
+from ident.matrix import Actuator, Matrix, Run
+from ident.workflows import diagnose, identify
+
+RATE, GAIN, LAG, DEAD = 100.0, 3.5, 0.3, 0.5
+
+
+def steps(seed: int, dead: float = 0.0) -> Matrix:
+    """Speed after 2, 4 and −3 V, and after 5 V to verify; what is beyond `dead` volts acts, noise of 0.02 rad/s."""
+    runs, t = [], np.arange(300) / RATE
+    for number, volts in enumerate((2.0, 4.0, -3.0, 5.0)):
+        acts = np.sign(volts) * max(abs(volts) - dead, 0.0)
+        speed = GAIN * acts * (1.0 - np.exp(-t / LAG))
+        speed += 0.02 * np.random.default_rng([seed, number]).standard_normal(len(t))
+        channels, units = {"command": np.full(len(t), volts), "velocity": speed}, {"command": "V", "velocity": "rad/s"}
+        use = "verify" if volts > 4 else "fit"
+        runs.append(Run(f"at {volts:g} V", "", RATE, channels, units, hold="zoh", output="velocity", use=use))
+    return Matrix(Actuator("STEPS"), tuple(runs))
+
+
+def test_gain_and_time_constant_come_from_steps():
+    fit = identify(steps(1), Settings(model="motor"))
+    assert fit.values["Kt"] / fit.values["c0"] == pytest.approx(GAIN, rel=0.005)
+    assert fit.values["m0"] / fit.values["c0"] == pytest.approx(LAG, rel=0.02)
+    assert abs(fit.offset["verify"]) < 0.02
+
+
+@pytest.mark.parametrize("seed", [2, 3, 4])
+def test_a_dead_zone_shows_in_steps_of_different_height_with_an_honest_error(seed):
+    found = diagnose(steps(seed, DEAD), settings=Settings(model="motor"), most=1)
+    assert found.verdict.effects == ("dead_zone",)
+    width = found.ladder[1].parameters["dead_zone.half_width"]
+    assert 1e-5 < width.std_error < 0.01
+    assert abs(width.value - DEAD) < 4 * width.std_error
