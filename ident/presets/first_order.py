@@ -20,7 +20,7 @@ TRACKING_LAG = stage(
         Parameter("gain", "kyr", "1", 1e-2, 1e2, 1.0, "static gain from command to output"),
         Parameter("tau", "τyr", "s", 1e-4, 1e1, 1e-2, "time constant of the closed loop"),
     ),
-    scales=(Scale("gain", "1", 1e-2, 1e2), Scale("tau", "1 / W", 1e-3, 1e3)),
+    scales=(Scale("gain", "X / U", -3e1, 3e1, logarithmic=False), Scale("tau", "1 / W", 1e-3, 1e3)),
 )
 
 FIRST_ORDER = Preset(

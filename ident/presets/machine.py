@@ -81,7 +81,7 @@ def composed(of: Description, name: str = "", title: str = "") -> Preset:
         of_drive=("Kv", "Kt"),
         share_force=_share_force(of),
         without_area=_WITHOUT_AREA if of.hydraulic else None,
-        gains={GAINS[gain]: value for gain, value in of.gains.items()},
+        gains={"cal": 1.0} | {GAINS[gain]: value for gain, value in of.gains.items()},
         compares=of["of"] if of.closed else "",
     )
 
@@ -137,7 +137,7 @@ def _stages(of: Description) -> tuple[Stage, ...]:
         drive: tuple[Stage, ...] = (_FLOWS[of["flow"]], COMPRESSIBLE)
     else:
         drive = (FLOW_TO_SPEED,) if of["flow"] == "to_speed" else (TORQUE,)
-    return (_CONTROLLERS[of["controller"]], _VALVES[of["valve"]], RIGID_SPOOL, *drive, _load(of), _sensor(of))
+    return (_CONTROLLERS[of["controller"]], _VALVES[of["valve"]], RIGID_SPOOL, *drive, _load(of), *_sensor(of))
 
 
 def _load(of: Description) -> Stage:
@@ -147,20 +147,19 @@ def _load(of: Description) -> Stage:
     return PRESSED_SPECIMEN if pressed else _LOADS[of["load"]]
 
 
-def _sensor(of: Description) -> Stage:
-    compared = of["of"] if of.closed else of.sensor[0]
+def _sensor(of: Description) -> tuple[Stage, ...]:
+    """What the controller sees; in open loop nothing but a position needs a stage of its own."""
+    compared = of["of"] if of.closed else "displacement"
     if compared == "displacement":
-        return IDEAL_SENSOR
+        return (IDEAL_SENSOR,) if "displacement" in _given(of) else ()
     if compared == "velocity":
-        return transducer("v", "a" if of["load"] != "none" else "0")
-    if of["load"] == "none":
-        return transducer(_given(of)[compared], "A * (Q - L) / Ke")
-    return transducer(_given(of)[compared], "(k + kS) * v" if compared == "force" else "(Q - L - A * v) / Ke")
+        return (transducer("v", "a" if of["load"] != "none" else "0", "s"),)
+    return (transducer("F", "(k + kS) * v" if of["load"] != "none" else "A * (Q - L) / Ke", "m/N"),)
 
 
 def _outputs(of: Description) -> dict[str, str]:
-    """What is recorded: of what the loop compares the transducer's reading."""
-    compared = of["of"] if of.closed else of.sensor[0]
+    """What is recorded: of what the loop compares, and of the position, the transducer's reading."""
+    compared = of["of"] if of.closed else "displacement"
     return {shown: "y" if shown == compared else _given(of)[shown] for shown in of.sensor}
 
 

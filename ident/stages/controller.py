@@ -35,7 +35,7 @@ OPENED_BY_COMMAND = stage(
 _INTEGRAL = Parameter("KI", "K_I", "1/s", 0.0, 1e6, 0.0, "integral gain, in the unit of the dial", ORDER_OF_MAGNITUDE)
 _DERIVATIVE = Parameter("KD", "K_D", "s", 0.0, 1e6, 0.0, "derivative gain, in the unit of the dial", ORDER_OF_MAGNITUDE)
 _FILTER = Parameter("Tf", "T_f", "s", 1e-6, 1e2, 1e-3, "time constant of the derivative's filter", ORDER_OF_MAGNITUDE)
-_OF_SPEED = Parameter("kp", "kₚ", "1/s", 1e-2, 1e4, 100.0, "gain of the position loop around the speed loop",
+_OF_SPEED = Parameter("Tv", "T_v", "s", 1e-5, 1e2, 1e-2, "gain of the speed loop over that of the position loop",
                       ORDER_OF_MAGNITUDE)  # fmt: skip
 
 
@@ -67,6 +67,6 @@ PID = _law(
 )  # fmt: skip
 
 SPEED_INSIDE = _law(
-    "e = Kp * (kp * (r - y_in) - v_in)", "position loop kp around a speed loop, whose gain is the dial's",
-    parameters=(_OF_SPEED,), scales=(Scale("kp", "W", 1e-2, 1e3),),
+    "e = Kp * (r - y_in - Tv * v_in)", "position loop around a speed loop, the gain of the outer one on the dial",
+    parameters=(_OF_SPEED,), scales=(Scale("Tv", "1 / W", 1e-3, 1e2),),
 )  # fmt: skip

@@ -1,5 +1,9 @@
 """Sensor: from the piston's position to what the controller and the recorder see."""
 
+from dataclasses import replace
+
+from ident.parameter import Parameter
+from ident.stages.scale import Scale
 from ident.stages.stage import Quantity, Stage, stage
 
 IDEAL_SENSOR = stage(
@@ -15,8 +19,12 @@ IDEAL_SENSOR = stage(
 )
 
 
-def transducer(shown: str, rate: str) -> Stage:
-    """A transducer in the loop that reads another signal than the position, and its rate."""
-    return IDEAL_SENSOR.with_equations(
-        (f"y_fb = {shown}", "ideal transducer in the loop"), (f"v_fb = {rate}", "the rate of its reading")
+def transducer(shown: str, rate: str, unit: str) -> Stage:
+    """A transducer in the loop that reads another signal than the position, and its rate; `unit`: of m for one."""
+    calibration = Parameter("cal", "cal", unit, 1e-3, 1e3, 1.0, "reading of the transducer, 1 by convention")
+    read = (f"y_fb = cal * {shown}", "ideal transducer in the loop")
+    return replace(
+        IDEAL_SENSOR.with_equations(read, (f"v_fb = cal * {rate}", "the rate of its reading")),
+        parameters=(calibration,),
+        scales=(Scale.by_bounds(calibration),),
     )

@@ -1,0 +1,204 @@
+"""Machines of a lab, drawn at random and simulated here by recursions of their own: what records they leave.
+
+Four structures, none of which shares a line with the program: a loop that follows its command like a lag, a position
+loop of valve, oil and mass whose gain nobody stated, a valve that a command opens and whose cylinder integrates, and a
+motor's speed. Commands of many kinds in V, mA or %, sampled at 20 Hz to 2 kHz by converters of 8 to 16 bits, with
+noise that is white or coloured, begun away from zero; and, where one is hidden, an effect in its plainest form.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.matrix import Actuator, Matrix, Run
+
+Array = NDArray[np.float64]
+STRUCTURES = ("lag", "loop", "cylinder", "motor")
+HIDDEN: dict[str, tuple[str, ...]] = {
+    "lag": ("command_delay", "command_limit"),
+    "loop": ("dead_zone", "gain_asymmetry", "backlash"),
+    "cylinder": ("dead_zone", "gain_asymmetry", "command_delay", "flow_saturation"),
+    "motor": ("dead_zone", "coulomb_friction", "gain_asymmetry", "quadratic_damping"),
+}
+KINDS = ("noise", "steps", "staircase", "sweep", "by hand")
+_PARTS = 40  # steps of a sample
+_SAMPLES = 1500
+
+
+@dataclass(frozen=True)
+class Lab:
+    """One machine and how it was recorded. `strength` is the hidden effect's share of the command's deviation."""
+
+    seed: int
+    structure: str
+    kind: str
+    hidden: str
+    strength: float
+    rate: float
+    noise: float
+    coloured: bool
+    bits: int
+    offset: float
+    volts: float
+    unit: str
+
+    @classmethod
+    def drawn(cls, seed: int, hidden: bool) -> Lab:
+        """A lab by its seed."""
+        rng = np.random.default_rng([17, seed])
+        structure = str(rng.choice(STRUCTURES))
+        what = str(rng.choice(HIDDEN[structure])) if hidden else ""
+        return cls(
+            seed, structure, str(rng.choice(KINDS)), what, rng.uniform(0.4, 0.8), 10 ** rng.uniform(1.3, 3.3),
+            10 ** rng.uniform(-2.5, -1.7), bool(rng.integers(2)), int(rng.integers(10, 17)),
+            rng.uniform(-1, 1) * rng.integers(2), 10 ** rng.uniform(-1, 1.3), str(rng.choice(["V", "mA", "%"])),
+        )  # fmt: skip
+
+    def measured(self, noisy: bool = True) -> Matrix:
+        """Two runs to fit and one to verify; without noise and converter the same."""
+        runs = []
+        for number, use in enumerate(("fit", "fit", "verify")):
+            rng = np.random.default_rng([self.seed, number])
+            u = self._command(rng)
+            y = _MACHINES[self.structure](self, u)
+            random = np.random.default_rng([self.seed, number, 1])
+            if noisy:
+                y = self._recorded(y + self.noise * y.std() * self._noise(random, len(y)))
+            output, unit = ("velocity", "rad/s") if self.structure == "motor" else ("displacement", "m")
+            in_command = "m" if self.structure == "loop" else self.unit
+            scale = 0.01 if self.structure == "loop" else self.volts
+            channels, units = {"command": scale * u, output: y}, {"command": in_command, output: unit}
+            held = self.kind in ("steps", "staircase")
+            runs.append(Run(
+                f"{use}-{number}", "", self.rate, channels, units, output=output, use=use,
+                hold="zoh" if held else "linear", kind="blwn" if self.kind == "noise" else "other",
+            ))  # fmt: skip
+        return Matrix(Actuator(f"LAB-{self.seed}"), tuple(runs))
+
+    def _command(self, rng: np.random.Generator) -> Array:
+        """About one in size, held at zero for the first sixteenth."""
+        n, rest = _SAMPLES, _SAMPLES // 16
+        t = np.arange(n - rest) / (n - rest)
+        if self.kind == "noise":
+            moved = _low_passed(rng.standard_normal(n - rest), 0.06)
+        elif self.kind == "steps":
+            moved = np.repeat(rng.uniform(-1.5, 1.5, 30), n // 30 + 1)[: n - rest]
+        elif self.kind == "staircase":
+            moved = np.repeat(1.5 * np.sin(np.linspace(0, 4 * np.pi, 30)), n // 30 + 1)[: n - rest]
+        elif self.kind == "sweep":
+            moved = 1.4 * np.sin(2 * np.pi * (1.0 * t + 25.0 * t**2))
+        else:
+            moved = np.interp(np.arange(n - rest), np.arange(0, n, 50), rng.uniform(-1.7, 1.7, len(range(0, n, 50))))
+        return np.concatenate([np.zeros(rest), moved * np.minimum(1.0, np.arange(len(moved)) / 4)])
+
+    def _noise(self, rng: np.random.Generator, n: int) -> Array:
+        white = rng.standard_normal(n)
+        if self.coloured:
+            for k in range(1, n):
+                white[k] += 0.6 * white[k - 1]
+        return white / white.std()
+
+    def _recorded(self, y: Array) -> Array:
+        step = 2.2 * float(np.abs(y).max()) / 2**self.bits
+        return np.round(y / step) * step
+
+    def acts(self, u: Array) -> Array:
+        """What of a drive signal reaches the flow, by what is hidden at the spool."""
+        s = self.strength
+        if self.hidden == "dead_zone":
+            return np.sign(u) * np.maximum(np.abs(u) - 0.6 * s, 0.0)
+        if self.hidden == "gain_asymmetry":
+            return np.where(u > 0, (1 + 0.6 * s) * u, (1 - 0.6 * s) * u)
+        if self.hidden == "command_limit":
+            return np.clip(u, -1.4 + s, 1.4 - s)
+        if self.hidden == "flow_saturation":
+            return u / np.sqrt(1 + (1.2 * s * u) ** 2)
+        return u
+
+    def commanded(self, u: Array) -> Array:
+        """The command in the middle of every step of every sample, late where that is hidden."""
+        n = len(u)
+        fine = (np.arange(n * _PARTS) + 0.5) / _PARTS
+        if self.hidden == "command_delay":
+            fine = np.maximum(fine - 6.0 * self.strength, 0.0)
+        if self.kind in ("steps", "staircase"):
+            return u[np.minimum(fine.astype(int), n - 1)]
+        return np.interp(fine, np.arange(n), u)
+
+
+def _low_passed(x: Array, share: float) -> Array:
+    spectrum = np.fft.rfft(x)
+    spectrum[np.fft.rfftfreq(len(x)) > share / 2] = 0.0
+    found = np.fft.irfft(spectrum, len(x))
+    return found / found.std()
+
+
+def _lag(lab: Lab, u: Array) -> Array:
+    """T y' + y = u, T of eight samples."""
+    acting, share, y, out = lab.acts(lab.commanded(u)), -np.expm1(-1.0 / _PARTS / 8.0), 0.0, []
+    for k, now in enumerate(acting):
+        if k % _PARTS == 0:
+            out.append(y)
+        y += share * (now - y)
+    return 0.02 * np.array(out)
+
+
+def _loop(lab: Lab, u: Array) -> Array:
+    """Gain into a valve's lag, an integrating cylinder on a spring of oil with its mass; in samples."""
+    fine, dt = lab.commanded(u), 1.0 / _PARTS
+    state, held = np.zeros(4), 0.0
+    out = []
+    for k, now in enumerate(fine):
+        if k % _PARTS == 0:
+            out.append(float(state[3]))
+        if lab.hidden == "backlash":
+            half = 0.25 * lab.strength
+            held = min(max(held, state[0] - half), state[0] + half)
+
+        def rates(s: Array, now: float = float(now), held: float = held) -> Array:
+            w = held if lab.hidden == "backlash" else float(lab.acts(np.array(2.0 * s[0]))) / 2.0
+            return np.array([(now - s[3] - s[0]) / 1.5, (0.12 * w - s[2] - 0.02 * s[1]) * 1.2, s[1] - 0.5 * s[2], s[2]])
+
+        first = rates(state)
+        state = state + dt * rates(state + 0.5 * dt * first)  # the midpoint rule
+    return 0.01 * np.array(out)
+
+
+def _cylinder(lab: Lab, u: Array) -> Array:
+    """A valve's lag of five samples, and what it lets through integrated."""
+    acting, dt, q, x, out = lab.acts(lab.commanded(u)), 1.0 / _PARTS, 0.0, 0.0, []
+    share = -np.expm1(-dt / 5.0)
+    for k, now in enumerate(acting):
+        if k % _PARTS == 0:
+            out.append(x)
+        x += dt * now + 5.0 * share * (q - now)
+        q += share * (now - q)
+    return 1e-4 * np.array(out) + 0.3 * lab.offset
+
+
+def _motor(lab: Lab, u: Array) -> Array:
+    """A voltage against inertia, damping, and what friction is hidden."""
+    acting, share, w, out = lab.acts(lab.commanded(u)), -np.expm1(-1.0 / _PARTS / 12.0), 0.0, []
+    dry = 0.4 * lab.strength if lab.hidden == "coulomb_friction" else 0.0
+    drag = 1.2 * lab.strength if lab.hidden == "quadratic_damping" else 0.0
+    for k, now in enumerate(acting):
+        if k % _PARTS == 0:
+            out.append(w)
+        after = w + share * (now - w - drag * w * abs(w))
+        stop = share * dry
+        w = after - stop if after > stop else after + stop if after < -stop else 0.0
+    return 30.0 * np.array(out)
+
+
+_MACHINES: dict[str, Callable[[Lab, Array], Array]] = {
+    "lag": _lag, "loop": _loop, "cylinder": _cylinder, "motor": _motor,
+}  # fmt: skip
+
+
+def sound(lab: Lab) -> Lab:
+    """The same lab with nothing hidden."""
+    return replace(lab, hidden="")
