@@ -3,7 +3,7 @@
 from ident.chain.chain import Chain
 from ident.parameter import Parameter
 from ident.presets.preset import Preset
-from ident.stages import IDEAL_SENSOR, Quantity, Scale
+from ident.stages import IDEAL_SENSOR, INSTANT_VALVE, OPENED_BY_COMMAND, RIGID_SPOOL, Quantity, Scale
 from ident.stages.stage import stage
 
 TRACKING_LAG = stage(
@@ -13,7 +13,7 @@ TRACKING_LAG = stage(
         Quantity("v", "m/s", "speed"),
         Quantity("X", "m", "position of what the transducer is fixed to"),
     ),
-    ("v = (gain * u - x) / tau", "the closed loop follows its command like a single lag"),
+    ("v = (gain * w - x) / tau", "the closed loop follows its command like a single lag"),
     ("x' = v", "position is the integral of speed"),
     ("X = x", "the transducer's frame is rigid"),
     parameters=(
@@ -31,7 +31,8 @@ FIRST_ORDER = Preset(
         "closed-loop model τyr y' + y = kyr r."
     ),
     chain=Chain(
-        stages=(TRACKING_LAG, IDEAL_SENSOR),
+        stages=(OPENED_BY_COMMAND, INSTANT_VALVE, RIGID_SPOOL, TRACKING_LAG, IDEAL_SENSOR),
         outputs={"displacement": "y", "velocity": "y", "load_pressure": "y", "force": "y"},
     ),
+    drive_scale="U",
 )

@@ -92,7 +92,8 @@ def _rank(model: Preset, runs: Sequence[Described]) -> int:
         looped = any(run.gain is not None for run in runs) and compared in {run.output for run in runs}
         looped = looped or all(_comparable(run, compared) for run in runs)
         return 1 if looped else _UNLIKELY - 1
-    return _OPEN if OPENED_BY_COMMAND in model.chain.stages else _OPEN + 1
+    drives = any(stage.place in ("flow", "pressure") for stage in model.chain.stages)
+    return _OPEN if drives and OPENED_BY_COMMAND in model.chain.stages else _OPEN + 1  # no machine, but how one follows
 
 
 def _comparable(run: Described, channel: str) -> bool:

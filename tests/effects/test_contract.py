@@ -165,9 +165,9 @@ def test_friction_sticks():
 
 
 def test_an_effect_that_finds_nothing_to_act_on_is_refused():
-    """A model without a spool has no dead zone; the refusal says so."""
+    """A model without a load has no friction; the refusal says so."""
     with pytest.raises(Exception, match="nothing that it could act on"):
-        preset("first_order", ("dead_zone",))
+        preset("first_order", ("coulomb_friction",))
 
 
 def test_a_new_effect_is_one_definition():

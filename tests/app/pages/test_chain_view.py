@@ -13,7 +13,7 @@ from ident.presets import PRESETS, preset
 
 TAKEN = {
     "qian2014": 33,
-    "first_order": 3,
+    "first_order": 12,
     "drive": 13,
     "open_valve": 30,
     "motor": 22,
