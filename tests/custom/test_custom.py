@@ -173,7 +173,7 @@ def test_an_effect_is_refused_by_a_model_that_lacks_its_place():
     """The same definition, asked for with another model."""
     assert preset_with("qian2014", ("overlap",), (GOOD,)).effects[0].name == "overlap"
     with pytest.raises(Unusable, match="no signal that stands"):
-        preset_with("first_order", ("overlap",), (GOOD,))
+        preset_with("drive", ("overlap",), (GOOD,))
 
 
 def test_a_parser_of_strict_texts_never_raises_anything_else():
