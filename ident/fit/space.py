@@ -18,6 +18,7 @@ from ident.presets import Preset
 from ident.simulation.simulate import FASTEST
 
 Array = NDArray[np.float64]
+_OF_STEPS = 10.0  # times as far as where it says much reaches the power of a single step, which falls by 1/f² alone
 _SAME_AREA = 0.02  # relative difference of piston areas that still is the same machine
 
 
@@ -107,6 +108,8 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     area, known_for = matrix.actuator.piston_area, preset.bounds_hold_for
     stated = all(run.gain is not None and run.specimen is not None for run in runs)
     same = known_for is not None and area is not None and abs(area / known_for - 1) < _SAME_AREA and stated
+    if all(run.stepped for run in runs):
+        band /= _OF_STEPS
     typical = _typical(matrix, runs) | {"W": band}
     if settings.load == "force":  # a mass that would need this force
         force = float(np.mean([np.std(run.channels["force"]) for run in runs]))
