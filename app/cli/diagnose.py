@@ -68,6 +68,7 @@ def diagnose(
     """Find what a model lacks. Effects are ranked by their error on held-out data, and added while they help."""
     from app.cli.arguments import definitions
     from ident.custom.definition import read_effect, together
+    from ident.diagnosis.course import left
     from ident.diagnosis.stepwise import USUAL
     from ident.fit.settings import Settings
     from ident.readers import read_matrix
@@ -85,10 +86,11 @@ def diagnose(
         given = given.with_custom(own)
     most = USUAL if max_effects is None else max_effects
     effects = tuple(read_effect(definition, model=named) for definition in own)
-    with shown() as report:
-        left = None if time is None else max(time - (monotonic() - begun), 1e-3)
-        with followed(json) as follow:
-            found = diagnosed(read, given, replace(chosen, custom=own), most, effects, report, left, follow)
+    with shown() as report, followed(json) as follow:
+        found = diagnosed(
+            read, given, replace(chosen, custom=own), most=most, custom=effects, report=report,
+            seconds=left(time, begun), found=follow,
+        )  # fmt: skip
     _tell(found, json)
 
 

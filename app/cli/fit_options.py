@@ -74,11 +74,12 @@ def _named(model: str) -> str:
     """The name of a model; of a file that puts one together from stages the machine's. Raises Unusable."""
     from ident.presets import preset
     from ident.presets.description import described
+    from ident.readers.source import read_regular
     from ident.readers.strict_yaml import read_yaml
 
     if not model.endswith((".yaml", ".yml")):
         return model
-    data = read_yaml(Path(model).read_bytes()[:_LARGEST], model)
+    data = read_yaml(read_regular(Path(model), model, _LARGEST), model)
     inner = data.get("machine", data) if isinstance(data, dict) else data
     return preset(described(inner, model).name).name
 

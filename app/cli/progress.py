@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, nullcontext
 from functools import partial
 
 from app.cli.interrupts import heed
-from ident.progress import Progress, Report
+from ident.progress import Expected, Progress, Report
 from ident.words.percent import percent
 
 SILENCE = 5.0  # s between two plain lines of one stage
@@ -88,16 +88,18 @@ def first_sight(progress: Progress) -> str:
     """What a diagnosis sees before it confirms anything, in a line; nothing of other work."""
     if not progress.expected:
         return ""
-    seen = ", ".join(f"{one.effect} {percent(one.error)}" for one in progress.expected)
-    return f"at first sight, before any refit, the error would be: {seen}"
+    return f"at first sight, before any refit, the error would be: {_listed(progress.expected)}"
 
 
 def added(progress: Progress) -> str:
     """What a diagnosis has added so far, in a line; nothing before."""
     if not progress.added:
         return ""
-    steps = ", ".join(f"{one.effect} {percent(one.error)}" for one in progress.added)
-    return f"added so far, with the error on held-out data: {steps}"
+    return f"added so far, with the error on held-out data: {_listed(progress.added)}"
+
+
+def _listed(effects: Iterable[Expected]) -> str:
+    return ", ".join(f"{one.effect} {percent(one.error)}" for one in effects)
 
 
 def error_text(progress: Progress) -> str:

@@ -12,6 +12,7 @@ from app.fits import repository as fits
 from app.jobs.work import Kind, State, Task, Work
 from app.tables import JobRow
 from ident.custom.definition import read_effect
+from ident.diagnosis.course import left
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
@@ -19,7 +20,6 @@ from ident.workflows import diagnose, identify
 
 OWN = ("max_effects", "time", "reseed")
 """What the settings of a diagnosis hold beside those of its fit."""
-_LEAST = 1e-3  # s that are left to a diagnosis whose fit took all of its time
 
 
 class DiagnosisWork(Work):
@@ -39,9 +39,8 @@ class DiagnosisWork(Work):
             given = given.with_custom(chosen.get("custom", ()))
             fit = given if chosen["reseed"] is None else _reseeded(given, chosen["reseed"])
         own = tuple(read_effect(definition, model=fit.model) for definition in fit.settings.get("custom", ()))
-        seconds = chosen.get("time")
-        left = None if seconds is None else max(seconds - (monotonic() - begun), _LEAST)
-        found = diagnose(matrix, fit, most=chosen["max_effects"], custom=own, report=report, seconds=left)
+        seconds = left(chosen.get("time"), begun)
+        found = diagnose(matrix, fit, most=chosen["max_effects"], custom=own, report=report, seconds=seconds)
         return {"diagnosis": found.to_json(), "fit": None if given else fit.to_json()}
 
     def _given(self) -> FitResult | None:

@@ -10,6 +10,13 @@ from ident.diagnosis.result import Diagnosis
 from ident.errors import TimeIsUp
 from ident.progress import Expected, Progress, Report, silent
 
+_LEAST = 1e-3  # s that are left where what came before took all of the time
+
+
+def left(seconds: float | None, begun: float) -> float | None:
+    """What is left of the seconds that a diagnosis may take, some of them spent since `begun` (monotonic clock, s)."""
+    return None if seconds is None else max(seconds - (time.monotonic() - begun), _LEAST)
+
 
 @dataclass
 class Course:
@@ -29,7 +36,6 @@ class Course:
     def __post_init__(self) -> None:
         self.begun = time.monotonic()
         self._sight: tuple[Expected, ...] = ()
-        self._over = self.seconds is not None
 
     @property
     def taken(self) -> float:
@@ -43,9 +49,9 @@ class Course:
         """
         self._sight = self._sight or progress.expected
         self.report(replace(progress, expected=self._sight, added=self.added))
-        if self._over and self.seconds is not None and self.taken > self.seconds:
+        if self.seconds is not None and self.taken > self.seconds:
             raise TimeIsUp
 
     def conclude(self) -> None:
         """From here on only what was found is told, which is not cut off."""
-        self._over = False
+        self.seconds = None

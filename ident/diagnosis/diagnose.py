@@ -27,7 +27,7 @@ from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.fit.space import Space
 from ident.fit.uncertainty import covariance
-from ident.matrix import Matrix, over_runs
+from ident.matrix import Matrix
 from ident.progress import Expected, Progress
 
 _NOISE_LIKE = 0.5  # correlation of neighbouring residuals that noise may have, where there is no floor
@@ -121,16 +121,6 @@ class Diagnoser:
 
     # What is said ----------------------------------------------------------------------------------------------
 
-    def _errors(self, models: ModelFamily, refit: Refit) -> dict[str, float | None]:
-        verify = models.matrix.of_use("verify")
-        on_verify = None
-        if verify:
-            here = refit.fitness.fresh(verify).exact(refit.point, sensitivities=False)
-            errors = [run.error for run in here.runs]
-            mean = over_runs(errors, verify)
-            on_verify = float(mean) if np.isfinite(mean) else None
-        return {"fit": refit.error, "held_out": refit.held_out.error, "verify": on_verify}
-
     def _parameters(self, models: ModelFamily, refit: Refit) -> dict[str, Found]:
         preset = models.model(refit.effects)
         known = covariance(refit.here, refit.point)
@@ -156,7 +146,7 @@ class Diagnoser:
             errors: Mapping[str, float | None] = {"fit": None, "held_out": None, "verify": None}
             listed.append(Ranked(
                 effect=candidate.effect,
-                error=self._errors(models, refit) if refit else errors,
+                error=refit.errors if refit else errors,
                 offset=refit.held_out.offset if refit else None,
                 predicted_error=base.error * candidate.prediction.share,
                 parameters=self._parameters(models, refit) if refit else {},
@@ -172,7 +162,7 @@ class Diagnoser:
         for added, refit in steps:
             found = None if before is None else improvement(before.held_out, refit.held_out).nats
             rungs.append(Rung(
-                added=added, error=self._errors(models, refit), offset=refit.held_out.offset, nats=found,
+                added=added, error=refit.errors, offset=refit.held_out.offset, nats=found,
                 parameters=self._parameters(models, refit),
             ))  # fmt: skip
             before = refit

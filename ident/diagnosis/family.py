@@ -61,6 +61,21 @@ class Refit:
         """Eq. (17) averaged over the runs."""
         return float(over_runs([run.error for run in self.here.runs], self.here.runs))
 
+    @cached_property
+    def on_verify(self) -> float | None:
+        """Eq. (17) averaged over the runs to verify; None where there are none, or the model is unstable on one."""
+        runs = self.fitness.matrix.of_use("verify")
+        if not runs:
+            return None
+        here = self.fitness.fresh(runs).exact(self.point, sensitivities=False)
+        mean = over_runs([run.error for run in here.runs], runs)
+        return float(mean) if np.isfinite(mean) else None
+
+    @property
+    def errors(self) -> dict[str, float | None]:
+        """Its errors by what they are measured on."""
+        return {"fit": self.error, "held_out": self.held_out.error, "verify": self.on_verify}
+
     @property
     def offset(self) -> float:
         """The mean of the runs' offsets."""

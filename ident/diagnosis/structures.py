@@ -26,11 +26,11 @@ def structures(matrix: Matrix, report: Report = silent) -> tuple[Structure, ...]
     Raises Unusable where the channels allow none.
     """
     models = in_question(matrix.runs, matrix.machine)
-    if matrix.machine:
-        return (Structure(matrix.machine, {"held_out": None}, len(models[0].parameters), "the matrix describes it"),)
     if len(models) == 1:
-        why = f"{models[0].name} is driven by {models[0].driven_by} and shows what was recorded"
-        return (Structure(models[0].name, {"held_out": None}, len(models[0].parameters), why),)
+        only = models[0]
+        shown = f"{only.name} is driven by {only.driven_by} and shows what was recorded"
+        why = "the matrix describes it" if matrix.machine else shown
+        return (Structure(only.name, {"held_out": None}, len(only.parameters), why),)
     runs = replace(matrix, runs=matrix.of_use("fit"))
     tried = [_tried(model, runs, report) for model in models]
     least = min(_error(one) for one in tried)

@@ -96,7 +96,8 @@ class LinearFitness:
             for number in share:
                 run = self.runs[number]
                 model = LinearModel(self._models([run], values).system[:, :, 0])
-                stable = np.linalg.eigvals(model.of_states(self._observed(run)[0]).A).real.max(axis=-1) < 0
+                poles = np.linalg.eigvals(model.of_states(self._observed(run)[0]).A)
+                stable = poles.real.max(axis=-1, initial=-np.inf) < 0  # none: what is recorded has no memory
                 out.append((number, np.where(stable, errors_of(run, model), np.inf)))
             return out
 

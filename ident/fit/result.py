@@ -9,6 +9,7 @@ from typing import Any
 
 from ident.errors import Unusable
 from ident.plain import Misfit, read, written
+from ident.presets.description import description
 
 _WHERE_KNOWN = ("structures", "window", "anchored_error", "starts", "machine")
 
@@ -104,8 +105,7 @@ class FitResult:
     """A finished fit. Errors are eq. (17) averaged over the runs of a use, from the time domain; fractions, not %.
 
     `anchored_error` is RMS(x − x_m)/std(x_m), which sees the means that eq. (17) does not; `window` is there where the
-    fit was made over windows, `machine` where the model was put together from stages. `evolution` belongs to the
-    parameters `searched`, in that order.
+    fit was made over windows. `evolution` belongs to the parameters `searched`, in that order.
     """
 
     model: str
@@ -129,7 +129,6 @@ class FitResult:
     anchored_error: Mapping[str, float | None] = field(default_factory=dict)
     window: Window | None = None
     starts: Starts | None = None
-    machine: Mapping[str, Any] = field(default_factory=dict)
     structures: tuple[Structure, ...] = ()
     searched: tuple[str, ...] = ()
     evolution: tuple[Generation, ...] = ()
@@ -145,8 +144,8 @@ class FitResult:
         return replace(self, settings=settings)
 
     def to_json(self) -> dict[str, Any]:
-        """As plain JSON data (no NaN, no infinity); what is not known of it is left out."""
-        data: dict[str, Any] = written(self)
+        """As plain JSON data (no NaN, no infinity), with the stages of a machine; what is not known is left out."""
+        data: dict[str, Any] = written(self) | {"machine": description(self.model)}
         return {name: entry for name, entry in data.items() if entry or name not in _WHERE_KNOWN}
 
     @classmethod

@@ -21,7 +21,6 @@ from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
 from ident.matrix import Run, over_runs
 from ident.noise.floor import Floors
-from ident.presets.description import description
 from ident.presets.preset import Combined
 from ident.simulation.simulate import FASTEST, MOST
 from ident.words.percent import percent
@@ -87,7 +86,6 @@ def summarise(
         anchored_error={"fit": _anchored(fit_runs, fit_errors), "verify": _anchored(verify_runs, verify_errors)},
         window=window,
         starts=optimum.starts,
-        machine=description(preset.name),
         noise_floor=floors.of_use(matrix),
         runs=(*fit_errors, *verify_errors),
         method=settings.method,

@@ -51,6 +51,11 @@ class Description:
         return self["controller"] != "none"
 
     @property
+    def compares(self) -> str:
+        """The channel that its controller compares with the command; "" in open loop."""
+        return self["of"] if self.closed else ""
+
+    @property
     def hydraulic(self) -> bool:
         """Whether oil is between the drive signal and the load."""
         return self["pressure"] == "compressible"
@@ -71,6 +76,8 @@ def described(data: Any, where: str = "machine") -> Description:
     if places["controller"] == "none":
         places["of"] = CHOICES["of"][0]  # nothing is compared
     shown = data.get("sensor") or ()
+    if not isinstance(shown, str | list | tuple):
+        raise _bad(f"{shown!r} is no list of channels", f"{where} sensor", f"choose from {', '.join(SHOWN)}")
     sensor = tuple(dict.fromkeys([shown] if isinstance(shown, str) else map(str, shown)))
     if strange := [name for name in sensor if name not in SHOWN]:
         raise _bad(f"{strange[0]!r} is no channel of a machine", f"{where} sensor", f"choose from {', '.join(SHOWN)}")

@@ -81,9 +81,15 @@ def composed(of: Description, name: str = "", title: str = "") -> Preset:
         of_drive=("Kv", "Kt"),
         share_force=_share_force(of),
         without_area=_WITHOUT_AREA if of.hydraulic else None,
-        gains={"cal": 1.0} | {GAINS[gain]: value for gain, value in of.gains.items()},
-        compares=of["of"] if of.closed else "",
+        gains=_gains(of, chain),
+        compares=of.compares,
     )
+
+
+def _gains(of: Description, chain: Chain) -> dict[str, float]:
+    """What is known beforehand: the gains that are stated, and that a transducer reads what it should."""
+    read = {"cal": 1.0} if any(name.name == "cal" for stage in chain.stages for name in stage.parameters) else {}
+    return read | {GAINS[gain]: value for gain, value in of.gains.items()}
 
 
 _WITHOUT_AREA = {"Z0": ("Z0/A^2", "1/s"), "Ka": ("Ka/A^2", "m/N"), "Cl": ("Cl/A^2", "m/(N*s)")}
@@ -149,7 +155,7 @@ def _load(of: Description) -> Stage:
 
 def _sensor(of: Description) -> tuple[Stage, ...]:
     """What the controller sees; in open loop nothing but a position needs a stage of its own."""
-    compared = of["of"] if of.closed else "displacement"
+    compared = of.compares or "displacement"
     if compared == "displacement":
         return (IDEAL_SENSOR,) if "displacement" in _given(of) else ()
     if compared == "velocity":
@@ -159,14 +165,14 @@ def _sensor(of: Description) -> tuple[Stage, ...]:
 
 def _outputs(of: Description) -> dict[str, str]:
     """What is recorded: of what the loop compares, and of the position, the transducer's reading."""
-    compared = of["of"] if of.closed else "displacement"
+    compared = of.compares or "displacement"
     return {shown: "y" if shown == compared else _given(of)[shown] for shown in of.sensor}
 
 
 def _rescaled(of: Description) -> list[Scale]:
     """How what a machine of unknown size is searched for hangs on what its command is and what is recorded."""
     # X is the size of the displacement, where it is recorded beside something else.
-    shown = of["of"] if of.closed else "displacement" if "displacement" in of.sensor else of.sensor[0]
+    shown = of.compares or ("displacement" if "displacement" in of.sensor else of.sensor[0])
     found: list[Scale] = []
     if of["load"] != "none":
         found = [Scale("m0", "mL", 1e-2, 1e3)]
@@ -198,7 +204,7 @@ def _rescaled(of: Description) -> list[Scale]:
 
 def _known(of: Description) -> set[str]:
     """What is recorded, or commanded of a controller."""
-    return {*of.sensor, *([of["of"]] if of.closed else ())}
+    return {*of.sensor, of.compares} - {""}
 
 
 def _force_known(of: Description) -> bool:

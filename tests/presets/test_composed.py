@@ -240,3 +240,21 @@ def test_a_matrix_says_its_machine_and_a_fit_takes_it(tmp_path, servoident):
 
 def test_the_moved_specimen_is_one_of_them():
     assert machine(described({"load": "prescribed_motion"}).name).chain.stages == PRESETS["specimen"].chain.stages
+
+
+@pytest.mark.parametrize("sensor", [5, {"displacement": 1}, [["force"]], True])
+def test_what_is_recorded_is_a_list_of_channels_or_refused(sensor):
+    with pytest.raises(Unusable, match="machine sensor"):
+        described({"flow": "to_speed", "sensor": sensor})
+
+
+def test_a_machine_without_a_state_is_fitted():
+    """A valve without lag, flow to speed, speed recorded: nothing that could be unstable."""
+    rng = np.random.default_rng(4)
+    u = smooth(rng, 1000, 10.0)
+    out = 3.0 * u + 0.01 * rng.standard_normal(len(u))
+    channels, units = {"command": u, "velocity": out}, {"command": "V", "velocity": "m/s"}
+    run = Run("one", "", RATE, channels, units, kind="blwn", output="velocity")
+    model = described({"flow": "to_speed", "sensor": "velocity"}).name
+    fit = identify(Matrix(Actuator("FAN"), (run,)), Settings(model=model))
+    assert fit.values["Kv"] == pytest.approx(3.0, rel=0.01)

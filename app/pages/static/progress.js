@@ -60,9 +60,8 @@ function follow(live) {
 }
 
 function list(paragraph, effects) {
-  if (!effects?.length) return;
-  paragraph.lastElementChild.replaceChildren(...effects.map(expectation));
-  paragraph.hidden = false;
+  paragraph.lastElementChild.replaceChildren(...(effects ?? []).map(expectation));
+  paragraph.hidden = !effects?.length;
 }
 
 // An effect that helps or promises to, and the error with it.
