@@ -90,6 +90,7 @@ class Run:
     rated_current: float | None = None
     clock_jitter: float = 0.0  # largest deviation of the time column from an even clock, in samples
     gaps: int = 0  # samples missing from the time column
+    evened: bool = False  # brought from the uneven clock of its time column to an even one
     record: str = ""
     share: float = 1.0
 

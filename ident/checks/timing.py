@@ -9,9 +9,9 @@ import numpy as np
 from ident.checks.finding import Finding
 from ident.checks.response import Response
 from ident.matrix import Run
+from ident.readers.clock import STRAY
 
 JITTER = 0.5  # samples; a time printed with too few digits stays below, a real clock that errs more does not
-JITTER_TO_NAME = 0.1  # samples: 0.7 degrees of phase at 80 Hz and 4096 Hz
 SAMPLES_A_CYCLE = 10.0  # of the highest excited frequency; below, the command between samples decides the fit
 POWER = 0.95
 QUICK, SETTLED = 2, 10  # samples behind a step: most of the answer, and all of it
@@ -22,15 +22,23 @@ STEPS = 3  # at least, to tell it by
 def timing(run: Run, response: Response | None) -> Iterator[Finding]:
     """Gaps and jitter of a time column; samples a cycle."""
     if run.gaps:
+        what = "what was there is guessed" if run.evened else "phases behind a gap are shifted"
         text = (
-            f"the time of run {run.id} has gaps: {run.gaps} samples are missing; phases behind a gap are shifted, so "
+            f"the time of run {run.id} has gaps: {run.gaps} samples are missing; {what}, so "
             "use the longest part without one (rows) or repeat the run"
         )
         yield Finding(run.id, "doubt", "gaps", text)
-    if run.clock_jitter > JITTER_TO_NAME:
+    if run.evened and run.clock_jitter > STRAY:
+        command = "the held command's edges keep their time" if run.hold == "zoh" else "between samples by a curve"
         text = (
-            f"the clock of run {run.id} strays by up to {run.clock_jitter:.2g} samples from an even one; "
-            "samples are taken as even, so record with a hardware clock, or print the time with more digits"
+            f"the clock of run {run.id} strays by up to {run.clock_jitter:.2g} samples from an even one; the record "
+            f"was brought to one of {run.sample_rate:.6g} Hz by its time column, {command}"
+        )
+        yield Finding(run.id, "note", "clock-jitter", text)
+    elif run.clock_jitter > STRAY:
+        text = (
+            f"the clock of run {run.id} strays by up to {run.clock_jitter:.2g} samples from an even one, as far as its "
+            "time was printed; samples are taken as even, so print the time with more digits"
         )
         yield Finding(run.id, "doubt" if run.clock_jitter > JITTER else "note", "clock-jitter", text)
     if response is None or run.time_unit != "s":

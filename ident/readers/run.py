@@ -8,7 +8,7 @@ import numpy as np
 
 from ident.errors import Unusable
 from ident.matrix import Run, Samples
-from ident.readers.clock import read_clock
+from ident.readers.clock import evened, read_clock
 from ident.readers.run_description import RunDescription
 from ident.readers.table import Array, Table, numeric
 from ident.units.quantity import Scale, shown
@@ -41,8 +41,17 @@ def read_run(described: RunDescription, table: Table) -> Run:
     if described.time is None:
         return replace(labels, channels=channels)
     scale = Scale(described.time.factor, 0.0, "s")
-    clock = read_clock(in_si(part(raw["time"], described, places["time"]), scale, places["time"]), places["time"])
-    return replace(labels, channels=channels, sample_rate=clock.rate, clock_jitter=clock.jitter, gaps=clock.gaps)
+    time = in_si(part(raw["time"], described, places["time"]), scale, places["time"])
+    clock = read_clock(time, places["time"])
+    rate = described.time.resample or clock.rate
+    even = clock.even and rate == clock.rate
+    if not even:
+        held = "command" if labels.hold == "zoh" else ""
+        where = places["time"] + ".resample" if described.time.resample else places["time"]
+        channels = {name: evened(time, values, rate, name == held, where) for name, values in channels.items()}
+    return replace(
+        labels, channels=channels, sample_rate=rate, clock_jitter=clock.jitter, gaps=clock.gaps, evened=not even
+    )
 
 
 def check_lengths(raw: dict[str, Array], described: RunDescription) -> None:

@@ -20,10 +20,11 @@ RUN = (
 
 @dataclass(frozen=True)
 class TimeColumn:
-    """The column that holds the time, `factor` s a unit."""
+    """The column that holds the time, `factor` s a unit; `resample`, Hz, is the even clock that is asked for."""
 
     column: str | int
     factor: float
+    resample: float | None
 
 
 @dataclass(frozen=True)
@@ -111,10 +112,11 @@ def describe_clock(fields: Fields) -> tuple[TimeColumn | None, float, str]:
         what = "both time and sample_rate are given" if "time" in fields else "neither sample_rate nor time is given"
         raise Unusable("clock", what, fields.where, "give sample_rate: 4096 Hz, or time: {column: t, unit: s}")
     if "time" in fields:
-        clock = Fields(fields.data["time"], fields.place("time"), ("column", "unit"))
+        clock = Fields(fields.data["time"], fields.place("time"), ("column", "unit", "resample"))
         column = clock.need("column", "name the column that holds the time")
         clock.need("unit", "add unit: s")
-        return TimeColumn(column, unit_scale(clock.text("unit"), "time", clock.place("unit")).factor), 0.0, "s"
+        factor = unit_scale(clock.text("unit"), "time", clock.place("unit")).factor
+        return TimeColumn(column, factor, clock.positive("resample", "frequency")), 0.0, "s"
     text = fields.data["sample_rate"]
     unit = split(text, fields.place("sample_rate"))[1].replace(" ", "")
     dimension = "per sample" if unit in ("1/sample", "sample^-1") else "frequency"
