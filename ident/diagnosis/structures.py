@@ -32,12 +32,18 @@ def structures(matrix: Matrix, report: Report = silent) -> tuple[Structure, ...]
         why = "the matrix describes it" if matrix.machine else shown
         return (Structure(only.name, {"held_out": None}, len(only.parameters), why),)
     runs = replace(matrix, runs=matrix.of_use("fit"))
-    tried = [_tried(model, runs, report) for model in models]
+    fitted = [_Fitted(model, runs, report) for model in models]
+    # One measure for all: over windows where one of them is fitted so, for what a machine integrated meanwhile is not
+    # a matter of its structure.
+    horizon = max((one.horizon for one in fitted if one.horizon is not None), default=None)
+    tried = [one.judged(horizon) for one in fitted]
     least = min(_error(one) for one in tried)
     good = [one for one in tried if _error(one) <= _WORSE * least]
     strange = {model.name for model in models if unusual(model, matrix.runs)}
     best = min(good, key=lambda one: (one.machine in strange, one.parameters))
-    return (_said(best, "the simplest that is not worse"), *(_said(one, "") for one in tried if one is not best))
+    over = "" if horizon is None else f" over {horizon:.3g} s"
+    others = (_said(one, over, "") for one in tried if one is not best)
+    return (_said(best, over, "the simplest that is not worse"), *others)
 
 
 def chosen(matrix: Matrix, report: Report = silent) -> tuple[Matrix, tuple[Structure, ...]]:
@@ -80,15 +86,22 @@ class ChosenFit:
         return replace(self._fit.finish(state), structures=self._tried)
 
 
-def _tried(model: Preset, matrix: Matrix, report: Report) -> Structure:
-    settings = Settings(model=model.name)
-    work = Identification(matrix, settings, report)
-    fit = completed(work)
-    family = ModelFamily.of(matrix, settings)
-    start = {family.preset.parameter(name).in_equations: value for name, value in fit.values.items()}
-    refit = family.refit((), start)
-    held_out = refit.held_out.error if refit.finite else None
-    return Structure(model.name, {"held_out": held_out}, len(work.objective.space.axes))
+class _Fitted:
+    """A model in question, fitted; `horizon` (s) of the windows where it was fitted over such."""
+
+    def __init__(self, model: Preset, matrix: Matrix, report: Report) -> None:
+        self.matrix, self.settings = matrix, Settings(model=model.name)
+        work = Identification(matrix, self.settings, report)
+        self.fit, self.parameters = completed(work), len(work.objective.space.axes)
+        self.horizon = self.fit.window.horizon if self.fit.window else None
+
+    def judged(self, horizon: float | None) -> Structure:
+        """Its error on held-out data, over windows where a horizon is given."""
+        family = ModelFamily.of(self.matrix, self.settings, horizon=horizon)
+        start = {family.preset.parameter(name).in_equations: value for name, value in self.fit.values.items()}
+        refit = family.refit((), start)
+        held_out = refit.held_out.error if refit.finite else None
+        return Structure(self.settings.model, {"held_out": held_out}, self.parameters)
 
 
 def _error(one: Structure) -> float:
@@ -96,6 +109,6 @@ def _error(one: Structure) -> float:
     return float("inf") if error is None else error
 
 
-def _said(one: Structure, more: str) -> Structure:
-    what = f"leaves {percent(one.error['held_out'])} of held-out data with {one.parameters} parameters"
+def _said(one: Structure, over: str, more: str) -> Structure:
+    what = f"leaves {percent(one.error['held_out'])} of held-out data{over} with {one.parameters} parameters"
     return replace(one, why=f"{what}: {more}" if more else what)

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from ident.chain.conditions import conditions, zeros
 from ident.fit.fitness import STEP, UNSTABLE, Local, local
-from ident.fit.normal_matrices import NormalMatrices, errors_of, normal_matrices
+from ident.fit.modes import FOLLOWED, extreme, fastest
+from ident.fit.normal_matrices import NormalMatrices, errors_of, escaped, normal_matrices
 from ident.fit.reduction import Basis, ReducedRun, reduced
 from ident.fit.space import Space
 from ident.fit.transfer import Pattern, values_at
@@ -75,6 +76,7 @@ class LinearFitness:
         """
         self.evaluations += len(points)
         errors, doubt = self._fast(points) if self._reduces else (self._one_by_one(points), np.zeros(len(points)))
+        errors[~self._followed(points)] = UNSTABLE
         self.unstable += int(np.sum(errors >= UNSTABLE))
         few = max(1, len(points) // 20)
         leading = np.argsort(errors, kind="stable")[:few]
@@ -86,6 +88,21 @@ class LinearFitness:
             exact = self.exact(points[index], sensitivities=False).error
             errors[index] = exact if np.isfinite(exact) else UNSTABLE
         return errors
+
+    def _followed(self, points: Array) -> NDArray[np.bool_]:
+        """Which vectors a simulation can follow, (v,).
+
+        What a mode far faster than the samples does shows in no record, and could not be compared with one.
+        """
+        if not self.space.followed:
+            return np.ones(len(points), dtype=bool)
+        values = self.space.values(points)
+        found: NDArray[np.bool_] = fastest(self.preset.chain, self._extreme, self.matrix.actuator, values) < FOLLOWED
+        return found
+
+    @cached_property
+    def _extreme(self) -> tuple[Run, ...]:
+        return extreme(self.runs)
 
     def _one_by_one(self, points: Array) -> Array:
         """The same from the records themselves."""
@@ -195,9 +212,11 @@ class LinearFitness:
         signs = np.where(point + STEP > 1.0, -1.0, 1.0)
         self.evaluations += p + 1
 
+        followed = self._followed(point[None])[0]
+
         def measure(run: int, g: Array, stable: NDArray[np.bool_]) -> NormalMatrices:
-            if not stable[0]:
-                return NormalMatrices(np.full((p + 1, p + 1), np.inf), np.zeros((0, p)), 1.0, 0.0)
+            if not (stable[0] and followed):
+                return escaped(p)
             reduced = self._reduced[run]
             y = g @ reduced.W.T
             z = np.vstack([(y[1:] - y[:1]) / (STEP * signs)[:, None], reduced.d - y[:1]])
@@ -208,12 +227,15 @@ class LinearFitness:
         return local(self._over_runs(np.concatenate([point[None], point + STEP * np.diag(signs)]), measure))
 
     def exact(self, point: Array, sensitivities: bool = True) -> Local:
-        """The objective at one point from the time domain; infinite where the model is unstable."""
+        """The objective at one point from the time domain; infinite where the model is unstable, or too fast."""
         # A step that would leave the cube goes inwards.
         strides = np.where(point + STEP > 1.0, -STEP, STEP)[: len(point) if sensitivities else 0]
         moved = point + np.diag(strides) if len(strides) else np.empty((0, len(point)))
         values = self.space.values(np.concatenate([point[None], moved]))
         self.evaluations += 1 + len(strides)
+
+        if not self._followed(point[None])[0]:
+            return local([escaped(len(strides))] * len(self.runs))
 
         def one(run: Run) -> NormalMatrices:
             model = self._models([run], values)

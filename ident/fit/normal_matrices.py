@@ -84,7 +84,7 @@ def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Norma
     release = -remove[:, p:-1]  # of each nuisance in each of [J, r], the constant last
     release[:, -1, -1] += means
     return [
-        _escaped(p, blocks.shape[1])
+        escaped(p, blocks.shape[1])
         if not sound[i]
         else NormalMatrices(
             projected[i], scores[i], float(totals[i]), float(release[i, -1, -1] / np.sqrt(totals[i] / run.length)),
@@ -94,8 +94,8 @@ def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Norma
     ]  # fmt: skip
 
 
-def _escaped(p: int, blocks: int) -> NormalMatrices:
-    """Of a model that ran away."""
+def escaped(p: int, blocks: int = 0) -> NormalMatrices:
+    """Of a model that ran away, or that nothing can follow."""
     return NormalMatrices(np.full((p + 1, p + 1), np.inf), np.zeros((blocks, p)), 1.0, np.inf)
 
 

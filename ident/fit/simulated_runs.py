@@ -17,13 +17,14 @@ from numpy.typing import NDArray
 from ident.chain.chain import Chain, linear_model
 from ident.chain.conditions import conditions
 from ident.effects.effect import Effect
+from ident.fit.modes import extreme, fastest
 from ident.fit.normal_matrices import NormalMatrices, first_state, normal_matrices_of
 from ident.fit.products import add_products, completed
 from ident.matrix import Matrix, Run
 from ident.parallel import cores, each
 from ident.presets import Preset
 from ident.simulation.equilibrium import equilibrium
-from ident.simulation.simulate import Simulation, rates, steps_needed
+from ident.simulation.simulate import Simulation, steps_needed
 
 Array = NDArray[np.float64]
 _TOGETHER = 256  # lanes simulated in one go: memory stays small, the cores stay busy
@@ -229,21 +230,16 @@ class SimulatedRuns:
 
     def steps(self, values: Mapping[str, Array], kinks: bool = True) -> NDArray[np.int64]:
         """Steps a sample for each vector."""
-        fastest, holds = self.fastest(values), {run.hold for run in self.runs}
+        found, holds = self.fastest(values), {run.hold for run in self.runs}
         on = [effect for effect in self.preset.effects if kinks and self._is_on(effect, values)]
-        return np.asarray(np.max([steps_needed(self.chain, fastest, hold, on) for hold in holds], axis=0))
+        return np.asarray(np.max([steps_needed(self.chain, found, hold, on) for hold in holds], axis=0))
 
     def fastest(self, values: Mapping[str, Array]) -> Array:
         """Radians a sample of each vector's fastest mode, of the linear core and the effects at small signals.
 
         Beyond :data:`ident.simulation.simulate.FASTEST` it is followed only roughly.
         """
-        vectors = len(next(iter(values.values())))
-        fastest = np.zeros(vectors)
-        for run in self._extreme:
-            known = {name: np.full(vectors, value) for name, value in conditions(run, self.matrix.actuator).items()}
-            fastest = np.maximum(fastest, rates(self.chain, known | dict(values), run.output) / run.sample_rate)
-        return fastest
+        return fastest(self.chain, self._extreme, self.matrix.actuator, values)
 
     def _is_on(self, effect: Effect, values: Mapping[str, Array]) -> bool:
         """Whether an effect has a strength that is not zero."""
@@ -251,13 +247,8 @@ class SimulatedRuns:
 
     @cached_property
     def _extreme(self) -> tuple[Run, ...]:
-        """For each specimen the run of largest gain: the others are no faster."""
-        chosen: dict[object, Run] = {}
-        for run in self.runs:
-            key = (run.specimen, run.sample_rate)
-            if key not in chosen or run.Kp > chosen[key].Kp:
-                chosen[key] = run
-        return tuple(chosen.values())
+        """The runs on which modes are fastest."""
+        return extreme(self.runs)
 
 
 def anchored(signal: Array, window: int) -> Array:

@@ -38,7 +38,8 @@ class Space:
     """Axes searched, values held fixed, and what the axes' scales may read.
 
     `convention` names a parameter that no run can determine (without a specimen of known mass only ratios to the mass
-    are seen): it is held at `fixed` and reported as undetermined.
+    are seen): it is held at `fixed` and reported as undetermined. `followed`: only models whose modes a simulation
+    follows at the sample time are searched; where the user says where to look, all that are there.
     """
 
     axes: tuple[Axis, ...]
@@ -47,6 +48,7 @@ class Space:
     typical: Mapping[str, float]
     convention: str | None = None
     scale_free: bool = False
+    followed: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -141,7 +143,9 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
             axes.append(Axis(scale.name, *scale.slower_than(fastest / band), scale.logarithmic, scale.equation))
     _refuse_bad_values(fixed, strengths | known.keys())
     order = tuple(scale.name for scale in preset.scales)
-    return Space(tuple(axes), order, fixed, typical, convention, scale_free=not same)
+    return Space(
+        tuple(axes), order, fixed, typical, convention, not same, not (same or settings.bounds or settings.fixed)
+    )
 
 
 def _loaded(runs: tuple[Run, ...]) -> bool:

@@ -92,5 +92,5 @@ def covariance(here: Scattered, point: Array, valley: Array | None = None) -> Co
     strengths, directions = np.linalg.eigh(H / scale[:, None] / scale)
     seen = strengths > _LOST * strengths[-1]
     inverse = (directions[:, seen] / strengths[seen]) @ directions[:, seen].T / scale[:, None] / scale
-    blind = directions[:, ~seen] / scale[:, None]
+    blind = directions[:, ~seen] * (scale.min() / scale)[:, None]  # of any length
     return Covariance(point, inverse @ S @ inverse, blind / np.maximum(np.linalg.norm(blind, axis=0), 1e-300), valley)

@@ -2,19 +2,25 @@
 
 Four structures, none of which shares a line with the program: a loop that follows its command like a lag, a position
 loop of valve, oil and mass whose gain nobody stated, a valve that a command opens and whose cylinder integrates, and a
-motor's speed. Commands of many kinds in V, mA or %, sampled at 20 Hz to 2 kHz by converters of 8 to 16 bits, with
-noise that is white or coloured, begun away from zero; and, where one is hidden, an effect in its plainest form.
+motor's speed. Commands of many kinds in V, mA or %, sampled at 20 Hz to 10 kHz by converters of 8 to 16 bits and clocks
+that may jitter, with noise that is white or coloured, sensors that may drift, drives that may be disturbed, begun away
+from zero; and, where one is hidden, an effect in its plainest form. Records are files, as a lab has them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
+import yaml
 from numpy.typing import NDArray
 
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Matrix
+from ident.readers import read_matrix
 
 Array = NDArray[np.float64]
 STRUCTURES = ("lag", "loop", "cylinder", "motor")
@@ -31,7 +37,11 @@ _SAMPLES = 1500
 
 @dataclass(frozen=True)
 class Lab:
-    """One machine and how it was recorded. `strength` is the hidden effect's share of the command's deviation."""
+    """One machine and how it was recorded. `strength` is the hidden effect's share of the command's deviation.
+
+    `jitter` is the largest deviation of a step of the clock, in steps; `drift` that of the sensor and `disturbance`
+    that of the drive, in deviations of the noise.
+    """
 
     seed: int
     structure: str
@@ -45,6 +55,9 @@ class Lab:
     offset: float
     volts: float
     unit: str
+    jitter: float
+    drift: float
+    disturbance: float
 
     @classmethod
     def drawn(cls, seed: int, hidden: bool) -> Lab:
@@ -53,31 +66,64 @@ class Lab:
         structure = str(rng.choice(STRUCTURES))
         what = str(rng.choice(HIDDEN[structure])) if hidden else ""
         return cls(
-            seed, structure, str(rng.choice(KINDS)), what, rng.uniform(0.4, 0.8), 10 ** rng.uniform(1.3, 3.3),
-            10 ** rng.uniform(-2.5, -1.7), bool(rng.integers(2)), int(rng.integers(10, 17)),
+            seed, structure, str(rng.choice(KINDS)), what, rng.uniform(0.4, 0.8), 10 ** rng.uniform(1.3, 4.0),
+            10 ** rng.uniform(-2.5, -1.7), bool(rng.integers(2)), int(rng.integers(8, 17)),
             rng.uniform(-1, 1) * rng.integers(2), 10 ** rng.uniform(-1, 1.3), str(rng.choice(["V", "mA", "%"])),
+            0.15 * (rng.integers(4) == 0), rng.uniform(0.5, 1.5) * (rng.integers(4) == 0),
+            rng.uniform(0.5, 2.0) * (rng.integers(4) == 0),
         )  # fmt: skip
 
     def measured(self, noisy: bool = True) -> Matrix:
-        """Two runs to fit and one to verify; without noise and converter the same."""
-        runs = []
+        """Two runs to fit and one to verify, read from files; without what disturbs and the converter the same."""
+        with TemporaryDirectory() as folder:
+            self.write(Path(folder), noisy)
+            return read_matrix(Path(folder))
+
+    def write(self, folder: Path, noisy: bool = True) -> None:
+        """The records, and what the lab says of them."""
+        runs: list[dict[str, Any]] = []
+        output, unit = ("velocity", "rad/s") if self.structure == "motor" else ("displacement", "m")
+        in_command = "m" if self.structure == "loop" else self.unit
+        scale = 0.01 if self.structure == "loop" else self.volts
         for number, use in enumerate(("fit", "fit", "verify")):
-            rng = np.random.default_rng([self.seed, number])
-            u = self._command(rng)
-            y = _MACHINES[self.structure](self, u)
+            u = self._command(np.random.default_rng([self.seed, number]))
             random = np.random.default_rng([self.seed, number, 1])
+            times = self._times(random, noisy)
+            y = _MACHINES[self.structure](self, self.commanded(u, times) + self._disturbed(random, noisy))
+            y = np.interp(times, np.arange(len(y)) / _PARTS, y)
             if noisy:
-                y = self._recorded(y + self.noise * y.std() * self._noise(random, len(y)))
-            output, unit = ("velocity", "rad/s") if self.structure == "motor" else ("displacement", "m")
-            in_command = "m" if self.structure == "loop" else self.unit
-            scale = 0.01 if self.structure == "loop" else self.volts
-            channels, units = {"command": scale * u, output: y}, {"command": in_command, output: unit}
-            held = self.kind in ("steps", "staircase")
-            runs.append(Run(
-                f"{use}-{number}", "", self.rate, channels, units, output=output, use=use,
-                hold="zoh" if held else "linear", kind="blwn" if self.kind == "noise" else "other",
-            ))  # fmt: skip
-        return Matrix(Actuator(f"LAB-{self.seed}"), tuple(runs))
+                beside = self._noise(random, len(y)) + self._drift(random, len(y))
+                y = self._recorded(y + self.noise * y.std() * beside)
+            table = np.column_stack([times / self.rate, scale * u, y])
+            np.savetxt(folder / f"{number}.csv", table, delimiter=",", header="t,u,y", comments="", fmt="%.12g")
+            hold = "zoh" if self.kind in ("steps", "staircase") else "linear"
+            runs.append({
+                "id": f"{use}-{number}", "file": f"{number}.csv", "time": {"column": "t", "unit": "s"}, "use": use,
+                "output": output, "hold": hold, "kind": "blwn" if self.kind == "noise" else "other",
+                "channels": {"command": {"column": "u", "unit": in_command}, output: {"column": "y", "unit": unit}},
+            })  # fmt: skip
+        description = {"actuator": {"serial": f"LAB-{self.seed}"}, "runs": runs}
+        (folder / "matrix.yaml").write_text(yaml.safe_dump(description))
+
+    def _times(self, rng: np.random.Generator, noisy: bool) -> Array:
+        """When the samples are taken, in steps of the clock."""
+        stray = self.jitter * noisy * rng.uniform(-1, 1, _SAMPLES - 1)
+        return np.concatenate([[0.0], np.cumsum(1.0 + stray)])
+
+    def _disturbed(self, rng: np.random.Generator, noisy: bool) -> Array:
+        """What comes to the drive beside the command, another for each sample."""
+        n = self._last() * _PARTS
+        return self.noise * self.disturbance * noisy * np.repeat(rng.standard_normal(n // _PARTS), _PARTS)
+
+    def _drift(self, rng: np.random.Generator, n: int) -> Array:
+        """A slow curve of the sensor, of `drift` deviations of the noise."""
+        t, first, second = np.linspace(0, 1, n), rng.uniform(-1, 1), rng.uniform(-1, 1)
+        slow = first * t + second * np.sin(np.pi * t)
+        return self.drift * (slow - slow.mean()) / slow.std()
+
+    def _last(self) -> int:
+        """Steps that the simulation takes: more than an uneven clock needs."""
+        return _SAMPLES + int(0.1 * _SAMPLES * (self.jitter > 0))
 
     def _command(self, rng: np.random.Generator) -> Array:
         """About one in size, held at zero for the first sixteenth."""
@@ -103,7 +149,7 @@ class Lab:
         return white / white.std()
 
     def _recorded(self, y: Array) -> Array:
-        step = 2.2 * float(np.abs(y).max()) / 2**self.bits
+        step = 1.1 * float(np.ptp(y)) / 2**self.bits
         return np.round(y / step) * step
 
     def acts(self, u: Array) -> Array:
@@ -119,15 +165,14 @@ class Lab:
             return u / np.sqrt(1 + (1.2 * s * u) ** 2)
         return u
 
-    def commanded(self, u: Array) -> Array:
+    def commanded(self, u: Array, times: Array) -> Array:
         """The command in the middle of every step of every sample, late where that is hidden."""
-        n = len(u)
-        fine = (np.arange(n * _PARTS) + 0.5) / _PARTS
+        fine = (np.arange(self._last() * _PARTS) + 0.5) / _PARTS
         if self.hidden == "command_delay":
             fine = np.maximum(fine - 6.0 * self.strength, 0.0)
         if self.kind in ("steps", "staircase"):
-            return u[np.minimum(fine.astype(int), n - 1)]
-        return np.interp(fine, np.arange(n), u)
+            return u[np.searchsorted(times, fine, side="right") - 1]
+        return np.interp(fine, times, u)
 
 
 def _low_passed(x: Array, share: float) -> Array:
@@ -137,24 +182,22 @@ def _low_passed(x: Array, share: float) -> Array:
     return found / found.std()
 
 
-def _lag(lab: Lab, u: Array) -> Array:
+def _lag(lab: Lab, fine: Array) -> Array:
     """T y' + y = u, T of eight samples."""
-    acting, share, y, out = lab.acts(lab.commanded(u)), -np.expm1(-1.0 / _PARTS / 8.0), 0.0, []
-    for k, now in enumerate(acting):
-        if k % _PARTS == 0:
-            out.append(y)
+    acting, share, y, out = lab.acts(fine), -np.expm1(-1.0 / _PARTS / 8.0), 0.0, []
+    for now in acting:
+        out.append(y)
         y += share * (now - y)
     return 0.02 * np.array(out)
 
 
-def _loop(lab: Lab, u: Array) -> Array:
+def _loop(lab: Lab, fine: Array) -> Array:
     """Gain into a valve's lag, an integrating cylinder on a spring of oil with its mass; in samples."""
-    fine, dt = lab.commanded(u), 1.0 / _PARTS
+    dt = 1.0 / _PARTS
     state, held = np.zeros(4), 0.0
     out = []
-    for k, now in enumerate(fine):
-        if k % _PARTS == 0:
-            out.append(float(state[3]))
+    for now in fine:
+        out.append(float(state[3]))
         if lab.hidden == "backlash":
             half = 0.25 * lab.strength
             held = min(max(held, state[0] - half), state[0] + half)
@@ -168,26 +211,24 @@ def _loop(lab: Lab, u: Array) -> Array:
     return 0.01 * np.array(out)
 
 
-def _cylinder(lab: Lab, u: Array) -> Array:
+def _cylinder(lab: Lab, fine: Array) -> Array:
     """A valve's lag of five samples, and what it lets through integrated."""
-    acting, dt, q, x, out = lab.acts(lab.commanded(u)), 1.0 / _PARTS, 0.0, 0.0, []
+    acting, dt, q, x, out = lab.acts(fine), 1.0 / _PARTS, 0.0, 0.0, []
     share = -np.expm1(-dt / 5.0)
-    for k, now in enumerate(acting):
-        if k % _PARTS == 0:
-            out.append(x)
+    for now in acting:
+        out.append(x)
         x += dt * now + 5.0 * share * (q - now)
         q += share * (now - q)
     return 1e-4 * np.array(out) + 0.3 * lab.offset
 
 
-def _motor(lab: Lab, u: Array) -> Array:
+def _motor(lab: Lab, fine: Array) -> Array:
     """A voltage against inertia, damping, and what friction is hidden."""
-    acting, share, w, out = lab.acts(lab.commanded(u)), -np.expm1(-1.0 / _PARTS / 12.0), 0.0, []
+    acting, share, w, out = lab.acts(fine), -np.expm1(-1.0 / _PARTS / 12.0), 0.0, []
     dry = 0.4 * lab.strength if lab.hidden == "coulomb_friction" else 0.0
     drag = 1.2 * lab.strength if lab.hidden == "quadratic_damping" else 0.0
-    for k, now in enumerate(acting):
-        if k % _PARTS == 0:
-            out.append(w)
+    for now in acting:
+        out.append(w)
         after = w + share * (now - w - drag * w * abs(w))
         stop = share * dry
         w = after - stop if after > stop else after + stop if after < -stop else 0.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from functools import cache
 
@@ -13,6 +14,7 @@ from ident.fit.result import FitResult, Structure
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run
 from ident.workflows import identify
+from tests.fit.test_windows import cylinder
 from tests.presets.test_machines import motor, specimen
 
 RATE = 100.0
@@ -51,7 +53,8 @@ def test_a_machine_that_settles_is_told_from_one_that_integrates(integrates, mod
     """Both were recorded alike, command to position; the one that is taken leaves the noise."""
     first, *others = compared(integrates)
     assert first.machine == model
-    assert first.error["held_out"] < 0.0115
+    # The noise, √2 of it over windows that begin where they were measured, with its own noise.
+    assert first.error["held_out"] < 0.0115 * np.sqrt(2)
     assert "simplest" in first.why
     assert {one.machine for one in (first, *others)} == {"first_order", "motor", "open_valve"}
     wrong = next(one for one in others if one.machine == ("first_order" if integrates else "motor"))
@@ -74,3 +77,15 @@ def test_what_was_compared_is_kept_with_the_fit():
     fit = replace(identify(motor(8), Settings(model="motor")), structures=of_motor())
     assert FitResult.from_json(fit.to_json()) == fit
     assert "structures" not in replace(fit, structures=()).to_json()
+
+
+def test_structures_are_compared_over_one_time():
+    """A cylinder that disturbances moved: over whole runs a slow lag would leave less of it than what it is."""
+    matrix = cylinder(2, wander=4e-3, uses=("fit", "fit", "verify"))
+    (first, *others) = structures(matrix)
+    assert first.machine in ("open_valve", "motor")
+    lag = next(one for one in others if one.machine == "first_order")
+    over = re.findall(r"held-out data over ([\d.]+) s", " ".join(one.why for one in (first, *others)))
+    assert len(over) == 3
+    assert len(set(over)) == 1
+    assert lag.error["held_out"] > 1.02 * first.error["held_out"]
