@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats.qmc import Sobol
 
 from ident.diagnosis.cross_validation import CrossValidation, cross_validated
 from ident.effects import CATALOGUE
@@ -28,6 +29,8 @@ from ident.presets import preset as preset_named
 Array = NDArray[np.float64]
 _TRIAL = 131_072  # samples of a first refit; the finalists take every sample
 _FITTING, _TRYING, _SEARCHING = Way(1e-7, 20), Way(1e-5, 10), Way(1e-5, 30)  # of a refit, a first one, one far off
+_SCATTERED, _LEADING = 128, 4  # points of a whole search space, and those of them from which a refit begins
+_SIGHT = 32_768  # samples that they are judged by
 _BETTER = 0.99  # times the error: a new optimum, not the same one
 _AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be noise, beside
 _CHANCE = 3.0  # standard deviations
@@ -192,6 +195,17 @@ class ModelFamily:
     def searched(self, refit: Refit, starts: Sequence[Mapping[str, float]]) -> list[Refit]:
         """First refits of the same model from other starts, far off: on the beginnings of the records."""
         return [self.refit(refit.effects, start, _TRIAL, _SEARCHING) for start in starts]
+
+    def scattered(self, effects: tuple[str, ...]) -> Refit:
+        """The best first refit of a model from anywhere in its search space, on the beginnings of the records.
+
+        Where the fitted model went far astray for want of the effect, no start near it leads back.
+        """
+        fitness = self.fitness(effects, _SIGHT)
+        points = Sobol(len(fitness.space.axes), rng=0).random(_SCATTERED)
+        best = points[np.argsort(fitness.errors(points), kind="stable")[:_LEADING]]
+        starts = [{name: float(v[0]) for name, v in fitness.space.values(point[None]).items()} for point in best]
+        return min((self.refit(effects, start, _TRIAL) for start in starts), key=lambda refit: refit.here.error)
 
     def refit(
         self,

@@ -8,7 +8,7 @@ are tried, far from where the search stands, and two at a time in the place of o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import combinations
@@ -17,12 +17,15 @@ from ident.diagnosis.family import ModelFamily, Refit
 from ident.diagnosis.ranking import Candidate, rank
 from ident.diagnosis.significance import improvement
 from ident.errors import TimeIsUp
+from ident.parallel import each
 from ident.progress import Progress, Report
 
 MOST = 6  # effects that are added
 USUAL = 4  # where the user says nothing
 _WEIGHED = 3  # effects that are weighed against others in their place each time: more take long
 _ROUNDS = 3  # of replacing
+_SCATTERED = 8  # of the first ranking that are tried with the fitted model forgotten
+_OFF = 0.01  # of the largest strength: an effect that is as good as off
 _PAIRED = 5  # finalists that are tried two at a time
 _SHARES = (1.0, 0.3, 0.03)  # of the second's strength alone
 
@@ -130,13 +133,62 @@ class StepwiseSelection:
             best = next((candidate for candidate in ranking if candidate.helps), None)
             if best is None or best.refit is None:
                 break
+            if self._settled(best.refit):
+                continue
             self._step(best.refit)
-            if self._backward(best.effect):
+            if first:
+                self._anywhere()
+            elif self._backward(best.effect):
                 break
 
     def _weighed(self) -> bool:
         """Weigh as many effects as are not weighed otherwise, once; True where one was replaced."""
         return len(self.added) > _WEIGHED and self._replaced()
+
+    def _settled(self, refit: Refit) -> bool:
+        """Where what was added is as good as off, it was the way to a better optimum without it: True, and there."""
+        name = refit.effects[-1]
+        symbol = self.models.strength(name)
+        lower, upper = refit.fitness.space.bounds(refit.values)[symbol]
+        if abs(refit.values[symbol]) > _OFF * max(-lower, upper):
+            return False
+        less = self.models.refit(refit.effects[:-1], _without(refit.values, name))
+        if not less.finite or improvement(less.held_out, refit.held_out).beyond_chance:
+            return False
+        if less.effects == self.base.effects:
+            self.base = less
+        self._step(less)
+        return True
+
+    def _anywhere(self) -> None:
+        """Where the first effect leaves more than noise: begin with one that, the fitted model forgotten, leaves less.
+
+        A model that went far astray for want of an effect makes another one look better from where it is.
+        """
+        if self.models.floor is None or self.models.at_floor(self.found):
+            return
+        names = [candidate.effect for candidate in self.ranking[:_SCATTERED]]
+        done = 0
+
+        def scattered(name: str) -> Refit:
+            nonlocal done
+            refit = self.models.scattered((*self.base.effects, name))
+            done += 1
+            self.report(Progress("looking farther", done, len(names)))
+            return refit
+
+        self._better(each(scattered, names))
+
+    def _better(self, tried: Sequence[Refit]) -> bool:
+        """Go on with the best of first refits, where it is better beyond chance on all records."""
+        best = min(tried, key=lambda trial: trial.here.error, default=None)
+        if best is None or not best.here.error < self.models.tried(self.found):
+            return False
+        refit = self.models.refit(best.effects, best.values)
+        if not refit.finite or not improvement(self.found.held_out, refit.held_out).beyond_chance:
+            return False
+        self._step(refit)
+        return True
 
     def _stronger(self) -> bool:
         """Go on with an effect that helps only where its refit begins with a strong one."""
@@ -146,8 +198,9 @@ class StepwiseSelection:
         best = next((candidate for candidate in ranking if candidate.helps), None)
         if best is None or best.refit is None:
             return False
-        self._step(best.refit)
-        self._backward(best.effect)
+        if not self._settled(best.refit):
+            self._step(best.refit)
+            self._backward(best.effect)
         return True
 
     def _paired(self) -> bool:
@@ -164,14 +217,7 @@ class StepwiseSelection:
         for i, pair in enumerate(pairs):
             self.report(Progress("trying pairs", i, len(pairs)))
             tried.append(self._both(*pair))
-        best = min(tried, key=lambda trial: trial.here.error)
-        if not best.here.error < self.models.tried(self.found):
-            return False
-        refit = self.models.refit(best.effects, best.values)
-        if not refit.finite or not improvement(self.found.held_out, refit.held_out).beyond_chance:
-            return False
-        self._step(refit)
-        return True
+        return self._better(tried)
 
     def _both(self, first: Refit, second: Refit) -> Refit:
         """A first refit with two effects, from where either is alone and from halfway to both."""

@@ -113,12 +113,13 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     if all(run.stepped for run in runs):
         band /= _OF_STEPS
     typical = _typical(matrix, runs) | {"W": band}
+    typical["V"] = _speed(runs) or band * typical["L"]
     if settings.load == "force":  # a mass that would need this force
         force = float(np.mean([np.std(run.channels["force"]) for run in runs]))
         typical["mL"] = force / (typical["X"] * band**2)
     strengths = {effect.added[0].in_equations for effect in preset.effects}
     shapes = {
-        p.in_equations: p.relative * typical["L"] if p.relative and preset.motion_scale else p.value
+        p.in_equations: p.relative * typical["L"] if p.relative and preset.relative_ways else p.value
         for effect in preset.effects
         for p in effect.added[1:]
     }
@@ -164,6 +165,12 @@ def _typical(matrix: Matrix, runs: tuple[Run, ...]) -> dict[str, float]:
         "M": max(float(np.max(np.abs(run.command))) for run in runs),
     }
     return mean | {"mL": mean["mL"] or 1.0}
+
+
+def _speed(runs: tuple[Run, ...]) -> float:
+    """The deviation of the speed where it was recorded; zero where not."""
+    known = all("velocity" in run.channels for run in runs)
+    return float(np.mean([np.std(run.channels["velocity"]) for run in runs])) if known else 0.0
 
 
 def _size(runs: tuple[Run, ...], of: Callable[[Run], float]) -> float:

@@ -5,7 +5,7 @@ from ident.presets.preset import Combined, Preset
 from ident.stages import CASCADE, DIRECT_FORCE, DRIVEN_MASS, IDEAL_DRIVE, IDEAL_SENSOR, Scale
 
 OUTPUTS = {"displacement": "y", "force": "F"}
-FORCE_SCALE = "(c0 + m0*W)*W*X"
+FORCE_SCALE = "(c0 + m0*W)*W*L"
 CITATION = (
     "A. Janot, M. Gautier, M. Brunot: data set and reference models of EMPS. "
     "Workshop on Nonlinear System Identification Benchmarks (2019)."

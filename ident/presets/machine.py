@@ -76,7 +76,7 @@ def composed(of: Description, name: str = "", title: str = "") -> Preset:
         chain=chain,
         rescaled=tuple(_rescaled(of)),
         force_scale=_force_scale(of),
-        motion_scale="L" if of.sensor[0] in ("displacement", "velocity") else "",
+        relative_ways=of.sensor[0] in ("displacement", "velocity"),
         drive_scale="Kp*U" if of.closed else "U",
         of_drive=("Kv", "Kt"),
         share_force=_share_force(of),
@@ -218,7 +218,7 @@ def _motion_known(of: Description) -> bool:
 def _force_scale(of: Description) -> str:
     if of["flow"] == "to_speed":
         return ""
-    return "A*Ka*U" if of["load"] == "none" else "(c0 + m0*W)*W*L"
+    return "A*Ka*U" if of["load"] == "none" else "(c0 + m0*W)*V"
 
 
 def _share_force(of: Description) -> tuple[str, ...]:

@@ -54,8 +54,8 @@ class Preset:
     `under_control` the model of the same machine under a controller. `methods` are fitting methods of this model
     alone, `search` the options of its genetic search that differ from the usual ones, `figures` those that it has,
     every figure of test runs where there are none. `force_scale` is the size of its forces in the words of a scale,
-    `motion_scale` that of its motion, the output's where none is stated, `drive_scale` that of its drive signal, the
-    motion times the gain where none is stated. `of_drive` are parameters in whose unit a metre is one of the drive
+    `drive_scale` that of its drive signal, the motion times the gain where none is stated; with `relative_ways` lengths
+    of effects' shapes are measured by its motion. `of_drive` are parameters in whose unit a metre is one of the drive
     signal; it is shown as `drive_unit`, the command's in open loop. `turns`: the motion of such a machine is an angle
     as a rule. `compares` is the channel that its controller does, nothing without one; `gains` are gains of it that
     are known, Kp that of runs that state none. Multiplied or divided by one factor, the parameters `share_force` change
@@ -86,7 +86,7 @@ class Preset:
     search: Mapping[str, float] = field(default_factory=dict)
     figures: tuple[str, ...] = ()
     force_scale: str = ""
-    motion_scale: str = ""
+    relative_ways: bool = False
     drive_scale: str = ""
     of_drive: tuple[str, ...] = ()
     drive_unit: str = "m"
@@ -139,11 +139,10 @@ class Preset:
 
     @property
     def _sizes(self) -> dict[str, str]:
-        """Of drive signal, motion and force, in the words of a scale: see :func:`scale_of`."""
-        motion = self.motion_scale or "X"
-        drive = self.drive_scale or f"Kp*{motion}"
+        """Of drive signal, its zones and force, in the words of a scale: see :func:`scale_of`."""
+        drive = self.drive_scale or "Kp*L"
         widest = "0.9*M" if OPENED_BY_COMMAND in self.chain.stages else f"0.5*{drive}"
-        return {"D": drive, "Z": widest, "L": motion, "F": self.force_scale}
+        return {"D": drive, "Z": widest, "F": self.force_scale}
 
     def with_effects(self, effects: tuple[Effect, ...]) -> Preset:
         """The model with effects added to its chain; their parameters are called effect__parameter in the equations.
@@ -264,14 +263,14 @@ def _in_order(found: Mapping[str, T], first: Iterable[str]) -> tuple[T, ...]:
 _OWN = ("1", None)
 _SCALES = {
     "1": _OWN, "Pa": _OWN, "m/s": _OWN, "s": ("1/W", 3.0), "1/s": ("W", 1.0), "m": ("Z", 1.0), "1/m": ("1/D", 3.0),
-    "s/m": ("1/(D*W)", 5.0), "N": ("F", 0.3), "N/m^3": ("F/L**3", 0.3), "N*s^2/m^2": ("F/(W*L)**2", 1.0),
-    "m/Pa": ("D*A/F", 1.0), "1/Pa": ("A/F", 1.0), "s/m^3": ("1/(A*W*L)", 1.0), "1/m^2": ("1/L**2", 1.0),
-    "m^3/(s*Pa^0.5)": ("A*W*L/sqrt(F/A)", 1.0), "m/N": ("L/F", 1.0),
+    "s/m": ("1/(D*W)", 5.0), "N": ("F", 0.3), "N/m^3": ("F/L**3", 0.3), "N*s^2/m^2": ("F/V**2", 1.0),
+    "m/Pa": ("D*A/F", 1.0), "1/Pa": ("A/F", 1.0), "s/m^3": ("1/(A*V)", 1.0), "1/m^2": ("1/L**2", 1.0),
+    "m^3/(s*Pa^0.5)": ("A*V/sqrt(F/A)", 1.0), "m/N": ("L/F", 1.0),
 }  # fmt: skip
 """For a machine of unknown size: what a strength of each unit is measured by, and how much of it is searched.
 
-D, L and F stand for the sizes of its drive signal, its motion and its forces, Z for the widest zone that lets some of
-the drive signal through. `_OWN`: within the bounds that it has.
+D and F stand for the sizes of its drive signal and its forces, Z for the widest zone that lets some of the drive signal
+through; L and V, as W, are typical of the runs: the deviations of motion and speed. `_OWN`: within its own bounds.
 """
 
 
@@ -287,6 +286,6 @@ def scale_of(effect: Effect, parameter: Parameter, sizes: Mapping[str, str]) -> 
         reach = None
     if reach is None:
         return Scale.by_bounds(parameter, logarithmic=False)
-    text = re.sub(r"\b[DZLF]\b", lambda found: f"({sizes[found[0]]})", text)
+    text = re.sub(r"\b[DZF]\b", lambda found: f"({sizes[found[0]]})", text)
     lower = -reach if parameter.lower < 0 else 0.0
     return Scale(parameter.in_equations, text, lower, reach, logarithmic=False)

@@ -11,7 +11,7 @@ SPECIMEN = Preset(
     chain=Chain(stages=(MOVED_SPECIMEN,), outputs={"force": "F"}),
     driven_by="velocity",
     force_scale="4*X",
-    motion_scale="L",
+    relative_ways=True,
     combinations=(
         Combined("kS / cS", "1/s", "corner from which the damper outweighs the spring"),
         Combined("cS / mS", "1/s", "corner from which the mass outweighs the damper"),

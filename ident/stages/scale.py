@@ -12,9 +12,9 @@ from ident.equations.equation import Equation
 from ident.errors import Unusable
 from ident.parameter import Parameter
 
-OF_THE_RUNS = frozenset("WXULM")
+OF_THE_RUNS = frozenset("WXULVM")
 """What a scale may read of the runs together: W, the angular frequency up to which the command excites the machine
-(rad/s), X, U and L, the standard deviations of output, command and position, M, the largest command."""
+(rad/s), X, U, L and V, the standard deviations of output, command, position and speed, M, the largest command."""
 ORDER_OF_MAGNITUDE = "order of magnitude; searched over scale-free ratios"
 """The source of a parameter whose bounds belong to no certain machine."""
 

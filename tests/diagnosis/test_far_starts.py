@@ -1,0 +1,37 @@
+"""A fitted model that went astray for want of an effect: the diagnosis begins elsewhere too, and ends where it should.
+
+Labs of tests/blind/any_machine.py, by recursions of their own.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from ident.fit.settings import Settings
+from ident.workflows import diagnose, identify
+from tests.blind.any_machine import Lab
+
+
+@pytest.mark.parametrize(("seed", "name"), [(316, "backlash"), (319, "dead_zone")])
+def test_the_hidden_effect_is_found_where_no_start_near_the_fit_leads_to_it(seed, name):
+    """Small steps tell little of a loop with play: another effect looks better from where its fit went.
+
+    And an effect whose strength is nothing is no finding: with seed 316 a delay of none was the way to the optimum.
+    """
+    lab = Lab.drawn(seed, hidden=True)
+    assert lab.hidden == name
+    matrix = lab.measured()
+    fit = identify(matrix, Settings(model="qian2014"))
+    found = diagnose(matrix, fit)
+    assert found.verdict.effects == (name,)
+    assert found.verdict.standing == "found"
+    assert found.ladder[-1].error["verify"] < 1.2 * lab.noise
+
+
+def test_a_drag_is_measured_by_the_speed_that_was_recorded():
+    """A motor's speed in steps at 515 Hz: its largest drag was reckoned from the angle and the edge of the band."""
+    lab = Lab.drawn(302, hidden=True)
+    assert lab.hidden == "quadratic_damping"
+    fit = identify(lab.measured(), Settings(model="motor", effects=("quadratic_damping",)))
+    assert fit.error["verify"] < 1.1 * lab.noise
+    assert fit.values["c0"] == pytest.approx(lab.rate / 12.0, rel=0.02)
