@@ -31,6 +31,7 @@ _TRIAL = 131_072  # samples of a first refit; the finalists take every sample
 _FITTING, _TRYING, _SEARCHING = Way(1e-7, 20), Way(1e-5, 10), Way(1e-5, 30)  # of a refit, a first one, one far off
 _SCATTERED, _LEADING = 128, 4  # points of a whole search space, and those of them from which a refit begins
 _SIGHT = 32_768  # samples that they are judged by
+_OFF = 0.01  # of the largest strength
 _BETTER = 0.99  # times the error: a new optimum, not the same one
 _AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be noise, beside
 _CHANCE = 3.0  # standard deviations
@@ -149,6 +150,12 @@ class ModelFamily:
     def strength(self, effect: str) -> str:
         """The name of an effect's strength in the equations."""
         return self.effects[effect].added[0].in_equations
+
+    def faint(self, refit: Refit, effect: str) -> bool:
+        """Whether an effect of a refit is as good as off."""
+        strength = self.strength(effect)
+        lower, upper = refit.space.bounds(refit.values)[strength]
+        return abs(refit.values[strength]) < _OFF * max(-lower, upper)
 
     def fitness(self, effects: tuple[str, ...], samples: int = 0, whole: bool = False) -> SimulatedFitness:
         """The objective of the model with these effects, on records of at most `samples` in all where that is given.

@@ -25,7 +25,6 @@ USUAL = 4  # where the user says nothing
 _WEIGHED = 3  # effects that are weighed against others in their place each time: more take long
 _ROUNDS = 3  # of replacing
 _SCATTERED = 8  # of the first ranking that are tried with the fitted model forgotten
-_OFF = 0.01  # of the largest strength: an effect that is as good as off
 _PAIRED = 5  # finalists that are tried two at a time
 _SHARES = (1.0, 0.3, 0.03)  # of the second's strength alone
 
@@ -148,12 +147,11 @@ class StepwiseSelection:
     def _settled(self, refit: Refit) -> bool:
         """Where what was added is as good as off, it was the way to a better optimum without it: True, and there."""
         name = refit.effects[-1]
-        symbol = self.models.strength(name)
-        lower, upper = refit.fitness.space.bounds(refit.values)[symbol]
-        if abs(refit.values[symbol]) > _OFF * max(-lower, upper):
+        if not self.models.faint(refit, name):
             return False
         less = self.models.refit(refit.effects[:-1], _without(refit.values, name))
-        if not less.finite or improvement(less.held_out, refit.held_out).beyond_chance:
+        worse = not less.finite or less.held_out.score >= self.found.held_out.score
+        if worse or improvement(less.held_out, refit.held_out).beyond_chance:
             return False
         if less.effects == self.base.effects:
             self.base = less

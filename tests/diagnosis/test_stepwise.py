@@ -36,7 +36,8 @@ class Judged:
     effects = ("a", "b", "c")
     floor = 0.1
 
-    def __init__(self, scores: dict[str, float], needed: set[str], far: str, late: str) -> None:
+    def __init__(self, scores: dict[str, float], needed: set[str], far: str, late: str, off: str) -> None:
+        self.off = off
         self.scores, self.needed = {"abc": 2.0, "ac": 2.0, "bc": 2.0, "c": 2.0} | scores, needed
         self.far, self.late = far, late  # effects found only from strong ones; only beside another
 
@@ -57,6 +58,14 @@ class Judged:
     def at_floor(self, refit):
         """Whether nothing is left."""
         return refit.held_out.score <= self.floor
+
+    def scattered(self, effects):
+        """An effect that no start near the fit leads to is found from anywhere."""
+        return self.refit(effects, {})
+
+    def faint(self, refit, effect):
+        """Whether an effect that is off led to where it is not needed."""
+        return effect in self.off
 
     def strength(self, effect):
         """An effect has one parameter of its own name."""
@@ -84,8 +93,10 @@ class Judged:
 def searched(monkeypatch):
     """The additions for given scores and needs."""
 
-    def of(scores: dict[str, float], needed: set[str], far: str = "", late: str = "") -> StepwiseSelection:
-        judged = Judged(scores, needed, far, late)
+    def of(
+        scores: dict[str, float], needed: set[str], far: str = "", late: str = "", off: str = ""
+    ) -> StepwiseSelection:
+        judged = Judged(scores, needed, far, late, off)
         monkeypatch.setattr(stepwise, "rank", judged.rank)
         monkeypatch.setattr(stepwise, "improvement", judged.improvement)
         return StepwiseSelection(judged, judged.refit((), {}), 2, lambda *_: None).run()  # type: ignore[arg-type]
@@ -143,3 +154,15 @@ def test_nothing_is_tried_two_at_a_time_where_one_leaves_nothing(added):
     """The noise is reached with one effect: what two would reach is of no interest."""
     scores = {"": 1.0, "a": 0.1, "b": 0.7, "c": 0.7, "ab": 0.2, "ac": 0.2, "bc": 0.01}
     assert added(scores, needed={"a"}) == {"a"}
+
+
+def test_an_effect_that_is_off_and_leads_nowhere_better_without_it_is_added_as_any_other(added):
+    """What it gained cannot be had without it: it is not taken for the way to a better optimum."""
+    scores = {"": 1.0, "a": 0.2, "b": 0.9, "ab": 0.2}
+    assert added(scores, needed={"a"}, off="a") == {"a"}
+
+
+def test_one_effect_from_anywhere_takes_the_place_of_the_first(added):
+    """b, which no start near the fit leads to, explains alone what a did not."""
+    scores = {"": 1.0, "a": 0.7, "b": 0.05, "c": 0.8, "ab": 0.05}
+    assert added(scores, needed={"a", "b"}, far="b") == {"b"}
