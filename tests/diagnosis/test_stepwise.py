@@ -63,7 +63,7 @@ class Judged:
         """An effect that no start near the fit leads to is found from anywhere."""
         return self.refit(effects, {})
 
-    def faint(self, refit, effect):
+    def faint(self, _refit, effect):
         """Whether an effect that is off led to where it is not needed."""
         return effect in self.off
 
@@ -165,4 +165,4 @@ def test_an_effect_that_is_off_and_leads_nowhere_better_without_it_is_added_as_a
 def test_one_effect_from_anywhere_takes_the_place_of_the_first(added):
     """b, which no start near the fit leads to, explains alone what a did not."""
     scores = {"": 1.0, "a": 0.7, "b": 0.05, "c": 0.8, "ab": 0.05}
-    assert added(scores, needed={"a", "b"}, far="b") == {"b"}
+    assert added(scores, needed={"b"}, far="b") == {"b"}
