@@ -25,6 +25,8 @@ CHANNELS = (
     "command", "displacement", "velocity", "force", "drive_force", "load_pressure", "pressure_a", "pressure_b",
     "supply_pressure", "spool", "current", "temperature",
 )  # fmt: skip
+DISTURBANCES = {"flow_disturbance": "flow", "load_disturbance": "load", "sensor_disturbance": "sensor"}
+"""What acts on a machine beside its command, measured: the channel, and the place where it adds."""
 
 
 @dataclass(frozen=True)

@@ -31,8 +31,10 @@ from ident.matrix import Actuator, Run
 from ident.stages import Stage
 
 Array = NDArray[np.float64]
-INPUT, INPUT_RATE, FORCE, STEP = "u", "du", "fm", "dt"
-"""What drives a chain: the command, its rate, a measured force; and the step of the simulation."""
+INPUT, INPUT_RATE, FORCE, DISTURBANCE, STEP = "u", "du", "fm", "dm", "dt"
+"""What drives a chain: the command, its rate, a measured force or disturbance; and the step of the simulation."""
+MEASURED = (FORCE, DISTURBANCE)
+"""The inputs beside the command; a chain reads one of them at most."""
 _SMALL, _SHARE = 1e-9, 1e-7  # of a unit, and of what stands there: the step of slopes
 
 
@@ -121,7 +123,7 @@ class Chain:
         """What the equations read but do not define: parameters and conditions."""
         defined = {equation.target for equation in self.equations} | {f"{name}__old" for name in self.memories}
         read = frozenset().union(*(equation.names for equation in self.equations))
-        return tuple(sorted(read - defined - {INPUT, INPUT_RATE, FORCE, STEP, TIME}))
+        return tuple(sorted(read - defined - {INPUT, INPUT_RATE, *MEASURED, STEP, TIME}))
 
     @cached_property
     def signals(self) -> tuple[Equation, ...]:
@@ -142,11 +144,11 @@ class Chain:
     def is_linear(self) -> bool:
         """Whether the command alone drives equations that are linear in it and in the states.
 
-        A measured force is a second input, and what remembers or depends on time is not linear in this sense.
+        What was measured is a second input, and what remembers or depends on time is not linear in this sense.
         """
         if self.memories:
             return False
-        known = dict.fromkeys((*self.states, INPUT, INPUT_RATE), LINEAR) | dict.fromkeys((FORCE, TIME), OTHER)
+        known = dict.fromkeys((*self.states, INPUT, INPUT_RATE), LINEAR) | dict.fromkeys((*MEASURED, TIME), OTHER)
         for equation in self.signals:
             dry = dry_friction(equation)
             off = dry is not None and known.get(dry[0]) == ZERO
@@ -214,7 +216,7 @@ class Chain:
             lines = [f"    {name} = values[{name!r}]" for name in self.symbols if name in read]
             lines += [
                 f"    ({', '.join(self.states)},) = states",
-                f"    {INPUT_RATE} = {FORCE} = {STEP} = {TIME} = 0.0",
+                f"    {INPUT_RATE} = {FORCE} = {DISTURBANCE} = {STEP} = {TIME} = 0.0",
             ]
             lines += [f"    {name}__old = 0.0" for name in self.memories]
             lines += [f"    {equation.target} = {_still(equation)}" for equation in needed]

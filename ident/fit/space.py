@@ -114,9 +114,11 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
         band /= _OF_STEPS
     typical = _typical(matrix, runs) | {"W": band}
     typical["V"] = _speed(runs) or band * typical["L"]
-    if settings.load == "force":  # a mass that would need this force
-        force = float(np.mean([np.std(run.channels["force"]) for run in runs]))
-        typical["mL"] = force / (typical["X"] * band**2)
+    beside = "force" if settings.load == "force" else "load_disturbance"
+    acting = [float(np.std(run.channels[beside])) for run in runs if beside in run.channels]
+    forced = any(acting)
+    if forced:  # a mass that would need this force
+        typical["mL"] = float(np.mean(acting)) / (typical["X"] * band**2)
     strengths = {effect.added[0].in_equations for effect in preset.effects}
     shapes = {
         p.in_equations: p.relative * typical["L"] if p.relative and preset.relative_ways else p.value
@@ -126,7 +128,7 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     known = shapes | {name: value for name, value in preset.gains.items() if name != "Kp"}
     fixed = {name: value for name, value in known.items() if name not in given} | fixed
     convention = None
-    forced = preset.driven_by != "command" or settings.load == "force"
+    forced = forced or preset.driven_by != "command"
     free = {scale.name for scale in preset.scales} - fixed.keys() - given.keys()
     if free & set(preset.share_force[:1]) and not (same or forced or _loaded(runs)):
         convention = preset.share_force[0]

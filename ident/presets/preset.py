@@ -10,10 +10,11 @@ from typing import Literal, TypeVar
 
 from ident.chain.chain import Chain, unfit
 from ident.chain.conditions import CONDITIONS
+from ident.chain.disturbance import disturbed
 from ident.effects.effect import Effect
 from ident.equations.equation import Equation
 from ident.errors import Unusable
-from ident.matrix import MOTIONS, Matrix
+from ident.matrix import DISTURBANCES, MOTIONS, Matrix
 from ident.parameter import Parameter
 from ident.presets.neutral import from_neutral
 from ident.presets.passivity import passive
@@ -185,11 +186,28 @@ class Preset:
             preset = replace(preset, drive_unit=matrix.runs[0].units.get("command", "m"))
         if preset.force_scale and {run.output for run in matrix.runs} == {"load_pressure"}:
             preset = replace(preset, force_scale="A*X")  # its forces are measured
+        preset = preset.disturbed_as(matrix, load)
         if preset.driven_by in MOTIONS:
             matrix = passive(matrix)
         elif preset.kind == "chain" and preset.driven_by == "command":
             matrix = from_neutral(matrix, preset.core)
         return (preset.with_measured_load(matrix), matrix) if load == "force" else (preset, matrix)
+
+    def disturbed_as(self, matrix: Matrix, load: str) -> Preset:
+        """The model with what was measured at a place beside the command, as it is where nothing was.
+
+        Raises Unusable where runs are disturbed at several places, or the measured force drives the load too.
+        """
+        places = sorted({DISTURBANCES[name] for run in matrix.runs for name in run.channels if name in DISTURBANCES})
+        if not places:
+            return self
+        if len(places) > 1 or load == "force":
+            both = " and ".join((*places, *(["the measured load"] if load == "force" else [])))
+            raise Unusable("bad-disturbance", f"two inputs beside the command: {both}", "disturbance", "give one")
+        chain = disturbed(self.chain, places[0])
+        if places[0] == "flow" and matrix.actuator.piston_area is None:
+            raise Unusable("missing-area", "a flow moves a piston of unknown area", "actuator.piston_area", "state it")
+        return replace(self, chain=chain)
 
     def with_measured_load(self, matrix: Matrix) -> Preset:
         """The model with the force measured on the specimen in place of the specimen's equation."""

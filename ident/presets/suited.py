@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Protocol
 
+from ident.chain.disturbance import can_be_disturbed
 from ident.errors import Unusable
-from ident.matrix import BENCH, MOTIONS
+from ident.matrix import BENCH, DISTURBANCES, MOTIONS
 from ident.presets import PRESETS, Preset, preset
 from ident.stages import OPENED_BY_COMMAND
 
@@ -79,6 +80,9 @@ def unusual(model: Preset, runs: Sequence[Described]) -> bool:
 def _allows(model: Preset, run: Described) -> bool:
     if model.kind == "bench" or run.kind in BENCH:
         return model.kind == "bench" and run.kind in BENCH
+    disturbed = [DISTURBANCES[name] for name in run.channels if name in DISTURBANCES]
+    if not all(can_be_disturbed(model.chain, place) for place in disturbed):
+        return False
     drives = {model.driven_by} | ({"displacement"} if model.driven_by == "velocity" else set())
     return bool(drives & set(run.channels)) and run.output in model.chain.outputs and run.output not in drives
 

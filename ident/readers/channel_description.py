@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ident.errors import Unusable
-from ident.matrix import CHANNELS
+from ident.matrix import CHANNELS, DISTURBANCES
 from ident.readers.fields import Fields
 from ident.units.quantity import DIMENSIONS, Scale, parameter_value, shown, split, unit_scale
 
@@ -17,6 +17,7 @@ KINDS_OF_UNIT: dict[str, Sequence[str]] = {
     "displacement": ("length",), "velocity": ("velocity", "angular velocity"),
     "force": ("force",), "drive_force": ("force",), "load_pressure": PRESSURE,
     "pressure_a": PRESSURE, "pressure_b": PRESSURE, "supply_pressure": PRESSURE,
+    "flow_disturbance": ("flow",), "load_disturbance": ("force",), "sensor_disturbance": ("length",),
     "spool": ("length", "voltage", "current"), "current": ("current", "voltage"), "temperature": ("temperature",),
 }  # fmt: skip
 """What each channel may be measured in; ``1`` is allowed everywhere, for records in unknown units."""
@@ -34,6 +35,15 @@ def describe_channels(data: Any, where: str) -> dict[str, ChannelDescription]:
     """Every channel of a run by name."""
     fields = Fields(data, where, CHANNELS)
     return {name: describe_channel(fields.data[name], name, f"{where}.{name}") for name in fields.data}
+
+
+def describe_disturbance(data: Any, where: str) -> dict[str, ChannelDescription]:
+    """What acts beside the command: a channel, and the place where it adds, by the channel's name."""
+    fields = Fields(data, where, ("place", "column", "unit", "scale", "offset", "invert"))
+    fields.need("place", f"say where it adds: {', '.join(DISTURBANCES.values())}")
+    place = fields.choice("place", tuple(DISTURBANCES.values()), "")
+    name = next(channel for channel, at in DISTURBANCES.items() if at == place)
+    return {name: describe_channel({key: fields.data[key] for key in fields.data if key != "place"}, name, where)}
 
 
 def describe_channel(data: Any, name: str, where: str) -> ChannelDescription:

@@ -7,14 +7,14 @@ from typing import Any
 
 from ident.errors import Unusable
 from ident.matrix import BENCH, HOLDS, KINDS, MOTIONS, USES, Run, Specimen
-from ident.readers.channel_description import ChannelDescription, describe_channels
+from ident.readers.channel_description import ChannelDescription, describe_channels, describe_disturbance
 from ident.readers.fields import Fields
 from ident.readers.source import inside
 from ident.units.quantity import quantity, shown, split, unit_scale
 
 RUN = (
     "id", "file", "sample_rate", "time", "specimen", "gain", "amplitude", "kind", "hold", "output", "use", "skip_rows",
-    "rows", "channels", "position_range", "frequency", "rated_current",
+    "rows", "channels", "disturbance", "position_range", "frequency", "rated_current",
 )  # fmt: skip
 
 
@@ -50,6 +50,8 @@ def describe_run(data: Any, where: str) -> RunDescription:
     kind = fields.choice("kind", KINDS, "other")
     channels = describe_channels(fields.need("channels", "describe command and displacement"), fields.place("channels"))
     outputs = describe_outputs(fields, kind, channels)
+    if "disturbance" in fields:
+        channels |= describe_disturbance(fields.data["disturbance"], fields.place("disturbance"))
     time, rate, time_unit = describe_clock(fields)
     units = {channel: described.scale.unit for channel, described in channels.items()}
     fields.need("file", "add file: runs/NAME.csv")

@@ -11,10 +11,10 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from ident.chain.chain import FORCE, INPUT, INPUT_RATE, STEP, Chain
+from ident.chain.chain import DISTURBANCE, FORCE, INPUT, INPUT_RATE, MEASURED, STEP, Chain
 from ident.effects.effect import Effect
 from ident.equations.grammar import TIME
-from ident.matrix import Run
+from ident.matrix import DISTURBANCES, Run
 from ident.simulation.kernel import HELD, LANES, SHARE, Filter, Kernel, constant, kernel
 
 Array = NDArray[np.float64]
@@ -72,7 +72,8 @@ class Simulation:
         built = self._kernel()
         lane_values = self._lanes(lanes)
         inputs = {name: self._input(lanes, name, built, lane_values) for name in built.inputs}
-        command, force = inputs[INPUT], inputs.get(FORCE, inputs[INPUT])
+        command = inputs[INPUT]
+        second = next((inputs[name] for name in MEASURED if name in inputs), command)
         lane_values |= {HELD: self._held(lanes), SHARE: command.share}
         buffers = self._packed(built, lane_values, lanes, inputs)
         for first in range(0, samples, length):
@@ -80,7 +81,7 @@ class Simulation:
             out = np.empty((last - first) * lanes)
             for i, buffer in enumerate(buffers):
                 group = slice(i * LANES, (i + 1) * LANES)
-                driven = buffer, command.record, force.record, command.begin[group], force.begin[group]
+                driven = buffer, command.record, second.record, command.begin[group], second.begin[group]
                 ends = first * self.steps, (last - 1) * self.steps + 1
                 built.advance(*driven, *ends, self.steps, out[i * LANES :], lanes)
                 if last < samples:  # on to the first step of the next block
@@ -146,7 +147,8 @@ class Simulation:
     def _settle(self, rows: Array, built: Kernel, values: Mapping[str, Array], command: Array) -> None:
         """What remembers, as if the machine had stood where it starts."""
         known = dict(values) | {name: rows[row] for name, row in built.states.items()}
-        known |= {INPUT: command, "du": np.zeros_like(command), FORCE: np.zeros_like(command), TIME: 0.0}
+        known |= {INPUT: command, "du": np.zeros_like(command), TIME: 0.0}
+        known |= {name: np.zeros_like(command) for name in MEASURED}
         found = _at_rest(self.chain, known)
         for name, row in built.memories.items():
             rows[row] = found[name]
@@ -179,13 +181,22 @@ def _filled(values: Array, lanes: int) -> Array:
     return np.concatenate([values, np.full(lanes - len(values), values[-1])])
 
 
+def _record(run: Run, name: str) -> Array:
+    """The samples of an input."""
+    if name == FORCE:
+        return run.channels["force"]
+    if name == DISTURBANCE:  # of a run that says nothing there was none
+        return next((run.channels[one] for one in DISTURBANCES if one in run.channels), np.zeros(run.length))
+    return run.command
+
+
 def _fine(run: Run, channel: str, steps: int, before: int) -> Array:
     """An input at the fine steps, with `before` steps in front and two behind.
 
     Before the record it is zero where the run starts at rest, and its first value where the run is cut out of a
     longer test.
     """
-    samples = run.command if channel == INPUT else run.channels["force"]
+    samples = _record(run, channel)
     if steps > 1 and run.hold == "zoh" and channel == INPUT:
         fine = np.repeat(samples, steps)
     elif steps > 1:

@@ -13,7 +13,7 @@ from functools import lru_cache
 from types import CodeType
 from typing import Any
 
-from ident.chain.chain import FORCE, INPUT, INPUT_RATE, STEP, Chain
+from ident.chain.chain import INPUT, INPUT_RATE, MEASURED, STEP, Chain
 from ident.equations.grammar import DYNAMIC, FUNCTIONS, TABLES, TIME, tree_of
 from ident.equations.interpolation import coefficient
 from ident.errors import Unusable
@@ -64,7 +64,7 @@ class Source:
             return repr(float(self.plain[name])) if name in self.plain else self._constant(named(name))
         if name.endswith("__old"):
             return name
-        if stage == "f" and (name in self.chain.states or name in (INPUT, INPUT_RATE, FORCE, TIME)):
+        if stage == "f" and (name in self.chain.states or name in (INPUT, INPUT_RATE, *MEASURED, TIME)):
             return f"{name}_1"
         if stage == "m" and f"{name}_m" not in self.written:
             return f"{name}_1"

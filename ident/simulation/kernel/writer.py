@@ -6,7 +6,7 @@ import ast
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from ident.chain.chain import FORCE, INPUT, INPUT_RATE, STEP
+from ident.chain.chain import INPUT, INPUT_RATE, MEASURED, STEP
 from ident.chain.dry_friction import dry_friction
 from ident.equations.equation import Equation
 from ident.equations.grammar import TIME, tree_of
@@ -14,7 +14,7 @@ from ident.simulation.kernel.layout import HELD, LANES, SHARE, Filter, Kernel, f
 from ident.simulation.kernel.source import Source, named
 
 STAGES = (1, 2, 3, 4)
-_RECORDS = {INPUT: "commands[command_at[lane] + k + 1]", FORCE: "forces[force_at[lane] + k + 1]"}
+_RECORDS = {INPUT: "commands[command_at[lane] + k + 1]"} | dict.fromkeys(MEASURED, "forces[force_at[lane] + k + 1]")
 
 
 @dataclass
@@ -32,7 +32,7 @@ class Writer(Source):
         states = {name: self._row() for name in chain.states}
         memories = {name: self._row() for name in chain.memories}
         read = frozenset().union(*(e.names for e in (*needed, *rates)))
-        inputs = {name: self._row(3) for name in (INPUT, FORCE) if name == INPUT or name in read}
+        inputs = {name: self._row(3) for name in (INPUT, *MEASURED) if name == INPUT or name in read}
         shown = self._row()
         body = self._body(needed, rates, states, memories, inputs, shown)
         loads = [f"c{row} = b[{row * LANES} + lane]" for row, _ in self.constants.values()]
