@@ -112,13 +112,10 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     same = known_for is not None and area is not None and abs(area / known_for - 1) < _SAME_AREA and stated
     if all(run.stepped for run in runs):
         band /= _OF_STEPS
-    typical = _typical(matrix, runs) | {"W": band}
-    typical["V"] = _speed(runs) or band * typical["L"]
-    beside = "force" if settings.load == "force" else "load_disturbance"
-    acting = [float(np.std(run.channels[beside])) for run in runs if beside in run.channels]
-    forced = any(acting)
-    if forced:  # a mass that would need this force
-        typical["mL"] = float(np.mean(acting)) / (typical["X"] * band**2)
+    typical = _typical(matrix, runs, band)
+    force = _acting(runs, "force" if settings.load == "force" else "load_disturbance")
+    if force:  # a mass that would need it
+        typical["mL"] = force / (typical["V"] * band)
     strengths = {effect.added[0].in_equations for effect in preset.effects}
     shapes = {
         p.in_equations: p.relative * typical["L"] if p.relative and preset.relative_ways else p.value
@@ -128,7 +125,7 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     known = shapes | {name: value for name, value in preset.gains.items() if name != "Kp"}
     fixed = {name: value for name, value in known.items() if name not in given} | fixed
     convention = None
-    forced = forced or preset.driven_by != "command"
+    forced = force or preset.driven_by != "command"
     free = {scale.name for scale in preset.scales} - fixed.keys() - given.keys()
     if free & set(preset.share_force[:1]) and not (same or forced or _loaded(runs)):
         convention = preset.share_force[0]
@@ -156,7 +153,13 @@ def _loaded(runs: tuple[Run, ...]) -> bool:
     return any(run.specimen and (run.specimen.mass or run.specimen.stiffness or run.specimen.damping) for run in runs)
 
 
-def _typical(matrix: Matrix, runs: tuple[Run, ...]) -> dict[str, float]:
+def _acting(runs: tuple[Run, ...], channel: str) -> float:
+    """The deviation of a force that was measured, over the runs that have it."""
+    found = [float(np.std(run.channels[channel])) for run in runs if channel in run.channels]
+    return float(np.mean(found)) if found else 0.0
+
+
+def _typical(matrix: Matrix, runs: tuple[Run, ...], band: float) -> dict[str, float]:
     each = [conditions(run, matrix.actuator) for run in runs]
     mean = {name: float(np.mean([values[name] for values in each])) for name in each[0]}
     mean["Kp"] = float(np.exp(np.mean([np.log(abs(values["Kp"])) for values in each])))
@@ -165,7 +168,9 @@ def _typical(matrix: Matrix, runs: tuple[Run, ...]) -> dict[str, float]:
         "U": _size(runs, lambda run: run.drive),
         "L": float(np.mean([run.motion for run in runs])),
         "M": max(float(np.max(np.abs(run.command))) for run in runs),
+        "W": band,
     }
+    mean["V"] = _speed(runs) or band * mean["L"]
     return mean | {"mL": mean["mL"] or 1.0}
 
 
