@@ -136,10 +136,15 @@ class StartsView(BaseModel):
 
 
 class WindowView(BaseModel):
-    """What a machine that integrates is fitted over, s, and the errors of a model that begins each where it was."""
+    """What a machine that integrates is fitted over, s, and the errors of a model that begins each where it was.
+
+    `free_run`: by use, the ends of the interval that has 95 % of the free run's errors of parameters within their
+    standard errors.
+    """
 
     horizon: float
     error: Errors
+    free_run: dict[str, list[float]] = Field(default_factory=dict)
 
 
 class FitResultView(BaseModel):

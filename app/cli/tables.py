@@ -66,6 +66,9 @@ def error_rows(result: FitResult) -> Iterator[tuple[str, ...]]:
     yield "model", *(percent(result.error.get(use)) for use in uses)
     if result.window:
         over = result.window.error
+        between = {use: " to ".join(map(percent, ends)) for use, ends in result.window.free_run.items()}
+        if between:
+            yield "95 % interval", *(between.get(use, "–") for use in uses)
         yield f"over {result.window.horizon:.3g} s", *(percent(over.get(use)) for use in uses)
     yield "noise floor", *(percent(result.noise_floor.get(use)) for use in uses)
     yield "offset", *(percent(result.offset.get(use)) for use in uses)

@@ -77,6 +77,7 @@ class FitPageView:
     findings: str
     worst: str
     on_bench: bool
+    free_run: str
     others: tuple[tuple[str, str], ...]
 
 
@@ -128,7 +129,21 @@ def fit_page(
         others=tuple((other.id, _other(other)) for other in others if other.id != stored.id),
         again=json.dumps(fit_request(fit, stored.id)),
         on_bench=preset(fit.model).kind == "bench",
+        free_run=_free_run(fit),
     )
+
+
+def _free_run(fit: FitResult) -> str:
+    """Of a fit over windows: the errors there, and how far the free run's hang on the parameters."""
+    if fit.window is None:
+        return ""
+    over = ", ".join(f"{percent_in_print(error)} on {use} runs" for use, error in fit.window.error.items() if error)
+    text = (
+        f"Over windows of {quantity(fit.window.horizon, 's')}, each begun where it was measured, the error is {over}. "
+    )
+    text += "The table has the free run, which sums up whatever disturbed the machine"
+    ends = [f"{' to '.join(map(percent_in_print, e))} on {use} runs" for use, e in fit.window.free_run.items()]
+    return f"{text}; within the standard errors of the parameters it is {', '.join(ends)}." if ends else f"{text}."
 
 
 def _places(model: Preset) -> Iterator[tuple[str, str]]:

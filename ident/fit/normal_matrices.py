@@ -51,6 +51,12 @@ class NormalMatrices:
         value = float(np.sqrt(max(self.gram[-1, -1], 0.0) / self.total))
         return value if np.isfinite(value) else np.inf
 
+    def errors_beside(self, steps: Array) -> Array:
+        """Eq. (17) at steps (v, p) from the point where the model is as straight as here, |r − J s|/|x_m|, (v,)."""
+        both = np.column_stack([-steps, np.ones(len(steps))])
+        squares = np.einsum("vi,ij,vj->v", both, self.gram, both)
+        return np.asarray(np.sqrt(np.maximum(squares, 0.0) / self.total))
+
 
 def normal_matrices(run: Run, model: LinearModel, strides: Array) -> NormalMatrices:
     """The moments of a run for a batch of models (1 + p,): the model, and p neighbours, each a stride (p,) away."""

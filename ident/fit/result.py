@@ -82,11 +82,14 @@ class Structure:
 class Window:
     """What a machine that integrates is fitted over, s, and the errors of a model that begins each where it was.
 
-    The error is the root mean square of x_m − x, counted from the beginning of each window, over std(x_m).
+    The error is the root mean square of x_m − x, counted from the beginning of each window, over std(x_m). In
+    `free_run` are the ends of the interval that has 95 % of the free run's errors, eq. (17), of parameters that lie
+    within their standard errors: what a machine integrates hangs on them for as long as the run takes.
     """
 
     horizon: float
     error: Mapping[str, float | None] = field(default_factory=dict)
+    free_run: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

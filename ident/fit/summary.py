@@ -25,6 +25,7 @@ from ident.presets.preset import Combined
 from ident.simulation.simulate import FASTEST, MOST
 from ident.words.percent import percent
 
+_DRAWN = 100  # parameter vectors within their standard errors
 _HARDLY = 0.8  # of the output left: no fit to be trusted
 Array = NDArray[np.float64]
 
@@ -37,17 +38,17 @@ def summarise(
     objective = over_windows.whole() if isinstance(over_windows, SimulatedFitness) else over_windows
     space, matrix, preset = objective.space, objective.matrix, objective.preset
     values = {name: float(found[0]) for name, found in space.values(point[None]).items()}
-    window = _window(over_windows, point)
     verify_runs = matrix.of_use("verify")
     verify = objective.fresh(verify_runs).exact(point, sensitivities=False).runs if verify_runs else ()
     fit_runs = matrix.of_use("fit")
+    found = covariance(here, point, optimum.as_good)
+    window = _window(over_windows, point, found)
     own = (
         here.runs
         if preset.is_linear and not window
         else objective.fresh(fit_runs).exact(point, sensitivities=False).runs
     )
     fit_errors, verify_errors = _run_errors(fit_runs, own), _run_errors(verify_runs, verify)
-    found = covariance(here, point, optimum.as_good)
     strengths = {p.in_equations for p in preset.parameters if p.of}
     strengths |= {axis.name for axis in space.axes if axis.lower == 0}  # what may be nothing has no relative error
     relative = {name: found.relative(_value(objective, name)) for name in space.names if name not in strengths}
@@ -124,16 +125,22 @@ def _anchored(runs: Sequence[Run], found: Sequence[RunError]) -> float | None:
     return float(over_runs(both, runs)) if runs else None
 
 
-def _window(fitness: Fitness, point: Array) -> Window | None:
-    """The windows of a fit that was made over them, and the errors there."""
+def _window(fitness: Fitness, point: Array, known: Covariance) -> Window | None:
+    """The windows of a fit that was made over them, the errors there, and between what those of the free run lie."""
     if not isinstance(fitness, SimulatedFitness) or fitness.horizon is None:
         return None
     error: dict[str, float | None] = {"fit": None, "held_out": None, "verify": None}
+    free_run: dict[str, tuple[float, ...]] = {}
+    scatter = known.drawn(_DRAWN)
     for use in ("fit", "verify"):
         if runs := fitness.matrix.of_use(use):
             found = fitness.fresh(runs).exact(point, sensitivities=False).runs
             error[use] = float(over_runs([min(run.error, UNSTABLE) for run in found], runs))
-    return Window(fitness.horizon, error)
+            free = over_runs(
+                [run.errors_beside(scatter) for run in fitness.whole().fresh(runs).exact(point).runs], runs
+            )
+            free_run[use] = tuple(float(end) for end in np.quantile(free, (0.025, 0.975)))
+    return Window(fitness.horizon, error, free_run)
 
 
 def _labels(objective: Fitness) -> dict[str, tuple[str, str]]:

@@ -19,6 +19,7 @@ from ident.fit.levenberg_marquardt import Shape
 Array = NDArray[np.float64]
 _LOST = 1e-9  # relative to the largest eigenvalue of the scaled H: below it a direction is not determined at all
 _BLIND = 1e4  # logarithmic standard deviation that stands for "not at all"
+_STRAIGHT = 3e-5  # of a slope: three times the error of a difference over a stride of the search
 DETERMINED = 0.5  # largest relative standard error that still is knowledge
 COMBINED = 0.1  # for a combination, which has to be worth reporting
 
@@ -55,6 +56,13 @@ class Covariance:
         along = np.ptp(quantity(self.valley)) if len(self.valley) else 0.0
         return float(np.hypot(np.sqrt(max(self._joint(self._slope(quantity), self._slope(quantity)), 0.0)), along))
 
+    def drawn(self, count: int) -> Array:
+        """Steps from the point as the standard errors scatter them, (count, p); none where nothing is seen."""
+        normal = np.random.default_rng(0).standard_normal((count, len(self.point)))
+        strengths, directions = np.linalg.eigh(self.seen)
+        scattered: Array = normal * np.sqrt(np.maximum(strengths, 0.0)) @ directions.T
+        return scattered
+
     def correlation(self, quantities: Mapping[str, Callable[[Array], Array]]) -> dict[str, dict[str, float]]:
         """Correlations of quantities by name."""
         slopes = {name: self._slope(q) for name, q in quantities.items()}
@@ -65,9 +73,9 @@ class Covariance:
         }
 
     def _joint(self, df: Array, dg: Array) -> float:
-        # What only rounding moves along a blind direction is not blind.
+        # A direction is known as well as differences tell it: what moves by less along a blind one is not blind.
         lost = [
-            np.where(np.abs(d) > 1e-5 * np.linalg.norm(h), d, 0.0)
+            np.where(np.abs(d) > _STRAIGHT * np.linalg.norm(h), d, 0.0)
             for h, d in ((df, df @ self.blind), (dg, dg @ self.blind))
         ]
         return float(df @ self.seen @ dg + _BLIND**2 * (lost[0] @ lost[1]))

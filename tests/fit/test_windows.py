@@ -73,6 +73,17 @@ def test_a_fit_with_an_effect_is_made_over_the_windows_of_the_fit_without(dead):
     assert fit.window.error["fit"] <= min(fit.evolution[-1].errors)
 
 
+def test_the_free_run_is_reported_with_its_interval():
+    """What a machine sums up hangs on its gain for as long as the run takes."""
+    fit = identify(cylinder(5, wander=1e-3), Settings(model="motor"))
+    assert fit.window is not None
+    for use, error in (("fit", fit.error["fit"]), ("verify", fit.error["verify"])):
+        low, high = fit.window.free_run[use]
+        assert 0.8 * low < error < 1.2 * high
+        assert high > low
+    assert type(fit).from_json(fit.to_json()).window == fit.window
+
+
 def test_without_disturbances_the_whole_run_is_fitted():
     fit = identify(cylinder(4, wander=0.0), Settings(model="motor"))
     assert fit.window is None
