@@ -34,10 +34,11 @@ def telling_run(runs: Sequence[RunView], errors: Mapping[str, float]) -> str:
 def evidence(best: Ranked, found: Stored, own: Mapping[str, Any] | None, run: str = "") -> tuple[str, str] | None:
     """The figure in which the effect shows, with what it predicts; None where it was not refitted or there is none.
 
-    Where no curve shows it, the Bode plot of `run` does.
+    Where no curve shows it, the Bode plot of `run` does. Of a diagnosis over windows there is none: over a whole run
+    the machine sums up everything that disturbed it.
     """
     effect, model = known_effect(best.effect, own), preset(found.found.model)
-    if effect is None or not best.parameters:
+    if effect is None or not best.parameters or found.found.horizon is not None:
         return None
     view = view_of(effect, model)
     drawn = "residual-curve" if view else "bode"

@@ -134,16 +134,14 @@ def fit_page(
 
 
 def _free_run(fit: FitResult) -> str:
-    """Of a fit over windows: the errors there, and how far the free run's hang on the parameters."""
-    if fit.window is None:
+    """Of a fit over windows: how far the free run's errors hang on the parameters."""
+    if fit.window is None or not fit.window.free_run:
         return ""
-    over = ", ".join(f"{percent_in_print(error)} on {use} runs" for use, error in fit.window.error.items() if error)
-    text = (
-        f"Over windows of {quantity(fit.window.horizon, 's')}, each begun where it was measured, the error is {over}. "
-    )
-    text += "The table has the free run, which sums up whatever disturbed the machine"
     ends = [f"{' to '.join(map(percent_in_print, e))} on {use} runs" for use, e in fit.window.free_run.items()]
-    return f"{text}; within the standard errors of the parameters it is {', '.join(ends)}." if ends else f"{text}."
+    return (
+        "A free run sums up whatever disturbed the machine: within the standard errors of the parameters its error is "
+        f"{', '.join(ends)}. Over windows the model begins anew where it was measured."
+    )
 
 
 def _places(model: Preset) -> Iterator[tuple[str, str]]:

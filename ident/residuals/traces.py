@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain.chain import Chain, settles
+from ident.chain.chain import Chain, integrates, settles
 from ident.chain.conditions import conditions
 from ident.comparison.compare import Comparison, fitted
 from ident.errors import Unusable
@@ -106,6 +106,9 @@ def traces(comparison: Comparison, signals: Sequence[str], instead: Mapping[str,
     outputs = {run.run.id: run.modelled for run in comparison.runs}
     runs = tuple(run for run in matrix.runs if run.id in outputs and np.all(np.isfinite(outputs[run.id])))
     known = [run for run in runs if settles(chain, values, run, matrix.actuator)]
+    if not known and integrates(chain, runs, matrix.actuator):
+        what = "the machine sums up what acts on it, so that no curve over whole runs shows one effect"
+        raise Unusable("integrates", what, f"model {preset.name}", "see what each effect leaves over windows")
     if not known:
         raise Unusable("unstable-model", "the model is unstable at every run", "fit", "fit it to these data first")
     count = stride(known)

@@ -15,6 +15,7 @@ from ident.residuals.decimation import Response
 from ident.residuals.traces import traces
 from ident.residuals.views import VIEWS, injected, showing, view_of
 from ident.workflows import figure, identify
+from tests.fit.test_windows import cylinder
 from tests.residuals.conftest import HIDDEN, TRUE, compared
 
 PLACES = {
@@ -134,3 +135,11 @@ def test_an_unknown_curve_is_refused_with_those_there_are():
     with pytest.raises(Unusable, match="no curve 'thermal'") as refused:
         figure("residual-curve", base.matrix, base.fit, view="thermal")
     assert all(view.name in refused.value.remedy for view in VIEWS[:3])
+
+
+def test_of_a_machine_that_integrates_no_curve_over_whole_runs_is_drawn():
+    """It is said so, not that the fit of this very matrix were unstable."""
+    matrix = cylinder(2, wander=1e-3)
+    fit = identify(matrix, Settings(model="motor"))
+    with pytest.raises(Unusable, match="sums up what acts on it"):
+        traces(compare(matrix, fit), ())

@@ -32,6 +32,12 @@ def test_a_model_without_such_a_figure_shows_none():
         assert evidence(read(Ranked, candidate(effect, 0.01)), bench, None, "r7") is None
 
 
+def test_a_diagnosis_over_windows_shows_none():
+    """Over a whole run a machine that integrates shows what disturbed it: the figure was refused in red."""
+    windows = replace(found(), found=replace(found().found, horizon=0.8))
+    assert evidence(read(Ranked, candidate("dead_zone", 0.01)), windows, None, "r7") is None
+
+
 def test_the_telling_run_is_the_worst_of_the_smallest_amplitude():
     def run(name, amplitude):
         return RunView.model_construct(id=name, amplitude=amplitude)
