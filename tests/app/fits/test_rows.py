@@ -7,7 +7,6 @@ from xml.dom.minidom import parseString
 
 from app.fits.rows import combination_rows, error_rows, parameter_rows
 from ident.fit.result import Combination, Estimate, FitResult, RunError, Undetermined, Window
-from ident.words.engineering import quantity
 
 
 def fit() -> FitResult:
@@ -55,7 +54,7 @@ def test_a_combination_is_mathematics_and_what_is_none_is_escaped_text():
 
 def test_errors_over_windows_stand_below_those_of_the_free_run():
     rows = error_rows(replace(fit(), window=Window(0.85, {"fit": 0.078, "held_out": None, "verify": 0.054})))
-    length = quantity(0.85, "s")
+    length = "0.85 s"
     assert [row.use for row in rows] == ["fit", "verify", f"fit over {length}", f"verify over {length}"]
     assert [row.error for row in rows[2:]] == ["7.80 %", "5.40 %"]
     assert (rows[2].ratio, rows[2].offset) == ("3.90 ×", "–")
