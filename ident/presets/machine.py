@@ -218,7 +218,7 @@ def _motion_known(of: Description) -> bool:
 def _force_scale(of: Description) -> str:
     if of["flow"] == "to_speed":
         return ""
-    return "A*Ka*U" if of["load"] == "none" else "(c0 + m0*W)*V"
+    return "A*Ka*U" if of["load"] == "none" else "(c0 + m0*W)*W*L"
 
 
 def _share_force(of: Description) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ MOTOR = Preset(
         outputs={"velocity": "v", "displacement": "y"},
     ),
     rescaled=(Scale("m0", "1", 1e-2, 1e6), Scale("c0", "m0 * W", 1e-4, 1e2)),
-    force_scale="(c0 + m0*W)*V",
+    force_scale="m0*W*L*W",
     share_force=("m0", "c0", "Kt"),
     drive_scale="U",
     turns=True,
