@@ -37,8 +37,8 @@ def timing(run: Run, response: Response | None) -> Iterator[Finding]:
         yield Finding(run.id, "note", "clock-jitter", text)
     elif run.clock_jitter > STRAY:
         text = (
-            f"the clock of run {run.id} strays by up to {run.clock_jitter:.2g} samples from an even one, as far as its "
-            "time was printed; samples are taken as even, so print the time with more digits"
+            f"the clock of run {run.id} strays by up to {run.clock_jitter:.2g} samples from an even one; "
+            "samples are taken as even, so record with a hardware clock, or print the time with more digits"
         )
         yield Finding(run.id, "doubt" if run.clock_jitter > JITTER else "note", "clock-jitter", text)
     if response is None or run.time_unit != "s":
