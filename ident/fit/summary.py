@@ -139,7 +139,8 @@ def _window(fitness: Fitness, point: Array, known: Covariance) -> Window | None:
             free = over_runs(
                 [run.errors_beside(scatter) for run in fitness.whole().fresh(runs).exact(point).runs], runs
             )
-            free_run[use] = tuple(float(end) for end in np.quantile(free, (0.025, 0.975)))
+            if np.all(np.isfinite(free)):  # a free run that goes astray has no interval
+                free_run[use] = tuple(float(end) for end in np.quantile(free, (0.025, 0.975)))
     return Window(fitness.horizon, error, free_run)
 
 

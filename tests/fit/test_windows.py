@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from ident.diagnosis.family import ModelFamily
+from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.settings import Settings
 from ident.fit.windows import unforeseen
 from ident.matrix import Actuator, Matrix, Run
@@ -82,6 +83,13 @@ def test_the_free_run_is_reported_with_its_interval():
         assert 0.8 * low < error < 1.2 * high
         assert high > low
     assert type(fit).from_json(fit.to_json()).window == fit.window
+
+
+def test_a_free_run_that_goes_astray_has_no_interval(monkeypatch):
+    monkeypatch.setattr(NormalMatrices, "errors_beside", lambda _, steps: np.full(len(steps), np.nan))
+    fit = identify(cylinder(5, wander=1e-3), Settings(model="motor"))
+    assert fit.window is not None
+    assert fit.window.free_run == {}
 
 
 def test_without_disturbances_the_whole_run_is_fitted():
