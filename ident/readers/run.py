@@ -28,8 +28,9 @@ def read_run(described: RunDescription, table: Table) -> Run:
     wanted = {name: channel.column for name, channel in described.channels.items()}
     if described.time is not None:
         places["time"], wanted["time"] = f"run {labels.id} time", described.time.column
-    numbers = {name: table.number(column, places[name]) for name, column in wanted.items()}
-    raw = dict(zip(numbers, table.load(list(numbers.values())), strict=True))
+    numbers = {name: table.numbers(column, places[name]) for name, column in wanted.items()}
+    loaded = iter(table.load([number for of_channel in numbers.values() for number in of_channel]))
+    raw = {name: difference([next(loaded) for _ in found], places[name]) for name, found in numbers.items()}
     check_lengths(raw, described)
     channels = {
         name: in_si(part(raw[name], described, places[name]), channel.scale, places[name])
@@ -52,6 +53,17 @@ def read_run(described: RunDescription, table: Table) -> Run:
     return replace(
         labels, channels=channels, sample_rate=rate, clock_jitter=clock.jitter, gaps=clock.gaps, evened=not even
     )
+
+
+def difference(columns: list[Array], where: str) -> Array:
+    """One column as it is, of two the first less the second. Raises Unusable where these differ in length."""
+    if len(columns) == 1:
+        return columns[0]
+    first, second = (numeric(column, where, where) for column in columns)
+    if len(first) != len(second):
+        what = f"the columns of a difference have {len(first)} and {len(second)} samples"
+        raise Unusable("unequal-lengths", what, where, "cut them to one length")
+    return np.subtract(first, second, dtype=np.float64)
 
 
 def check_lengths(raw: dict[str, Array], described: RunDescription) -> None:

@@ -16,6 +16,7 @@ from ident.units.quantity import shown
 Array = NDArray[Any]
 NUMERIC = "iuf"  # dtype kinds: whole numbers and floats
 LISTED = 12
+_MINUS = " - "
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,16 @@ class Table:
         near = get_close_matches(column, self.names, 1, 0.6)
         remedy = f"did you mean {near[0]!r}?" if near else self.listed()
         raise Unusable("missing-column", f"there is no column {shown(column)!r}", where, remedy)
+
+    def numbers(self, column: str | int, where: str) -> tuple[int, ...]:
+        """The number of a column; of a difference ``in - out`` those of both, where no column has that very name.
+
+        Raises Unusable as :meth:`number`.
+        """
+        if isinstance(column, str) and _MINUS in column and not self.named(column.strip()):
+            first, _, second = column.partition(_MINUS)
+            return self.number(first, where), self.number(second, where)
+        return (self.number(column, where),)
 
     def named(self, column: str) -> list[int]:
         """The columns of a name: exactly, or with ``.`` for ``/``, or without the groups before it."""

@@ -8,6 +8,7 @@ import pytest
 from ident.errors import Unusable
 from ident.readers import read_matrix
 from ident.readers.clock import read_clock
+from ident.readers.run import difference
 
 
 def refusal(path):
@@ -146,3 +147,25 @@ def test_a_sample_that_an_even_clock_lacks_is_missing_and_so_is_a_long_gap_of_an
     uneven = 0.05 + 0.008 * np.random.default_rng(4).uniform(-1, 1, 2000)
     uneven[300] = 0.50
     assert read_clock(np.append(0.0, np.cumsum(uneven)), "t").gaps == 9
+
+
+def test_a_column_may_be_the_difference_of_two(matrix, kind):
+    """As a voltage between two wires, each against earth; whole numbers of a converter do not wrap."""
+    u = matrix.columns["u"]
+    matrix.columns["up"], matrix.columns["down"] = 0.75 * u, -0.25 * u
+    plain = read_matrix(matrix.write(kind)).runs[0]
+    matrix.change("{column: u,", "{column: up - down,")
+    run = read_matrix(matrix.write(kind)).runs[0]
+    assert run.command == pytest.approx(plain.command, rel=1e-6)
+    assert difference([np.array([1, 5], np.uint8), np.array([2, 3], np.uint8)], "c") == pytest.approx([-1, 2])
+
+
+def test_a_difference_names_the_column_that_is_not_there(matrix):
+    matrix.change("{column: u,", "{column: u - gone,")
+    refused = refusal(matrix.write())
+    assert (refused.code, "gone" in refused.what) == ("missing-column", True)
+
+
+def test_columns_of_a_difference_are_of_one_length():
+    with pytest.raises(Unusable, match="3 and 2 samples"):
+        difference([np.zeros(3), np.zeros(2)], "run one channels.command")
