@@ -107,6 +107,7 @@ def test_the_whole_model_is_fitted_at_once(servoident, folder, tmp_path):
         assert fit["parameters"][name]["std_error"] > 0
     assert any("Step by step" in note for note in fit["notes"])
     compared = servoident("compare", folder, "--fit", tmp_path / "f.json", "--json", "-")
+    assert compared.returncode == 0, compared.stderr
     assert json.loads(compared.stdout)["error"]["fit"] == pytest.approx(fit["error"]["fit"], rel=1e-9)
 
 
