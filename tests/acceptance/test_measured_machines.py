@@ -11,7 +11,15 @@ from ident.fit.settings import Settings
 from ident.readers import read_matrix
 from ident.workflows import diagnose, identify
 
+pytestmark = pytest.mark.usefixtures("long")
 FRICTION = {"coulomb_friction", "presliding_friction", "stribeck_friction", "specimen_hysteresis"}
+
+
+@pytest.fixture
+def long(full) -> None:
+    """The first effects of the damper and the motor are tested in the short form too: tests/presets."""
+    if not full:
+        pytest.skip("three minutes in all: run with --full")
 
 
 def tried(folder) -> tuple[FitResult, Diagnosis]:
@@ -60,10 +68,8 @@ def test_an_arm_of_a_crane(measured_data):
     assert found.ladder[-1].error["verify"] < 0.53
 
 
-def test_a_boom_of_an_excavator(measured_data, full):
+def test_a_boom_of_an_excavator(measured_data):
     """A dead zone with its null, over windows: no friction, nothing of a specimen; minutes of a clock that strays."""
-    if not full:
-        pytest.skip("two minutes: run with --full")
     fit, found = tried(measured_data / "excavator_boom")
     assert fit.model == "open_valve"
     assert fit.window is not None

@@ -13,11 +13,13 @@ from tests.blind.any_machine import Lab
 
 
 @pytest.mark.parametrize(("seed", "name"), [(316, "backlash"), (319, "dead_zone")])
-def test_the_hidden_effect_is_found_where_no_start_near_the_fit_leads_to_it(seed, name):
+def test_the_hidden_effect_is_found_where_no_start_near_the_fit_leads_to_it(seed, name, full):
     """Small steps tell little of a loop with play: another effect looks better from where its fit went.
 
     And an effect whose strength is nothing is no finding: with seed 316 a delay of none was the way to the optimum.
     """
+    if seed != 316 and not full:
+        pytest.skip("one of a kind: run with --full")
     lab = Lab.drawn(seed, hidden=True)
     assert lab.hidden == name
     matrix = lab.measured()
