@@ -81,14 +81,14 @@ def composed(of: Description, name: str = "", title: str = "") -> Preset:
         of_drive=("Kv", "Kt"),
         share_force=_share_force(of),
         without_area=_WITHOUT_AREA if of.hydraulic else None,
-        gains=_gains(of, chain),
+        gains=_gains(of),
         compares=of.compares,
     )
 
 
-def _gains(of: Description, chain: Chain) -> dict[str, float]:
-    """What is known beforehand: the gains that are stated, and that a transducer reads what it should."""
-    read = {"cal": 1.0} if any(name.name == "cal" for stage in chain.stages for name in stage.parameters) else {}
+def _gains(of: Description) -> dict[str, float]:
+    """What is known beforehand: the gains that are stated, and that a transducer in the loop reads what it should."""
+    read = {"cal": 1.0} if of.compares not in ("", "displacement") else {}
     return read | {GAINS[gain]: value for gain, value in of.gains.items()}
 
 
