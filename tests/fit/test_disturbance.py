@@ -57,13 +57,16 @@ def test_a_measured_load_is_no_error_of_the_model_and_gives_forces_a_scale(seed)
     assert compare(matrix, fit).error["verify"] == pytest.approx(fit.error["verify"], rel=1e-6)
 
 
-def test_a_disturbance_that_nobody_told_of_is_in_the_error(full):
+def test_a_disturbance_that_nobody_told_of_is_in_the_error():
     told, untold = (identify(axis(1, told), Settings(model="motor")) for told in (True, False))
     assert untold.error["verify"] > 20 * told.error["verify"]
     assert untold.parameters["m0"].std_error is None
+
+
+def test_a_diagnosis_finds_nothing_beside_a_disturbance_that_was_told(full):
     if not full:
-        return  # a diagnosis finds nothing more: half a minute
-    found = diagnose(axis(1), told)
+        pytest.skip("half a minute: run with --full")
+    found = diagnose(axis(1), settings=Settings(model="motor"))
     assert found.verdict.effects == ()
     assert not found.verdict.unexplained
 
