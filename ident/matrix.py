@@ -93,6 +93,7 @@ class Run:
     clock_jitter: float = 0.0  # largest deviation of the time column from an even clock, in samples
     gaps: int = 0  # samples missing from the time column
     evened: bool = False  # brought from the uneven clock of its time column to an even one
+    past: Samples | None = None  # the command up to the first sample, where the record is cut out of a longer file
     record: str = ""
     share: float = 1.0
 
@@ -148,7 +149,7 @@ class Run:
         samples = self.channels.get(channel)
         if samples is None and channel == "velocity" and "displacement" in self.channels:
             samples = np.gradient(self.channels["displacement"]) * self.sample_rate
-        return self if samples is None else replace(self, channels={**self.channels, "command": samples})
+        return self if samples is None else replace(self, channels={**self.channels, "command": samples}, past=None)
 
     @cached_property
     def motion(self) -> float:
@@ -166,11 +167,12 @@ class Run:
 
     def turned(self, channel: str) -> Run:
         """The run with the sign of a channel turned."""
-        return replace(self, channels={**self.channels, channel: -self.channels[channel]})
+        past = -self.past if channel == "command" and self.past is not None else self.past
+        return replace(self, channels={**self.channels, channel: -self.channels[channel]}, past=past)
 
-    def part(self, first: int, last: int) -> Run:
-        """The samples first to last − 1 as a run of their own."""
-        return replace(self, channels={name: samples[first:last] for name, samples in self.channels.items()})
+    def head(self, count: int) -> Run:
+        """The first so many samples as a run of their own."""
+        return replace(self, channels={name: samples[:count] for name, samples in self.channels.items()})
 
     @cached_property
     def begins(self) -> Beginning:

@@ -76,7 +76,8 @@ class Diagnoser:
         base = selection.base
         against = tuple(self._contradictions(selection.models, steps))
         text = verdict_text(selection.added, groups, doubted, unexplained, ladder[-1].error, base.error,
-                            selection.models.floors.measured, floor["fit"], against, selection.complete)  # fmt: skip
+                            selection.models.floors.measured, floor["fit"], against, selection.complete,
+                            selection.models.spoken)  # fmt: skip
         stands = standing(selection.added, unexplained, against)
         return Diagnosis(
             model=self.fit.model,

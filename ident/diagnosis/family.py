@@ -25,6 +25,7 @@ from ident.noise.effective_sample_size import independent_samples
 from ident.noise.floor import Floors, noise_floors
 from ident.presets import Preset
 from ident.presets import preset as preset_named
+from ident.words.titles import title
 
 Array = NDArray[np.float64]
 _TRIAL = 131_072  # samples of a first refit; the finalists take every sample
@@ -113,6 +114,16 @@ class ModelFamily:
         listed = (*(effect for effect in CATALOGUE if there or not effect.of_specimen), *custom)
         known = {effect.name: effect for effect in listed if preset.takes(effect)}
         return cls(preset, matrix, given, excited_band(matrix.of_use("fit")), known, horizon=horizon)
+
+    def spoken(self, name: str) -> str:
+        """An effect in words; of one of a part that nobody described also what it does, and where."""
+        effect = self.effects[name]
+        of, runs = self.matrix.actuator, self.matrix.runs
+        if effect.place == "load":
+            described = any(run.specimen for run in runs)
+        else:
+            described = bool(of.piston_area or of.servo_valve or of.supply_pressure or any(run.gain for run in runs))
+        return title(name) if described or not effect.does else f"{title(name)} ({effect.does}, at the {effect.place})"
 
     @property
     def runs(self) -> tuple[Run, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.result import Suspect
@@ -40,14 +40,20 @@ def why_of_gain(
 def verdict_text(
     added: Sequence[str], groups: Sequence[tuple[str, ...]], suspects: Sequence[Suspect], unexplained: bool,
     errors: Mapping[str, float | None], before: float, repeats: bool = True, floor: float | None = None,
-    against: Sequence[Contradiction] = (), complete: bool = True,
+    against: Sequence[Contradiction] = (), complete: bool = True, spoken: Callable[[str], str] = title,
 ) -> str:  # fmt: skip
     """The verdict in a few sentences, what speaks against it first.
 
     Without `repeats` nobody knows how much noise lies in the command's band. Not `complete`, the search was stopped.
+    `spoken` tells what an effect is the first time that it is named.
     """
+    once: dict[str, str] = {}
+
+    def named(effect: str) -> str:
+        return title(effect) if effect in once else once.setdefault(effect, spoken(effect))
+
     parts = [
-        f"With {title(one.effect)} the error on verify runs rises from {percent(one.before)} to {percent(one.after)}, "
+        f"With {named(one.effect)} the error on verify runs rises from {percent(one.before)} to {percent(one.after)}, "
         f"{one.deviations:.1f} standard errors: it may stand for something else."
         for one in against
     ]
@@ -55,7 +61,8 @@ def verdict_text(
         parts.append("The search was not over: what else is missing, and what could stand in the place of what was "
                      "found, was not looked at.")  # fmt: skip
     if added:
-        names = " and ".join(", ".join(map(title, added)).rsplit(", ", 1))
+        *others, last = map(named, added)
+        names = f"{', '.join(others)} and {last}" if others else last
         them = "it" if len(added) == 1 else "them"
         lacks = "What helps on the fitted runs is" if against or unexplained else "The model lacks"
         parts.append(
@@ -72,7 +79,7 @@ def verdict_text(
     else:
         parts.append(f"No effect of the catalogue lowers the error of {percent(before)} beyond chance.")
     for group in groups:
-        names = ", ".join(map(title, group))
+        names = ", ".join(map(named, group))
         parts.append(f"This matrix cannot tell apart: {names}; their refits differ by less than chance.")
     for suspect in suspects:
         parts.append(f"Run {suspect.run} is doubted ({suspect.what}): {suspect.evidence}.")

@@ -24,7 +24,8 @@ class Effect:
     redefines, for which its strength is made ("": for any): a chain that has such a signal in another unit refuses it.
     `looks` says what the effect looks like in data, `steps` into how many a sample has to be divided so that its kinks
     are met closely enough, `stride` by which share of its range its strength is moved for a sensitivity: far where it
-    acts in jumps. `of_specimen`: it is a specimen's, and no diagnosis names it where nothing is known of one.
+    acts in jumps. `does` says in a few words what it does where its name is of a part that a machine need not have.
+    `of_specimen`: it is a specimen's, and no diagnosis names it where nothing is known of one.
 
     Raises Unusable where place or strength are not of that form.
     """
@@ -40,6 +41,7 @@ class Effect:
     steps: int = 1
     stride: float = 1e-5
     units: Mapping[str, str] = field(default_factory=dict, hash=False)
+    does: str = ""
     of_specimen: bool = False
 
     def __post_init__(self) -> None:

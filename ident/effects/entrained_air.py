@@ -7,6 +7,7 @@ ENTRAINED_AIR = Effect(
     name="entrained_air",
     place="pressure",
     meaning="air in the oil makes it softer at low pressure",
+    does="a spring that is softer at low load",
     strength=Parameter(
         "content", "alpha", "1", 0.0, 5.0, 0.0, "relative compressibility that the air adds at low pressure"
     ),

@@ -7,6 +7,7 @@ FLOW_SATURATION = Effect(
     name="flow_saturation",
     place="spool",
     meaning="the opening saturates",
+    does="a speed that saturates",
     strength=Parameter(
         "inverse_opening", "a", "1/m", 0.0, 300.0, 0.0, "inverse of the opening at which the flow bends"
     ),

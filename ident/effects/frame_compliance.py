@@ -7,6 +7,7 @@ FRAME_COMPLIANCE = Effect(
     name="frame_compliance",
     place="load",
     meaning="the transducer's frame gives way under the force on the specimen",
+    does="give under the force on the load",
     strength=Parameter("compliance", "s", "m/N", 0.0, 1e-6, 0.0, "compliance of the frame, 1/kf"),
     texts=("X = X + s * F",),
     units={"X": "m"},

@@ -7,6 +7,7 @@ ORIFICE_LEAKAGE = Effect(
     name="orifice_leakage",
     place="pressure",
     meaning="leakage through an orifice, as the root of the pressure",
+    does="a loss that grows as the root of the load",
     strength=Parameter(
         "coefficient", "C", "m^3/(s*Pa^0.5)", 0.0, 1e-8, 0.0, "leakage at a pressure of 1 Pa, turbulent law"
     ),

@@ -7,6 +7,7 @@ PRESSURE_FLOW = Effect(
     name="pressure_flow",
     place="flow",
     meaning="the flow depends on the pressure that is left across the valve",
+    does="less speed under load",
     strength=Parameter("inverse_supply", "r", "1/Pa", 0.0, 5e-7, 0.0, "inverse of the supply pressure, 1/Ps"),
     texts=("Q = Q * sqrt(max(0, 1 - sgn(w) * P * r))",),
     units={"Q": "m^3/s"},

@@ -7,6 +7,7 @@ SPECIMEN_FREE_PLAY = Effect(
     name="specimen_free_play",
     place="load",
     meaning="the specimen's spring has play",
+    does="a spring with play",
     strength=Parameter("half_width", "g", "m", 0.0, 2e-3, 0.0, "half of the play"),
     texts=("xk = xk - clip(xk, -g, g)",),
     units={"xk": "m"},

@@ -7,6 +7,7 @@ SPECIMEN_HYSTERESIS = Effect(
     name="specimen_hysteresis",
     place="load",
     meaning="the specimen yields and dissipates, after Bouc and Wen",
+    does="a force that yields and dissipates",
     strength=Parameter("force", "fy", "N", 0.0, 500.0, 0.0, "yield force"),
     texts=(
         "z' = vL / xy * (1 - abs(z)**n * (0.5 + 0.5 * sgn(vL * z)))",

@@ -7,6 +7,7 @@ SPECIMEN_JOINT = Effect(
     name="specimen_joint",
     place="load",
     meaning="the whole specimen sits behind a springy joint",
+    does="a spring in series",
     strength=Parameter("compliance", "s", "m/N", 0.0, 1e-5, 0.0, "compliance of the joint, 1/kj"),
     texts=(
         "tq := tp",

@@ -7,6 +7,7 @@ STROKE_DEPENDENT_VOLUME = Effect(
     name="stroke_dependent_volume",
     place="pressure",
     meaning="the oil volumes change along the stroke",
+    does="a spring that changes along the stroke",
     strength=Parameter(
         "curvature",
         "kappa",

@@ -7,6 +7,7 @@ SUPPLY_DROOP = Effect(
     name="supply_droop",
     place="flow",
     meaning="the supply sags where much flow is drawn",
+    does="less speed where much is drawn",
     strength=Parameter("droop", "d", "s/m^3", 0.0, 1e4, 0.0, "relative loss of flow for each m^3/s drawn"),
     texts=(
         "Q = Q * (1 - d * z)",

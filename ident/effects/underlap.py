@@ -7,6 +7,7 @@ UNDERLAP = Effect(
     name="underlap",
     place="spool",
     meaning="the valve's lands leave a gap: double flow gain near the centre",
+    does="more gain near the centre",
     strength=Parameter("half_width", "h", "m", 0.0, 1e-3, 0.0, "half of the underlap, in the unit of the drive signal"),
     texts=("w = w + clip(w, -h, h)",),
     units={"w": "m"},

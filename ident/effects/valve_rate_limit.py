@@ -7,6 +7,7 @@ VALVE_RATE_LIMIT = Effect(
     name="valve_rate_limit",
     place="valve",
     meaning="the valve's output changes at a limited rate",
+    does="a limited rate of what the drive sets",
     strength=Parameter(
         "inverse_rate", "a", "s/m", 0.0, 1.0, 0.0, "inverse of the fastest change of the valve's output"
     ),

@@ -7,6 +7,7 @@ VALVE_SECOND_ORDER = Effect(
     name="valve_second_order",
     place="valve",
     meaning="the valve has two more poles behind its lag",
+    does="two more poles behind the lag",
     strength=Parameter("inverse_frequency", "Tn", "s", 0.0, 3e-3, 0.0, "inverse of the natural frequency, 1/ωn"),
     texts=("q = lag2(q, 2 * zeta * Tn, Tn**2)",),
     units={"q": "m"},

@@ -68,8 +68,8 @@ def _last_digit(time: Samples) -> float:
     return 0.0
 
 
-def evened(time: Samples, values: Samples, rate: float, held: bool, where: str) -> Samples:
-    """A channel with the samples (n,) at times t (n,) in s, on an even clock of this rate from t[0] on, (m,).
+def evened(time: Samples, values: Samples, rate: float, held: bool, where: str, begin: float | None = None) -> Samples:
+    """A channel with the samples (n,) at times t (n,) in s, on an even clock of this rate, (m,), from t[0] or `begin`.
 
     What is `held` until the next sample becomes its mean over each step, (1/T) ∫ u dt: an edge between two samples
     keeps its time. What is not goes through its samples (H. Akima, J. ACM 17 (1970) 589, in the modified form, which
@@ -77,11 +77,12 @@ def evened(time: Samples, values: Samples, rate: float, held: bool, where: str) 
 
     Raises Unusable: ``bad-resample`` where that would make far more samples than were taken, or hardly any.
     """
-    count = int(np.floor(min((time[-1] - time[0]) * rate * (1.0 + 1e-12), 1e18))) + 1
+    begin = float(time[0]) if begin is None else begin
+    count = int(np.floor(min((time[-1] - begin) * rate * (1.0 + 1e-12), 1e18))) + 1
     if not _FEWEST <= count <= _MOST * len(time):
         what = f"at {rate:g} Hz the {len(time)} samples become {count}"
         raise Unusable("bad-resample", what, where, "give a rate near that of the record, or correct its time")
-    at = np.minimum(time[0] + np.arange(count + 1) / rate, time[-1])
+    at = np.minimum(begin + np.arange(count + 1) / rate, time[-1])
     if not held:
         return np.asarray(Akima1DInterpolator(time, values, method="makima")(at[:-1]), dtype=np.float64)
     summed = np.concatenate([[0.0], np.cumsum(values[:-1] * np.diff(time))])

@@ -9,6 +9,7 @@ import numpy as np
 from ident.errors import Unusable
 from ident.matrix import Run, Samples
 from ident.readers.clock import evened, read_clock
+from ident.readers.past import with_past
 from ident.readers.run_description import RunDescription
 from ident.readers.table import Array, Table, numeric
 from ident.units.quantity import Scale, shown
@@ -40,7 +41,7 @@ def read_run(described: RunDescription, table: Table) -> Run:
         if name != "command" or not channels[name][0]:  # one that is held is a step from nothing at its first sample
             check_moves(channels[name], places[name])
     if described.time is None:
-        return replace(labels, channels=channels)
+        return with_past(replace(labels, channels=channels), raw, described, LARGEST)
     scale = Scale(described.time.factor, 0.0, "s")
     time = in_si(part(raw["time"], described, places["time"]), scale, places["time"])
     clock = read_clock(time, places["time"])
@@ -50,9 +51,10 @@ def read_run(described: RunDescription, table: Table) -> Run:
         held = "command" if labels.hold == "zoh" else ""
         where = places["time"] + ".resample" if described.time.resample else places["time"]
         channels = {name: evened(time, values, rate, name == held, where) for name, values in channels.items()}
-    return replace(
+    run = replace(
         labels, channels=channels, sample_rate=rate, clock_jitter=clock.jitter, gaps=clock.gaps, evened=not even
     )
+    return with_past(run, raw, described, LARGEST)
 
 
 def difference(columns: list[Array], where: str) -> Array:

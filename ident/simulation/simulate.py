@@ -27,12 +27,14 @@ FASTEST = FINE * MOST  # radians a sample of the fastest mode that is followed c
 class _Input:
     """One input of every run at the fine steps, one run after the other, (m,).
 
-    `begin` is where each lane begins in it, `delay` the fine steps by which it is late, both (lanes,).
+    `begin` is where each lane begins in it, `delay` the fine steps by which it is late, `known` whether what was
+    before the record is known, all (lanes,).
     """
 
     record: Array
     begin: NDArray[np.int64]
     delay: Array
+    known: NDArray[np.bool_]
 
     @property
     def first(self) -> Array:
@@ -122,7 +124,9 @@ class Simulation:
         records = [_fine(run, name, self.steps, before) for run in self.runs]
         starts = np.cumsum([0, *(len(record) for record in records[:-1])]) + before
         begin = _filled(np.repeat(starts, self.shape[1]).astype(float), lanes).astype(np.int64)
-        return _Input(np.concatenate(records), begin - whole, delay)
+        past = [name == INPUT and run.past is not None for run in self.runs]
+        known = _filled(np.repeat(past, self.shape[1]).astype(float), lanes) > 0
+        return _Input(np.concatenate(records), begin - whole, delay, known)
 
     def _packed(
         self, built: Kernel, values: Mapping[str, Array], lanes: int, inputs: Mapping[str, _Input]
@@ -133,11 +137,14 @@ class Simulation:
         for known in built.filters:
             _pack_filter(rows, known, values)
         for name, first in built.inputs.items():
-            # The first value did not jump there: what the command did before the record is not known.
-            rows[first] = rows[first + 1] = inputs[name].first
+            # The first value did not jump there: what the command did before the record is hardly ever known.
+            of = inputs[name]
+            rows[first] = rows[first + 1] = of.first
             if name == INPUT and built.shift is not None:
-                late = _begun_late(inputs[name], values[HELD])
-                rows[first], rows[first + 1] = np.where(inputs[name].delay > 0, late, rows[first])
+                late = _begun_late(of, values[HELD])
+                rows[first], rows[first + 1] = np.where(of.delay > 0, late, rows[first])
+            rows[first] = np.where(of.known, of.record[of.begin - 1], rows[first])
+            rows[first + 1] = np.where(of.known, of.first, rows[first + 1])
         if self.start is not None:
             for i, name in enumerate(self.chain.states):
                 rows[built.states[name]] = _filled(self.start[..., i].ravel(), lanes)
@@ -193,18 +200,24 @@ def _record(run: Run, name: str) -> Array:
 def _fine(run: Run, channel: str, steps: int, before: int) -> Array:
     """An input at the fine steps, with `before` steps in front and two behind.
 
-    Before the record it is zero where the run starts at rest, and its first value where the run is cut out of a
-    longer test.
+    Before the record a command is what it was, where that is known. Else it was zero where the run starts at rest, and
+    its first value where the run is cut out of a longer test.
     """
     samples = _record(run, channel)
+    past = samples[:0] if run.past is None or channel != INPUT else run.past[-(before // steps + 1) :]
+    samples = np.concatenate([past, samples])
     if steps > 1 and run.hold == "zoh" and channel == INPUT:
         fine = np.repeat(samples, steps)
     elif steps > 1:
         fine = np.interp(np.arange((len(samples) - 1) * steps + 1) / steps, np.arange(len(samples)), samples)
     else:
         fine = samples
+    first = len(past) * steps
     front = np.full(before, 0.0 if channel == INPUT and run.begins == "at rest" else fine[0])
-    if run.hold == "linear":
+    if first:
+        front = np.concatenate([np.full(max(before - first, 0), fine[0]), fine[max(first - before, 0) : first]])
+        fine = fine[first:]
+    elif run.hold == "linear":
         front[-1] -= _jump_share(np.array(2.0)) * (fine[0] - front[-1])
     return np.concatenate([front, fine, np.full(steps + 2, fine[-1])])
 

@@ -1,0 +1,57 @@
+"""Effects in words: what nobody described is named by what it does, and where."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.standing import Contradiction
+from ident.diagnosis.words import verdict_text
+from ident.fit.settings import Settings
+from ident.matrix import Actuator, Matrix, Run, Specimen
+
+
+def matrix(actuator: Actuator, **labels: object) -> Matrix:
+    u = np.random.default_rng(1).standard_normal((2, 600))
+    channels, units = {"command": u[0], "displacement": u[1]}, {"command": "V", "displacement": "m"}
+    return Matrix(actuator, (Run("one", "", 100.0, channels, units, **labels),))  # type: ignore[arg-type]
+
+
+def family(of: Matrix) -> ModelFamily:
+    return ModelFamily.of(of, Settings(model="open_valve"))
+
+
+def test_a_part_that_nobody_described_is_named_by_what_it_does():
+    bare = family(matrix(Actuator("ANY")))
+    assert bare.spoken("spool_stiction") == "spool stiction (a start that waits for enough drive, at the valve)"
+    assert bare.spoken("cubic_stiffness") == "cubic stiffness (stiffening or softening with position, at the load)"
+    assert bare.spoken("dead_zone") == "dead zone"
+    valve = family(matrix(Actuator("ANY", servo_valve="D765")))
+    assert valve.spoken("spool_stiction") == "spool stiction"
+    assert valve.spoken("cubic_stiffness") == bare.spoken("cubic_stiffness")
+    loaded = family(matrix(Actuator("ANY"), specimen=Specimen(mass=20.0)))
+    assert loaded.spoken("cubic_stiffness") == "cubic stiffness"
+
+
+@pytest.mark.parametrize("against", [True, False])
+def test_a_verdict_says_what_an_effect_does_once(against):
+    models = family(matrix(Actuator("ANY")))
+    rises = [Contradiction("cubic_stiffness", 0.1, 0.2, 3.0)] if against else []
+    added = ("dead_zone", "cubic_stiffness", "spool_stiction")
+    text = verdict_text(added, [("spool_stiction", "backlash")], (), False, {"fit": 0.01}, 0.2, against=rises,
+                        spoken=models.spoken)  # fmt: skip
+    assert text.count("stiffening or softening") == 1
+    assert text.count("a start that waits for enough drive, at the valve) ") == 0
+    assert text.count("(a start that waits for enough drive, at the valve): with them") == 1
+    assert text.count("spool stiction") == 2
+    first = "cubic stiffness" if against else "cubic stiffness (stiffening or softening with position, at the load)"
+    assert f" is dead zone, {first} and" in text or f"lacks dead zone, {first} and" in text
+
+
+def test_a_stated_drive_is_a_description():
+    closed = matrix(Actuator("ANY"))
+    runs = tuple(replace(run, gain=4.0) for run in closed.runs)
+    assert family(replace(closed, runs=runs)).spoken("supply_droop") == "supply droop"
