@@ -47,11 +47,7 @@ def verdict_text(
     Without `repeats` nobody knows how much noise lies in the command's band. Not `complete`, the search was stopped.
     `spoken` tells what an effect is the first time that it is named.
     """
-    once: dict[str, str] = {}
-
-    def named(effect: str) -> str:
-        return title(effect) if effect in once else once.setdefault(effect, spoken(effect))
-
+    named = _told_once(spoken)
     parts = [
         f"With {named(one.effect)} the error on verify runs rises from {percent(one.before)} to {percent(one.after)}, "
         f"{one.deviations:.1f} standard errors: it may stand for something else."
@@ -91,3 +87,16 @@ def verdict_text(
             parts.append("No command was measured twice: part of it may be noise in the command's band, "
                          "which a repeated run would tell.")  # fmt: skip
     return " ".join(parts)
+
+
+def _told_once(spoken: Callable[[str], str]) -> Callable[[str], str]:
+    """The name of an effect with what it is told by the first time, bare then."""
+    told: set[str] = set()
+
+    def named(effect: str) -> str:
+        if effect in told:
+            return title(effect)
+        told.add(effect)
+        return spoken(effect)
+
+    return named

@@ -18,6 +18,7 @@ from ident.fit.result import Combination, Estimate, FitResult, RunError, Starts,
 from ident.fit.search import evolution
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
+from ident.fit.slow_answer import slow_lag
 from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
 from ident.matrix import Run, over_runs
 from ident.noise.floor import Floors
@@ -196,6 +197,7 @@ def _determined(
         if error <= COMBINED:
             value = float(quantity(found.point[None])[0])
             yield Combination(combined.text.replace("**", "^"), value, combined.unit, value * error)
+    yield from slow_lag(objective, found)
 
 
 def _reason(objective: Fitness, name: str, relative: Mapping[str, float]) -> str:

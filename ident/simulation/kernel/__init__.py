@@ -12,7 +12,8 @@ compiler see that nothing overlaps and put the lanes side by side.
 from functools import lru_cache
 
 from ident.chain.chain import Chain
-from ident.simulation.kernel.layout import HELD, LANES, SHARE, Filter, Kernel
+from ident.simulation.kernel.layout import HELD, SHARE, Filter, Kernel
+from ident.simulation.kernel.machine_code import LANES
 from ident.simulation.kernel.source import constant
 from ident.simulation.kernel.writer import Writer
 

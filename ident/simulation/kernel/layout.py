@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ident.chain.chain import Chain
-from ident.simulation.compiled import function
+from ident.chain.chain import INPUT, Chain
+from ident.simulation.kernel.machine_code import Advance, advance
 
-LANES = 16
 HELD, SHARE = "held", "share"
 """Rows that the packing fills: 1 where a lane's command is held between samples; the delay's fraction of a step."""
 
@@ -36,7 +35,7 @@ class Kernel:
 
     chain: Chain
     output: str
-    source: str
+    lines: tuple[str, ...]
     rows: int
     constants: tuple[tuple[int, ast.expr], ...]
     filters: tuple[Filter, ...]
@@ -44,11 +43,13 @@ class Kernel:
     memories: Mapping[str, int]
     inputs: Mapping[str, int]  # the rows previous, current, next begin here, one triple an input
     shift: ast.expr | None  # delay of the command
+    shown: int  # the row of the output
 
     @property
-    def advance(self) -> Callable[..., None]:
+    def advance(self) -> Advance:
         """The compiled function."""
-        return function("advance", self.source)
+        fed = tuple((row + 2, "commands" if name == INPUT else "forces") for name, row in self.inputs.items())
+        return advance(self.lines, fed, self.shown)
 
 
 def filter_rows(order: int) -> int:

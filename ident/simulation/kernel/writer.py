@@ -10,11 +10,11 @@ from ident.chain.chain import INPUT, INPUT_RATE, MEASURED, STEP
 from ident.chain.dry_friction import dry_friction
 from ident.equations.equation import Equation
 from ident.equations.grammar import TIME, tree_of
-from ident.simulation.kernel.layout import HELD, LANES, SHARE, Filter, Kernel, filter_rows
+from ident.simulation.kernel.layout import HELD, SHARE, Filter, Kernel, filter_rows
+from ident.simulation.kernel.machine_code import LANES
 from ident.simulation.kernel.source import Source, named
 
 STAGES = (1, 2, 3, 4)
-_RECORDS = {INPUT: "commands[command_at[lane] + k + 1]"} | dict.fromkeys(MEASURED, "forces[force_at[lane] + k + 1]")
 
 
 @dataclass
@@ -36,17 +36,9 @@ class Writer(Source):
         shown = self._row()
         body = self._body(needed, rates, states, memories, inputs, shown)
         loads = [f"c{row} = b[{row * LANES} + lane]" for row, _ in self.constants.values()]
-        source = _SOURCE.format(
-            lanes=LANES,
-            feed="\n".join(
-                f"            b[{(row + 2) * LANES} + lane] = {_RECORDS[name]}" for name, row in inputs.items()
-            ),
-            body="\n".join(f"            {line}" for line in (*loads, *body)),
-            shown=shown * LANES,
-        )
         return Kernel(
-            chain, self.output, source, self.rows, tuple(self.constants.values()), tuple(self.filters.values()),
-            states, memories, inputs, self.shift,
+            chain, self.output, (*loads, *body), self.rows, tuple(self.constants.values()),
+            tuple(self.filters.values()), states, memories, inputs, self.shift, shown,
         )  # fmt: skip
 
     def _folded(self) -> tuple[list[Equation], list[Equation]]:
@@ -228,25 +220,6 @@ class Writer(Source):
             gains = [f"b[{(row + j) * LANES} + lane]" for j in range(len(terms))]
             self._write(f"{key}_{'zp'[i]}_{stage}", " + ".join(f"{g} * {t}" for g, t in zip(gains, terms, strict=True)))
         return key, value
-
-
-_SOURCE = """from math import cos, sin, sqrt, tanh
-
-from numba import njit
-
-
-@njit(cache=True, fastmath={{"contract", "nnan", "ninf", "nsz"}}, nogil=True, error_model="numpy")
-def advance(b, commands, forces, command_at, force_at, first, last, every, out, stride):
-    for k in range(first, last):
-        for lane in range({lanes}):
-{feed}
-        for lane in range({lanes}):
-{body}
-        if k % every == 0:
-            row = (k // every - first // every) * stride
-            for lane in range({lanes}):
-                out[row + lane] = b[{shown} + lane]
-"""
 
 
 def _names(node: ast.expr) -> frozenset[str]:
