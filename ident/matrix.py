@@ -170,9 +170,13 @@ class Run:
         past = -self.past if channel == "command" and self.past is not None else self.past
         return replace(self, channels={**self.channels, channel: -self.channels[channel]}, past=past)
 
-    def head(self, count: int) -> Run:
-        """The first so many samples as a run of their own."""
-        return replace(self, channels={name: samples[:count] for name, samples in self.channels.items()})
+    def part(self, first: int, last: int) -> Run:
+        """The samples first to last − 1 as a run of their own, whose past is what was commanded before."""
+        past = self.past
+        if first and "command" in self.channels:
+            before = self.command[:first]
+            past = before if past is None else np.concatenate([past, before])
+        return replace(self, channels={name: samples[first:last] for name, samples in self.channels.items()}, past=past)
 
     @cached_property
     def begins(self) -> Beginning:

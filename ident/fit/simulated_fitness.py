@@ -121,4 +121,4 @@ def shortened(runs: Sequence[Run], samples: int) -> tuple[Run, ...]:
     total = sum(run.length for run in runs)
     if total <= samples:
         return tuple(runs)
-    return tuple(run.head(max(512, run.length * samples // total)) if run.kind == "blwn" else run for run in runs)
+    return tuple(run.part(0, max(512, run.length * samples // total)) if run.kind == "blwn" else run for run in runs)

@@ -143,9 +143,9 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
             axes.append(Axis(scale.name, *scale.slower_than(fastest / band), scale.logarithmic, scale.equation))
     _refuse_bad_values(fixed, strengths | known.keys())
     order = tuple(scale.name for scale in preset.scales)
-    return Space(
-        tuple(axes), order, fixed, typical, convention, not same, not (same or settings.bounds or settings.fixed)
-    )
+    of_effects = {p.name for effect in preset.effects for p in effect.added}
+    bounded = {*settings.bounds, *settings.fixed} - of_effects
+    return Space(tuple(axes), order, fixed, typical, convention, not same, not (same or bounded))
 
 
 def _loaded(runs: tuple[Run, ...]) -> bool:

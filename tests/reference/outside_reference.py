@@ -4,8 +4,9 @@ Kutta's classical rule with many sub-steps a sample; flat, SI, from rest; the co
 
     tau q' = Kp (u - y) - q - f q |P| / P0                          flow_force on the spool
     Q = Z0/A q (1 + d t) (1 + p sin(2 pi 23 t)) (1 + w)    gain_drift, pump_ripple, valve_temperature: w of the run
-    Ka P' = Q - Cl P - A v
-    (m0 + mL) v' = A P - (c0 + cL) v - k x - F (x/X)² tanh(v/Vs)    position_friction
+        (1 + g |P| / P0)                                    pressure_gain
+    Ka P' = Q - Cl P - l Cl max(P, 0) - A (1 + a sgn v) v   one_way_leakage; unequal_areas
+    (m0 + mL) v' = A (1 + a sgn v) P - (c0 + cL) v - k x - F (x/X)² tanh(v/Vs)    position_friction
     y = x (1 + s (x/X)²)                                            sensor_curve, outside the loop
 """
 
@@ -33,6 +34,9 @@ class Outside(NamedTuple):
     valve_temperature: float = 0.0
     position_friction: float = 0.0  # N
     sensor_curve: float = 0.0
+    pressure_gain: float = 0.0
+    one_way_leakage: float = 0.0
+    unequal_areas: float = 0.0
 
 
 @njit(inline="always")
@@ -40,9 +44,12 @@ def derivative(plant, cell, o, warm, t, u, s, out):
     q, p, v, x = s[0], s[1], s[2], s[3]
     out[0] = (cell.gain * (u - x) - q - o.flow_force * q * abs(p) / P0) / plant.tau
     gain = (1.0 + o.gain_drift * t) * (1.0 + o.pump_ripple * np.sin(RIPPLE * t)) * (1.0 + warm)
-    out[1] = (plant.Z0 / plant.A * q * gain - plant.Cl * p - plant.A * v) / plant.Ka
+    gain *= 1.0 + o.pressure_gain * abs(p) / P0
+    leak = plant.Cl * (p + o.one_way_leakage * max(p, 0.0))
+    area = plant.A * (1.0 + o.unequal_areas * np.sign(v))
+    out[1] = (plant.Z0 / plant.A * q * gain - leak - area * v) / plant.Ka
     friction = o.position_friction * (x / X) ** 2 * np.tanh(v / VS)
-    force = plant.A * p - (plant.c0 + cell.damping) * v - cell.stiffness * x - friction
+    force = area * p - (plant.c0 + cell.damping) * v - cell.stiffness * x - friction
     out[2] = force / (plant.m0 + cell.mass)
     out[3] = v
 

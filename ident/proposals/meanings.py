@@ -1,0 +1,47 @@
+"""What a term would mean in hydraulics."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ident.proposals.terms import Term
+
+_MEANINGS = {
+    ("Q", "size", ("P",)): "leakage in one direction: the leak differs with the sign of the pressure",
+    ("Q", "square", ("P",)): "leakage that grows with the square of the pressure",
+    ("Q", "root", ("P",)): "leakage through an orifice, as the root of the pressure",
+    ("Q", "grows with", ("Q", "P")): "the flow gain grows, or falls, with the pressure",
+    ("Q", "turns with", ("P", "Q")): "leakage that follows the direction of the flow",
+    ("Q", "product", ("P", "Q")): "less flow against a load than with it",
+    ("Q", "size", ("v",)): "areas differ: the cylinder takes more oil in one direction",
+    ("Q", "size", ("Q",)): "the flow gain differs between the directions",
+    ("R", "sign", ("v",)): "dry friction",
+    ("R", "square", ("v",)): "damping that grows with the square of the speed",
+    ("R", "cube", ("x",)): "a spring that hardens or softens",
+    ("R", "size", ("x",)): "a spring that differs between the sides",
+    ("R", "turns with", ("P", "v")): "friction of seals that grows with the pressure",
+    ("R", "size along", ("P", "v")): "friction of seals that grows with the pressure",
+    ("R", "size along", ("x", "v")): "dry friction that grows away from the middle",
+    ("R", "square along", ("x", "v")): "dry friction that grows away from the middle",
+    ("y", "cube", ("x",)): "a transducer that is not linear",
+    ("y", "square", ("x",)): "a transducer that is not linear",
+    ("y", "even square", ("x",)): "a transducer that is not linear",
+    ("y", "drift", ("t",)): "a transducer that drifts",
+}  # fmt: skip
+_KINDS = {
+    "beyond": "acts beyond a threshold to both sides", "above": "acts above a threshold",
+    "below": "acts below a threshold", "lag": "acts late", "play": "has play",
+    "friction at": "dry friction at one part of the way", "hill of": "acts at one part of the way",
+    "hill": "acts at one part of the way", "condition": "changes with a condition of the run, or with time",
+}  # fmt: skip
+
+
+def meaning(terms: Sequence[Term]) -> str:
+    """In words; "" where the term has no known name."""
+    places = {(term.at, term.kind, term.of) for term in terms}
+    if places == {("Q", "size", ("v",)), ("R", "turns with", ("P", "v"))}:
+        return "the areas of the piston differ between the directions"
+    found = [
+        _MEANINGS.get((term.at, term.kind, term.of)) or _KINDS.get(term.kind, "") for term in terms
+    ]  # fmt: skip
+    return "; ".join(dict.fromkeys(entry for entry in found if entry))

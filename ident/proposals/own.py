@@ -1,0 +1,41 @@
+"""A term as an effect of its own: the definition that a user could have written."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ident.proposals.terms import Signals, Term, ratio
+
+_REACH = 4.0  # times what makes a term as large as the signal that it adds to: bounds of a strength
+_SPREAD = 8.0  # by which factor a refit may move a shape to either side
+STRENGTH = "s"
+
+
+def definition(
+    name: str, terms: Sequence[Term], signs: Sequence[float], typical: Signals, units: Mapping[str, str]
+) -> dict[str, Any]:
+    """The definition of an effect with one strength for one term or for several, each with its sign.
+
+    `typical` are samples of the signals, `units` as the chain has them.
+    """
+    first = terms[0]
+    lines: list[str] = []
+    shapes: dict[str, Any] = {}
+    for term, sign in zip(terms, signs, strict=True):
+        lines += term.memory
+        lines.append(f"{term.at} = {term.at} {'+' if sign > 0 else '-'} {STRENGTH} * ({term.text})")
+        for shape in term.shapes:
+            low, high = sorted((shape.value / _SPREAD, shape.value * _SPREAD))
+            shapes[shape.symbol] = {"unit": shape.unit, "lower": low, "upper": high, "value": shape.value}
+    shown = first.samples(typical, 1.0) if first.worked_out is None else typical[first.of[0]]
+    size = float(np.sqrt(np.mean(shown**2)))
+    bound = _REACH * float(np.std(typical[first.at])) / max(size, 1e-300)
+    found: dict[str, Any] = {
+        "name": name, "place": terms[-1].place, "equation": lines,
+        "strength": {"symbol": STRENGTH, "unit": ratio(units[first.at], first.unit), "lower": -bound, "upper": bound},
+        "meaning": "proposed by search", "source": "proposed by search",
+    }  # fmt: skip
+    return found | ({"shape": shapes} if shapes else {})

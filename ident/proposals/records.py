@@ -1,0 +1,105 @@
+"""Each run as a search for terms needs it: what the parameters explain, the residual, the signals inside the model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.chain.conditions import conditions
+from ident.diagnosis.family import Refit
+from ident.fit.fitness import STEP
+from ident.fit.responses import Sensitivities
+from ident.fit.simulated_runs import SimulatedRuns
+from ident.linear import LinearModel
+from ident.matrix import Actuator, Run
+from ident.parallel import each
+from ident.presets import Preset
+from ident.residuals.decimation import Response, averaged, stride
+from ident.residuals.views import injected, showing
+from ident.simulation.simulate import Simulation
+
+Array = NDArray[np.float64]
+_MOST = 60_000  # coarse samples of all runs together: records are cut to their beginnings
+
+
+@dataclass(frozen=True)
+class Record:
+    """One run on the coarse clock of `rate` Hz.
+
+    Sensitivities to the parameters (n, p), what is `free` in the run (n, s), the residual (n,).
+
+    `signals` are those inside the model, the conditions of the run and the time, by name, (n,).
+    """
+
+    run: Run
+    rate: float
+    sensitivities: Array
+    free: Array
+    residual: Array
+    signals: Mapping[str, Array]
+
+
+def records(refit: Refit, names: Sequence[str]) -> tuple[Record, ...]:
+    """The runs that a refit was made for, with the signals of these names."""
+    fitness, point = refit.fitness, refit.point
+    count = stride(fitness.runs)
+    most = max(256, _MOST // len(fitness.runs))
+    signs = np.where(point + STEP > 1.0, -1.0, 1.0)
+    moved = fitness.space.values(np.concatenate([point[None], point + np.diag(STEP * signs)]))
+    sensitivities = Sensitivities.of(fitness, moved, STEP * signs)
+    inner = _inner(refit, names)
+
+    def one(run: Run) -> Record:
+        Z = sensitivities.columns[run.id].Z
+        coarse = np.array([averaged(row, count)[:most] for row in Z]).T
+        shown = {name: averaged(inner[name, run.id], count)[:most] for name in names}
+        n, rate = len(coarse), run.sample_rate / count
+        known = {name: np.full(n, value) for name, value in conditions(run, fitness.matrix.actuator).items()}
+        time = {"t": (np.arange(n) + 0.5) / rate}
+        p = len(point)
+        return Record(run, rate, coarse[:, :p], coarse[:, p:-2], coarse[:, -1], known | time | shown)
+
+    return tuple(each(one, fitness.runs))
+
+
+def _inner(refit: Refit, names: Sequence[str]) -> dict[tuple[str, str], Array]:
+    """The signals inside the model, (n,), by name and run."""
+    fitness = refit.fitness
+    preset = fitness.preset
+    simulated = SimulatedRuns(preset, fitness.matrix, fitness.runs, starts=dict(fitness.starts))
+    values = {name: float(value[0]) for name, value in fitness.space.values(refit.point[None]).items()}
+    _, steps = simulated.settle(values)
+    chain = showing(preset.chain, tuple(names))
+
+    def one(entry: tuple[str, Run]) -> Array:
+        name, run = entry
+        known = conditions(run, fitness.matrix.actuator) | values
+        at = {symbol: np.array([[value]]) for symbol, value in known.items()}
+        start = simulated.first_states(run, at)
+        named = replace(run, output=name, channels={**run.channels, name: run.measured})
+        return np.concatenate([rows[:, 0, 0] for rows, _, _ in Simulation(chain, (named,), at, steps, start).outputs()])
+
+    wanted = [(name, run) for name in names for run in fitness.runs]
+    return dict(zip(((name, run.id) for name, run in wanted), each(one, wanted), strict=True))
+
+
+def paths(
+    preset: Preset, values: Mapping[str, float], actuator: Actuator, at: str, runs: Sequence[Record]
+) -> list[Response]:
+    """For each record the linear response from what is added to the signal `at` to the output."""
+    broken = injected(preset.core, at)
+    found: dict[object, Response] = {}
+
+    def of(record: Record) -> Response:
+        run = record.run
+        key = (run.specimen, run.gain, run.output, record.rate)
+        if key not in found:
+            known = conditions(run, actuator) | dict(values)
+            model: LinearModel = broken.linearise({n: np.array([known[n]]) for n in broken.symbols}, run.output)
+            found[key] = Response.of([model], record.rate)
+        return found[key]
+
+    return [of(record) for record in runs]

@@ -1,0 +1,200 @@
+"""What may be missing at a place: a term of the signals there, written as an equation and worked out on samples.
+
+Terms are drawn from forms: powers, roots, absolute values, signs, one-sided parts and thresholds of one signal;
+products of two; hills of the position; lags and play. Each becomes an effect of its own, ``at = at + s term``, whose
+strength s has the unit of the signal that it acts on over that of the term.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import lfilter
+
+from ident.equations.equation import Equation
+from ident.units.grammar import Powers, powers_of
+
+Array = NDArray[np.float64]
+Signals = Mapping[str, Array]
+_QUANTILES = (0.3, 0.5, 0.7, 0.85, 0.95)  # of the size of a signal: thresholds
+_HILLS, _HILL = (0.1, 0.3, 0.5, 0.7, 0.9), 0.15  # quantiles of the position, and the width of a hill in its range
+_LAGS = (0.02, 0.06, 0.2, 0.6)  # of a period at the end of the band, times 2π
+_PLAYS = (0.1, 0.3, 0.6)  # of the deviation of a signal
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A number within a term: its symbol, its value where the search saw it, its unit, and whether a refit moves it."""
+
+    symbol: str
+    value: float
+    unit: str
+    free: bool = True
+
+
+@dataclass(frozen=True)
+class Term:
+    """A term at a place: `at` is the signal that it adds to, `text` its equation, `unit` that of the term.
+
+    `kind` names its form and `of` the signals that it is of; `memory` are equations of its own that go before, and
+    `state` the rate of one. `worked_out` gives its samples where the equation alone does not.
+    """
+
+    place: str
+    at: str
+    text: str
+    kind: str
+    of: tuple[str, ...]
+    unit: Powers
+    shapes: tuple[Shape, ...] = ()
+    memory: tuple[str, ...] = ()
+    state: tuple[str, str] | None = None
+    worked_out: Callable[[Signals, float], Array] | None = field(default=None, compare=False, repr=False)
+
+    def samples(self, signals: Signals, rate: float) -> Array:
+        """The term on the signals of a run, (n,)."""
+        if self.worked_out is not None:
+            return self.worked_out(signals, rate)
+        known = {**signals, **{shape.symbol: shape.value for shape in self.shapes}}
+        value = Equation(f"d = {self.text}").value(known)
+        return np.broadcast_to(np.asarray(value, dtype=np.float64), next(iter(signals.values())).shape)
+
+    @property
+    def free_shapes(self) -> int:
+        """How many numbers within it a refit moves."""
+        return sum(shape.free for shape in self.shapes)
+
+
+@dataclass(frozen=True)
+class Library:
+    """All terms for the places of a chain: `places` maps a place to the signal that is added to.
+
+    `signals` are those that terms may be of, `typical` all their samples, `units` as the chain has them; `band` is the
+    end of the command's, rad/s.
+    """
+
+    places: Mapping[str, str]
+    signals: Sequence[str]
+    typical: Signals
+    units: Mapping[str, str]
+    band: float
+    varied: Sequence[str] = ()
+
+    def terms(self) -> Iterator[Term]:
+        """Every term, the simplest forms first."""
+        for place, at in self.places.items():
+            for a in self.signals:
+                yield from self._of_one(place, at, a)
+            for a in self.signals:
+                for b in self.signals:
+                    if a != b:
+                        yield from self._of_two(place, at, a, b)
+            yield from self._of_position(place, at)
+            yield from self._with_conditions(place, at)
+
+    def _of_one(self, place: str, at: str, a: str) -> Iterator[Term]:
+        for text, kind, power in (
+            ("{a} * abs({a})", "square", 2), ("abs({a})", "size", 1), ("sgn({a})", "sign", 0), ("{a}**3", "cube", 3),
+            ("{a}**2", "even square", 2),
+        ):  # fmt: skip
+            yield Term(place, at, text.format(a=a), kind, (a,), self._unit((a, power)))
+        scale = Shape("a0", float(np.std(self.typical[a])), self.units[a], free=False)
+        yield Term(place, at, f"sgn({a}) * sqrt(abs({a}) / a0)", "root", (a,), {}, (scale,))
+        for share in _QUANTILES:
+            width = Shape("h", float(np.quantile(np.abs(self.typical[a]), share)), self.units[a])
+            if width.value > 0:
+                for text, kind in (
+                    ("{a} - clip({a}, -h, h)", "beyond"), ("max({a} - h, 0)", "above"), ("min({a} + h, 0)", "below"),
+                ):  # fmt: skip
+                    yield Term(place, at, text.format(a=a), kind, (a,), self._unit((a, 1)), (width,))
+        if a == at or (place == "load" and a == "v"):
+            yield from self._late(place, at, a)
+            yield from self._play(place, at, a)
+
+    def _late(self, place: str, at: str, a: str) -> Iterator[Term]:
+        for share in _LAGS:
+            T = share / self.band * 2 * np.pi
+
+            def late(signals: Signals, rate: float, T: float = T) -> Array:
+                decay = np.exp(-1.0 / rate / T)
+                x = signals[a]
+                return np.asarray(lfilter([1 - decay], [1, -decay], x) - x)
+
+            shape = Shape("T", T, "s")
+            yield Term(place, at, f"lag({a}, T) - {a}", "lag", (a,), self._unit((a, 1)), (shape,), (), None, late)
+
+    def _play(self, place: str, at: str, a: str) -> Iterator[Term]:
+        for share in _PLAYS:
+            half = share * float(np.std(self.typical[a]))
+
+            def held(signals: Signals, _rate: float, half: float = half) -> Array:
+                x, p, out = signals[a], 0.0, np.empty(len(signals[a]))
+                for k, now in enumerate(x):
+                    p = min(max(p, now - half), now + half)
+                    out[k] = p - now
+                return out
+
+            shape = Shape("b", half, self.units[a])
+            memory = (f"p := clip(p, {a} - b, {a} + b)",)
+            yield Term(place, at, f"p - {a}", "play", (a,), self._unit((a, 1)), (shape,), memory, None, held)
+
+    def _of_two(self, place: str, at: str, a: str, b: str) -> Iterator[Term]:
+        for text, kind, powers, symmetric in (
+            ("{a} * {b}", "product", (1, 1), True), ("{a} * abs({b})", "grows with", (1, 1), False),
+            ("{a} * sgn({b})", "turns with", (1, 0), False), ("abs({a}) * sgn({b})", "size along", (1, 0), False),
+            ("max({a}, 0) * {b}", "one-sided product", (1, 1), False),
+            ("{a} * {b}**2", "grows with square", (1, 2), False),
+            ("{a}**2 * sgn({b})", "square along", (2, 0), False),
+            ("abs({a}) * {b} * abs({b})", "square grown", (1, 2), False),
+        ):  # fmt: skip
+            if not symmetric or a < b:
+                unit = self._unit((a, powers[0]), (b, powers[1]))
+                yield Term(place, at, text.format(a=a, b=b), kind, (a, b), unit)
+
+    def _of_position(self, place: str, at: str) -> Iterator[Term]:
+        if "x" not in self.typical:
+            return
+        x = self.typical["x"]
+        width = Shape("d", _HILL * float(np.ptp(np.quantile(x, [0.02, 0.98]))), self.units["x"])
+        for share in _HILLS if width.value > 0 else ():
+            middle = Shape("xm", float(np.quantile(x, share)), self.units["x"])
+            hill = "exp(-((x - xm) / d)**2)"
+            yield Term(place, at, hill, "hill", ("x",), {}, (middle, width))
+            for b in self.signals:
+                if b in (at, "v") and b != "x":
+                    yield Term(place, at, f"{b} * {hill}", "hill of", (b, "x"), self._unit((b, 1)), (middle, width))
+            if "v" in self.signals:
+                yield Term(place, at, f"sgn(v) * {hill}", "friction at", ("v", "x"), {}, (middle, width))
+
+    def _with_conditions(self, place: str, at: str) -> Iterator[Term]:
+        """Terms that grow with a condition of the run, where it differs, or with time."""
+        for name in (*self.varied, "t"):
+            unit = {"t": "s"}.get(name) or self.units.get(name, "1")
+            for a in self.signals:
+                if a in (at, "v"):
+                    powers = _multiplied(self._unit((a, 1)), powers_of(unit) or {}, 1)
+                    yield Term(place, at, f"{name} * {a}", "condition", (name, a), powers)
+        if "t" not in self.varied:
+            yield Term(place, at, "t", "drift", ("t",), {"s": 1.0})
+
+    def _unit(self, *of: tuple[str, int]) -> Powers:
+        found: Powers = {}
+        for name, power in of:
+            found = _multiplied(found, powers_of(self.units[name]) or {}, power)
+        return found
+
+
+def _multiplied(a: Powers, b: Powers, power: int) -> Powers:
+    found = dict(a)
+    for name, of in b.items():
+        found[name] = found.get(name, 0.0) + power * of
+    return {name: of for name, of in found.items() if of}
+
+
+def ratio(of: str, to: Powers) -> str:
+    """The unit of one signal over that of a term, as text: "m^3*s^-1*Pa^-1"."""
+    powers = _multiplied(powers_of(of) or {}, to, -1)
+    return "*".join(name if power == 1 else f"{name}^{power:g}" for name, power in powers.items()) or "1"
