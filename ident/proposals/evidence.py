@@ -10,21 +10,70 @@ coloured in both alike counts for nothing.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.diagnosis.significance import WORTHWHILE
+from ident.fit.windows import unforeseen
+from ident.matrix import Run
+
 Array = NDArray[np.float64]
 _SMOOTH = 16  # frequencies that are averaged
+_FEW = 3  # runs, below which their scatter tells nothing
+_STEADY = 3.0  # standard errors
 _WIDE = 1.3  # of the command's band is looked at
 
 
-def nats(before: Iterable[Array], after: Iterable[Array], rates: Iterable[float], band: float) -> float:
-    """Of residuals (n,) of some runs, sampled at `rates` Hz; `band` in rad/s."""
-    return sum(
-        _of_run(one, other, rate, band) for one, other, rate in zip(before, after, rates, strict=True)
-    )  # fmt: skip
+@dataclass(frozen=True)
+class Evidence:
+    """The nats of each run that confirms, (runs,), and the relative fall of the error, eq. (17), over all of them."""
+
+    of_runs: Array
+    fall: float
+
+    @property
+    def nats(self) -> float:
+        """Of all runs."""
+        return float(self.of_runs.sum())
+
+    @property
+    def steady(self) -> bool:
+        """Whether the runs agree: their mean gain is beyond chance, and so it is without the one that gains most."""
+        rest = np.delete(self.of_runs, int(np.argmax(self.of_runs)))
+        return bool(len(rest) < _FEW or (_deviations(self.of_runs) > _STEADY and _deviations(rest) > _STEADY))
+
+    @property
+    def worthwhile(self) -> bool:
+        """Whether the error falls by what is worth a term."""
+        return self.fall > WORTHWHILE
+
+
+def evidence(
+    runs: Sequence[Run], before: Sequence[Array], after: Sequence[Array], band: float, integrated: bool = False
+) -> Evidence:
+    """Of the residuals (n,) of some runs; `band` in rad/s.
+
+    Of a machine that has `integrated` what disturbed it the likelihoods are those of noise on a level that wanders.
+    """
+
+    def gain(run: Run, one: Array, other: Array) -> float:
+        if integrated:
+            return 0.5 * len(one) * float(np.log(max(unforeseen(one), 1e-300) / max(unforeseen(other), 1e-300)))
+        return _of_run(one, other, run.sample_rate, band)
+
+    gained = [gain(run, one, other) for run, one, other in zip(runs, before, after, strict=True)]
+    size = [float(np.mean([np.std(r) / np.std(run.measured) for run, r in zip(runs, of, strict=True)]))
+            for of in (before, after)]  # fmt: skip
+    return Evidence(np.array(gained), 1.0 - size[1] / size[0])
+
+
+def _deviations(gains: Array) -> float:
+    """The mean over its standard error."""
+    spread = float(np.std(gains, ddof=1))
+    return float(gains.mean() * np.sqrt(len(gains)) / spread) if spread > 0 else np.inf
 
 
 def _of_run(before: Array, after: Array, rate: float, band: float) -> float:

@@ -10,7 +10,6 @@ import numpy as np
 from ident.proposals.terms import Signals, Term, ratio
 
 _REACH = 4.0  # times what makes a term as large as the signal that it adds to: bounds of a strength
-_SPREAD = 8.0  # by which factor a refit may move a shape to either side
 STRENGTH = "s"
 
 
@@ -28,7 +27,7 @@ def definition(
         lines += term.memory
         lines.append(f"{term.at} = {term.at} {'+' if sign > 0 else '-'} {STRENGTH} * ({term.text})")
         for shape in term.shapes:
-            low, high = sorted((shape.value / _SPREAD, shape.value * _SPREAD))
+            low, high = shape.bounds
             shapes[shape.symbol] = {"unit": shape.unit, "lower": low, "upper": high, "value": shape.value}
     shown = first.samples(typical, 1.0) if first.worked_out is None else typical[first.of[0]]
     size = float(np.sqrt(np.mean(shown**2)))

@@ -29,7 +29,8 @@ _MOST = 60_000  # coarse samples of all runs together: records are cut to their 
 class Record:
     """One run on the coarse clock of `rate` Hz.
 
-    Sensitivities to the parameters (n, p), what is `free` in the run (n, s), the residual (n,).
+    Sensitivities to the parameters (n, p), what is `free` in the run (n, s), the residual (n,), all counted from where
+    each `window` of so many samples begins, where there are such.
 
     `signals` are those inside the model, the conditions of the run and the time, by name, (n,).
     """
@@ -39,13 +40,15 @@ class Record:
     sensitivities: Array
     free: Array
     residual: Array
+    window: int
     signals: Mapping[str, Array]
 
 
 def records(refit: Refit, names: Sequence[str]) -> tuple[Record, ...]:
     """The runs that a refit was made for, with the signals of these names."""
     fitness, point = refit.fitness, refit.point
-    count = stride(fitness.runs)
+    windows = [fitness.window(run) for run in fitness.runs]
+    count = next(n for n in range(stride(fitness.runs), 0, -1) if all(window % n == 0 for window in windows))
     most = max(256, _MOST // len(fitness.runs))
     signs = np.where(point + STEP > 1.0, -1.0, 1.0)
     moved = fitness.space.values(np.concatenate([point[None], point + np.diag(STEP * signs)]))
@@ -60,7 +63,9 @@ def records(refit: Refit, names: Sequence[str]) -> tuple[Record, ...]:
         known = {name: np.full(n, value) for name, value in conditions(run, fitness.matrix.actuator).items()}
         time = {"t": (np.arange(n) + 0.5) / rate}
         p = len(point)
-        return Record(run, rate, coarse[:, :p], coarse[:, p:-2], coarse[:, -1], known | time | shown)
+        return Record(
+            run, rate, coarse[:, :p], coarse[:, p:-2], coarse[:, -1], fitness.window(run) // count, known | time | shown
+        )
 
     return tuple(each(one, fitness.runs))
 

@@ -18,6 +18,7 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
+from ident.fit.simulated_runs import anchored
 from ident.parallel import each
 from ident.proposals.records import Record
 from ident.proposals.terms import Term
@@ -98,9 +99,15 @@ def _products(terms: Sequence[Term], record: Record, paths: dict[str, Response],
     rows[~np.isfinite(rows)] = 0.0
     if record.free.shape[1]:
         rows -= record.free @ np.linalg.lstsq(record.free, rows, rcond=1e-9)[0]
+    if record.window:
+        return _multiplied(anchored(rows, record.window))
     spectrum = np.fft.rfft(rows - rows.mean(axis=0), axis=0)
     bins = np.fft.rfftfreq(n, 1.0 / record.rate) * 2 * np.pi
     inside = spectrum[(bins > 0) & (bins <= _WIDE * band)]
-    both = np.concatenate([inside.real, inside.imag])
-    both /= max(float(np.linalg.norm(both[:, -1])), 1e-300)
-    return np.asarray(both.T @ both)
+    return _multiplied(np.concatenate([inside.real, inside.imag]))
+
+
+def _multiplied(rows: Array) -> Array:
+    """Products of columns, the last of size one."""
+    rows = rows / max(float(np.linalg.norm(rows[:, -1])), 1e-300)
+    return np.asarray(rows.T @ rows)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -22,19 +21,22 @@ from ident.errors import Unusable
 from ident.matrix import Run, over_runs
 from ident.parallel import each
 from ident.progress import Progress, Report
-from ident.proposals.evidence import nats
+from ident.proposals.evidence import evidence
 from ident.proposals.meanings import meaning
 from ident.proposals.own import STRENGTH, definition
 from ident.proposals.proposal import Proposal, Proposals, Refused
 from ident.proposals.records import paths, records
 from ident.proposals.regression import Regression, regression
 from ident.proposals.terms import Library, Term, ratio
+from ident.stages import PLACES
+from ident.units.quantity import known_powers, shape
 
 Array = NDArray[np.float64]
 MOST = 3  # terms
-_PLACES = {"spool": "w", "flow": "Q", "load": "R", "sensor": "y"}
+_PLACES = {"controller": "e", "spool": "w", "flow": "Q", "load": "R", "sensor": "y"}
 _SIGNALS = ("w", "Q", "P", "v", "x", "F")
-_TRIED, _PAIRS, _PAIRED = 6, 3, 40  # single terms and pairs that are refitted, and terms that are paired
+_TRIED, _PAIRS, _PAIRED = 6, 3, 12  # single terms and pairs that are refitted, and terms that are paired with all
+_DRIVE = ("controller", "valve", "spool", "flow")  # one input of the machine: of two terms there one is enough
 _EVIDENCE = 5.0  # nats beyond the logarithm of how many were looked at
 _PROPORTIONAL = 1.0 - 1e-6  # cosine of signals that are one
 _AS_GOOD = 1.02  # times the least error: a simpler one is taken
@@ -74,9 +76,8 @@ class Search:
 
     def run(self) -> Proposals:
         """One term on top of the other until none passes the bar, or the noise is reached."""
-        if self.models.horizon is None:
-            while len(self.found) < self.most and not self.models.at_floor(self.base) and self._added():
-                pass
+        while len(self.found) < self.most and not self.models.at_floor(self.base) and self._added():
+            pass
         return Proposals(found=tuple(self.found), refused=self.refused, looked_at=self.looked_at)
 
     def _added(self) -> bool:
@@ -94,15 +95,15 @@ class Search:
         errors = [_error(refit, chosen_by) for _, refit, _ in tried]
         good = [one for one, error in zip(tried, errors, strict=True) if error <= _AS_GOOD * min(errors)]
         candidate, refit, family = min(good, key=_simplicity)
-        gained = nats(_left(base, confirming), _left(refit, confirming), [r.sample_rate for r in confirming],
-                      self.models.band)  # fmt: skip
+        integrated = self.models.horizon is not None
+        seen = evidence(confirming, _left(base, confirming), _left(refit, confirming), self.models.band, integrated)
         bar = float(np.log(self.looked_at)) + _EVIDENCE
-        if not gained > bar:
-            self.refused = Refused(equation=candidate.equation, nats=gained, bar=bar)
+        if not (seen.nats > bar and seen.steady and seen.worthwhile):
+            self.refused = Refused(equation=candidate.equation, nats=seen.nats, bar=bar)
             return False
         self.models = replace(self.models, effects=family.effects, given=family.given, _known={})
         self.base = self.models.refit(refit.effects, refit.values)
-        self.found.append(self._proposal(candidate, name, gained, bar, len(self.models.runs) < _FEWEST))
+        self.found.append(self._proposal(candidate, name, seen.nats, bar, len(self.models.runs) < _FEWEST))
         return True
 
     def _proposal(self, candidate: _Candidate, name: str, gained: float, bar: float, hypothesis: bool) -> Proposal:
@@ -138,21 +139,22 @@ class Search:
         preset, matrix = self.models.preset, self.models.matrix
         named = {equation.target for equation in preset.core.equations if not equation.is_rate} | {*preset.core.states}
         names = [name for name in _SIGNALS if name in named]
-        runs = records(base, names)
+        places = {place: at for place, at in _PLACES.items() if at in named}
+        runs = records(base, list(dict.fromkeys((*names, *places.values()))))
         typical = {name: np.concatenate([record.signals[name] for record in runs]) for name in runs[0].signals}
         names = _distinct(names, typical)
-        places = {place: at for place, at in _PLACES.items() if at in named}
         responses = {at: paths(preset, base.values, matrix.actuator, at, runs) for at in places.values()}
         varied = [name for name in ("Kp", "mL", "k") if np.ptp(typical[name]) > 0]
         units = {**_CONDITIONS, **preset.chain.units}
-        library = Library(places, names, typical, units, self.models.band, varied)
+        shortest = min(run.duration for run in self.models.runs)
+        library = Library(places, names, typical, units, self.models.band, shortest, varied)
         terms = list(library.terms())
         self.looked_at += len(terms)
         self.report(Progress("proposing", len(self.found), self.most, base.error))
         found = regression(terms, runs, responses, self.models.band)
         singles = [_single(found, group) for group in found.classes()[:_TRIED]]
         pairs = _pairs(found, units)
-        self.looked_at += _PAIRED**2 // 2
+        self.looked_at += _PAIRED * len(terms)
         self._typical, self._units = typical, units
         return [*singles, *pairs]
 
@@ -166,8 +168,8 @@ class Search:
         except Unusable:
             return None
         free = {
-            f"{name}.{shape.symbol}": (own["shape"][shape.symbol]["lower"], own["shape"][shape.symbol]["upper"])
-            for term in candidate.terms for shape in term.shapes if shape.free
+            f"{name}.{one.symbol}": (own["shape"][one.symbol]["lower"], own["shape"][one.symbol]["upper"])
+            for term in candidate.terms for one in term.shapes if one.free
         }  # fmt: skip
         given = replace(
             searching.given, custom=(*searching.given.custom, own), bounds={**searching.given.bounds, **free}
@@ -224,20 +226,36 @@ def _single(found: Regression, group: Sequence[int]) -> _Candidate:
 
 
 def _pairs(found: Regression, units: Mapping[str, str]) -> list[_Candidate]:
-    """Two places with one strength: terms whose strengths have one unit, added or taken off."""
-    leading = [group[0] for group in found.classes()[:_PAIRED]]
+    """Two places with one strength: terms whose strengths have one unit, one where the drive is and one elsewhere."""
+    power, dimensions = np.diag(found.products), [_dimension(term, units) for term in found.terms]
+    plain = np.array([not term.shapes and power[i] > 0 for i, term in enumerate(found.terms)])
+    driven = np.array([term.place in _DRIVE for term in found.terms])
+    best: dict[tuple[int, int], tuple[float, float, float]] = {}
+    for i in [group[0] for group in found.classes()[:_PAIRED]]:
+        alike = np.array([dimensions[i] == other for other in dimensions])
+        others = np.flatnonzero(plain[i] & plain & (driven != driven[i]) & alike)
+        for j in map(int, others):
+            for sign in (1.0, -1.0):
+                both = power[i] + power[j] + 2 * sign * found.products[i, j]
+                with_residual = found.with_residual[i] + sign * found.with_residual[j]
+                if both > 0:
+                    share, strength = float(with_residual**2 / both / found.left), float(with_residual / both)
+                    key = (min(i, j), max(i, j))
+                    best[key] = max(best.get(key, (0.0, 0.0, 0.0)), (share, strength * (1 if i < j else sign), sign))
+    leading = sorted(best.items(), key=lambda one: -one[1][0])[:_PAIRS]
     listed = []
-    for i, j in combinations(leading, 2):
-        a, b = found.terms[i], found.terms[j]
-        if a.at == b.at or ratio(units[a.at], a.unit) != ratio(units[b.at], b.unit) or a.shapes or b.shapes:
-            continue
-        for sign in (1.0, -1.0):
-            power = found.products[i, i] + found.products[j, j] + 2 * sign * found.products[i, j]
-            with_residual = found.with_residual[i] + sign * found.with_residual[j]
-            if power > 0:
-                share = float(with_residual**2 / power / found.left)
-                listed.append(_Candidate((a, b), (1.0, sign), float(with_residual / power), share))
-    return sorted(listed, key=lambda one: -one.share)[:_PAIRS]
+    for (i, j), (share, strength, sign) in leading:
+        both_terms = [(found.terms[i], 1.0), (found.terms[j], sign)]
+        terms, signs = zip(*sorted(both_terms, key=lambda one: PLACES.index(one[0].place)), strict=True)
+        turned = signs[0]
+        listed.append(_Candidate(terms, tuple(turned * one for one in signs), turned * strength, share))
+    return listed
+
+
+def _dimension(term: Term, units: Mapping[str, str]) -> object:
+    """That of a term's strength."""
+    unit = ratio(units[term.at], term.unit)
+    return shape(known_powers(unit, term.text), term.text)
 
 
 def _error(refit: Refit, runs: Sequence[Run]) -> float:

@@ -27,12 +27,24 @@ _PLAYS = (0.1, 0.3, 0.6)  # of the deviation of a signal
 
 @dataclass(frozen=True)
 class Shape:
-    """A number within a term: its symbol, its value where the search saw it, its unit, and whether a refit moves it."""
+    """A number within a term: its symbol, its value where the search saw it, its unit, and whether a refit moves it.
+
+    Within its bounds where they are given, else by the factor `spread` to either side.
+    """
 
     symbol: str
     value: float
     unit: str
     free: bool = True
+    spread: float = 8.0
+    lower: float | None = None
+    upper: float | None = None
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Between what a refit moves it."""
+        low, high = sorted((self.value / self.spread, self.value * self.spread))
+        return low if self.lower is None else self.lower, high if self.upper is None else self.upper
 
 
 @dataclass(frozen=True)
@@ -73,7 +85,7 @@ class Library:
     """All terms for the places of a chain: `places` maps a place to the signal that is added to.
 
     `signals` are those that terms may be of, `typical` all their samples, `units` as the chain has them; `band` is the
-    end of the command's, rad/s.
+    end of the command's, rad/s, `seconds` the length of the shortest run, `varied` the conditions that differ.
     """
 
     places: Mapping[str, str]
@@ -81,19 +93,24 @@ class Library:
     typical: Signals
     units: Mapping[str, str]
     band: float
+    seconds: float
     varied: Sequence[str] = ()
 
     def terms(self) -> Iterator[Term]:
         """Every term, the simplest forms first."""
         for place, at in self.places.items():
-            for a in self.signals:
+            signals = [
+                name for name in self.signals if (place, name) != ("load", "F")
+            ]  # the one follows from the other
+            for a in signals:
                 yield from self._of_one(place, at, a)
-            for a in self.signals:
-                for b in self.signals:
+            for a in signals:
+                for b in signals:
                     if a != b:
                         yield from self._of_two(place, at, a, b)
             yield from self._of_position(place, at)
             yield from self._with_conditions(place, at)
+            yield from self._periodic(place, at)
 
     def _of_one(self, place: str, at: str, a: str) -> Iterator[Term]:
         for text, kind, power in (
@@ -179,6 +196,18 @@ class Library:
                     yield Term(place, at, f"{name} * {a}", "condition", (name, a), powers)
         if "t" not in self.varied:
             yield Term(place, at, "t", "drift", ("t",), {"s": 1.0})
+
+    def _periodic(self, place: str, at: str) -> Iterator[Term]:
+        """What comes and goes with time, each frequency of the band that the shortest run resolves."""
+        if place not in ("flow", "spool") or (place == "spool" and "flow" in self.places):
+            return
+        step = 1.0 / self.seconds
+        for number in range(1, int(self.band / (2 * np.pi) / step)):
+            f = Shape("fp", number * step, "1/s", spread=1.0 + 0.7 / number)
+            for phase in (0.0, 0.25):
+                turn = Shape("g", phase, "1", lower=-0.5, upper=0.5)
+                text = f"{at} * sin(2 * pi * (fp * t + g))"
+                yield Term(place, at, text, "periodic", (at, "t"), self._unit((at, 1)), (f, turn))
 
     def _unit(self, *of: tuple[str, int]) -> Powers:
         found: Powers = {}
