@@ -41,17 +41,25 @@ Diagnoser = Callable[[Matrix, FitResult, Sequence[Effect], Course], Diagnosis]
 
 @dataclass(frozen=True)
 class Served:
-    """Who serves a kind of model: its fitter, those of methods of their own, its simulator and its diagnoser."""
+    """Who serves a kind of model: its fitter, those of methods of their own, its simulator and its diagnoser.
+
+    It `proposes` terms that no list holds where its models have signals inside.
+    """
 
     fitter: Fitter
     simulator: Simulator
     diagnoser: Diagnoser
     by_method: Mapping[str, Fitter]
+    proposes: bool = False
 
 
 SERVED: Mapping[Kind, Served] = {
     "chain": Served(
-        Identification, comparison.modelled, diagnosis.diagnose, {"inverse-dynamics": RegressedIdentification}
+        Identification,
+        comparison.modelled,
+        diagnosis.diagnose,
+        {"inverse-dynamics": RegressedIdentification},
+        proposes=True,
     ),
     "bench": Served(BenchIdentification, bench_outputs, diagnose_bench, {}),
 }
@@ -100,22 +108,27 @@ def figure(
 def diagnose(
     matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None, most: int = USUAL,
     custom: Sequence[Effect] = (), report: Report = silent, seconds: float | None = None,
-    found: Callable[[Diagnosis], None] | None = None,
+    found: Callable[[Diagnosis], None] | None = None, propose: bool = False,
 ) -> Diagnosis:  # fmt: skip
     """Rank what the fitted model lacks, add what helps beyond chance, and say what is left.
 
     Without a `fit` the model of `settings` is fitted first. `most` is the largest number of effects to add, `custom`
     are effects beside the catalogue's. Verify runs only report. After `seconds`, that of a fit included, nothing more
-    is tried; `found` is told of the diagnosis as it stands after each effect. Raises Unusable where matrix, fit or
+    is tried; `found` is told of the diagnosis as it stands after each effect. With `propose`, where the catalogue ends
+    above the noise, terms that no list holds are searched for. Raises Unusable where matrix, fit or
     settings do not go together.
     """
     if not 0 <= most <= MOST:
         raise Unusable("bad-option", f"{most} effects", "max-effects", f"give 0 to {MOST}")
     if seconds is not None and not seconds > 0:
         raise Unusable("bad-option", f"{seconds:g} s", "time", "give the seconds that it may take")
-    course = Course(most, seconds, report, found)
+    course = Course(most, seconds, report, found, propose=propose)
     fit = fit or identify(matrix, settings, report)
-    return _served(fit.model).diagnoser(matrix, fit, custom, course)
+    served = _served(fit.model)
+    if propose and not served.proposes:
+        raise Unusable("bad-option", f"the model {fit.model} has no signals inside that a term could be of", "propose",
+                       "leave it out")  # fmt: skip
+    return served.diagnoser(matrix, fit, custom, course)
 
 
 @dataclass(frozen=True)

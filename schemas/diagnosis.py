@@ -10,13 +10,15 @@ class DiagnosisRequest(Chosen):
     """A diagnosis to be queued: of a stored `fit`, or of a `matrix`, whose fit with these settings is made first.
 
     The effects that `custom` defines are ranked beside those of the catalogue. After `time` seconds nothing more is
-    tried: what was found by then is the diagnosis.
+    tried: what was found by then is the diagnosis. With `propose`, where the catalogue ends above the noise, terms that
+    no list holds are searched for.
     """
 
     fit: str | None = None
     matrix: str | None = None
     max_effects: int | None = Field(default=None, ge=0)
     time: float | None = Field(default=None, gt=0)
+    propose: bool = False
 
 
 class DiagnosisView(DiagnosisResult):

@@ -1,6 +1,6 @@
 """What a fit and a diagnosis hold, in the contract's words: one JSON over HTTP and in the files of the commands."""
 
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -296,6 +296,32 @@ class ProposalView(BaseModel):
     run: dict[str, str | float | dict[str, str]]
 
 
+class TermView(BaseModel):
+    """A term that no list holds, proposed by search: where it acts, its equation, the effect of its own that it is.
+
+    `class` are the forms that the data cannot tell from it; `nats` those of runs that neither search nor choice saw,
+    `bar` what they had to exceed. `formula` is its equation in MathML.
+    """
+
+    model_config = ConfigDict(populate_by_name=True)
+
+    place: list[str]
+    equation: str
+    effect: dict[str, Any]
+    strength: float
+    unit: str
+    terms: int
+    shapes: int
+    error: Errors
+    nats: float
+    bar: float
+    alike: list[str] = Field(alias="class")
+    beside: list[str]
+    meaning: str
+    formula: str
+    hypothesis: bool
+
+
 class DiagnosisResult(BaseModel):
     """The contract's diagnose JSON."""
 
@@ -308,6 +334,7 @@ class DiagnosisResult(BaseModel):
     candidates: list[CandidateView]
     ladder: list[RungView]
     verdict: VerdictView
+    proposals: list[TermView] = Field(default_factory=list)
     complete: bool = True
     next_experiment: ProposalView | Nothing
     settings: SettingsView

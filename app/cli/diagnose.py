@@ -39,6 +39,10 @@ if TYPE_CHECKING:
 Limit = Annotated[
     float | None, typer.Option(metavar="S", help="Seconds after which nothing more is tried: what was found is told.")
 ]
+Proposes = Annotated[
+    bool,
+    typer.Option("--propose", help="Where the catalogue ends above the noise, search for terms that no list holds."),
+]
 Target = Annotated[
     Path | None,
     typer.Option(metavar="FILE", help="Write the diagnosis as JSON, from its first step on; - is stdout, at its end."),
@@ -61,6 +65,7 @@ def diagnose(
     max_effects: Annotated[
         int | None, typer.Option(min=0, metavar="N", help="Largest number of effects that may be added.")
     ] = None,
+    propose: Proposes = False,
     seed: Seed = 0,
     time: Limit = None,
     json: Target = None,
@@ -89,7 +94,7 @@ def diagnose(
     with shown() as report, followed(json) as follow:
         found = diagnosed(
             read, given, replace(chosen, custom=own), most=most, custom=effects, report=report,
-            seconds=left(time, begun), found=follow,
+            seconds=left(time, begun), found=follow, propose=propose,
         )  # fmt: skip
     _tell(found, json)
 

@@ -32,10 +32,23 @@ def show_diagnosis(found: Diagnosis) -> None:
     if found.verdict.suspects:
         rows = [(suspect.run, suspect.what, suspect.evidence) for suspect in found.verdict.suspects]
         console.print(table(("suspect run", "label", "evidence"), rows, numbers=()))
+    if found.proposals:
+        console.print(table(("proposed by search", "what it would mean", "strength", *uses, "nats (bar)", "or"),
+                            proposal_rows(found), numbers=(*uses, "nats (bar)")))  # fmt: skip
     for note in found.notes:
         console.print(f"note: {note}", markup=False)
     console.print(found.verdict.text, markup=False)
     console.print(f"seed {found.seed}: {found.seconds:.2f} s")
+
+
+def proposal_rows(found: Diagnosis) -> Iterator[Row]:
+    """One row a term, each on top of the ones before."""
+    for one in found.proposals:
+        errors = (percent(one.error.get(use)) for use in USES)
+        meant = one.meaning + (" (a hypothesis: too few runs to confirm it)" if one.hypothesis else "")
+        evidence = f"{one.nats:.3g} ({one.bar:.3g})"
+        strength_is = plus_minus_si(one.strength, None, one.unit, digits=4)
+        yield one.equation, meant or "–", strength_is, *errors, evidence, ", ".join(one.alike[:3])
 
 
 def _measure(found: Diagnosis) -> str:

@@ -24,7 +24,7 @@ from ident.plain import read
 from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView
 from schemas.fit import Chosen, JobView
 
-_BESIDE_A_FIT = {"fit", "seed", "max_effects", "time", "custom"}
+_BESIDE_A_FIT = {"fit", "seed", "max_effects", "time", "custom", "propose"}
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def submit(context: Context, request: DiagnosisRequest, job: str) -> JobView:
     matrix_id, settings = _wanted(context, request)
     matrix = matrices.find(context, matrix_id)
     reseed = request.seed if request.fit is not None and "seed" in request.model_fields_set else None
-    settings |= {"max_effects": most, "time": request.time, "reseed": reseed}
+    settings |= {"max_effects": most, "time": request.time, "reseed": reseed, "propose": request.propose}
     return jobs.record(context, job, matrix.id, settings, request.fit, "diagnosis")
 
 

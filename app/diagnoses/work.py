@@ -18,7 +18,7 @@ from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.workflows import diagnose, identify
 
-OWN = ("max_effects", "time", "reseed")
+OWN = ("max_effects", "time", "reseed", "propose")
 """What the settings of a diagnosis hold beside those of its fit."""
 
 
@@ -40,7 +40,10 @@ class DiagnosisWork(Work):
             fit = given if chosen["reseed"] is None else _reseeded(given, chosen["reseed"])
         own = tuple(read_effect(definition, model=fit.model) for definition in fit.settings.get("custom", ()))
         seconds = left(chosen.get("time"), begun)
-        found = diagnose(matrix, fit, most=chosen["max_effects"], custom=own, report=report, seconds=seconds)
+        found = diagnose(
+            matrix, fit, most=chosen["max_effects"], custom=own, report=report, seconds=seconds,
+            propose=bool(chosen.get("propose")),
+        )  # fmt: skip
         return {"diagnosis": found.to_json(), "fit": None if given else fit.to_json()}
 
     def _given(self) -> FitResult | None:

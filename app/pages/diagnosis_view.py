@@ -11,6 +11,7 @@ from app.diagnoses.service import Stored
 from app.pages.effect_view import Member, member
 from app.pages.evidence_view import evidence, known_effect
 from app.pages.job_view import JobPageView, job_page
+from app.pages.proposed_view import ProposedCard, proposed
 from ident.diagnosis.result import Diagnosis, Ranked, Suspect
 from ident.words.engineering import quantity
 from ident.words.number import plain
@@ -90,6 +91,8 @@ class MissingView:
     suspects: tuple[SuspectCard, ...] = ()
     ladder: tuple[Rung, ...] = ()
     left: str = ""
+    proposed: tuple[ProposedCard, ...] = ()
+    refused: tuple[str, ...] = ()
 
 
 def missing(stored: Stored | None, job: JobView | None, run: str = "") -> MissingView:
@@ -113,6 +116,8 @@ def missing(stored: Stored | None, job: JobView | None, run: str = "") -> Missin
         suspects=tuple(map(_suspect, found.verdict.suspects)),
         ladder=tuple(_ladder(found)),
         left=_left(found) if found.verdict.unexplained else "",
+        proposed=tuple(proposed(found)),
+        refused=found.notes,
     )
 
 

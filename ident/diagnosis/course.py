@@ -24,7 +24,8 @@ class Course:
 
     At most `most` effects are added; nothing is tried any more `seconds` after it began (None: until nothing helps).
     `report` hears of every step of the work, `found` of the diagnosis as it stands after each effect: what was found
-    is not lost with what was still to come.
+    is not lost with what was still to come. `propose`: where the catalogue ends above the noise, terms that no list
+    holds are searched for.
     """
 
     most: int
@@ -32,6 +33,7 @@ class Course:
     report: Report = silent
     found: Callable[[Diagnosis], None] | None = None
     added: tuple[Expected, ...] = ()
+    propose: bool = False
 
     def __post_init__(self) -> None:
         self.begun = time.monotonic()

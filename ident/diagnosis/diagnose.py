@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from ident.diagnosis.advice import error_budget, next_run
 from ident.diagnosis.course import Course
 from ident.diagnosis.family import ModelFamily, Refit
+from ident.diagnosis.proposals.proposal import Proposals
+from ident.diagnosis.proposals.search import Search
 from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.result import Baseline, Diagnosis, Found, Ranked, Rung, Suspect, Verdict
 from ident.diagnosis.significance import improvement
@@ -30,6 +32,7 @@ from ident.fit.uncertainty import covariance
 from ident.matrix import Matrix
 from ident.progress import Expected, Progress
 
+_SIMPLER = 1.05  # times the error that terms may leave without what was found, and still come before those beside it
 _NOISE_LIKE = 0.5  # correlation of neighbouring residuals that noise may have, where there is no floor
 Steps = Sequence[tuple[str | None, Refit]]
 """From the fitted model to the last, what each step added."""
@@ -63,8 +66,22 @@ class Diagnoser:
         if doubted:
             selection = self._added(self.models.without(suspect.run for suspect in doubted))
             doubted = self._doubted(selection)
+        proposed = self._proposed(selection) if self.course.propose else Proposals()
         self.course.conclude()
-        return self._said(selection, doubted)
+        found = self._said(selection, doubted)
+        return replace(found, proposals=proposed.found, notes=(*found.notes, *_refused(proposed, self.course.propose)))
+
+    def _proposed(self, selection: StepwiseSelection) -> Proposals:
+        """What no list holds: beside the fitted model as it was and, where that is not all, beside what was found.
+
+        What was found may stand for something else: with the term itself it is not needed.
+        """
+        alone = Search(selection.models, selection.base, self.course.tell).run()
+        if not selection.added or not alone.complete or self.models.is_noise(alone.left(selection.base.error)):
+            return alone
+        beside = Search(selection.models, selection.found, self.course.tell).run()
+        with_both = beside.left(selection.found.error)
+        return alone if alone.left(selection.base.error) < min(with_both * _SIMPLER, selection.found.error) else beside
 
     def _said(self, selection: StepwiseSelection, doubted: Sequence[Suspect]) -> Diagnosis:
         """What a search found so far."""
@@ -191,6 +208,18 @@ class Diagnoser:
         residuals = [found.fitness.left(run, outputs[run.id]) for run in models.runs]
         memory = [float(np.corrcoef(r[1:], r[:-1])[0, 1]) for r in residuals]
         return bool(np.median(memory) > _NOISE_LIKE)
+
+
+def _refused(proposed: Proposals, asked: bool) -> Iterator[str]:
+    """What is said of a search for terms that ended below its bar."""
+    if asked and proposed.refused is not None:
+        best = proposed.refused
+        yield (
+            f"Of {proposed.looked_at} terms that were looked at the best that was refused is {best.equation}: "
+            f"{best.nats:.3g} nats on runs that it was not fitted to, {best.bar:.3g} are asked for."
+        )
+    elif asked and not proposed.looked_at:
+        yield "No term was looked for: the error is the noise's."
 
 
 def _value_of(space: Space, name: str, points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -197,10 +197,14 @@ class ModelFamily:
 
     def at_floor(self, refit: Refit) -> bool:
         """Whether the error of a refit is noise alone, as far as the floor is known; never where it cannot be told."""
+        return self.is_noise(refit.error)
+
+    def is_noise(self, error: float) -> bool:
+        """Whether an error, eq. (17) over the fitted runs, is noise alone."""
         if self.floor is None:
             return False
         chance = _CHANCE * self.floors.spread(sum(run.length for run in self.runs))
-        return refit.error < (1.0 + _AT_FLOOR + chance) * self.floor
+        return error < (1.0 + _AT_FLOOR + chance) * self.floor
 
     def best_of(self, refit: Refit, starts: Sequence[Mapping[str, float]]) -> Refit | None:
         """The best refit of the same model from other starts, where one is better than `refit`."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from ident.diagnosis.proposals.proposal import Proposal, from_json
 from ident.diagnosis.standing import Standing
 from ident.errors import Unusable
 from ident.matrix import Specimen
@@ -136,7 +137,8 @@ class Diagnosis:
 
     `budget` is None where the model is unstable at every run, `next_experiment` where no run can be proposed. With a
     `horizon` (s) every error is that over windows of this length, as `window` of the fit says it. Not `complete`, it is
-    what had been found when the search was stopped, or goes on.
+    what had been found when the search was stopped, or goes on. `proposals` are terms that no list holds: they are no
+    part of the verdict.
     """
 
     model: str = "qian2014"
@@ -148,6 +150,7 @@ class Diagnosis:
     candidates: tuple[Ranked, ...]
     ladder: tuple[Rung, ...] = ()
     verdict: Verdict
+    proposals: tuple[Proposal, ...] = ()
     complete: bool = True
     next_experiment: NextRun | None = None
     settings: Mapping[str, Any] = field(default_factory=dict)
@@ -159,7 +162,7 @@ class Diagnosis:
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data (no NaN, no infinity); what an earlier version did not tell is left out."""
-        data: dict[str, Any] = written(self)
+        data: dict[str, Any] = written(self) | {"proposals": [proposal.to_json() for proposal in self.proposals]}
         if self.horizon is None:
             del data["horizon"]
         if self.complete:
@@ -172,9 +175,17 @@ class Diagnosis:
     def from_json(cls, data: object) -> Diagnosis:
         """The inverse of :meth:`to_json`, of what any version wrote. Raises Unusable where it is no diagnosis."""
         try:
-            return read(cls, data)
+            return read(cls, _in_own_names(data))
         except Misfit as error:
             raise bad_diagnosis(str(error)) from None
+
+
+def _in_own_names(data: object) -> object:
+    """The data with the proposals in the names of their fields."""
+    listed = data.get("proposals") if isinstance(data, Mapping) else None
+    if not isinstance(data, Mapping) or not isinstance(listed, list):
+        return data
+    return {**data, "proposals": [from_json(one) if isinstance(one, Mapping) else one for one in listed]}
 
 
 def bad_diagnosis(why: str, where: str = "diagnosis") -> Unusable:

@@ -6,7 +6,9 @@ import "./progress.js";
 for (const form of document.querySelectorAll("form[data-diagnose]")) {
   onSubmit(form, async () => {
     const time = Number(form.elements.time.value);
-    await send("POST", form.action, { fit: form.dataset.diagnose, ...(time > 0 && { time }) });
+    const propose = "propose" in form.dataset;
+    const asked = { fit: form.dataset.diagnose, ...(time > 0 && { time }), ...(propose && { propose }) };
+    await send("POST", form.action, asked);
     location.hash = "missing";
     location.reload();
   });

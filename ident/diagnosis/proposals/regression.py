@@ -18,10 +18,10 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
+from ident.diagnosis.proposals.records import Record
+from ident.diagnosis.proposals.terms import Term
 from ident.fit.simulated_runs import anchored
 from ident.parallel import each
-from ident.proposals.records import Record
-from ident.proposals.terms import Term
 from ident.residuals.decimation import Response
 
 Array = NDArray[np.float64]

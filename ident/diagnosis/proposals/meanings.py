@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ident.proposals.terms import Term
+from ident.diagnosis.proposals.terms import Term
 
 _MEANINGS = {
     ("Q", "size", ("P",)): "leakage in one direction: the leak differs with the sign of the pressure",

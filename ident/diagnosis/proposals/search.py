@@ -1,14 +1,17 @@
 """The search for what no list holds, one term after the other.
 
-Three disjoint sets of the fitted runs: terms are ranked on the first, by one linear regression, and refitted to it; the
-second chooses between the refits; the third confirms. What passes the bar is refitted to all fitted runs, and the next
-term sought beside it. Runs to verify only report.
+Three disjoint sets of the fitted runs: terms are ranked on the first, by one linear regression, and refitted to it;
+the second chooses between the refits; the third confirms. What passes the bar is refitted to all fitted runs, and the
+next term sought beside it. Of one run or two each serves for all three, with stretches of it held out in turn, and what
+comes of it is a hypothesis. Runs to verify only report.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -16,23 +19,25 @@ from numpy.typing import NDArray
 
 from ident.custom.definition import read_effect
 from ident.diagnosis.family import ModelFamily, Refit
+from ident.diagnosis.proposals.evidence import evidence
+from ident.diagnosis.proposals.meanings import meaning
+from ident.diagnosis.proposals.own import STRENGTH, definition
+from ident.diagnosis.proposals.proposal import Proposal, Proposals, Refused
+from ident.diagnosis.proposals.records import paths, records
+from ident.diagnosis.proposals.regression import Regression, regression
+from ident.diagnosis.proposals.terms import Library, Term, ratio
+from ident.diagnosis.significance import improvement
 from ident.equations.mathml import mathml
-from ident.errors import Unusable
+from ident.errors import TimeIsUp, Unusable
 from ident.matrix import Run, over_runs
 from ident.parallel import each
 from ident.progress import Progress, Report
-from ident.proposals.evidence import evidence
-from ident.proposals.meanings import meaning
-from ident.proposals.own import STRENGTH, definition
-from ident.proposals.proposal import Proposal, Proposals, Refused
-from ident.proposals.records import paths, records
-from ident.proposals.regression import Regression, regression
-from ident.proposals.terms import Library, Term, ratio
 from ident.stages import PLACES
 from ident.units.quantity import known_powers, shape
 
 Array = NDArray[np.float64]
 MOST = 3  # terms
+_PREFIX = "proposed_"
 _PLACES = {"controller": "e", "spool": "w", "flow": "Q", "load": "R", "sensor": "y"}
 _SIGNALS = ("w", "Q", "P", "v", "x", "F")
 _TRIED, _PAIRS, _PAIRED = 6, 3, 12  # single terms and pairs that are refitted, and terms that are paired with all
@@ -73,12 +78,20 @@ class Search:
     looked_at: int = 0
     found: list[Proposal] = field(default_factory=list)
     refused: Refused | None = None
+    complete: bool = False
+
+    def __post_init__(self) -> None:
+        self.beside = self.base.effects
 
     def run(self) -> Proposals:
         """One term on top of the other until none passes the bar, or the noise is reached."""
-        while len(self.found) < self.most and not self.models.at_floor(self.base) and self._added():
-            pass
-        return Proposals(found=tuple(self.found), refused=self.refused, looked_at=self.looked_at)
+        with suppress(TimeIsUp):
+            while len(self.found) < self.most and not self.models.at_floor(self.base) and self._added():
+                pass
+            self.complete = True
+        return Proposals(
+            found=tuple(self.found), refused=self.refused, looked_at=self.looked_at, complete=self.complete
+        )
 
     def _added(self) -> bool:
         """Look for one more term; True where one passed the bar."""
@@ -88,22 +101,28 @@ class Search:
         base = searching.refit(self.base.effects, self.base.values)
         if not base.finite:
             return False
-        name = f"proposed_{len(self.found) + 1}"
+        name = next(f"{_PREFIX}{n}" for n in count(1) if f"{_PREFIX}{n}" not in self.models.effects)
         tried = [one for one in each(lambda c: self._tried(searching, base, name, c), self._contenders(base)) if one]
         if not tried:
             return False
-        errors = [_error(refit, chosen_by) for _, refit, _ in tried]
+        few = len(self.models.runs) < _FEWEST
+        errors = [refit.held_out.error if few else _error(refit, chosen_by) for _, refit, _ in tried]
         good = [one for one, error in zip(tried, errors, strict=True) if error <= _AS_GOOD * min(errors)]
         candidate, refit, family = min(good, key=_simplicity)
-        integrated = self.models.horizon is not None
-        seen = evidence(confirming, _left(base, confirming), _left(refit, confirming), self.models.band, integrated)
+        if few:
+            gain = improvement(base.held_out, refit.held_out)
+            gained, sound = gain.nats, gain.beyond_chance
+        else:
+            integrated = self.models.horizon is not None
+            seen = evidence(confirming, _left(base, confirming), _left(refit, confirming), self.models.band, integrated)
+            gained, sound = seen.nats, seen.steady and seen.worthwhile
         bar = float(np.log(self.looked_at)) + _EVIDENCE
-        if not (seen.nats > bar and seen.steady and seen.worthwhile):
-            self.refused = Refused(equation=candidate.equation, nats=seen.nats, bar=bar)
+        if not (gained > bar and sound):
+            self.refused = Refused(equation=candidate.equation, nats=gained, bar=bar)
             return False
         self.models = replace(self.models, effects=family.effects, given=family.given, _known={})
         self.base = self.models.refit(refit.effects, refit.values)
-        self.found.append(self._proposal(candidate, name, seen.nats, bar, len(self.models.runs) < _FEWEST))
+        self.found.append(self._proposal(candidate, name, gained, bar, few))
         return True
 
     def _proposal(self, candidate: _Candidate, name: str, gained: float, bar: float, hypothesis: bool) -> Proposal:
@@ -121,6 +140,8 @@ class Search:
             equation=candidate.equation,
             effect=own,
             strength=self.base.values[self.models.strength(name)],
+            unit=self.models.effects[name].strength.unit,
+            beside=self.beside,
             terms=len(self.found) + 1,
             shapes=sum(term.free_shapes for term in candidate.terms),
             error=self.base.errors,
@@ -162,7 +183,7 @@ class Search:
         self, searching: ModelFamily, base: Refit, name: str, candidate: _Candidate
     ) -> tuple[_Candidate, Refit, ModelFamily] | None:
         """The refit with a candidate to the runs that search; None where it cannot be added."""
-        own = definition(name, candidate.terms, candidate.signs, self._typical, self._units)
+        own = definition(name, candidate.terms, candidate.signs, candidate.strength, self._typical, self._units)
         try:
             effect = read_effect(own, model=self.models.preset.name)
         except Unusable:

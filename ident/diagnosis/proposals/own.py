@@ -7,18 +7,24 @@ from typing import Any
 
 import numpy as np
 
-from ident.proposals.terms import Signals, Term, ratio
+from ident.diagnosis.proposals.terms import Signals, Term, ratio
 
 _REACH = 4.0  # times what makes a term as large as the signal that it adds to: bounds of a strength
+_FAR = 10.0  # times what a regression makes of a strength
 STRENGTH = "s"
 
 
 def definition(
-    name: str, terms: Sequence[Term], signs: Sequence[float], typical: Signals, units: Mapping[str, str]
+    name: str,
+    terms: Sequence[Term],
+    signs: Sequence[float],
+    strength: float,
+    typical: Signals,
+    units: Mapping[str, str],
 ) -> dict[str, Any]:
     """The definition of an effect with one strength for one term or for several, each with its sign.
 
-    `typical` are samples of the signals, `units` as the chain has them.
+    `strength` is about what it will be, `typical` are samples of the signals, `units` as the chain has them.
     """
     first = terms[0]
     lines: list[str] = []
@@ -31,7 +37,7 @@ def definition(
             shapes[shape.symbol] = {"unit": shape.unit, "lower": low, "upper": high, "value": shape.value}
     shown = first.samples(typical, 1.0) if first.worked_out is None else typical[first.of[0]]
     size = float(np.sqrt(np.mean(shown**2)))
-    bound = _REACH * float(np.std(typical[first.at])) / max(size, 1e-300)
+    bound = max(_REACH * float(np.std(typical[first.at])) / max(size, 1e-300), _FAR * abs(strength))
     found: dict[str, Any] = {
         "name": name, "place": terms[-1].place, "equation": lines,
         "strength": {"symbol": STRENGTH, "unit": ratio(units[first.at], first.unit), "lower": -bound, "upper": bound},

@@ -1,0 +1,60 @@
+"""Terms that no list holds, as the page of a fit tells of them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from ident.diagnosis.result import Diagnosis
+from ident.equations.mathml import mathml
+from ident.words.plus_minus import plus_minus_si
+from ident.words.titles import title
+
+
+@dataclass(frozen=True)
+class ProposedCard:
+    """A term on top of those before it; `effects` and `definitions` are what a form adds to have all of them."""
+
+    rank: int
+    title: str
+    equations: tuple[Markup, ...]
+    strength: str
+    error: Mapping[str, float | None]
+    evidence: str
+    alike: tuple[str, ...]
+    beside: str
+    shapes: str
+    hypothesis: bool
+    effects: tuple[str, ...]
+    definitions: tuple[str, ...]
+
+
+def proposed(found: Diagnosis) -> Iterator[ProposedCard]:
+    """A card for each term."""
+    names: list[str] = []
+    definitions: list[str] = []
+    for rank, one in enumerate(found.proposals, 1):
+        names.append(str(one.effect["name"]))
+        definitions.append(json.dumps(dict(one.effect)))
+        shapes = (
+            f"{symbol} = {entry['value']:.4g} {entry['unit']}" for symbol, entry in one.effect.get("shape", {}).items()
+        )
+        yield ProposedCard(
+            rank=rank,
+            title=one.meaning[:1].upper() + one.meaning[1:]
+            if one.meaning
+            else f"A term at the {' and '.join(one.place)}",
+            equations=tuple(Markup(mathml(line)) for line in one.effect["equation"]),
+            strength=plus_minus_si(one.strength, None, one.unit, digits=4),
+            error=one.error,
+            evidence=f"{one.nats:.3g} nats, {one.bar:.3g} asked for",
+            alike=one.alike,
+            beside=", ".join(map(title, one.beside)),
+            shapes="; ".join(shapes),
+            hypothesis=one.hypothesis,
+            effects=(*one.beside, *names),
+            definitions=tuple(definitions),
+        )

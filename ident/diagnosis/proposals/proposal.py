@@ -1,0 +1,74 @@
+"""What a search for missing terms came to, in the contract's words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from ident.plain import written
+
+Errors = Mapping[str, float | None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Proposal:
+    """A term that helps beyond the bar: where it acts, its equation, the effect of its own that it is.
+
+    `terms` counts the terms that were added up to this one, `shapes` the numbers within it that were fitted. `nats` are
+    those of runs that neither the search nor the choice saw, `bar` what they had to exceed. `alike`, in the JSON
+    ``class``, are the forms that the data cannot tell from it; `beside` the effects of the model that it was added to.
+    Of a `hypothesis` there were too few runs to confirm it on others.
+    """
+
+    place: tuple[str, ...]
+    equation: str
+    effect: Mapping[str, Any]
+    strength: float = 0.0
+    unit: str = "1"
+    terms: int = 1
+    shapes: int = 0
+    error: Errors = field(default_factory=dict)
+    nats: float = 0.0
+    bar: float = 0.0
+    alike: tuple[str, ...] = ()
+    beside: tuple[str, ...] = ()
+    meaning: str = ""
+    formula: str = ""
+    hypothesis: bool = False
+
+    def to_json(self) -> dict[str, Any]:
+        """As plain JSON data, in the contract's words."""
+        return {"class" if name == "alike" else name: entry for name, entry in written(self).items()}
+
+
+def from_json(data: Mapping[str, Any]) -> dict[str, Any]:
+    """The data of a proposal in the names of its fields."""
+    return {"alike" if name == "class" else name: entry for name, entry in data.items()}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Refused:
+    """The best term that stayed below the bar."""
+
+    equation: str
+    nats: float
+    bar: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Proposals:
+    """What was found, one term on top of the other, the best that was refused, and how many were looked at.
+
+    Not `complete`, the time was over.
+    """
+
+    found: tuple[Proposal, ...] = ()
+    refused: Refused | None = None
+    looked_at: int = 0
+    complete: bool = True
+
+    def left(self, before: float) -> float:
+        """The error on the fitted runs with all of it, `before` without."""
+        error = self.found[-1].error.get("fit") if self.found else None
+        return before if error is None else error
