@@ -1,6 +1,6 @@
 """What a fit and a diagnosis hold, in the contract's words: one JSON over HTTP and in the files of the commands."""
 
-from typing import Any, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -307,7 +307,7 @@ class TermView(BaseModel):
 
     place: list[str]
     equation: str
-    effect: dict[str, Any]
+    effect: DefinitionView
     strength: float
     unit: str
     terms: int

@@ -43,7 +43,7 @@ def show_diagnosis(found: Diagnosis) -> None:
 
 def proposal_rows(found: Diagnosis) -> Iterator[Row]:
     """One row a term, each on top of the ones before."""
-    for one in found.proposals:
+    for one in found.proposals or ():
         errors = (percent(one.error.get(use)) for use in USES)
         meant = one.meaning + (" (a hypothesis: too few runs to confirm it)" if one.hypothesis else "")
         evidence = f"{one.nats:.3g} ({one.bar:.3g})"

@@ -10,7 +10,8 @@ from markupsafe import Markup
 
 from ident.diagnosis.result import Diagnosis
 from ident.equations.mathml import mathml
-from ident.words.plus_minus import plus_minus_si
+from ident.words.engineering import quantity
+from ident.words.number import plain
 from ident.words.titles import title
 
 
@@ -36,7 +37,7 @@ def proposed(found: Diagnosis) -> Iterator[ProposedCard]:
     """A card for each term."""
     names: list[str] = []
     definitions: list[str] = []
-    for rank, one in enumerate(found.proposals, 1):
+    for rank, one in enumerate(found.proposals or (), 1):
         names.append(str(one.effect["name"]))
         definitions.append(json.dumps(dict(one.effect)))
         shapes = (
@@ -48,9 +49,9 @@ def proposed(found: Diagnosis) -> Iterator[ProposedCard]:
             if one.meaning
             else f"A term at the {' and '.join(one.place)}",
             equations=tuple(Markup(mathml(line)) for line in one.effect["equation"]),
-            strength=plus_minus_si(one.strength, None, one.unit, digits=4),
+            strength=quantity(one.strength, one.unit),
             error=one.error,
-            evidence=f"{one.nats:.3g} nats, {one.bar:.3g} asked for",
+            evidence=f"{plain(one.nats, 3)} nats, {plain(one.bar, 3)} asked for",
             alike=one.alike,
             beside=", ".join(map(title, one.beside)),
             shapes="; ".join(shapes),

@@ -75,7 +75,7 @@ class BenchDiagnoser:
             candidates=tuple(self._ranked(c, group, base, i == 0) for i, c in enumerate(first)),
             ladder=tuple(self._rung(step, steps[i - 1] if i else None) for i, step in enumerate(steps)),
             verdict=Verdict(added, standing(added, unexplained, ()), (), groups, (), unexplained, text),
-            complete=self.complete, seed=self.fit.seed, seconds=self.course.taken,
+            proposals=(), complete=self.complete, seed=self.fit.seed, seconds=self.course.taken,
             version=version("servoident"), data_hash=self.matrix.data_hash,
             settings=dict(self.fit.settings),
         )  # fmt: skip

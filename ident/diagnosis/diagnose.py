@@ -106,6 +106,7 @@ class Diagnoser:
             ladder=tuple(ladder),
             verdict=Verdict(selection.added, stands, tuple(one.effect for one in against), groups, tuple(doubted),
                             unexplained, text),
+            proposals=(),
             complete=selection.complete,
             seed=self.fit.seed,
             version=version("servoident"),

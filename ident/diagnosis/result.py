@@ -138,7 +138,7 @@ class Diagnosis:
     `budget` is None where the model is unstable at every run, `next_experiment` where no run can be proposed. With a
     `horizon` (s) every error is that over windows of this length, as `window` of the fit says it. Not `complete`, it is
     what had been found when the search was stopped, or goes on. `proposals` are terms that no list holds: they are no
-    part of the verdict.
+    part of the verdict; None where an earlier version did not tell.
     """
 
     model: str = "qian2014"
@@ -150,7 +150,7 @@ class Diagnosis:
     candidates: tuple[Ranked, ...]
     ladder: tuple[Rung, ...] = ()
     verdict: Verdict
-    proposals: tuple[Proposal, ...] = ()
+    proposals: tuple[Proposal, ...] | None = None
     complete: bool = True
     next_experiment: NextRun | None = None
     settings: Mapping[str, Any] = field(default_factory=dict)
@@ -162,7 +162,9 @@ class Diagnosis:
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data (no NaN, no infinity); what an earlier version did not tell is left out."""
-        data: dict[str, Any] = written(self) | {"proposals": [proposal.to_json() for proposal in self.proposals]}
+        data: dict[str, Any] = written(self) | {"proposals": [one.to_json() for one in self.proposals or ()]}
+        if self.proposals is None:
+            del data["proposals"]
         if self.horizon is None:
             del data["horizon"]
         if self.complete:

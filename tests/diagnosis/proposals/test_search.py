@@ -1,0 +1,163 @@
+"""What no list holds: the search finds the equation itself, of machines of the independent reference."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from ident.custom.definition import read_effect
+from ident.diagnosis.result import Diagnosis
+from ident.errors import Unusable
+from ident.fit.settings import Settings
+from ident.matrix import Matrix
+from ident.workflows import diagnose, identify
+from tests.bench.test_diagnosis import matrix_with
+from tests.blind.machines import matrix_of
+from tests.reference import qian_reference as linear
+from tests.reference.outside_reference import Outside, measure_all
+
+PLANT, NOISE = linear.Plant(), 0.005
+
+
+def machine(seed: int, **hidden: float) -> Matrix:
+    """Twelve runs of half a second to fit and three to verify."""
+    trials = linear.trials()
+    chosen = [trial for trial in trials if trial.use == "fit"][::6][:12] + trials[-3:]
+    return matrix_of(measure_all(Outside(**hidden), chosen, PLANT, seconds=0.5, noise=NOISE, seed=seed), PLANT)
+
+
+def proposed(matrix: Matrix) -> Diagnosis:
+    """The catalogue is ranked and nothing of it added: the terms are sought beside the linear model."""
+    fit = identify(matrix, Settings(model="qian2014"))
+    return diagnose(matrix, fit, most=0, propose=True)
+
+
+@cache
+def with_a_leak() -> tuple[Matrix, Diagnosis]:
+    matrix = machine(1, one_way_leakage=1.2)
+    return matrix, proposed(matrix)
+
+
+# What the equations of tests/reference/outside_reference.py add, in the names of the chain.
+TRUTHS = {
+    "unequal_areas": (0.06, "Q = Q + s * (abs(v)); R = R + s * (P * sgn(v))", -0.06 * PLANT.A),
+    "pressure_gain": (0.08, "w = w + s * (w * abs(P))", 0.08 / 1e6),
+    "gain_drift": (0.3, "w = w + s * (t * w)", 0.3),
+    "position_friction": (150.0, "R = R + s * (x**2 * sgn(v))", 150.0 / 2e-3**2),
+    "sensor_curve": (0.06, "y = y + s * (x**3)", 0.06 / 2e-3**2),
+    "flow_force": (0.05, "e = e + s * (w * abs(P))", -0.05 / 1e6),
+    "pump_ripple": (0.05, "Q = Q + s * (Q * sin(2 * pi * (fp * t + g)))", 0.05),
+}
+
+
+@pytest.mark.parametrize("kind", TRUTHS)
+def test_the_equation_that_no_list_holds_is_found(kind, full):
+    if not full and kind not in ("unequal_areas", "position_friction"):
+        pytest.skip("ten seconds each: run with --full")
+    strength, equation, true = TRUTHS[kind]
+    found = proposed(machine(2, **{kind: strength}))
+    (term,) = found.proposals
+    at, _, text = equation.partition(" = ")
+    text = text.partition("s * (")[2].removesuffix(")")
+    assert term.equation == equation or f"{at}: {text}" in term.alike  # of one class
+    if term.equation == equation:
+        found_strength = abs(term.strength) if kind == "pump_ripple" else term.strength  # half a turn is its sign
+        assert found_strength == pytest.approx(true, rel=0.06 if kind == "position_friction" else 0.02)
+    assert term.error["fit"] == pytest.approx(NOISE, rel=0.03)
+    assert term.error["verify"] < 1.05 * NOISE
+    assert term.nats > term.bar > 10
+
+
+def test_a_proposal_is_no_finding():
+    _, found = with_a_leak()
+    assert [term.equation for term in found.proposals] == ["Q = Q + s * (abs(P))"]
+    assert found.verdict.effects == ()
+    assert found.verdict.unexplained
+    assert found.proposals[0].effect["source"] == "proposed by search"
+    assert "leakage in one direction" in found.proposals[0].meaning
+
+
+def test_a_proposal_is_told_in_the_contract_s_words_and_read_again():
+    _, found = with_a_leak()
+    data = json.loads(json.dumps(found.to_json()))
+    (term,) = data["proposals"]
+    assert {
+        "place",
+        "equation",
+        "effect",
+        "terms",
+        "shapes",
+        "error",
+        "nats",
+        "bar",
+        "class",
+        "meaning",
+        "formula",
+    } <= (term.keys())
+    assert term["class"] == ["w: abs(P)"]  # at the flow and at the spool it is one
+    assert term["formula"].startswith("<math")
+    assert Diagnosis.from_json(data).proposals == found.proposals
+
+
+def test_a_proposal_is_an_effect_that_anyone_may_add():
+    matrix, found = with_a_leak()
+    (term,) = found.proposals
+    fit = identify(matrix, Settings(model="qian2014", effects=("proposed_1",), custom=(term.effect,)))
+    assert fit.error["verify"] == pytest.approx(term.error["verify"], rel=1e-3)
+    assert fit.values["proposed_1.s"] == pytest.approx(term.strength, rel=1e-3)
+    assert fit.values["Cl"] == pytest.approx(1.6 * PLANT.Cl, rel=0.02)  # (1 + 1.2/2) of it in both directions
+    again = diagnose(matrix, fit, most=0, custom=(read_effect(term.effect, model="qian2014"),), propose=True)
+    assert again.proposals == ()
+    assert "the error is the noise's" in again.notes[0]
+
+
+def test_verify_runs_neither_rank_nor_choose():
+    matrix, found = with_a_leak()
+    noisy = tuple(
+        replace(run, channels={**run.channels, "displacement": run.measured[::-1].copy()})
+        if run.use == "verify"
+        else run
+        for run in matrix.runs
+    )
+    (term,) = proposed(replace(matrix, runs=noisy)).proposals
+    assert term.equation == found.proposals[0].equation
+    assert term.strength == found.proposals[0].strength
+    assert term.error["verify"] > 10 * found.proposals[0].error["verify"]
+
+
+@pytest.mark.parametrize("colour", ["white", "slow", "hum", "drift"])
+@pytest.mark.parametrize("seed", [1, 2])
+def test_noise_of_any_colour_is_no_physics(colour, seed, full):
+    if not full and (colour, seed) not in (("slow", 1), ("drift", 2)):
+        pytest.skip("some seconds each: run with --full")
+    matrix = machine(seed)
+    runs = []
+    for number, run in enumerate(matrix.runs):
+        rng = np.random.default_rng([9, seed, number])
+        beside = 0.02 * run.measured.std() * noise(colour, run.length, rng)
+        runs.append(replace(run, channels={**run.channels, "displacement": run.measured + beside}))
+    found = proposed(replace(matrix, runs=tuple(runs)))
+    assert found.proposals == ()
+
+
+def noise(colour: str, n: int, rng: np.random.Generator) -> np.ndarray:
+    """Of unit deviation: with a memory of ten samples, of one frequency of its own phase, or a slow way."""
+    if colour == "hum":
+        return np.sqrt(2) * np.sin(2 * np.pi * (50.0 * np.arange(n) / linear.SAMPLE_RATE + rng.uniform()))
+    if colour == "white":
+        return rng.standard_normal(n)
+    slow = np.zeros(n)
+    share = 0.9 if colour == "slow" else 0.9999
+    for k in range(1, n):
+        slow[k] = share * slow[k - 1] + rng.standard_normal()
+    return (slow - slow.mean()) / slow.std()
+
+
+def test_a_bench_has_no_signals_inside():
+    matrix = matrix_with()
+    with pytest.raises(Unusable, match="no signals inside"):
+        diagnose(matrix, identify(matrix, Settings(model="kononykhin")), propose=True)
