@@ -187,8 +187,13 @@ class Chain:
 
     def reads(self, name: str) -> bool:
         """Whether a rate or memory depends on a quantity, or calls a function of this name."""
+        return name in self._read
+
+    @cached_property
+    def _read(self) -> frozenset[str]:
+        """Every quantity and function that a rate, a memory or the first output depends on."""
         needed = (*self.needed(next(iter(self.outputs))), *(e for e in self.equations if e.is_rate))
-        return any(name in {n.id for n in ast.walk(e.tree) if isinstance(n, ast.Name)} for e in needed)
+        return frozenset(n.id for e in needed for n in ast.walk(e.tree) if isinstance(n, ast.Name))
 
     def signal(self, output: str) -> str:
         """The signal that the channel `output` shows; raises Unusable with the channels there are."""

@@ -20,6 +20,7 @@ from ident.simulation.kernel import HELD, LANES, SHARE, Filter, Kernel, constant
 Array = NDArray[np.float64]
 FINE = 0.4  # radians or time constants a step: the largest eigenvalue times the step, above which steps are divided
 MOST = 32  # steps a sample
+_CHUNK = 1 << 20  # outputs that are simulated in one go
 FASTEST = FINE * MOST  # radians a sample of the fastest mode that is followed closely; one beyond is said
 
 
@@ -78,18 +79,24 @@ class Simulation:
         second = next((inputs[name] for name in MEASURED if name in inputs), command)
         lane_values |= {HELD: self._held(lanes), SHARE: command.share}
         buffers = self._packed(built, lane_values, lanes, inputs)
-        for first in range(0, samples, length):
-            last = min(first + length, samples)
-            out = np.empty((last - first) * lanes)
+        chunk = (
+            max(1, _CHUNK // (length * lanes)) * length
+        )  # blocks are simulated together, as far as memory stays small
+        for begin in range(0, samples, chunk):
+            end = min(begin + chunk, samples)
+            out = np.empty((end - begin) * lanes)
             for i, buffer in enumerate(buffers):
                 group = slice(i * LANES, (i + 1) * LANES)
                 driven = buffer, command.record, second.record, command.begin[group], second.begin[group]
-                ends = first * self.steps, (last - 1) * self.steps + 1
+                ends = begin * self.steps, (end - 1) * self.steps + 1
                 built.advance(*driven, *ends, self.steps, out[i * LANES :], lanes)
-                if last < samples:  # on to the first step of the next block
-                    rest = ends[1], last * self.steps
+                if end < samples:  # on to the first step of the next chunk
+                    rest = ends[1], end * self.steps
                     built.advance(*driven, *rest, 1 << 40, np.empty(LANES), LANES)
-            yield out.reshape(last - first, lanes)[:, : count * vectors].reshape(-1, count, vectors), first, last
+            rows = out.reshape(-1, lanes)[:, : count * vectors].reshape(-1, count, vectors)
+            for first in range(begin, end, length):
+                last = min(first + length, end)
+                yield rows[first - begin : last - begin], first, last
 
     def _kernel(self) -> Kernel:
         exponents = {

@@ -39,7 +39,7 @@ def _fenced() -> Iterator[None]:
         run = compiled(kernel)
         return lambda b, commands, forces, *rest: run(b, fenced(commands), fenced(forces), *rest)
 
-    compiled = Kernel.advance.fget
+    compiled = Kernel.advance.func
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Kernel, "advance", property(advance))
         yield

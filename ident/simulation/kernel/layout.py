@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 from ident.chain.chain import INPUT, Chain
 from ident.simulation.kernel.machine_code import Advance, advance
@@ -45,7 +46,7 @@ class Kernel:
     shift: ast.expr | None  # delay of the command
     shown: int  # the row of the output
 
-    @property
+    @cached_property
     def advance(self) -> Advance:
         """The compiled function."""
         fed = tuple((row + 2, "commands" if name == INPUT else "forces") for name, row in self.inputs.items())
