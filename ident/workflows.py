@@ -22,7 +22,7 @@ from ident.diagnosis import diagnose as diagnosis
 from ident.diagnosis.course import Course
 from ident.diagnosis.result import Diagnosis
 from ident.diagnosis.stepwise import MOST, USUAL
-from ident.diagnosis.structures import ChosenFit, chosen
+from ident.diagnosis.structures import ChosenFit, Made, chosen
 from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.figures import Chart, Study
@@ -77,8 +77,10 @@ def identification(matrix: Matrix, settings: Settings, report: Report = silent) 
     """
     check_settings(settings)
     if not settings.model:
-        matrix, tried = chosen(matrix, report)
-        return ChosenFit(identification(matrix, replace(settings, model=tried[0].machine), report), tried)
+        choice = chosen(matrix, report)
+        named = replace(settings, model=choice.structures[0].machine)
+        made = choice.made(named)
+        return ChosenFit(Made(made) if made else identification(choice.matrix, named, report), choice.structures)
     served = _served(settings.model)
     return served.by_method.get(settings.method, served.fitter)(matrix, settings, report)
 

@@ -26,13 +26,16 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 LONGEST = (
-    "diagnosis/test_diagnose", "browser/test_linked", "browser/test_workbench", "bench/test_diagnosis",
-    "browser/test_pages", "test_project", "presets/test_machines", "app/test_diagnoses", "diagnosis/test_measured",
-    "acceptance/test_identification", "bench/test_model", "browser/test_matrix_page", "effects/test_contract",
-    "app/test_bench", "diagnosis/test_structures", "bench/test_figures", "cli/test_commands", "fit/test_recovery",
-    "bench/test_identification", "residuals/test_curves", "faults/test_kill", "cli/test_postgresql",
-    "fit/test_nonlinear_core", "fit/test_outputs", "fit/test_custom_fit", "figures/test_figures",
-    "acceptance/test_measured", "app/test_contract", "reference/test_nonlinear_reference", "effects/test_pairs",
+    "diagnosis/test_diagnose", "browser/test_workbench", "browser/test_linked", "browser/test_pages", "bench/test_diagnosis",
+    "acceptance/test_any_lab", "presets/test_composed", "diagnosis/test_structures", "browser/test_proposals",
+    "browser/test_matrix_page", "diagnosis/test_far_starts", "fit/test_disturbance", "test_project",
+    "fit/test_beginnings", "cli/test_any_machine", "presets/test_machines", "app/test_diagnoses",
+    "diagnosis/test_measured", "diagnosis/proposals/test_search", "cli/test_diagnose",
+    "acceptance/test_identification", "bench/test_model", "effects/test_contract", "app/test_bench",
+    "bench/test_figures", "cli/test_commands", "fit/test_recovery", "bench/test_identification",
+    "residuals/test_curves", "faults/test_kill", "cli/test_postgresql", "fit/test_nonlinear_core", "fit/test_outputs",
+    "fit/test_custom_fit", "figures/test_figures", "acceptance/test_measured", "app/test_contract",
+    "reference/test_nonlinear_reference", "effects/test_pairs",
 )  # fmt: skip
 """Files that take longest, the longest first."""
 

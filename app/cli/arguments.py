@@ -62,16 +62,33 @@ def in_si(text: str, name: str, model: Preset, where: str) -> float:
 
 
 def definitions(files: Sequence[Path]) -> tuple[dict[str, Any], ...]:
-    """The definitions of own effects in these files, each called like its file where it gives no name."""
-    from ident.custom.definition import definition_of, read_effect
+    """The definitions of own effects in these files, each called like its file where it gives no name.
 
-    found = tuple(definition_of(file.read_bytes(), file.stem) for file in files)
-    for file, definition in zip(files, found, strict=True):
+    Of a diagnosis, as JSON, those of the terms that it proposes.
+    """
+    from ident.custom.definition import read_effect
+
+    found = [(file, definition) for file in files for definition in _defined(file)]
+    for file, definition in found:
         try:
             read_effect(definition)
         except Unusable as error:
             raise Unusable(error.code, error.what, f"{file} {error.where}", error.remedy) from None
-    return found
+    return tuple(definition for _, definition in found)
+
+
+def _defined(file: Path) -> list[dict[str, Any]]:
+    """What a file defines: one effect, or, a diagnosis, what that proposes."""
+    from app.cli.given import read_diagnosis
+    from ident.custom.definition import definition_of
+
+    text = file.read_bytes()
+    if file.suffix != ".json" or b'"candidates"' not in text:
+        return [definition_of(text, file.stem)]
+    proposals = read_diagnosis(file).proposals
+    if not proposals:
+        raise Unusable("not-an-effect", "the diagnosis proposes no term", str(file), "make it with --propose")
+    return [definition_of(proposal.effect) for proposal in proposals]
 
 
 def method_options(texts: Sequence[str]) -> dict[str, float]:

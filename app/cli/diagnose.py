@@ -82,9 +82,9 @@ def diagnose(
     check_target(json)
     begun = monotonic()
     with shown() as report:
-        read, named, _ = modelled(read_matrix(matrix), model if fit is None else model or Settings().model, report)
+        named, choice = modelled(read_matrix(matrix), model if fit is None else model or Settings().model, report)
     chosen = settings(named, effect, method, bounds, set_, load, seed, option)
-    given = None if fit is None else given_fit(fit, chosen)
+    given = choice.made(chosen) if fit is None else given_fit(fit, chosen)
     own = together((), definitions(custom or []))
     if given is not None:
         named, own = given.model, together(given.settings.get("custom", ()), own)
@@ -93,7 +93,7 @@ def diagnose(
     effects = tuple(read_effect(definition, model=named) for definition in own)
     with shown() as report, followed(json) as follow:
         found = diagnosed(
-            read, given, replace(chosen, custom=own), most=most, custom=effects, report=report,
+            choice.matrix, given, replace(chosen, custom=own), most=most, custom=effects, report=report,
             seconds=left(time, begun), found=follow, propose=propose,
         )  # fmt: skip
     _tell(found, json)

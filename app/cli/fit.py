@@ -45,9 +45,10 @@ def fit(
 
     check_target(json)
     with shown() as report:
-        read, named, tried = modelled(read_matrix(matrix), model, report)
+        named, choice = modelled(read_matrix(matrix), model, report)
         chosen = settings(named, effect, method, bounds, set_, load, seed, option, custom)
-        result = replace(identify(read, chosen, report), structures=tried)
+        result = choice.made(chosen) or identify(choice.matrix, chosen, report)
+        result = replace(result, structures=choice.structures)
     if json is not None:
         write_json(result.to_json(), json)
     if json != STANDARD_OUTPUT:

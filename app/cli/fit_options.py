@@ -13,7 +13,7 @@ from app.cli.arguments import values as read_values
 from ident.fit.settings import METHODS
 
 if TYPE_CHECKING:
-    from ident.fit.result import Structure
+    from ident.diagnosis.structures import Choice
     from ident.fit.settings import Settings
     from ident.matrix import Matrix
     from ident.progress import Report
@@ -32,7 +32,11 @@ Effects = Annotated[
 ]
 Custom = Annotated[
     list[Path] | None,
-    typer.Option("--custom", metavar="EFFECT.yaml", help="Own effect to add, defined in a file; may be repeated."),
+    typer.Option(
+        "--custom",
+        metavar="EFFECT.yaml",
+        help="Own effect to add, defined in a file, or what a diagnosis (D.json) proposes; may be repeated.",
+    ),
 ]
 Ranked = Annotated[
     list[Path] | None,
@@ -57,17 +61,17 @@ Options = Annotated[
 ]
 
 
-def modelled(matrix: Matrix, model: str | None, report: Report) -> tuple[Matrix, str, tuple[Structure, ...]]:
-    """The model that was named; else the one that fits, the matrix with a notice that says why, and all tried.
+def modelled(matrix: Matrix, model: str | None, report: Report) -> tuple[str, Choice]:
+    """The model that was named; else the one that fits, and what was found on the way to it.
 
     Raises Unusable where the channels allow none.
     """
-    from ident.diagnosis.structures import chosen
+    from ident.diagnosis.structures import Choice, chosen
 
     if model is not None:
-        return matrix, _named(model), ()
-    matrix, found = chosen(matrix, report)
-    return matrix, found[0].machine, found
+        return _named(model), Choice(matrix)
+    choice = chosen(matrix, report)
+    return choice.structures[0].machine, choice
 
 
 def _named(model: str) -> str:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from ident.diagnosis.family import ModelFamily
 from ident.fit.identification import Identification, StepwiseFit, completed
 from ident.fit.result import FitResult, Structure
 from ident.fit.search import State
 from ident.fit.settings import Settings
+from ident.fit.summary import noticed
 from ident.matrix import Matrix
 from ident.presets.preset import Preset
 from ident.presets.suited import in_question, unusual
@@ -18,6 +19,22 @@ from ident.words.percent import percent
 _WORSE = 1.02  # times the least error on held-out data: less is no reason for another parameter
 
 
+@dataclass(frozen=True)
+class Choice:
+    """The models in question, the one to take first; the matrix, with a notice that says why it.
+
+    `fit` is that of the first with usual settings, None where it was the only one, and had not to be fitted.
+    """
+
+    matrix: Matrix
+    structures: tuple[Structure, ...] = ()
+    fit: FitResult | None = None
+
+    def made(self, settings: Settings) -> FitResult | None:
+        """The fit, where these settings ask for the very same."""
+        return self.fit if self.fit is not None and settings == Settings(model=self.fit.model) else None
+
+
 def structures(matrix: Matrix, report: Report = silent) -> tuple[Structure, ...]:
     """The models in question, the one to take first: the simplest whose held-out error is not worse.
 
@@ -25,37 +42,68 @@ def structures(matrix: Matrix, report: Report = silent) -> tuple[Structure, ...]
 
     Raises Unusable where the channels allow none.
     """
+    return _compared(matrix, report)[0]
+
+
+def _compared(matrix: Matrix, report: Report) -> tuple[tuple[Structure, ...], FitResult | None]:
+    """The models in question as :func:`structures` has them, and the fit of the first where more than one was."""
     models = in_question(matrix.runs, matrix.machine)
     if len(models) == 1:
         only = models[0]
         shown = f"{only.name} is driven by {only.driven_by} and shows what was recorded"
         why = "the matrix describes it" if matrix.machine else shown
-        return (Structure(only.name, {"held_out": None}, len(only.parameters), why),)
-    runs = replace(matrix, runs=matrix.of_use("fit"))
-    fitted = [_Fitted(model, runs, report) for model in models]
+        return (Structure(only.name, {"held_out": None}, len(only.parameters), why),), None
+    fitted = {model.name: _Fitted(model, matrix, report) for model in models}
     # One measure for all: over windows where one of them is fitted so, for what a machine integrated meanwhile is not
     # a matter of its structure.
-    horizon = max((one.horizon for one in fitted if one.horizon is not None), default=None)
-    tried = [one.judged(horizon) for one in fitted]
+    horizon = max((one.horizon for one in fitted.values() if one.horizon is not None), default=None)
+    tried = [one.judged(horizon) for one in fitted.values()]
     least = min(_error(one) for one in tried)
     good = [one for one in tried if _error(one) <= _WORSE * least]
     strange = {model.name for model in models if unusual(model, matrix.runs)}
     best = min(good, key=lambda one: (one.machine in strange, one.parameters))
     over = "" if horizon is None else f" over {horizon:.3g} s"
     others = (_said(one, over, "") for one in tried if one is not best)
-    return (_said(best, over, "the simplest that is not worse"), *others)
+    return (_said(best, over, "the simplest that is not worse"), *others), fitted[best.machine].fit
 
 
-def chosen(matrix: Matrix, report: Report = silent) -> tuple[Matrix, tuple[Structure, ...]]:
-    """The models in question as :func:`structures` has them, and the matrix with a notice that says why the first.
+def chosen(matrix: Matrix, report: Report = silent) -> Choice:
+    """The models in question, with a notice of the matrix that says why the first.
 
     Nothing is said where it is the usual model and no other could be meant.
     """
-    first, *others = found = structures(matrix, report)
+    found, fit = _compared(matrix, report)
+    first, *others = found
     if first.machine in (Settings().model, matrix.machine) and not others:
-        return matrix, found
+        return Choice(matrix, found, fit)
     said = "; ".join(f"{one.machine} {one.why}" for one in found) if others else first.why
-    return replace(matrix, notices=(f"No model was named: {said}.", *matrix.notices)), found
+    notice = f"No model was named: {said}."
+    return Choice(replace(matrix, notices=(notice, *matrix.notices)), found, fit and noticed(fit, notice))
+
+
+class Made:
+    """A fit that was made already, as one that is made a step at a time."""
+
+    generations = 0
+
+    def __init__(self, fit: FitResult) -> None:
+        self._fit = fit
+
+    def start(self) -> State:
+        """Nothing is to be searched any more."""
+        return {"done": True, "history": []}
+
+    def finished(self, state: State) -> bool:  # noqa: ARG002  in any state
+        """Always."""
+        return True
+
+    def advance(self, state: State, generations: int) -> State:  # noqa: ARG002  there is nothing to advance
+        """The same state."""
+        return state
+
+    def finish(self, state: State) -> FitResult:  # noqa: ARG002  whatever it is
+        """The fit."""
+        return self._fit
 
 
 class ChosenFit:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
@@ -28,6 +29,7 @@ from ident.words.percent import percent
 
 _DRAWN = 100  # parameter vectors within their standard errors
 _HARDLY = 0.8  # of the output left: no fit to be trusted
+_HARDLY_SAID = "The model leaves"
 Array = NDArray[np.float64]
 
 
@@ -237,6 +239,12 @@ def _notes(objective: Fitness, floors: Floors, found: Sequence[RunError]) -> lis
     return notes
 
 
+def noticed(fit: FitResult, notice: str) -> FitResult:
+    """A fit with one more notice of its matrix, the first of them."""
+    at = int(bool(fit.notes) and fit.notes[0].startswith(_HARDLY_SAID))
+    return replace(fit, notes=(*fit.notes[:at], notice, *fit.notes[at:]))
+
+
 def _hardly_explained(objective: Fitness, error: float) -> Iterator[str]:
     """What is said first of a fit that is hardly better than no model, with the likely causes."""
     if not _HARDLY <= error < UNSTABLE:
@@ -247,7 +255,7 @@ def _hardly_explained(objective: Fitness, error: float) -> Iterator[str]:
         causes.insert(
             0, "a command that is not zero where the machine stands, which the machine integrates (null_bias)"
         )
-    yield f"The model leaves {percent(error)} of the output: hardly better than none. Likely causes: " + (
+    yield f"{_HARDLY_SAID} {percent(error)} of the output: hardly better than none. Likely causes: " + (
         "; ".join(causes) + "."
     )
 

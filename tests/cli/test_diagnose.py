@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.cli import interrupts, output
-from tests import hidden_dead_zone
+from tests import hidden_dead_zone, hidden_leak
 
 
 @pytest.fixture(scope="module")
@@ -106,3 +106,21 @@ def test_a_fit_from_a_file_is_diagnosed_as_it_is(servoident, matrix, tmp_path):
     found, fit = json.loads(done.stdout), json.loads(file.read_text())
     assert found["baseline"]["error"]["verify"] == pytest.approx(fit["error"]["verify"], rel=1e-3)
     assert (found["seed"], len(found["ladder"])) == (4, 1)
+
+
+def test_a_proposed_term_goes_from_a_diagnosis_into_a_fit(servoident, tmp_path):
+    matrix, found, fitted = hidden_leak.write(tmp_path / "leak"), tmp_path / "found.json", tmp_path / "fit.json"
+    done = servoident("diagnose", matrix, "--model", "qian2014", "--max-effects", 0, "--propose", "--json", found)
+    assert done.returncode == 0, done.stderr
+    assert "Q = Q + s * (abs(P))" in done.stdout
+    assert "leakage in one direction" in " ".join(done.stdout.split())
+    done = servoident("fit", matrix, "--custom", found, "--json", fitted)
+    assert done.returncode == 0, done.stderr
+    fit = json.loads(fitted.read_text())
+    assert fit["effects"] == ["proposed_1"]
+    assert fit["error"]["verify"] < 1.05 * hidden_leak.NOISE
+    done = servoident("diagnose", matrix, "--model", "qian2014", "--max-effects", 0, "--json", found)
+    assert done.returncode == 0, done.stderr
+    done = servoident("fit", matrix, "--custom", found)
+    assert done.returncode == 2
+    assert "the diagnosis proposes no term; make it with --propose" in done.stderr

@@ -48,7 +48,8 @@ class Judged:
 def judged(folder: Path) -> Judged:
     """What `fit` and `diagnose` make of a matrix where nothing else is said."""
     begun = time.monotonic()
-    matrix, tried = chosen(read_matrix(folder))
-    fit = identify(matrix, Settings(model=tried[0].machine))
-    found = diagnose(matrix, fit)
+    choice = chosen(read_matrix(folder))
+    settings = Settings(model=choice.structures[0].machine)
+    fit = choice.made(settings) or identify(choice.matrix, settings)
+    found = diagnose(choice.matrix, fit)
     return Judged(folder.name, fit, found, time.monotonic() - begun)

@@ -67,6 +67,15 @@ class _Candidate:
         )
 
 
+@dataclass(frozen=True)
+class _Sight:
+    """The contenders of a step, best first; samples of the signals that they are of, and the units of these."""
+
+    contenders: tuple[_Candidate, ...]
+    typical: Mapping[str, Array]
+    units: Mapping[str, str]
+
+
 @dataclass
 class Search:
     """A search from a model that ended above the noise; `models` are those of all fitted runs."""
@@ -102,10 +111,11 @@ class Search:
         if not base.finite:
             return False
         name = next(f"{_PREFIX}{n}" for n in count(1) if f"{_PREFIX}{n}" not in self.models.effects)
-        tried = [one for one in each(lambda c: self._tried(searching, base, name, c), self._contenders(base)) if one]
+        sight = self._seen(base)
+        tried = [one for one in each(lambda c: self._tried(searching, base, name, c, sight), sight.contenders) if one]
         if not tried:
             return False
-        few = len(self.models.runs) < _FEWEST
+        few = _few(self.models.runs)
         errors = [refit.held_out.error if few else _error(refit, chosen_by) for _, refit, _ in tried]
         good = [one for one, error in zip(tried, errors, strict=True) if error <= _AS_GOOD * min(errors)]
         candidate, refit, family = min(good, key=_simplicity)
@@ -155,7 +165,7 @@ class Search:
 
     # What is looked at ------------------------------------------------------------------------------------------
 
-    def _contenders(self, base: Refit) -> list[_Candidate]:
+    def _seen(self, base: Refit) -> _Sight:
         """The terms that promise most, and pairs of two places with one strength, best first."""
         preset, matrix = self.models.preset, self.models.matrix
         named = {equation.target for equation in preset.core.equations if not equation.is_rate} | {*preset.core.states}
@@ -176,14 +186,13 @@ class Search:
         singles = [_single(found, group) for group in found.classes()[:_TRIED]]
         pairs = _pairs(found, units)
         self.looked_at += _PAIRED * len(terms)
-        self._typical, self._units = typical, units
-        return [*singles, *pairs]
+        return _Sight((*singles, *pairs), typical, units)
 
     def _tried(
-        self, searching: ModelFamily, base: Refit, name: str, candidate: _Candidate
+        self, searching: ModelFamily, base: Refit, name: str, candidate: _Candidate, sight: _Sight
     ) -> tuple[_Candidate, Refit, ModelFamily] | None:
         """The refit with a candidate to the runs that search; None where it cannot be added."""
-        own = definition(name, candidate.terms, candidate.signs, candidate.strength, self._typical, self._units)
+        own = definition(name, candidate.terms, candidate.signs, candidate.strength, sight.typical, sight.units)
         try:
             effect = read_effect(own, model=self.models.preset.name)
         except Unusable:
@@ -206,16 +215,26 @@ _CONDITIONS = {"Kp": "1", "mL": "kg", "k": "N/m"}
 
 
 def _parts(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[Run, ...], tuple[Run, ...]]:
-    """The runs that search, that choose, and that confirm: each with runs of all conditions. Of too few all do all."""
-    if len(runs) < _FEWEST:
+    """The runs that search, that choose, and that confirm: each with runs of all conditions. Of too few all do all.
+
+    The outputs of one record stay together.
+    """
+    if _few(runs):
         return tuple(runs), tuple(runs), tuple(runs)
 
     def condition(run: Run) -> tuple[float, ...]:
         of = run.specimen
         return (of.mass, of.stiffness, run.Kp, run.drive) if of else (0.0, 0.0, run.Kp, run.drive)
 
-    ordered = sorted(runs, key=condition)
-    return tuple(ordered[0::3]), tuple(ordered[1::3]), tuple(ordered[2::3])
+    ordered = list(dict.fromkeys(run.record or run.id for run in sorted(runs, key=condition)))
+    parts = [set(ordered[first::3]) for first in range(3)]
+    sought, chosen_by, confirming = (tuple(run for run in runs if (run.record or run.id) in part) for part in parts)
+    return sought, chosen_by, confirming
+
+
+def _few(runs: Sequence[Run]) -> bool:
+    """Whether there are fewer records than search, choose and confirm."""
+    return len({run.record or run.id for run in runs}) < _FEWEST
 
 
 def _distinct(names: Sequence[str], typical: Mapping[str, Array]) -> list[str]:
