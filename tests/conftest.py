@@ -26,7 +26,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 LONGEST = (
-    "diagnosis/test_diagnose", "browser/test_workbench", "browser/test_linked", "browser/test_pages", "bench/test_diagnosis",
+    "diagnosis/test_diagnose", "browser/test_workbench", "browser/test_linked", "browser/test_pages",
+    "bench/test_diagnosis",
     "acceptance/test_any_lab", "presets/test_composed", "diagnosis/test_structures", "browser/test_proposals",
     "browser/test_matrix_page", "diagnosis/test_far_starts", "fit/test_disturbance", "test_project",
     "fit/test_beginnings", "cli/test_any_machine", "presets/test_machines", "app/test_diagnoses",
