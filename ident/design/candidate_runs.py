@@ -17,6 +17,7 @@ _STROKE = 0.45  # of the stroke, to either side, is the most that a command may 
 _SPECIMENS, _GAINS, _AMPLITUDES = 4, 3, 3
 _SHARES = (1 / 30, 1 / 8, 1 / 3)  # of the band, where sines and saw-teeth are tried
 _LONGEST = {"s": 60.0, "sample": 65536.0}
+_SAMPLES = 1000
 
 
 def candidate_runs(matrix: Matrix, band: float, seed: int = 0) -> Iterator[Experiment]:
@@ -26,7 +27,8 @@ def candidate_runs(matrix: Matrix, band: float, seed: int = 0) -> Iterator[Exper
     """
     runs = matrix.runs
     first = runs[0]
-    seconds = min(float(np.median([run.duration for run in runs])), _LONGEST[first.time_unit])
+    longest = max(_LONGEST[first.time_unit], _SAMPLES / first.sample_rate)  # of a slow machine longer
+    seconds = min(float(np.median([run.duration for run in runs])), longest)
     specimens = _spread([*dict.fromkeys(run.specimen for run in runs)], _SPECIMENS)
     stated = sorted({run.gain for run in runs if run.gain is not None})
     gains: list[float | None] = [*_between(stated, _GAINS)] or [None]

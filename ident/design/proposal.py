@@ -102,8 +102,10 @@ def _rivals(in_question: Rivals, matrix: Matrix) -> list[Rival]:
 
 
 def _judged(rivals: Sequence[Rival], experiments: Sequence[Experiment]) -> list[Worth]:
+    if not experiments:
+        return []
     first = rivals[0].matrix.runs[0]
-    length = min(_TRIAL / first.sample_rate, experiments[0].seconds) if experiments else 0.0
+    length = min(_TRIAL / first.sample_rate, experiments[0].seconds)
     runs = [_run(e.lasting(length), str(i), first) for i, e in enumerate(experiments)]
     outputs = [rival.outputs(runs) for rival in rivals]
     sound = [i for i, run in enumerate(runs) if all(_sound(y[run.id], run) for y in outputs)]

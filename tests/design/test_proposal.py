@@ -17,12 +17,13 @@ from ident.design.rival import Rival
 from ident.design.rivals import Rivals
 from ident.diagnosis.result import Diagnosis
 from ident.diagnosis.rivals import rivals
+from ident.errors import Unusable
 from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
 from ident.fit.reduction import excited_band
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import search_space
-from ident.matrix import Matrix, Run
+from ident.matrix import Actuator, Matrix, Run
 from ident.presets import Preset, preset
 from ident.workflows import identify
 from tests.fit.recovery import NOISE, matrix
@@ -195,3 +196,19 @@ def test_a_run_with_a_doubted_label_does_not_say_what_the_bench_can_do():
     assert trusted(names[0]) == names[1:]
     assert trusted(*names) == names
     assert trusted() == names
+
+
+def test_a_slow_machine_gets_a_run_of_as_many_samples():
+    """A sample in four seconds: no experiment of a minute would show anything."""
+    rng = np.random.default_rng(3)
+    channels = {"command": np.repeat(rng.uniform(-1, 1, 128), 8), "displacement": rng.standard_normal(1024)}
+    slow = Matrix(Actuator("TANKS"), (Run("one", "", 0.25, channels, {"command": "V", "displacement": "m"}),))
+    found = list(candidate_runs(slow, 0.1))
+    assert found
+    assert {round(experiment.seconds) for experiment in found} == {4000}
+
+
+def test_where_no_run_could_be_made_that_is_said(monkeypatch):
+    monkeypatch.setattr("ident.design.proposal.candidate_runs", lambda *_: iter(()))
+    with pytest.raises(Unusable, match="stable in no run"):
+        propose(question(confused()[1]), confused()[0])

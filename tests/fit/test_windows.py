@@ -78,10 +78,16 @@ def test_the_free_run_is_reported_with_its_interval():
     """What a machine sums up hangs on its gain for as long as the run takes."""
     fit = identify(cylinder(5, wander=1e-3), Settings(model="motor"))
     assert fit.window is not None
-    for use, error in (("fit", fit.error["fit"]), ("verify", fit.error["verify"])):
+    (found,) = [entry for entry in fit.determined if entry.expression == "Kt / c0"]
+    beside = []  # free runs whose gain is as far off as its standard error lets it be
+    for deviations in (-1.96, 0.0, 1.96):
+        values = fit.values | {"Kt": fit.values["Kt"] * (1 + deviations * found.std_error / found.value)}
+        beside.append(identify(cylinder(5, wander=1e-3), Settings(model="motor", fixed=values)).error)
+    for use in ("fit", "verify"):
         low, high = fit.window.free_run[use]
-        assert 0.8 * low < error < 1.2 * high
-        assert high > low
+        errors = [error[use] for error in beside]
+        assert low < 1.001 * errors[1] < 1.002 * high
+        assert 0.7 * np.ptp(errors) < high - low < 2.0 * np.ptp(errors)
     assert type(fit).from_json(fit.to_json()).window == fit.window
 
 
