@@ -84,12 +84,12 @@ class Term:
 class Library:
     """All terms for the places of a chain: `places` maps a place to the signal that is added to.
 
-    `signals` are those that terms may be of, `typical` all their samples, `units` as the chain has them; `band` is the
-    end of the command's, rad/s, `seconds` the length of the shortest run, `varied` the conditions that differ.
+    `signals` are those that terms there may be of, `typical` all their samples, `units` as the chain has them; `band`
+    is the end of the command's, rad/s, `seconds` the length of the shortest run, `varied` the conditions that differ.
     """
 
     places: Mapping[str, str]
-    signals: Sequence[str]
+    signals: Mapping[str, Sequence[str]]
     typical: Signals
     units: Mapping[str, str]
     band: float
@@ -99,9 +99,7 @@ class Library:
     def terms(self) -> Iterator[Term]:
         """Every term, the simplest forms first."""
         for place, at in self.places.items():
-            signals = [
-                name for name in self.signals if (place, name) != ("load", "F")
-            ]  # the one follows from the other
+            signals = self.signals[place]
             for a in signals:
                 yield from self._of_one(place, at, a)
             for a in signals:
@@ -180,17 +178,17 @@ class Library:
             middle = Shape("xm", float(np.quantile(x, share)), self.units["x"])
             hill = "exp(-((x - xm) / d)**2)"
             yield Term(place, at, hill, "hill", ("x",), {}, (middle, width))
-            for b in self.signals:
+            for b in self.signals[place]:
                 if b in (at, "v") and b != "x":
                     yield Term(place, at, f"{b} * {hill}", "hill of", (b, "x"), self._unit((b, 1)), (middle, width))
-            if "v" in self.signals:
+            if "v" in self.signals[place]:
                 yield Term(place, at, f"sgn(v) * {hill}", "friction at", ("v", "x"), {}, (middle, width))
 
     def _with_conditions(self, place: str, at: str) -> Iterator[Term]:
         """Terms that grow with a condition of the run, where it differs, or with time."""
         for name in (*self.varied, "t"):
             unit = {"t": "s"}.get(name) or self.units.get(name, "1")
-            for a in self.signals:
+            for a in self.signals[place]:
                 if a in (at, "v"):
                     powers = _multiplied(self._unit((a, 1)), powers_of(unit) or {}, 1)
                     yield Term(place, at, f"{name} * {a}", "condition", (name, a), powers)

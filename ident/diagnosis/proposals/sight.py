@@ -1,0 +1,79 @@
+"""What a model that ended above the noise offers to be added at its places."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.chain.conditions import CONDITIONS
+from ident.diagnosis.family import ModelFamily, Refit
+from ident.diagnosis.proposals.candidate import Candidate, offered
+from ident.diagnosis.proposals.records import paths, records
+from ident.diagnosis.proposals.regression import regression
+from ident.diagnosis.proposals.terms import Library
+from ident.effects.effect import Effect
+from ident.parameter import Parameter
+from ident.presets import Preset
+
+Array = NDArray[np.float64]
+_PLACES = {"controller": "e", "spool": "w", "flow": "Q", "load": "R", "sensor": "y"}
+_SIGNALS = ("w", "Q", "P", "v", "x", "F")
+_VARIED = ("Kp", "mL", "k")  # conditions of a run
+_PROPORTIONAL = 1.0 - 1e-6  # cosine of signals that are one
+
+
+@dataclass(frozen=True)
+class Sight:
+    """The candidates, best first, and how many were looked at; samples of the signals they are of, and their units."""
+
+    candidates: tuple[Candidate, ...]
+    looked_at: int
+    typical: Mapping[str, Array]
+    units: Mapping[str, str]
+
+
+def sight(models: ModelFamily, base: Refit) -> Sight:
+    """Of a model that was refitted to the runs that search."""
+    preset = models.preset
+    named = {equation.target for equation in preset.core.equations if not equation.is_rate} | {*preset.core.states}
+    names = [name for name in _SIGNALS if name in named]
+    places = {place: at for place, at in _PLACES.items() if at in named}
+    runs = records(base, list(dict.fromkeys((*names, *places.values()))))
+    typical = {name: np.concatenate([record.signals[name] for record in runs]) for name in runs[0].signals}
+    units = {name: quantity.unit for name, quantity in CONDITIONS.items()} | dict(preset.chain.units)
+    shortest = min(run.duration for run in models.runs)
+    varied = [name for name in _VARIED if np.ptp(typical[name]) > 0]
+    names = _distinct(names, typical)
+    there = {place: [name for name in names if _known_there(preset, place, at, name)] for place, at in places.items()}
+    library = Library(places, there, typical, units, models.band, shortest, varied)
+    responses = {at: paths(preset, base.values, models.matrix.actuator, at, runs) for at in places.values()}
+    found = regression(list(library.terms()), runs, responses, models.band)
+    candidates, looked_at = offered(found, units)
+    return Sight(candidates, looked_at, typical, units)
+
+
+def _known_there(preset: Preset, place: str, at: str, name: str) -> bool:
+    """Whether a signal is known where a term adds to another: it does not follow from that one at once."""
+    probe = Effect("probe", place, "", Parameter("s", "s", "1", -1.0, 1.0, 0.0, ""), (f"{at} = {at} + s * {name}",))
+    return preset.takes(probe)
+
+
+def _distinct(names: Sequence[str], typical: Mapping[str, Array]) -> list[str]:
+    """The signals that move, without those that are another one in other units."""
+    kept: list[str] = []
+    for name in names:
+        x = typical[name]
+        size = float(np.linalg.norm(x))
+        alike = any(
+            abs(float(x @ typical[other])) > _PROPORTIONAL * size * np.linalg.norm(typical[other]) for other in kept
+        )
+        if size > 0 and np.ptp(x) > 0 and not alike:
+            kept.append(name)
+    return kept
+
+
+def _cosine(a: Array, b: Array) -> float:
+    return abs(float(a @ b)) / float(np.linalg.norm(a) * np.linalg.norm(b))

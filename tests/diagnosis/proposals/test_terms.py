@@ -1,0 +1,88 @@
+"""Every term that a search looks at can be worked out on samples, and is an effect that a model takes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ident.chain.conditions import CONDITIONS
+from ident.custom.definition import read_effect
+from ident.diagnosis.proposals.own import definition
+from ident.diagnosis.proposals.sight import _PLACES, _SIGNALS, _known_there
+from ident.diagnosis.proposals.terms import Library, Term, ratio
+from ident.presets import PRESETS
+from tests.effects import dimensions
+
+MODEL = PRESETS["qian2014"]
+UNITS = {name: quantity.unit for name, quantity in CONDITIONS.items()} | dict(MODEL.chain.units)
+RATE, BAND, SECONDS = 800.0, 2 * np.pi * 80.0, 0.5
+SIZES = {"w": 1e-3, "Q": 1e-5, "P": 1e6, "v": 0.05, "x": 1e-3, "F": 300.0, "e": 1e-3, "R": 200.0, "y": 1e-3}
+
+
+def signals() -> dict[str, np.ndarray]:
+    rng = np.random.default_rng(4)
+    found = {name: size * rng.standard_normal(400) for name, size in SIZES.items()}
+    return found | {
+        "Kp": np.full(400, 7.0),
+        "mL": np.full(400, 1.0),
+        "k": np.full(400, 3e4),
+        "t": np.arange(400) / RATE,
+    }
+
+
+def terms() -> dict[tuple[str, str], Term]:
+    """The first of each form at each place."""
+    there = {
+        place: [name for name in _SIGNALS if _known_there(MODEL, place, at, name)] for place, at in _PLACES.items()
+    }
+    library = Library(_PLACES, there, signals(), UNITS, BAND, SECONDS, ("Kp", "mL", "k"))
+    listed = list(library.terms())
+    assert len({(term.at, term.text, *(shape.value for shape in term.shapes)) for term in listed}) == len(listed)
+    return {(term.place, term.kind): term for term in reversed(listed)}
+
+
+TERMS = terms()
+
+
+@pytest.mark.parametrize("form", TERMS, ids=" ".join)
+def test_a_term_is_worked_out_and_is_an_effect(form):
+    term, known = TERMS[form], signals()
+    samples = term.samples(known, RATE)
+    assert samples.shape == (400,)
+    assert np.all(np.isfinite(samples))
+    assert np.std(samples) > 0 or term.kind == "hill"
+    own = definition("proposed_1", (term,), (1.0,), 1e-3, known, UNITS)
+    effect = read_effect(own, model="qian2014")
+    assert effect.strength.lower < 0 < effect.strength.upper
+    for parameter in effect.parameters[1:]:
+        assert parameter.lower < parameter.upper
+        assert parameter.lower <= parameter.value <= parameter.upper
+
+
+def test_the_unit_of_a_strength_is_that_of_its_place_over_that_of_the_term():
+    of_pressure = Term("flow", "Q", "abs(P)", "size", ("P",), {"Pa": 1.0})
+    assert ratio("m^3/s", of_pressure.unit) == "m^3*s^-1*Pa^-1"
+    assert dimensions.of("m^3/(s*Pa)") == dimensions.of(ratio("m^3/s", of_pressure.unit))
+
+
+@pytest.mark.parametrize("kind", ["lag", "play"])
+def test_what_remembers_is_worked_out_by_hand(kind):
+    term, known = TERMS["spool", kind], signals()
+    x, (shape,) = known["w"], term.shapes
+    state, expected = 0.0, []
+    for now in x:
+        if kind == "lag":
+            state += (1 - np.exp(-1 / RATE / shape.value)) * (now - state)
+        else:
+            state = min(max(state, now - shape.value), now + shape.value)
+        expected.append(state - now)
+    assert term.samples(known, RATE) == pytest.approx(np.array(expected), abs=1e-12)
+
+
+def test_a_signal_that_follows_at_once_is_none_of_a_place():
+    motor = PRESETS["motor"]
+    assert _known_there(motor, "controller", "e", "v")
+    assert not _known_there(motor, "controller", "e", "w")  # no valve between
+    assert _known_there(MODEL, "controller", "e", "w")
+    assert not _known_there(MODEL, "spool", "w", "Q")
+    assert not _known_there(MODEL, "load", "R", "F")
