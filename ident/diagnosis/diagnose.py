@@ -69,7 +69,10 @@ class Diagnoser:
         proposed = self._proposed(selection) if self.course.propose else Proposals()
         self.course.conclude()
         found = self._said(selection, doubted)
-        return replace(found, proposals=proposed.found, notes=(*found.notes, *_refused(proposed, self.course.propose)))
+        return replace(
+            found, proposals=proposed.found, complete=found.complete and proposed.complete,
+            notes=(*found.notes, *_refused(proposed, self.course.propose)),
+        )  # fmt: skip
 
     def _proposed(self, selection: StepwiseSelection) -> Proposals:
         """What no list holds: beside the fitted model as it was and, where that is not all, beside what was found.

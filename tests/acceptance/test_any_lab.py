@@ -10,7 +10,9 @@ from tests.blind.any_trial import rates, trial
 
 
 @pytest.mark.parametrize("seed", [3, 301])
-def test_a_machine_nobody_described_is_taken_for_what_it_is(seed):
+def test_a_machine_nobody_described_is_taken_for_what_it_is(seed, full):
+    if not full and seed != 3:
+        pytest.skip("half a minute each: run with --full")
     outcome = trial(seed, hidden=True)
     assert outcome.structure_right, str(outcome)
     assert outcome.named, str(outcome)
@@ -18,7 +20,9 @@ def test_a_machine_nobody_described_is_taken_for_what_it_is(seed):
 
 
 @pytest.mark.parametrize("seed", [2, 3])
-def test_where_nothing_is_hidden_nothing_is_found(seed):
+def test_where_nothing_is_hidden_nothing_is_found(seed, full):
+    if not full and seed != 2:
+        pytest.skip("a quarter of a minute each: run with --full")
     outcome = trial(seed, hidden=False)
     assert outcome.structure_right, str(outcome)
     assert outcome.effects == (), str(outcome)

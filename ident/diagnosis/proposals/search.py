@@ -101,15 +101,10 @@ class Search:
         return True
 
     def _proposal(self, candidate: Candidate, name: str, gained: float, bar: float, hypothesis: bool) -> Proposal:
-        effect = next(d for d in self.models.given.custom if d["name"] == name)
-        shapes = {
-            p.symbol: self.base.values[p.in_equations] for p in self.models.effects[name].added[1:]
-        }  # fmt: skip
-        own = (
-            {**effect, "shape": {s: {**effect["shape"][s], "value": v} for s, v in shapes.items()}}
-            if shapes
-            else effect
-        )
+        own = dict(next(one for one in self.models.given.custom if one["name"] == name))
+        if shapes := self.models.effects[name].added[1:]:  # as the refit found them: added, they are held there
+            given = own["shape"]
+            own["shape"] = {p.symbol: {**given[p.symbol], "value": self.base.values[p.in_equations]} for p in shapes}
         return Proposal(
             place=tuple(dict.fromkeys(term.place for term in candidate.terms)),
             equation="; ".join(own["equation"]),

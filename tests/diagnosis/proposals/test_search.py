@@ -11,9 +11,10 @@ import pytest
 
 from ident.custom.definition import read_effect
 from ident.diagnosis.result import Diagnosis
-from ident.errors import Unusable
+from ident.errors import TimeIsUp, Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
+from ident.progress import Progress
 from ident.workflows import diagnose, identify
 from tests.bench.test_diagnosis import matrix_with
 from tests.blind.machines import matrix_of
@@ -161,3 +162,19 @@ def test_a_bench_has_no_signals_inside():
     matrix = matrix_with()
     with pytest.raises(Unusable, match="no signals inside"):
         diagnose(matrix, identify(matrix, Settings(model="kononykhin")), propose=True)
+
+
+def test_a_search_that_is_cut_says_so():
+    matrix, _ = with_a_leak()
+    fit = identify(matrix, Settings(model="qian2014"))
+    steps = []
+
+    def until_the_terms(progress: Progress) -> None:
+        steps.append(progress.stage)
+        if progress.stage == "proposing":
+            raise TimeIsUp
+
+    found = diagnose(matrix, fit, most=0, propose=True, report=until_the_terms)
+    assert "proposing" in steps
+    assert not found.complete
+    assert found.proposals == ()
