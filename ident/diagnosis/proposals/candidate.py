@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ident.diagnosis.proposals.meanings import meaning
-from ident.diagnosis.proposals.own import STRENGTH
+from ident.diagnosis.proposals.own import added
 from ident.diagnosis.proposals.regression import Regression
 from ident.diagnosis.proposals.terms import Term, ratio
 from ident.stages import PLACES
@@ -31,10 +31,7 @@ class Candidate:
     @property
     def equation(self) -> str:
         """What is added where."""
-        return "; ".join(
-            f"{term.at} = {term.at} {'+' if sign > 0 else '-'} {STRENGTH} * ({term.text})"
-            for term, sign in zip(self.terms, self.signs, strict=True)
-        )
+        return "; ".join(map(added, self.terms, self.signs))
 
     @property
     def simplicity(self) -> tuple[object, ...]:
@@ -57,9 +54,9 @@ def _single(found: Regression, group: Sequence[int]) -> Candidate:
     terms = [found.terms[i] for i in group]
     best = min(range(len(group)), key=lambda i: (not meaning([terms[i]]), terms[i].free_shapes, len(terms[i].text)))
     at = group[best]
-    share, strengths = found.together([at])
+    strength, share = float(found.with_residual[at] / found.products[at, at]), float(found.gains[at])
     others = tuple((term,) for i, term in enumerate(terms) if i != best)
-    return Candidate((terms[best],), (1.0,), float(strengths[0]), share, others)
+    return Candidate((terms[best],), (1.0,), strength, share, others)
 
 
 def _pairs(found: Regression, leading: Sequence[int], units: Mapping[str, str]) -> list[Candidate]:

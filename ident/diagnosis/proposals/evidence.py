@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.diagnosis.proposals.regression import WIDE
 from ident.diagnosis.significance import WORTHWHILE
 from ident.fit.windows import unforeseen
 from ident.matrix import Run
@@ -24,7 +25,6 @@ Array = NDArray[np.float64]
 _SMOOTH = 16  # frequencies that are averaged
 _FEW = 3  # runs, below which their scatter tells nothing
 _STEADY = 3.0  # standard errors
-_WIDE = 1.3  # of the command's band is looked at
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def _deviations(gains: Array) -> float:
 
 def _of_run(before: Array, after: Array, rate: float, band: float) -> float:
     bins = 2 * np.pi * np.fft.rfftfreq(len(before), 1.0 / rate)
-    inside = (bins > 0) & (bins <= _WIDE * band)
+    inside = (bins > 0) & (bins <= WIDE * band)
     powers = [np.abs(np.fft.rfft(residual - residual.mean()))[inside] ** 2 for residual in (before, after)]
     groups = max(1, int(inside.sum()) // _SMOOTH)
     found = 0.0

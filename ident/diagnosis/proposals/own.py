@@ -14,6 +14,11 @@ _FAR = 10.0  # times what a regression makes of a strength
 STRENGTH = "s"
 
 
+def added(term: Term, sign: float) -> str:
+    """The equation that adds a term, or takes it off."""
+    return f"{term.at} = {term.at} {'+' if sign > 0 else '-'} {STRENGTH} * ({term.text})"
+
+
 def definition(
     name: str,
     terms: Sequence[Term],
@@ -31,7 +36,7 @@ def definition(
     shapes: dict[str, Any] = {}
     for term, sign in zip(terms, signs, strict=True):
         lines += term.memory
-        lines.append(f"{term.at} = {term.at} {'+' if sign > 0 else '-'} {STRENGTH} * ({term.text})")
+        lines.append(added(term, sign))
         for shape in term.shapes:
             low, high = shape.bounds
             shapes[shape.symbol] = {"unit": shape.unit, "lower": low, "upper": high, "value": shape.value}

@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.chain.chain import linear_model
 from ident.chain.conditions import conditions
 from ident.diagnosis.family import Refit
 from ident.fit.fitness import STEP
 from ident.fit.responses import Sensitivities
 from ident.fit.simulated_runs import SimulatedRuns
-from ident.linear import LinearModel
 from ident.matrix import Actuator, Run
 from ident.parallel import each
 from ident.presets import Preset
@@ -102,9 +102,7 @@ def paths(
         run = record.run
         key = (run.specimen, run.gain, run.output, record.rate)
         if key not in found:
-            known = conditions(run, actuator) | dict(values)
-            model: LinearModel = broken.linearise({n: np.array([known[n]]) for n in broken.symbols}, run.output)
-            found[key] = Response.of([model], record.rate)
+            found[key] = Response.of([linear_model(broken, values, run, actuator)], record.rate)
         return found[key]
 
     return [of(record) for record in runs]

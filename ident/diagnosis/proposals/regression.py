@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg
@@ -27,7 +28,7 @@ from ident.residuals.decimation import Response
 Array = NDArray[np.float64]
 _ABSORBED = 1e-4  # of a term's power that the parameters leave: less, and they do what it does
 _ALIKE = 0.999  # cosine of two terms that the data cannot tell apart
-_WIDE = 1.3  # of the command's band is looked at
+WIDE = 1.3  # of the command's band is looked at
 
 
 @dataclass(frozen=True)
@@ -39,22 +40,16 @@ class Regression:
     with_residual: Array
     left: float
 
-    @property
+    @cached_property
     def gains(self) -> Array:
         """The share of the residual's power that each term takes off by itself, (m,)."""
         power = np.diag(self.products)
         return np.asarray(np.where(power > 0, self.with_residual**2 / np.maximum(power, 1e-300), 0.0) / self.left)
 
-    def together(self, chosen: Sequence[int]) -> tuple[float, Array]:
-        """The share that some terms take off together, and their strengths."""
-        at = np.array(chosen)
-        strengths = np.linalg.lstsq(self.products[np.ix_(at, at)], self.with_residual[at], rcond=1e-10)[0]
-        return float(strengths @ self.with_residual[at] / self.left), strengths
-
     def classes(self) -> list[list[int]]:
         """Terms by what they explain, best first; those of one class cannot be told apart."""
-        size = np.sqrt(np.maximum(np.diag(self.products), 1e-300))
-        rest = [int(i) for i in np.argsort(-self.gains, kind="stable") if self.gains[i] > 0]
+        size, gains = np.sqrt(np.maximum(np.diag(self.products), 1e-300)), self.gains
+        rest = [int(i) for i in np.argsort(-gains, kind="stable") if gains[i] > 0]
         found = []
         while rest:
             first = rest[0]
@@ -103,7 +98,7 @@ def _products(terms: Sequence[Term], record: Record, paths: dict[str, Response],
         return _multiplied(anchored(rows, record.window))
     spectrum = np.fft.rfft(rows - rows.mean(axis=0), axis=0)
     bins = np.fft.rfftfreq(n, 1.0 / record.rate) * 2 * np.pi
-    inside = spectrum[(bins > 0) & (bins <= _WIDE * band)]
+    inside = spectrum[(bins > 0) & (bins <= WIDE * band)]
     return _multiplied(np.concatenate([inside.real, inside.imag]))
 
 

@@ -124,10 +124,10 @@ class Search:
         )
 
     def _tried(
-        self, searching: ModelFamily, base: Refit, name: str, candidate: Candidate, sight: Sight
+        self, searching: ModelFamily, base: Refit, name: str, candidate: Candidate, seen: Sight
     ) -> tuple[Candidate, Refit, ModelFamily] | None:
         """The refit with a candidate to the runs that search; None where it cannot be added."""
-        own = definition(name, candidate.terms, candidate.signs, candidate.strength, sight.typical, sight.units)
+        own = definition(name, candidate.terms, candidate.signs, candidate.strength, seen.typical, seen.units)
         try:
             effect = read_effect(own, model=self.models.preset.name)
         except Unusable:

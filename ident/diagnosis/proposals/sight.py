@@ -66,11 +66,7 @@ def _distinct(names: Sequence[str], typical: Mapping[str, Array]) -> list[str]:
     kept: list[str] = []
     for name in names:
         x = typical[name]
-        size = float(np.linalg.norm(x))
-        alike = any(
-            abs(float(x @ typical[other])) > _PROPORTIONAL * size * np.linalg.norm(typical[other]) for other in kept
-        )
-        if size > 0 and np.ptp(x) > 0 and not alike:
+        if np.ptp(x) > 0 and not any(_cosine(x, typical[other]) > _PROPORTIONAL for other in kept):
             kept.append(name)
     return kept
 

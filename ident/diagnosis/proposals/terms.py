@@ -51,8 +51,8 @@ class Shape:
 class Term:
     """A term at a place: `at` is the signal that it adds to, `text` its equation, `unit` that of the term.
 
-    `kind` names its form and `of` the signals that it is of; `memory` are equations of its own that go before, and
-    `state` the rate of one. `worked_out` gives its samples where the equation alone does not.
+    `kind` names its form and `of` the signals that it is of; `memory` are equations of its own that go before.
+    `worked_out` gives its samples where the equation alone does not.
     """
 
     place: str
@@ -63,7 +63,6 @@ class Term:
     unit: Powers
     shapes: tuple[Shape, ...] = ()
     memory: tuple[str, ...] = ()
-    state: tuple[str, str] | None = None
     worked_out: Callable[[Signals, float], Array] | None = field(default=None, compare=False, repr=False)
 
     def samples(self, signals: Signals, rate: float) -> Array:
@@ -139,7 +138,7 @@ class Library:
                 return np.asarray(lfilter([1 - decay], [1, -decay], x) - x)
 
             shape = Shape("T", T, "s")
-            yield Term(place, at, f"lag({a}, T) - {a}", "lag", (a,), self._unit((a, 1)), (shape,), (), None, late)
+            yield Term(place, at, f"lag({a}, T) - {a}", "lag", (a,), self._unit((a, 1)), (shape,), (), late)
 
     def _play(self, place: str, at: str, a: str) -> Iterator[Term]:
         for share in _PLAYS:
@@ -154,7 +153,7 @@ class Library:
 
             shape = Shape("b", half, self.units[a])
             memory = (f"p := clip(p, {a} - b, {a} + b)",)
-            yield Term(place, at, f"p - {a}", "play", (a,), self._unit((a, 1)), (shape,), memory, None, held)
+            yield Term(place, at, f"p - {a}", "play", (a,), self._unit((a, 1)), (shape,), memory, held)
 
     def _of_two(self, place: str, at: str, a: str, b: str) -> Iterator[Term]:
         for text, kind, powers, symmetric in (
