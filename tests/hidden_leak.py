@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 from pathlib import Path
 
-from tests.app.conftest import archived, packed
+from tests.app.conftest import archived, packed, unpacked
 from tests.reference import qian_reference as linear
 from tests.reference.outside_reference import Outside, measure_all
 
@@ -30,8 +30,4 @@ def zipped(serial: str = "LEAK-1") -> bytes:
 
 def write(folder: Path, serial: str = "LEAK-1") -> Path:
     """The same as a folder."""
-    for name, content in files(serial).items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content)
-    return folder
+    return unpacked(files(serial), folder)

@@ -185,19 +185,25 @@ def _simulated(
 ) -> dict[str, dict[str, Array]]:
     """The internal signals of a model with effects, from its compiled kernel: name, then run."""
     _, matrix, values = fitted(comparison.fit, replace(comparison.matrix, runs=tuple(runs)))
-    simulated = SimulatedRuns(preset, matrix, matrix.runs)
+    return inside(SimulatedRuns(preset, matrix, matrix.runs), values, signals)
+
+
+def inside(
+    simulated: SimulatedRuns, values: Mapping[str, float], signals: Sequence[str]
+) -> dict[str, dict[str, Array]]:
+    """The internal signals (n,) of simulated runs at some values: name, then the run's id."""
     _, steps = simulated.settle(values)
-    chain = showing(preset.chain, signals)
+    chain = showing(simulated.chain, tuple(signals))
 
     def one(entry: tuple[str, Run]) -> Array:
         name, run = entry
-        known = conditions(run, matrix.actuator) | values
+        known = conditions(run, simulated.matrix.actuator) | dict(values)
         at = {symbol: np.array([[value]]) for symbol, value in known.items()}
         start = simulated.first_states(run, at)
         named = replace(run, output=name, channels={**run.channels, name: run.measured})
         blocks = Simulation(chain, (named,), at, steps, start).outputs()
         return np.concatenate([rows[:, 0, 0] for rows, _, _ in blocks])
 
-    wanted = [(name, run) for name in signals for run in runs]
+    wanted = [(name, run) for name in signals for run in simulated.runs]
     found = dict(zip(((name, run.id) for name, run in wanted), each(one, wanted), strict=True))
-    return {name: {run.id: found[name, run.id] for run in runs} for name in signals}
+    return {name: {run.id: found[name, run.id] for run in simulated.runs} for name in signals}

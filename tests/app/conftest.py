@@ -62,6 +62,15 @@ def zipped(serial: str = "SW-1") -> bytes:
     return archived(files(serial))
 
 
+def unpacked(files: dict[str, bytes], folder: Path) -> Path:
+    """The files in a folder."""
+    for name, content in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+    return folder
+
+
 def archived(contents: dict[str, bytes]) -> bytes:
     """Files by name as one archive."""
     buffer = io.BytesIO()

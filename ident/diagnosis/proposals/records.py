@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +18,8 @@ from ident.matrix import Actuator, Run
 from ident.parallel import each
 from ident.presets import Preset
 from ident.residuals.decimation import Response, averaged, stride
-from ident.residuals.views import injected, showing
-from ident.simulation.simulate import Simulation
+from ident.residuals.traces import inside
+from ident.residuals.views import injected
 
 Array = NDArray[np.float64]
 _MOST = 60_000  # coarse samples of all runs together: records are cut to their beginnings
@@ -53,12 +53,13 @@ def records(refit: Refit, names: Sequence[str]) -> tuple[Record, ...]:
     signs = np.where(point + STEP > 1.0, -1.0, 1.0)
     moved = fitness.space.values(np.concatenate([point[None], point + np.diag(STEP * signs)]))
     sensitivities = Sensitivities.of(fitness, moved, STEP * signs)
-    inner = _inner(refit, names)
+    simulated = SimulatedRuns(fitness.preset, fitness.matrix, fitness.runs, starts=dict(fitness.starts))
+    inner = inside(simulated, {name: float(value[0]) for name, value in moved.items()}, names)
 
     def one(run: Run) -> Record:
         Z = sensitivities.columns[run.id].Z
         coarse = np.array([averaged(row, count)[:most] for row in Z]).T
-        shown = {name: averaged(inner[name, run.id], count)[:most] for name in names}
+        shown = {name: averaged(inner[name][run.id], count)[:most] for name in names}
         n, rate = len(coarse), run.sample_rate / count
         known = {name: np.full(n, value) for name, value in conditions(run, fitness.matrix.actuator).items()}
         time = {"t": (np.arange(n) + 0.5) / rate}
@@ -68,27 +69,6 @@ def records(refit: Refit, names: Sequence[str]) -> tuple[Record, ...]:
         )
 
     return tuple(each(one, fitness.runs))
-
-
-def _inner(refit: Refit, names: Sequence[str]) -> dict[tuple[str, str], Array]:
-    """The signals inside the model, (n,), by name and run."""
-    fitness = refit.fitness
-    preset = fitness.preset
-    simulated = SimulatedRuns(preset, fitness.matrix, fitness.runs, starts=dict(fitness.starts))
-    values = {name: float(value[0]) for name, value in fitness.space.values(refit.point[None]).items()}
-    _, steps = simulated.settle(values)
-    chain = showing(preset.chain, tuple(names))
-
-    def one(entry: tuple[str, Run]) -> Array:
-        name, run = entry
-        known = conditions(run, fitness.matrix.actuator) | values
-        at = {symbol: np.array([[value]]) for symbol, value in known.items()}
-        start = simulated.first_states(run, at)
-        named = replace(run, output=name, channels={**run.channels, name: run.measured})
-        return np.concatenate([rows[:, 0, 0] for rows, _, _ in Simulation(chain, (named,), at, steps, start).outputs()])
-
-    wanted = [(name, run) for name in names for run in fitness.runs]
-    return dict(zip(((name, run.id) for name, run in wanted), each(one, wanted), strict=True))
 
 
 def paths(
