@@ -296,11 +296,21 @@ class ProposalView(BaseModel):
     run: dict[str, str | float | dict[str, str]]
 
 
+class RiseView(BaseModel):
+    """The error on runs to verify without an effect and with it, and by how many standard errors it rises."""
+
+    effect: str
+    before: float
+    after: float
+    deviations: float
+
+
 class TermView(BaseModel):
     """A term that no list holds, proposed by search: where it acts, its equation, the effect of its own that it is.
 
     `class` are the forms that the data cannot tell from it; `nats` those of runs that neither search nor choice saw,
-    `bar` what they had to exceed. `formula` is its equation in MathML.
+    `bar` what they had to exceed. `formula` is its equation in MathML. With `contradicted` the error rises on runs to
+    verify.
     """
 
     model_config = ConfigDict(populate_by_name=True)
@@ -309,6 +319,7 @@ class TermView(BaseModel):
     equation: str
     effect: DefinitionView
     strength: float
+    std_error: float | None = None
     unit: str
     terms: int
     shapes: int
@@ -320,6 +331,7 @@ class TermView(BaseModel):
     meaning: str
     formula: str
     hypothesis: bool
+    contradicted: RiseView | None = None
 
 
 class DiagnosisResult(BaseModel):

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from app.cli.tables import output, table
+from ident.diagnosis.words import rises
 from ident.words.percent import percent
 from ident.words.plus_minus import plus_minus_si
 
@@ -33,6 +34,9 @@ def show_diagnosis(found: Diagnosis) -> None:
         rows = [(suspect.run, suspect.what, suspect.evidence) for suspect in found.verdict.suspects]
         console.print(table(("suspect run", "label", "evidence"), rows, numbers=()))
     if found.proposals:
+        for one in found.proposals:
+            if one.contradicted:
+                console.print(rises(one.contradicted, one.equation), markup=False)
         console.print(table(("proposed by search", "what it would mean", "strength", *uses, "nats (bar)", "or"),
                             proposal_rows(found), numbers=(*uses, "nats (bar)")))  # fmt: skip
     for note in found.notes:
@@ -47,7 +51,7 @@ def proposal_rows(found: Diagnosis) -> Iterator[Row]:
         errors = (percent(one.error.get(use)) for use in USES)
         meant = one.meaning + (" (a hypothesis: too few runs to confirm it)" if one.hypothesis else "")
         evidence = f"{one.nats:.3g} ({one.bar:.3g})"
-        strength_is = plus_minus_si(one.strength, None, one.unit, digits=4)
+        strength_is = plus_minus_si(one.strength, one.std_error, one.unit, digits=4)
         yield one.equation, meant or "–", strength_is, *errors, evidence, ", ".join(one.alike[:3])
 
 

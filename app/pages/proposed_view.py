@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from ident.diagnosis.result import Diagnosis
+from ident.diagnosis.words import rises
 from ident.equations.mathml import mathml
-from ident.words.engineering import quantity
 from ident.words.number import plain
+from ident.words.plus_minus import plus_minus
 from ident.words.titles import title
 
 
@@ -23,6 +24,7 @@ class ProposedCard:
     title: str
     equations: tuple[Markup, ...]
     strength: str
+    against: str
     error: Mapping[str, float | None]
     evidence: str
     alike: tuple[str, ...]
@@ -49,7 +51,8 @@ def proposed(found: Diagnosis) -> Iterator[ProposedCard]:
             if one.meaning
             else f"A term at the {' and '.join(one.place)}",
             equations=tuple(Markup(mathml(line)) for line in one.effect["equation"]),
-            strength=quantity(one.strength, one.unit),
+            strength=plus_minus(one.strength, one.std_error, one.unit),
+            against=rises(one.contradicted, "it") if one.contradicted else "",
             error=one.error,
             evidence=f"{plain(one.nats, 3)} nats, {plain(one.bar, 3)} asked for",
             alike=one.alike,

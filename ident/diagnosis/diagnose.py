@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from importlib.metadata import version
 from typing import Any
 
@@ -27,8 +26,6 @@ from ident.effects.effect import Effect
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
-from ident.fit.space import Space
-from ident.fit.uncertainty import covariance
 from ident.matrix import Matrix
 from ident.progress import Expected, Progress
 
@@ -145,17 +142,10 @@ class Diagnoser:
 
     def _parameters(self, models: ModelFamily, refit: Refit) -> dict[str, Found]:
         preset = models.model(refit.effects)
-        known = covariance(refit.here, refit.point)
         found = {}
         for parameter in preset.parameters:
-            name = parameter.in_equations
-            error = None
-            if name in refit.space.names:
-                error = known.deviation(partial(_value_of, refit.space, name))
-                error = error if np.isfinite(error) and error < 1e3 * max(abs(refit.values[name]), 1e-300) else None
-            found[parameter.name] = Found(
-                refit.values[name], refit.fitness.preset.unit(parameter), error, parameter.symbol
-            )
+            name, unit = parameter.in_equations, refit.fitness.preset.unit(parameter)
+            found[parameter.name] = Found(refit.values[name], unit, refit.deviation(name), parameter.symbol)
         return found
 
     def _ranked(self, selection: StepwiseSelection, floor: float | None) -> list[Ranked]:
@@ -197,8 +187,7 @@ class Diagnoser:
             return
         before: list[NDArray[np.float64]] | None = None
         for added, refit in steps:
-            outputs = refit.fitness.fresh(runs).outputs(refit.point)
-            after = [refit.fitness.left(run, outputs[run.id]) for run in runs]
+            after = refit.left(runs)
             if added and before and (found := contradiction(added, runs, before, after)):
                 yield found
             before = after
@@ -224,10 +213,6 @@ def _refused(proposed: Proposals, asked: bool) -> Iterator[str]:
         )
     elif asked and not proposed.looked_at:
         yield "No term was looked for: the error is the noise's."
-
-
-def _value_of(space: Space, name: str, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    return space.values(points)[name]
 
 
 def _evidence(candidate: Candidate, effect: Effect) -> dict[str, Any]:

@@ -20,6 +20,7 @@ from ident.fit.reduction import excited_band
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.space import Space, search_space
+from ident.fit.uncertainty import Covariance, covariance
 from ident.matrix import MOTIONS, Matrix, Run, over_runs
 from ident.noise.effective_sample_size import independent_samples
 from ident.noise.floor import Floors, noise_floors
@@ -36,6 +37,7 @@ _OFF = 0.01  # of the largest strength
 _BETTER = 0.99  # times the error: a new optimum, not the same one
 _AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be noise, beside
 _CHANCE = 3.0  # standard deviations
+_KNOWN = 1e3  # times its value: the standard error beyond which nothing is known of a parameter
 
 
 @dataclass(frozen=True)
@@ -80,6 +82,22 @@ class Refit:
     def errors(self) -> dict[str, float | None]:
         """Its errors by what they are measured on."""
         return {"fit": self.error, "held_out": self.held_out.error, "verify": self.on_verify}
+
+    def left(self, runs: Sequence[Run]) -> list[Array]:
+        """What it leaves of any runs of the matrix, (n,) each, less its mean or over windows."""
+        outputs = self.fitness.fresh(tuple(runs)).outputs(self.point)
+        return [self.fitness.left(run, outputs[run.id]) for run in runs]
+
+    @cached_property
+    def _known(self) -> Covariance:
+        return covariance(self.here, self.point)
+
+    def deviation(self, parameter: str) -> float | None:
+        """The standard error of a parameter by its name in the equations; None where it is held or not determined."""
+        if parameter not in self.space.names:
+            return None
+        error = self._known.deviation(lambda points: self.space.values(points)[parameter])
+        return error if np.isfinite(error) and error < _KNOWN * max(abs(self.values[parameter]), 1e-300) else None
 
     @property
     def offset(self) -> float:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from ident.diagnosis.standing import Contradiction
 from ident.plain import written
 
 Errors = Mapping[str, float | None]
@@ -18,13 +19,15 @@ class Proposal:
     `terms` counts the terms that were added up to this one, `shapes` the numbers within it that were fitted. `nats` are
     those of runs that neither the search nor the choice saw, `bar` what they had to exceed. `alike`, in the JSON
     ``class``, are the forms that the data cannot tell from it; `beside` the effects of the model that it was added to.
-    Of a `hypothesis` there were too few runs to confirm it on others.
+    Of a `hypothesis` there were too few runs to confirm it on others. `contradicted`: the error on runs to verify rises
+    with it.
     """
 
     place: tuple[str, ...]
     equation: str
     effect: Mapping[str, Any]
     strength: float = 0.0
+    std_error: float | None = None
     unit: str = "1"
     terms: int = 1
     shapes: int = 0
@@ -36,6 +39,7 @@ class Proposal:
     meaning: str = ""
     formula: str = ""
     hypothesis: bool = False
+    contradicted: Contradiction | None = None
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data, in the contract's words."""

@@ -25,6 +25,7 @@ from ident.diagnosis.proposals.own import definition
 from ident.diagnosis.proposals.proposal import Proposal, Proposals, Refused
 from ident.diagnosis.proposals.sight import Sight, sight
 from ident.diagnosis.significance import improvement
+from ident.diagnosis.standing import Contradiction, contradiction
 from ident.equations.mathml import mathml
 from ident.errors import TimeIsUp, Unusable
 from ident.matrix import Run, over_runs
@@ -96,9 +97,15 @@ class Search:
             self.refused = Refused(equation=candidate.equation, nats=gained, bar=bar)
             return False
         self.models = replace(self.models, effects=family.effects, given=family.given, _known={})
-        self.base = self.models.refit(refit.effects, refit.values)
-        self.found.append(self._proposal(candidate, name, gained, bar, few))
+        before, self.base = self.base, self.models.refit(refit.effects, refit.values)
+        proposal = self._proposal(candidate, name, gained, bar, few)
+        self.found.append(replace(proposal, contradicted=self._contradiction(name, before)))
         return True
+
+    def _contradiction(self, name: str, before: Refit) -> Contradiction | None:
+        """Whether runs to verify speak against the latest term."""
+        runs = self.models.matrix.of_use("verify")
+        return contradiction(name, runs, before.left(runs), self.base.left(runs)) if runs else None
 
     def _proposal(self, candidate: Candidate, name: str, gained: float, bar: float, hypothesis: bool) -> Proposal:
         own = dict(next(one for one in self.models.given.custom if one["name"] == name))
@@ -110,6 +117,7 @@ class Search:
             equation="; ".join(own["equation"]),
             effect=own,
             strength=self.base.values[self.models.strength(name)],
+            std_error=self.base.deviation(self.models.strength(name)),
             unit=self.models.effects[name].strength.unit,
             beside=self.beside,
             terms=len(self.found) + 1,

@@ -116,18 +116,26 @@ def test_a_proposal_is_an_effect_that_anyone_may_add():
     assert "the error is the noise's" in again.notes[0]
 
 
-def test_verify_runs_neither_rank_nor_choose():
+def test_verify_runs_neither_rank_nor_choose_and_what_they_speak_against_says_so():
+    """Those of the same machine before it leaked."""
     matrix, found = with_a_leak()
-    noisy = tuple(
-        replace(run, channels={**run.channels, "displacement": run.measured[::-1].copy()})
-        if run.use == "verify"
-        else run
-        for run in matrix.runs
-    )
-    (term,) = proposed(replace(matrix, runs=noisy)).proposals
+    other = replace(matrix, runs=(*matrix.of_use("fit"), *machine(1).of_use("verify")))
+    (term,) = proposed(other).proposals
     assert term.equation == found.proposals[0].equation
     assert term.strength == found.proposals[0].strength
-    assert term.error["verify"] > 10 * found.proposals[0].error["verify"]
+    assert term.error["verify"] > 5 * found.proposals[0].error["verify"]
+    against = term.contradicted
+    assert against.after == pytest.approx(term.error["verify"], rel=1e-3)
+    assert against.before < against.after
+    assert against.deviations > 2
+    assert found.proposals[0].contradicted is None
+
+
+def test_the_strength_comes_with_its_standard_error():
+    _, found = with_a_leak()
+    (term,) = found.proposals
+    assert 0 < term.std_error < 0.01 * abs(term.strength)
+    assert abs(abs(term.strength) - 0.6 * PLANT.Cl) < 4 * term.std_error  # half of what leaks in one direction
 
 
 @pytest.mark.parametrize("colour", ["white", "slow", "hum", "drift"])
