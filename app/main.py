@@ -35,6 +35,7 @@ FEATURES = (
     "report",
     "parameters",
     "catalogue",
+    "own_effects",
     "operation",
 )
 """Folders whose endpoints.py has a `router` of the API."""

@@ -123,6 +123,25 @@ class DiagnosisRow(Base):
     result: Mapped[dict[str, Any]]
 
 
+class OwnEffectRow(Base):
+    """An effect of the lab's own that is kept under a name: see `app/own_effects/kept.py`."""
+
+    __tablename__ = "own_effects"
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    name: Mapped[str] = mapped_column(String(60), unique=True, index=True)
+    definition: Mapped[dict[str, Any]]
+    model: Mapped[str | None] = mapped_column(Text)
+    meaning: Mapped[str] = mapped_column(Text, default="")
+    origin: Mapped[str] = mapped_column(String(40))
+    diagnosis: Mapped[str | None] = mapped_column(ForeignKey("diagnoses.id"))
+    data_hash: Mapped[str | None] = mapped_column(String(64))
+    nats: Mapped[float | None] = mapped_column(Float)
+    bar: Mapped[float | None] = mapped_column(Float)
+    alike: Mapped[list[Any]]
+    version: Mapped[str] = mapped_column(String(40))
+    created_at: Mapped[str] = mapped_column(String(40), default=now)
+
+
 class AnswerRow(Base):
     """What a POST with an Idempotency-Key was answered; without a status it is a claim that waits for its answer.
 

@@ -30,14 +30,21 @@ def pages() -> dict[str, str]:
 def command_line() -> str:
     """The commands with their arguments and options."""
     lines = ["# The command line", NOTE, "", str(program.info.help), "", str(program.info.epilog), ""]
-    group: Any = typer.main.get_command(program)
-    for name, command in group.commands.items():
+    for name, command in commands(typer.main.get_command(program)):
         arguments = " ".join(str(p.metavar) for p in command.params if is_argument(p))
         lines += [f"## servoident {name} {arguments}".rstrip(), "", inspect.cleandoc(command.help or ""), ""]
         rows = [row(option) for option in command.params if not is_argument(option) and option.name != "help"]
         if rows:
             lines += [*table(("option", "default", "meaning"), rows), ""]
     return "\n".join(lines)
+
+
+def commands(group: Any, before: str = "") -> Iterator[tuple[str, Any]]:
+    """Every command with its name, those of a command behind it."""
+    for name, command in group.commands.items():
+        yield before + name, command
+        if hasattr(command, "commands"):
+            yield from commands(command, f"{before}{name} ")
 
 
 def is_argument(parameter: object) -> bool:

@@ -1,6 +1,8 @@
 """Models and effects: equations, units, bounds, meaning."""
 
-from pydantic import BaseModel
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
 
 
 class ParameterView(BaseModel):
@@ -46,6 +48,52 @@ class EffectView(BaseModel):
     source: str
     parameters: list[ParameterView]
     equations: list[EquationView]
+
+
+class OwnEffectRequest(BaseModel):
+    """An effect to keep under a `name`: a `definition`, made for a `model` or for any, or a term of a `diagnosis`.
+
+    A definition is as `POST /custom-effects` takes it; `proposal` counts the diagnosis's terms from 0. `meaning` takes
+    the place of that which it has.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+    name: str
+    definition: dict[str, Any] | str | None = None
+    model: str | None = None
+    diagnosis: str | None = None
+    proposal: int = Field(default=0, ge=0)
+    meaning: str = ""
+
+
+class OwnEffectView(EffectView):
+    """An effect of the lab's own. `model` is the one that it was made for, null for any that has what it names.
+
+    `origin` is "written" or "proposed by search"; then there are the `diagnosis`, the hash of its data, the `nats` by
+    which other runs confirmed it, the `bar` that they had to exceed, and the forms that the data could not tell from it
+    (`class`). `refused` says why this version cannot read the definition, where it cannot.
+    """
+
+    model_config = ConfigDict(populate_by_name=True)
+
+    model: str | None
+    origin: str
+    definition: dict[str, Any]
+    diagnosis: str | None
+    data_hash: str | None
+    nats: float | None
+    bar: float | None
+    alike: list[str] = Field(alias="class")
+    version: str
+    created_at: str
+    refused: str
+
+
+class OwnEffectPage(BaseModel):
+    """A page of own effects by name."""
+
+    items: list[OwnEffectView]
+    next: str | None = None
 
 
 class Health(BaseModel):

@@ -9,7 +9,8 @@ from schemas.result import DiagnosisResult
 class DiagnosisRequest(Chosen):
     """A diagnosis to be queued: of a stored `fit`, or of a `matrix`, whose fit with these settings is made first.
 
-    The effects that `custom` defines are ranked beside those of the catalogue. After `time` seconds nothing more is
+    The effects that `custom` defines or names are ranked beside those of the catalogue; with `own` all that the lab
+    keeps and the model can take. After `time` seconds nothing more is
     tried: what was found by then is the diagnosis. With `propose`, where the catalogue ends above the noise, terms that
     no list holds are searched for.
     """
@@ -18,6 +19,7 @@ class DiagnosisRequest(Chosen):
     matrix: str | None = None
     max_effects: int | None = Field(default=None, ge=0)
     time: float | None = Field(default=None, gt=0)
+    own: bool = False
     propose: bool = False
 
 

@@ -13,7 +13,8 @@ class Chosen(BaseModel):
     """What may be chosen about a fit; `bounds` and `set` may carry units ("1 ms"), plain numbers are SI.
 
     Without a `model` that which fits is taken, of those that the channels allow; with effects, bounds or values the
-    likeliest. `custom` adds effects of one's own: definitions as `POST /custom-effects` takes them.
+    likeliest. `custom` adds effects of one's own: definitions as `POST /custom-effects` takes them, or names of those
+    at `/own-effects`, which `effects` takes, too.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -38,7 +39,8 @@ class FitRequest(Chosen):
 class EffectsRequest(BaseModel):
     """Effects to add to a fit: one by `effect`, or some by `effects`, or what `custom` defines.
 
-    A definition whose name is not among `effects` is added all the same.
+    A definition whose name is not among `effects` is added all the same; names are those of `/effects` and
+    `/own-effects`.
     """
 
     model_config = ConfigDict(extra="forbid")

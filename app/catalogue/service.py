@@ -29,15 +29,16 @@ def models() -> list[ModelView]:
 
 def effects() -> list[EffectView]:
     """Every effect of the catalogue."""
-    return [_effect(effect) for effect in CATALOGUE]
+    return [view(effect) for effect in CATALOGUE]
 
 
 def custom_effect(definition: Mapping[str, Any] | str) -> EffectView:
     """A user's effect as it is understood. Raises Unusable with the character at fault."""
-    return _effect(read_effect(definition))
+    return view(read_effect(definition))
 
 
-def _effect(effect: Effect) -> EffectView:
+def view(effect: Effect) -> EffectView:
+    """An effect as it is sent."""
     return EffectView(
         name=effect.name, place=effect.place, meaning=effect.meaning, looks=effect.looks, source=effect.source,
         parameters=_parameters(effect.parameters), equations=_equations(effect.equations),

@@ -64,7 +64,7 @@ def in_si(text: str, name: str, model: Preset, where: str) -> float:
 def definitions(files: Sequence[Path]) -> tuple[dict[str, Any], ...]:
     """The definitions of own effects in these files, each called like its file where it gives no name.
 
-    Of a diagnosis, as JSON, those of the terms that it proposes.
+    Of a diagnosis, as JSON, those of the terms that it proposes. A name without a file is that of a kept effect.
     """
     from ident.custom.definition import read_effect
 
@@ -78,17 +78,24 @@ def definitions(files: Sequence[Path]) -> tuple[dict[str, Any], ...]:
 
 
 def _defined(file: Path) -> list[dict[str, Any]]:
-    """What a file defines: one effect, or, a diagnosis, what that proposes."""
+    """What a file defines: one effect, or, a diagnosis, what that proposes; what is kept under a name."""
     from app.cli.given import read_diagnosis
-    from ident.custom.definition import definition_of
+    from app.cli.kept_here import find
+    from ident.custom.definition import definition_of, is_name
 
-    text = file.read_bytes()
-    if file.suffix != ".json" or b'"candidates"' not in text:
-        return [definition_of(text, file.stem)]
+    if is_name(str(file)) and not file.exists():
+        return [dict(find(str(file)).definition)]
+    if not is_diagnosis(file):
+        return [definition_of(file.read_bytes(), file.stem)]
     proposals = read_diagnosis(file).proposals
     if not proposals:
         raise Unusable("not-an-effect", "the diagnosis proposes no term", str(file), "make it with --propose")
     return [definition_of(proposal.effect) for proposal in proposals]
+
+
+def is_diagnosis(file: Path) -> bool:
+    """Whether a file holds a diagnosis, as JSON, and no effect."""
+    return file.suffix == ".json" and b'"candidates"' in file.read_bytes()
 
 
 def method_options(texts: Sequence[str]) -> dict[str, float]:

@@ -34,13 +34,17 @@ Custom = Annotated[
     list[Path] | None,
     typer.Option(
         "--custom",
-        metavar="EFFECT.yaml",
-        help="Own effect to add, defined in a file, or what a diagnosis (D.json) proposes; may be repeated.",
+        metavar="EFFECT.yaml|NAME",
+        help="Own effect to add, defined in a file or kept, or what a diagnosis (D.json) proposes; may be repeated.",
     ),
 ]
 Ranked = Annotated[
     list[Path] | None,
-    typer.Option("--custom", metavar="EFFECT.yaml", help="Own effect to rank beside the catalogue; may be repeated."),
+    typer.Option(
+        "--custom",
+        metavar="EFFECT.yaml|NAME",
+        help="Own effect to rank beside the catalogue, defined in a file or kept; may be repeated.",
+    ),
 ]
 Method = Annotated[str, typer.Option(help=f"One of {', '.join(METHODS)}.")]
 Bounds = Annotated[

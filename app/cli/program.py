@@ -14,9 +14,12 @@ from app.cli.check import check
 from app.cli.compare import compare
 from app.cli.demo import demo
 from app.cli.diagnose import diagnose
+from app.cli.drop import drop
+from app.cli.effects import effects
 from app.cli.failures import INTERRUPTED, UNREAD, report
 from app.cli.fit import fit
 from app.cli.interrupts import heard
+from app.cli.keep import keep
 from app.cli.migrate import migrate
 from app.cli.next import next_
 from app.cli.query import query
@@ -42,6 +45,11 @@ program = typer.Typer(
 )
 for command in (*LOCAL, *SERVICE, *CLIENT):
     program.command(command.__name__.rstrip("_"))(command)
+catalogue = typer.Typer(rich_markup_mode=None)
+catalogue.callback(invoke_without_command=True)(effects)
+catalogue.command("keep")(keep)
+catalogue.command("drop")(drop)
+program.add_typer(catalogue, name="effects")
 
 
 def speak() -> None:

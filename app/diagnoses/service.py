@@ -12,6 +12,7 @@ from app.fits import service as fits
 from app.jobs import repository as recorded
 from app.jobs import service as jobs
 from app.matrices import service as matrices
+from app.own_effects.naming import every, with_kept
 from app.paging import cursor, keys_of
 from app.tables import DiagnosisRow
 from ident.custom.definition import definition_of, read_effect, together
@@ -20,11 +21,11 @@ from ident.diagnosis.stepwise import MOST, USUAL
 from ident.errors import Unusable
 from ident.fit.identification import check_settings
 from ident.fit.result import Estimate, FitResult
-from ident.plain import read
+from ident.plain import read, written
 from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView
 from schemas.fit import Chosen, JobView
 
-_BESIDE_A_FIT = {"fit", "seed", "max_effects", "time", "custom", "propose"}
+_BESIDE_A_FIT = {"fit", "seed", "max_effects", "time", "custom", "own", "propose"}
 
 
 @dataclass(frozen=True)
@@ -56,12 +57,14 @@ def submit(context: Context, request: DiagnosisRequest, job: str) -> JobView:
     matrix = matrices.find(context, matrix_id)
     reseed = request.seed if request.fit is not None and "seed" in request.model_fields_set else None
     settings |= {"max_effects": most, "time": request.time, "reseed": reseed, "propose": request.propose}
+    settings["own"] = [written(kept) for kept in every(context)] if request.own else []
     return jobs.record(context, job, matrix.id, settings, request.fit, "diagnosis")
 
 
 def _wanted(context: Context, request: DiagnosisRequest) -> tuple[str, dict[str, object]]:
     """The matrix and the settings of the fit: of the one that is given, or of the one to be made."""
     given = request.model_fields_set & set(Chosen.model_fields)
+    request = with_kept(context, request)
     if request.fit is not None:
         if request.matrix is not None or given - _BESIDE_A_FIT:
             raise Failure(422, "bad-request", "a fit is given, and a matrix or settings beside it", "fit",

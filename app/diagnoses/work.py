@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from time import monotonic
+from typing import Any
 
 from sqlalchemy.orm import Session
 
 from app.diagnoses import repository
 from app.fits import repository as fits
 from app.jobs.work import Kind, State, Task, Work
+from app.own_effects.kept import Kept, suited
 from app.tables import JobRow
 from ident.custom.definition import read_effect
 from ident.diagnosis.course import left
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
+from ident.plain import read
 from ident.workflows import diagnose, identify
 
-OWN = ("max_effects", "time", "reseed", "propose")
+OWN = ("max_effects", "time", "reseed", "propose", "own")
 """What the settings of a diagnosis hold beside those of its fit."""
 
 
@@ -38,13 +42,14 @@ class DiagnosisWork(Work):
         else:
             given = given.with_custom(chosen.get("custom", ()))
             fit = given if chosen["reseed"] is None else _reseeded(given, chosen["reseed"])
+        made, fit = fit, _beside_the_lab_s(fit, chosen.get("own", ()))
         own = tuple(read_effect(definition, model=fit.model) for definition in fit.settings.get("custom", ()))
         seconds = left(chosen.get("time"), begun)
         found = diagnose(
             matrix, fit, most=chosen["max_effects"], custom=own, report=report, seconds=seconds,
             propose=bool(chosen.get("propose")),
         )  # fmt: skip
-        return {"diagnosis": found.to_json(), "fit": None if given else fit.to_json()}
+        return {"diagnosis": found.to_json(), "fit": None if given else made.to_json()}
 
     def _given(self) -> FitResult | None:
         """The fit that the job starts from, None where it makes its own. Raises Unusable."""
@@ -56,6 +61,15 @@ class DiagnosisWork(Work):
         if stored is None:
             raise Unusable("no-such-fit", "the fit is not stored any more", parent, "start another diagnosis")
         return FitResult.from_json(stored.result)
+
+
+def _beside_the_lab_s(fit: FitResult, kept: Sequence[Mapping[str, Any]]) -> FitResult:
+    """The fit with the lab's own effects that its model can take beside its own, which come first."""
+    known = tuple(fit.settings.get("custom", ()))
+    names = {definition["name"] for definition in known}
+    entries = suited((read(Kept, entry) for entry in kept), fit.model)
+    more = [entry.definition for entry in entries if entry.name not in names]
+    return fit.with_custom((*known, *more)) if more else fit
 
 
 def _reseeded(fit: FitResult, seed: int) -> FitResult:

@@ -7,6 +7,7 @@ from dataclasses import replace
 from app.context import Context
 from app.errors import Failure
 from app.fits import repository, service
+from app.own_effects.naming import with_kept
 from app.tables import FitRow
 from ident.custom.definition import definition_of, together
 from ident.effects import effect
@@ -19,13 +20,14 @@ from schemas.result import EstimateView
 def add(context: Context, fit_id: str, request: EffectsRequest, job: str) -> JobView:
     """Queue the refit of a fit with more effects and otherwise its own settings, under the id decided for its job."""
     parent = service.find(context, fit_id)
+    fit = FitResult.from_json(parent.result)
+    settings = Settings.from_json(fit.settings) if fit.settings else Settings(model=fit.model, seed=fit.seed)
+    request = with_kept(context, request, [str(definition["name"]) for definition in settings.custom])
     more = [definition_of(definition) for definition in request.custom]
     named = [*([request.effect] if request.effect is not None else []), *request.effects]
     wanted = dict.fromkeys([*named, *(str(definition["name"]) for definition in more)])
     if not wanted:
         raise Failure(422, "bad-request", "no effect is given", "effect", "name one of those at /api/v1/effects")
-    fit = FitResult.from_json(parent.result)
-    settings = Settings.from_json(fit.settings) if fit.settings else Settings(model=fit.model, seed=fit.seed)
     settings = replace(settings, custom=together(settings.custom, more))
     own = {definition["name"] for definition in settings.custom}
     for name in wanted.keys() - own:

@@ -11,6 +11,7 @@ from app.errors import missing
 from app.fits import repository
 from app.jobs import service as jobs
 from app.matrices import service as matrices
+from app.own_effects.naming import with_kept
 from app.tables import FitRow
 from ident.custom.definition import definition_of, preset_with
 from ident.fit.identification import check_settings
@@ -61,7 +62,8 @@ def submit(context: Context, request: FitRequest, job: str) -> JobView:
     matrix = matrices.find(context, request.matrix)
     if request.parent is not None:
         find(context, request.parent)
-    return queue(context, job, matrix.id, settings_of(request, matrices.view(matrix)), request.parent)
+    settings = settings_of(with_kept(context, request), matrices.view(matrix))
+    return queue(context, job, matrix.id, settings, request.parent)
 
 
 def queue(context: Context, job: str, matrix: str, settings: Settings, parent: str | None) -> JobView:

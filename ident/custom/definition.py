@@ -43,6 +43,8 @@ HANDED_ON = {
 """The signal that a place hands on: what an equation without ``NAME =`` redefines."""
 _LARGEST = 1_000_000  # bytes of a file
 _LINES = 8
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*")
+_LONGEST = 60  # characters of a name
 _LEFT = re.compile(r"\s*([A-Za-z]\w*)\s*(:|'|)\s*=(?![=<>])")
 _KINKS = re.compile(r"\b(sgn|sign|where|if)\b|[<>]")
 
@@ -112,13 +114,18 @@ def together(known: Sequence[Definition], more: Sequence[Definition]) -> tuple[D
     return tuple(found.values())
 
 
+def is_name(text: str) -> bool:
+    """Whether an effect can be called so."""
+    return len(text) <= _LONGEST and _NAME.fullmatch(text) is not None
+
+
 def _models(model: str) -> tuple[Preset, ...]:
     return (preset(model),) if model else tuple(PRESETS.values())
 
 
 def _name(fields: Fields) -> str:
     name = fields.text("name")
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*", name) or len(name) > 60:
+    if not is_name(name):
         raise Unusable("bad-name", f"{shown(name)!r} is no name of an effect", "effect name",
                        "give letters, digits and single underscores, a letter first")  # fmt: skip
     if name in {effect.name for effect in CATALOGUE}:

@@ -81,6 +81,15 @@ def check_names(lines: Sequence[Line], place: str, own: Mapping[str, str], model
     return chosen
 
 
+def refuse_symbol(name: str, models: Sequence[Preset]) -> None:
+    """Raise Unusable where what is to be called so would bear the name of something in an equation of a model."""
+    if name in RESERVED:
+        raise Unusable("name-taken", f"{name} is a word of the grammar", "effect name", "give it another name")
+    for model in models:
+        if name in _known(model):
+            raise Unusable("name-taken", f"{name} is {_meaning(name, model)}", "effect name", "give it another name")
+
+
 def _refuse_shadows(
     lines: Sequence[Line], place: str, own: Mapping[str, str], model: Preset, known: frozenset[str]
 ) -> None:  # fmt: skip

@@ -1,0 +1,27 @@
+"""`servoident effects drop`: an own effect out of the list."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from app.cli.effects import Where
+from app.cli.remote import Token, request
+
+
+def drop(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of an effect that is kept.")],
+    server: Where = "",
+    token: Token = "",
+) -> None:
+    """Remove an own effect from the list. Fits carry the effects that they were made with."""
+    if server:
+        from urllib.parse import quote
+
+        request(server, token, "DELETE", f"/own-effects/{quote(name, safe='', errors='surrogateescape')}")
+    else:
+        from app.cli.kept_here import drop as drop_here
+
+        drop_here(name)
+    print(f"{name} is kept no more")

@@ -1,0 +1,80 @@
+"""`servoident effects`: the effects of the catalogue and those of one's own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from app.cli.output import STANDARD_OUTPUT, check_target, write_json
+from app.cli.remote import Token, items, request
+from ident.errors import Unusable
+
+Where = Annotated[
+    str, typer.Option("--server", metavar="URL", help="A service whose own effects are meant, not those kept here.")
+]
+
+
+def effects(
+    context: typer.Context,
+    server: Where = "",
+    token: Token = "",
+    json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the lists as JSON; - is stdout.")] = None,
+) -> None:
+    """List your own effects that are kept, and those of the catalogue.
+
+    They are kept in the folder `effects` of the data of this user (SERVOIDENT_DATA), or by a service.
+    """
+    if context.invoked_subcommand is not None:
+        if server or json is not None:
+            raise Unusable("bad-option", f"an option stands before {context.invoked_subcommand}", "effects",
+                           "write options behind it")  # fmt: skip
+        return
+    check_target(json)
+    found = _of_service(server, token) if server else _here()
+    if json is not None:
+        write_json(found, json)
+    if json != STANDARD_OUTPUT:
+        show(found)
+
+
+def _here() -> dict[str, Any]:
+    from app.catalogue.service import effects as catalogue
+    from app.cli.kept_here import every
+    from app.own_effects.kept import view
+
+    own = [view(kept).model_dump(by_alias=True) for kept in every()]
+    return {"own": own, "catalogue": [effect.model_dump() for effect in catalogue()]}
+
+
+def _of_service(server: str, token: str) -> dict[str, Any]:
+    own = list(items(server, token, "/own-effects", {}))
+    return {"own": own, "catalogue": request(server, token, "GET", "/effects").json()}
+
+
+def show(found: dict[str, Any]) -> None:
+    """Print both lists as tables."""
+    from app.cli.tables import output, table
+
+    console = output()
+    if found["own"]:
+        header = ("own effect", "place", "equation", "meaning", "origin", "model")
+        console.print(table(header, own_rows(found["own"]), numbers=()))
+    else:
+        console.print("no effect of your own is kept: servoident effects keep EFFECT.yaml", markup=False)
+    rows = ((one["name"], one["place"], equations(one), one["meaning"]) for one in found["catalogue"])
+    console.print(table(("catalogue", "place", "equation", "meaning"), rows, numbers=()))
+
+
+def own_rows(own: list[dict[str, Any]]) -> Iterator[tuple[str, ...]]:
+    """One row an own effect; of one that this version cannot read, why."""
+    for one in own:
+        said = one["refused"] or equations(one)
+        yield one["name"], one["place"], said, one["meaning"], one["origin"], one["model"] or "any"
+
+
+def equations(one: dict[str, Any]) -> str:
+    """The lines of an effect in one."""
+    return "; ".join(str(line["text"]) for line in one["equations"])

@@ -1,0 +1,81 @@
+"""Effects of one's own that are kept on this machine: a file each, in the folder `effects` of the data."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ident.errors import Unusable
+
+if TYPE_CHECKING:
+    from app.own_effects.kept import Kept
+
+
+def folder() -> Path:
+    """Where they are: in SERVOIDENT_DATA, or the data folder of this user."""
+    from app.settings import default_data
+
+    return default_data() / "effects"
+
+
+def every() -> list[Kept]:
+    """All of them by name. Raises Unusable for a file that holds none."""
+    return [_read(file) for file in sorted(folder().glob("*.json"))]
+
+
+def find(name: str) -> Kept:
+    """The effect of a name. Raises Unusable where none is kept."""
+    file = _file(name)
+    if not file.is_file():
+        raise Unusable("no-such-effect", "no effect is kept under this name", name,
+                       "see `servoident effects` for the names, or name a file that is there")  # fmt: skip
+    return _read(file)
+
+
+def keep(kept: Kept) -> bool:
+    """Keep an effect under its name; False where it is kept already. Raises Unusable where another one has the name."""
+    from app.cli.output import write_json
+    from ident.plain import written
+
+    file = _file(kept.name)
+    if file.is_file():
+        if _read(file).definition != kept.definition:
+            raise Unusable("name-in-use", f"another effect is kept as {kept.name}", str(file),
+                           f"give it another --name, or `servoident effects drop {kept.name}` first")  # fmt: skip
+        return False
+    file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+    moment = datetime.now(UTC).isoformat(timespec="seconds")
+    write_json(written(replace(kept, created_at=moment)), file)
+    return True
+
+
+def drop(name: str) -> None:
+    """Remove an effect. Raises Unusable where none is kept under the name."""
+    find(name)
+    _file(name).unlink()
+
+
+def _file(name: str) -> Path:
+    from ident.custom.definition import is_name
+
+    if not is_name(name):
+        raise Unusable(
+            "bad-name", f"{name!r} is no name of an effect", "name", "see `servoident effects` for the names"
+        )
+    return folder() / f"{name}.json"
+
+
+def _read(file: Path) -> Kept:
+    from app.own_effects.kept import Kept
+    from ident.plain import Misfit, read
+
+    try:
+        found = read(Kept, json.loads(file.read_bytes()))
+    except (ValueError, RecursionError, Misfit):
+        found = None
+    if found is None or found.name != file.stem:
+        raise Unusable("not-an-effect", "not an effect that was kept", str(file), "remove the file, and keep it again")
+    return found
