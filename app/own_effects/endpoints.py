@@ -45,7 +45,8 @@ def _answer(kept: OwnEffectView, new: bool) -> Answer:
     return 201 if new else 200, kept.model_dump(by_alias=True), f"/api/v1/own-effects/{kept.name}"
 
 
-@router.delete("/{name}", status_code=204)
-def drop(here: Here, name: str) -> None:
+@router.delete("/{name}", status_code=204, response_class=Response)
+def drop(here: Here, name: str) -> Response:
     """Remove an own effect from the list; fits and diagnoses carry the definitions that they were made with."""
     service.drop(here, name)
+    return Response(status_code=204)

@@ -27,6 +27,7 @@ from schemas.catalogue import EffectView, OwnEffectView
 WRITTEN = "written"
 SEARCHED = "proposed by search"
 """Where an effect comes from; its definition says it as its `source`, wherever it goes."""
+_ARTICLES = (["a"], ["an"], ["the"])
 _WORDS = 40  # characters of a name that is made of a meaning
 
 
@@ -103,15 +104,15 @@ def meaning_of(said: str, places: Iterable[str]) -> str:
 
 
 def suggested(meaning: str, taken: Collection[str] = ()) -> str:
-    """A free name for what is meant so: its first words, numbered where they are taken."""
-    words = re.findall(r"[a-z0-9]+", meaning.lower())
-    name = next(iter(words), "own") if len(words) < 2 else words[0]
-    for word in words[1:]:
+    """A free name for what is meant so: the words before its first stop, numbered where they are taken."""
+    words = re.findall(r"[a-z0-9]+", re.split(r"[^\w\s'’-]", meaning)[0].lower())
+    words = words[words[:1] in _ARTICLES :] or ["own"]
+    name, *rest = words if words[0][0].isalpha() else ("term", *words)
+    for word in rest:
         if len(name) + len(word) >= _WORDS:
             break
         name += f"_{word}"
-    name = name[:_WORDS] if name[0].isalpha() else f"term_{name[:_WORDS]}"
-    tried = chain([name], (f"{name}_{number}" for number in count(2)))
+    tried = chain([name[:_WORDS]], (f"{name[:_WORDS]}_{number}" for number in count(2)))
     return next(one for one in tried if one not in taken and _free(one))
 
 

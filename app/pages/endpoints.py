@@ -69,6 +69,12 @@ def fit(request: Request, here: Here, fit: str) -> Response:
     return page(request, "fit.html", fit=shown, vega=assets.VEGA)
 
 
+@router.get("/effects")
+def effects(request: Request, here: Here) -> HTMLResponse:
+    """The lab's own effects, each with a button that deletes it."""
+    return page(request, "effects.html", **service.own_list(here))
+
+
 @router.get("/compare")
 def compare(request: Request, here: Here, fits: str) -> HTMLResponse:
     """Two fits side by side."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,10 +11,12 @@ from markupsafe import Markup
 
 from app.fits.rows import Determined, ErrorRow, ParameterRow, combination_rows, error_rows, parameter_rows
 from app.fits.service import Stored
+from app.own_effects.kept import Kept, suited
 from app.pages.chain_view import Drawing, drawing
 from app.pages.diagnosis_view import MissingView
 from app.pages.figure_forms import MAP, FigureForm, forms
 from app.pages.job_view import settings_facts
+from app.pages.kept_view import Keeping, KeptRow, keeping, kept_rows
 from app.pages.ladder_view import Step, steps
 from app.pages.matrix_view import counted
 from app.pages.run_view import Conditions, conditions
@@ -79,6 +81,8 @@ class FitPageView:
     on_bench: bool
     free_run: str
     others: tuple[tuple[str, str], ...]
+    kept: tuple[KeptRow, ...]
+    keeping: tuple[Keeping, ...]
 
 
 def fit_page(
@@ -88,10 +92,11 @@ def fit_page(
     ladder: LadderView,
     others: Iterable[ParameterSetView] = (),
     newer: str | None = None,
+    kept: Sequence[Kept] = (),
 ) -> FitPageView:
     """The page of a fit of this matrix; `others` are fits of the same actuator, to compare it with.
 
-    `newer` is the newest revision of the matrix, None where that is the matrix itself.
+    `newer` is the newest revision of the matrix, None where that is the matrix itself; `kept` are the lab's own effects.
     """
     fit = stored.found
     model = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
@@ -130,6 +135,8 @@ def fit_page(
         again=json.dumps(fit_request(fit, stored.id)),
         on_bench=preset(fit.model).kind == "bench",
         free_run=_free_run(fit),
+        kept=tuple(kept_rows(suited(kept, fit.model), fit.effects)),
+        keeping=tuple(keeping(lacks, kept)),
     )
 
 

@@ -13,12 +13,14 @@ from app.fits import service as fits
 from app.fits.rows import parameter_rows
 from app.jobs import service as jobs
 from app.matrices import service as matrices
+from app.own_effects import service as own_effects
 from app.pages.actuator_view import actuator_row, drifts, fit_rows, followed
 from app.pages.compare_view import CompareView, compare_view
 from app.pages.diagnosis_view import missing
 from app.pages.evidence_view import telling_run
 from app.pages.fit_page import FitPageView, fit_page
 from app.pages.job_view import JobPageView, job_page
+from app.pages.kept_view import kept_rows
 from app.pages.matrix_view import counted, matrix_view
 from app.pages.next_steps import next_steps
 from app.pages.start_view import start_view
@@ -105,7 +107,7 @@ def matrix(context: Context, matrix_id: str, cursor: str | None) -> Shown:
     return {
         "matrix": matrix_view(stored),
         "newer": matrices.newer(context, matrix_id),
-        "start": start_view(stored),
+        "start": start_view(stored, own_effects.every(context)),
         **_fits(context, cursor, matrix=matrix_id),
     }
 
@@ -114,6 +116,11 @@ def job_list(context: Context, cursor: str | None) -> Shown:
     """Jobs, newest first."""
     found = jobs.listed(context, cursor, _ROWS)
     return {"jobs": [job_page(job) for job in found.items], "more": found.next}
+
+
+def own_list(context: Context) -> Shown:
+    """The lab's own effects by name."""
+    return {"rows": tuple(kept_rows(own_effects.every(context)))}
 
 
 def compared(context: Context, wanted: str) -> CompareView:
@@ -137,4 +144,4 @@ def fit(context: Context, fit_id: str) -> FitPageView | JobPageView:
     way = lineage.ladder(context, fit_id)
     others = parameters.page(context, Wanted(serial=stored.serial), None, _ROWS).items
     newer = matrices.newer(context, stored.matrix)
-    return fit_page(stored, matrix, lacks, way, others, newer)
+    return fit_page(stored, matrix, lacks, way, others, newer, own_effects.every(context))

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from app.own_effects.kept import Kept
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
 from ident.errors import Unusable
@@ -42,10 +43,11 @@ class StartView:
     runs: tuple[tuple[str, str], ...]
 
 
-def start_view(matrix: MatrixView) -> StartView:
-    """The form for this matrix."""
+def start_view(matrix: MatrixView, kept: Sequence[Kept] = ()) -> StartView:
+    """The form for this matrix; `kept` are the lab's own effects."""
     uses = Counter(run.use for run in matrix.runs)
     models = _in_question(matrix)
+    own = tuple(one.effect() for one in kept if any(one.suits(model.name) for model in models))
     others = f"{uses['verify']} verify it" if uses["verify"] else "none is left to verify it"
     return StartView(
         matrix=matrix.id,
@@ -53,7 +55,7 @@ def start_view(matrix: MatrixView) -> StartView:
         chosen=len(models) > 1,
         models=tuple(map(_model, (*models, *(known for known in PRESETS.values() if known not in models)))),
         methods=METHODS,
-        effects=tuple((place, found) for place in PLACES if (found := tuple(_taken(models, place)))),
+        effects=tuple((name, found) for name, found in (*_by_place(models), ("of this lab", own)) if found),
         force=any("force" in run.channels for run in matrix.runs),
         runs=tuple((run.id, run.use) for run in matrix.runs),
     )
@@ -71,11 +73,11 @@ def _in_question(matrix: MatrixView) -> tuple[Preset, ...]:
         return tuple(PRESETS.values())
 
 
-def _taken(models: Sequence[Preset], place: str) -> Iterator[Effect]:
-    """The effects of a place that one of the models takes."""
-    for effect in CATALOGUE:
-        if effect.place == place and any(model.takes(effect) for model in models):
-            yield effect
+def _by_place(models: Sequence[Preset]) -> Iterator[tuple[str, tuple[Effect, ...]]]:
+    """Each place with its effects that one of the models takes."""
+    for place in PLACES:
+        at_place = (effect for effect in CATALOGUE if effect.place == place)
+        yield place, tuple(effect for effect in at_place if any(model.takes(effect) for model in models))
 
 
 def _proposed(models: Sequence[Preset]) -> str:

@@ -60,7 +60,11 @@ def test_a_definition_is_kept_under_a_name(service: TestClient) -> None:
     assert made.headers["Location"] == f"{AT}/lapped"
     kept = service.get(made.headers["Location"]).json()
     assert kept == made.json()
-    assert (kept["name"], kept["definition"]["name"], kept["meaning"]) == ("lapped", "lapped", "lands and ports overlap")
+    assert (kept["name"], kept["definition"]["name"], kept["meaning"]) == (
+        "lapped",
+        "lapped",
+        "lands and ports overlap",
+    )
     assert (kept["origin"], kept["diagnosis"], kept["class"], kept["model"]) == ("written", None, [], None)
     assert kept["parameters"][0]["unit"] == "m"
     assert kept["equations"][0]["mathml"].startswith("<math")

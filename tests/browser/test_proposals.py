@@ -1,4 +1,7 @@
-"""A matrix whose effect no list holds: something is left, a term is proposed, added by button, and it was that."""
+"""A matrix whose effect no list holds: something is left, a term is proposed, added by button, and it was that.
+
+Kept under a name, it stands in the list of another actuator's fit.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,58 @@ def test_a_term_is_proposed_added_and_the_error_is_the_noise_s(page, site, scree
     expect(card.locator("math")).to_have_count(1)
     expect(page.locator("#left")).to_contain_text("Something is left")  # what is proposed is no finding
     everywhere(page, screenshots, "proposed")
+    the_term_is_kept(page, card, screenshots)
     first, second = story.add(page, card)
     assert first > 5 * 100 * NOISE
     assert second < 1.05 * 100 * NOISE
     expect(page.locator("h1")).to_contain_text("proposed 1")
+    another_actuator_has_it_in_the_list(page, site, screenshots)
+    it_is_deleted_from_the_list(page, site, screenshots)
+
+
+def the_term_is_kept(page, card, screenshots):
+    """Under the name that is typed over the one that was suggested; it says so, also when the page is opened again."""
+    name = card.get_by_label("Keep it for other actuators, as")
+    expect(name).to_have_value("leakage_in_one_direction")
+    name.fill("one_way_leak")
+    card.get_by_role("button", name="Keep term 1").click()
+    expect(card.get_by_role("status")).to_contain_text("Kept as one_way_leak")
+    expect(name).to_be_hidden()
+    page.reload()
+    expect(card).to_contain_text("Kept as one_way_leak")
+    everywhere(page, screenshots, "kept")
+
+
+def another_actuator_has_it_in_the_list(page, site, screenshots):
+    """With its equation, what it means and where it comes from; added, it leaves the noise."""
+    stored = site.client.post("/matrices", files={"files": ("matrix.zip", zipped("LEAK-2"))}).json()
+    page.goto(f"{site.address}/matrices/{stored['id']}")
+    page.get_by_text("Physical effects to add").click()
+    expect(page.locator("#start").get_by_label("one way leak")).not_to_be_checked()
+    story.fit(page)
+    listed = page.get_by_role("region", name="This lab's own effects")
+    expect(listed).to_contain_text("one way leak")
+    expect(listed).to_contain_text("Leakage in one direction", ignore_case=True)
+    expect(listed).to_contain_text("proposed by search")
+    expect(listed.locator("math")).to_have_count(1)
+    expect(page.locator("#missing").get_by_label("with this lab's own effects")).not_to_be_checked()
+    everywhere(page, screenshots, "own-list")
+    first, second = story.add(page, listed, "one way leak")
+    assert first > 5 * 100 * NOISE
+    assert second < 1.05 * 100 * NOISE
+    expect(page.locator("h1")).to_contain_text("LEAK-2: ")
+    expect(page.locator("h1")).to_contain_text("one way leak")
+    expect(listed).to_contain_text("switched on")
+
+
+def it_is_deleted_from_the_list(page, site, screenshots):
+    """The fit that has it stays."""
+    fit = page.url
+    page.get_by_role("link", name="Own effects", exact=True).click()
+    expect(page.locator("h1")).to_have_text("This lab's own effects")
+    everywhere(page, screenshots, "own-effects")
+    page.get_by_role("button", name="Delete one way leak").click()
+    expect(page.locator("#main")).to_contain_text("No effect is kept yet")
+    assert site.client.get("/own-effects").json()["items"] == []
+    page.goto(fit)
+    expect(page.locator("h1")).to_contain_text("one way leak")

@@ -7,7 +7,8 @@ for (const form of document.querySelectorAll("form[data-diagnose]")) {
   onSubmit(form, async () => {
     const time = Number(form.elements.time.value);
     const propose = "propose" in form.dataset;
-    const asked = { fit: form.dataset.diagnose, ...(time > 0 && { time }), ...(propose && { propose }) };
+    const own = form.elements.own?.checked;
+    const asked = { fit: form.dataset.diagnose, ...(time > 0 && { time }), ...(own && { own }), ...(propose && { propose }) };
     await send("POST", form.action, asked);
     location.hash = "missing";
     location.reload();

@@ -1,11 +1,12 @@
-// An effect of one's own: checked by the service, shown as mathematics or refused at a character, ranked or added.
+// An effect of one's own: checked by the service, shown as mathematics or refused at a character, ranked, added or kept.
 
 import { guarded, send } from "./api.js";
 
 const form = document.querySelector("form[data-own]");
 const equation = form.elements.equation;
 const at = form.querySelector(".at");
-const shown = form.querySelector("[role=status]");
+const shown = form.querySelector(".formula");
+const kept = form.querySelector("[data-kept]");
 const rate = form.elements.rate;
 let count = 0;
 
@@ -34,6 +35,7 @@ form.addEventListener("submit", (event) => {
 
 async function submit(wish) {
   const custom = [definition()];
+  kept.replaceChildren();
   await checked(custom[0]);
   if (wish === "rank") {
     await send("POST", "/api/v1/diagnoses", { fit: form.dataset.own, custom });
@@ -42,6 +44,9 @@ async function submit(wish) {
   } else if (wish === "add") {
     const { data } = await send("POST", `/api/v1/fits/${form.dataset.own}/effects`, { custom });
     location.assign(`/fits/${data.id}`);
+  } else if (wish === "keep") {
+    const { data } = await send("POST", "/api/v1/own-effects", { name: custom[0].name, definition: custom[0] });
+    kept.textContent = `Kept as ${data.name}: every fit whose model can take it offers it.`;
   }
 }
 
