@@ -105,7 +105,7 @@ def meaning_of(said: str, places: Iterable[str]) -> str:
 
 def suggested(meaning: str, taken: Collection[str] = ()) -> str:
     """A free name for what is meant so: the words before its first stop, numbered where they are taken."""
-    words = re.findall(r"[a-z0-9]+", re.split(r"[^\w\s'’-]", meaning)[0].lower())
+    words: list[str] = re.findall(r"[a-z0-9]+", re.split(r"[^\w\s'’-]", meaning)[0].lower())
     words = words[words[:1] in _ARTICLES :] or ["own"]
     name, *rest = words if words[0][0].isalpha() else ("term", *words)
     for word in rest:

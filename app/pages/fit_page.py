@@ -86,17 +86,13 @@ class FitPageView:
 
 
 def fit_page(
-    stored: Stored,
-    matrix: MatrixView,
-    lacks: MissingView,
-    ladder: LadderView,
-    others: Iterable[ParameterSetView] = (),
-    newer: str | None = None,
-    kept: Sequence[Kept] = (),
-) -> FitPageView:
+    stored: Stored, matrix: MatrixView, lacks: MissingView, ladder: LadderView,
+    others: Iterable[ParameterSetView] = (), newer: str | None = None, kept: Sequence[Kept] = (),
+) -> FitPageView:  # fmt: skip
     """The page of a fit of this matrix; `others` are fits of the same actuator, to compare it with.
 
-    `newer` is the newest revision of the matrix, None where that is the matrix itself; `kept` are the lab's own effects.
+    `newer` is the newest revision of the matrix, None where that is the matrix itself, and `kept` are the lab's own
+    effects.
     """
     fit = stored.found
     model = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))

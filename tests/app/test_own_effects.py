@@ -199,3 +199,26 @@ def test_a_diagnosis_of_a_matrix_ranks_them_once_its_model_is_known(service: Tes
     assert "lapped" in names
     assert "of_bench" not in names
     assert not service.get(f"{API}/fits/{job['fit']}").json()["result"]["settings"].get("custom")
+
+
+def test_pages_offer_what_is_kept(service: TestClient, found: dict[str, Any], fitted: str) -> None:
+    """On the card of the term, in the list of a fit that can take it, on the form that starts one, on a page of all."""
+    page = service.get(f"/fits/{fitted}").text
+    assert 'value="leakage_in_one_direction"' in page
+    assert "This lab's own effects" not in page
+    assert 'name="own" type="checkbox"' not in page
+    assert "No effect is kept yet" in service.get("/effects").text
+    service.post(AT, json={"name": "leak", "diagnosis": found["id"]})
+    keep(service, "of_bench", OF_BENCH, model="kononykhin")
+    page = service.get(f"/fits/{fitted}").text
+    assert "Kept as leak" in page
+    assert 'value="leakage_in_one_direction"' not in page
+    listed = page.partition('aria-labelledby="kept-title"')[2].partition("</section>")[0]
+    assert "<b>leak</b>" in listed
+    assert "proposed by search" in listed
+    assert "of bench" not in listed
+    assert 'name="own" type="checkbox"> with' in page
+    assert 'value="leak"' in service.get(f"/matrices/{found['matrix']}").text
+    everything = service.get("/effects").text
+    assert f"proposed by search: {found['proposals'][0]['nats']:.0f} nats" in everything
+    assert 'data-drop="/api/v1/own-effects/of_bench"' in everything

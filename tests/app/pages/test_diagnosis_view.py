@@ -62,7 +62,7 @@ def test_what_does_not_help_stands_apart_and_what_is_left_is_said():
 
 
 def test_the_section_is_markup_with_everything_escaped():
-    page = {"id": "f", "serial": "S", "matrix": "m", "again": "{}", "on_bench": False}
+    page = {"id": "f", "serial": "S", "matrix": "m", "again": "{}", "on_bench": False, "kept": ()}
     page |= {"missing": missing(found(), None)}
     text = _TEMPLATES.get_template("missing.html").render(fit=page, vega="")
     assert "r &lt;1&gt;" in text
