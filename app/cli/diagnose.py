@@ -39,6 +39,10 @@ if TYPE_CHECKING:
 Limit = Annotated[
     float | None, typer.Option(metavar="S", help="Seconds after which nothing more is tried: what was found is told.")
 ]
+Most = Annotated[int | None, typer.Option(min=0, metavar="N", help="Largest number of effects that may be added.")]
+Own = Annotated[
+    bool, typer.Option("--own", help="Rank your own effects that are kept, too: those that the model can take.")
+]
 Proposes = Annotated[
     bool,
     typer.Option("--propose", help="Where the catalogue ends above the noise, search for terms that no list holds."),
@@ -57,14 +61,13 @@ def diagnose(
     model: Model = None,
     effect: Effects = None,
     custom: Ranked = None,
+    own: Own = False,
     method: Method = "ga",
     bounds: Bounds = None,
     set_: Values = None,
     load: Load = "none",
     option: Options = None,
-    max_effects: Annotated[
-        int | None, typer.Option(min=0, metavar="N", help="Largest number of effects that may be added.")
-    ] = None,
+    max_effects: Most = None,
     propose: Proposes = False,
     seed: Seed = 0,
     time: Limit = None,
@@ -72,6 +75,7 @@ def diagnose(
 ) -> None:
     """Find what a model lacks. Effects are ranked by their error on held-out data, and added while they help."""
     from app.cli.arguments import definitions
+    from app.cli.kept_here import beside
     from ident.custom.definition import read_effect, together
     from ident.diagnosis.course import left
     from ident.diagnosis.stepwise import USUAL
@@ -85,15 +89,16 @@ def diagnose(
         named, choice = modelled(read_matrix(matrix), model if fit is None else model or Settings().model, report)
     chosen = settings(named, effect, method, bounds, set_, load, seed, option)
     given = choice.made(chosen) if fit is None else given_fit(fit, chosen)
-    own = together((), definitions(custom or []))
+    defined = together((), definitions(custom or []))
     if given is not None:
-        named, own = given.model, together(given.settings.get("custom", ()), own)
-        given = given.with_custom(own)
+        named, defined = given.model, together(given.settings.get("custom", ()), defined)
+    defined = beside(defined, named) if own else defined
+    given = None if given is None else given.with_custom(defined)
     most = USUAL if max_effects is None else max_effects
-    effects = tuple(read_effect(definition, model=named) for definition in own)
+    effects = tuple(read_effect(definition, model=named) for definition in defined)
     with shown() as report, followed(json) as follow:
         found = diagnosed(
-            choice.matrix, given, replace(chosen, custom=own), most=most, custom=effects, report=report,
+            choice.matrix, given, replace(chosen, custom=defined), most=most, custom=effects, report=report,
             seconds=left(time, begun), found=follow, propose=propose,
         )  # fmt: skip
     _tell(found, json)

@@ -65,11 +65,9 @@ def given(file: Path, name: str, proposal: int) -> Kept:
 
 def body(source: str, name: str, proposal: int) -> dict[str, Any]:
     """What a service is asked to keep: a file's effect, one that is kept here, or a term of its own diagnosis."""
-    from app.cli.kept_here import every
+    from app.cli.kept_here import look
 
-    kept = next((one for one in every() if one.name == source), None)
-    if Path(source).exists():
-        kept = given(Path(source), name, proposal)
+    kept = given(Path(source), name, proposal) if Path(source).exists() else look(source)
     if kept is not None:
         return {"name": name or kept.name, "definition": dict(kept.definition), "model": kept.model}
     if not name:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ident.errors import Unusable
 
@@ -24,6 +25,21 @@ def folder() -> Path:
 def every() -> list[Kept]:
     """All of them by name. Raises Unusable for a file that holds none."""
     return [_read(file) for file in sorted(folder().glob("*.json"))]
+
+
+def look(name: str) -> Kept | None:
+    """The effect of a name, None where none is kept."""
+    from ident.custom.definition import is_name
+
+    return find(name) if is_name(name) and _file(name).is_file() else None
+
+
+def beside(definitions: Sequence[Mapping[str, Any]], model: str) -> tuple[Mapping[str, Any], ...]:
+    """These definitions, and of those that are kept under other names all that a model can take."""
+    from app.own_effects.kept import suited
+
+    names = {definition["name"] for definition in definitions}
+    return (*definitions, *(kept.definition for kept in suited(every(), model) if kept.name not in names))
 
 
 def find(name: str) -> Kept:

@@ -95,6 +95,7 @@ def proposed(found: Diagnosis, rank: int, name: str, meaning: str = "", diagnosi
     return Kept(
         name=name, definition=made.definition, model=found.model, meaning=made.meaning, origin=SEARCHED,
         diagnosis=diagnosis, data_hash=found.data_hash, nats=term.nats, bar=term.bar, alike=term.alike,
+        version=found.version,
     )  # fmt: skip
 
 

@@ -25,7 +25,8 @@ Valued = Estimate | Found | EstimateView
 class Member:
     """An effect on a card; `known` is False where neither the catalogue nor the diagnosis has it.
 
-    `definition` is that of a user's own effect, as JSON, "" for one of the catalogue.
+    `definition` is that of a user's own effect, as JSON, and `origin` says where it comes from; "" for one of the
+    catalogue.
     """
 
     name: str
@@ -37,6 +38,7 @@ class Member:
     strength: str
     strength_is: str
     definition: str = ""
+    origin: str = ""
 
 
 def member(name: str, effect: Effect | None, parameters: Mapping[str, Valued], own: Mapping[str, Any] | None) -> Member:
@@ -51,6 +53,7 @@ def member(name: str, effect: Effect | None, parameters: Mapping[str, Valued], o
         strength=strength(name, parameters) or "–",
         strength_is=f"{effect.strength.symbol}, {effect.strength.meaning}" if effect else "strength",
         definition=json.dumps(own) if own is not None else "",
+        origin=effect.source if own is not None and effect is not None and effect.source != effect.meaning else "",
     )
 
 

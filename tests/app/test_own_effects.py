@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from threading import Barrier
 from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
 
+from app.context import Context
+from app.errors import Failure
+from app.own_effects import service as own_effects
+from schemas.catalogue import OwnEffectRequest, OwnEffectView
 from tests.app.test_custom_effects import OWN
 from tests.app.test_diagnoses import ended
+from tests.app.test_idempotency import context_of
 from tests.hidden_leak import NOISE, zipped
 
 API = "/api/v1"
@@ -86,6 +94,32 @@ def test_a_retry_with_its_key_is_answered_as_the_first_time(service: TestClient)
                for _ in range(2)]  # fmt: skip
     assert [answer.status_code for answer in answers] == [201, 201]
     assert answers[0].json() == answers[1].json()
+
+
+def kept_at_once(here: Context) -> None:
+    """Of eight that keep the same under one name one is the first, and all see the same."""
+    start, asked = Barrier(8), OwnEffectRequest(name="lapped", definition=OWN)
+
+    def one(number: int) -> tuple[OwnEffectView, bool]:
+        start.wait(30)
+        return own_effects.keep(here, asked, f"id-{number}")
+
+    with ThreadPoolExecutor(8) as pool:
+        answers = list(pool.map(one, range(8)))
+    assert [new for _, new in answers].count(True) == 1
+    assert all(kept == answers[0][0] for kept, _ in answers)
+    first = next(number for number, (_, new) in enumerate(answers) if new)
+    assert own_effects.kept_as(here, f"id-{first}") == answers[0][0]
+    assert own_effects.keep(here, asked, f"id-{first}") == (answers[0][0], True)  # by who takes over a killed claim
+    with pytest.raises(Failure) as error:
+        own_effects.keep(here, OwnEffectRequest(name="lapped", definition=OWN | {"meaning": "other"}), "id-9")
+    assert error.value.status == 409
+
+
+def test_of_many_at_once_one_keeps_it(tmp_path: Path) -> None:
+    here = context_of(tmp_path)
+    kept_at_once(here)
+    here.engine.dispose()
 
 
 @pytest.mark.parametrize(

@@ -36,6 +36,7 @@ def test_a_term_is_proposed_added_and_the_error_is_the_noise_s(page, site, scree
     assert second < 1.05 * 100 * NOISE
     expect(page.locator("h1")).to_contain_text("proposed 1")
     another_actuator_has_it_in_the_list(page, site, screenshots)
+    a_written_one_is_kept_too(page, site)
     it_is_deleted_from_the_list(page, site, screenshots)
 
 
@@ -72,6 +73,20 @@ def another_actuator_has_it_in_the_list(page, site, screenshots):
     expect(page.locator("h1")).to_contain_text("LEAK-2: ")
     expect(page.locator("h1")).to_contain_text("one way leak")
     expect(listed).to_contain_text("switched on")
+    page.locator(".chain").get_by_role("link", name="flow").click()
+    expect(page.locator("#place-flow .lives").first).to_contain_text("proposed by search")
+
+
+def a_written_one_is_kept_too(page, site):
+    """The form of an own effect has a button for it, which leaves the page as it is."""
+    own = page.locator("form[data-own]")
+    for label, text in (("Name", "lapped"), ("Strength, symbol", "h"), ("Unit", "mm"), ("Largest", "1")):
+        own.get_by_label(label, exact=True).fill(text)
+    own.get_by_label("Equation").fill("w = w - clip(w, -h, h)")
+    own.get_by_role("button", name="Keep it for other actuators").click()
+    expect(own.locator("[data-kept]")).to_contain_text("Kept as lapped")
+    expect(own.locator("math")).to_have_count(1)
+    assert site.client.get("/own-effects/lapped").json()["origin"] == "written"
 
 
 def it_is_deleted_from_the_list(page, site, screenshots):
@@ -81,6 +96,8 @@ def it_is_deleted_from_the_list(page, site, screenshots):
     expect(page.locator("h1")).to_have_text("This lab's own effects")
     everywhere(page, screenshots, "own-effects")
     page.get_by_role("button", name="Delete one way leak").click()
+    expect(page.locator(".lives")).to_have_count(1)
+    page.get_by_role("button", name="Delete lapped").click()
     expect(page.locator("#main")).to_contain_text("No effect is kept yet")
     assert site.client.get("/own-effects").json()["items"] == []
     page.goto(fit)

@@ -114,6 +114,28 @@ def test_a_kept_effect_is_named_without_its_file(servoident, few, lapped, tmp_pa
     refused(servoident("fit", few, "--custom", "loped", *asked), "loped: no effect is kept", "servoident effects")
 
 
+def test_a_diagnosis_ranks_what_is_kept_where_it_is_asked_to(lapped, servoident):
+    """Beside what it was given, which comes first; what the model cannot take is left out."""
+    from app.cli.kept_here import beside
+
+    servoident("effects", "keep", lapped)
+    given = {"name": "lapped", "meaning": "given"}
+    assert [one["meaning"] for one in beside((), "qian2014")] == ["the lands overlap"]
+    assert beside((given,), "qian2014") == (given,)
+    assert beside((), "drive") == ()
+
+
+@pytest.mark.usefixtures("few_effects")
+def test_diagnose_own_ranks_what_is_kept(servoident, few, fit_file, lapped):
+    servoident("effects", "keep", lapped)
+    asked = ("diagnose", few, "--fit", fit_file, "--max-effects", 1, "--json", "-")
+    for own in ((), ("--own",)):
+        done = servoident(*asked, *own)
+        assert done.returncode == 0, done.stderr
+        ranked = {one["effect"] for one in json.loads(done.stdout)["candidates"]}
+        assert ("lapped" in ranked) == bool(own)
+
+
 def test_a_file_comes_before_what_is_kept_under_its_name(lapped, tmp_path, monkeypatch, servoident):
     from app.cli.arguments import definitions
 

@@ -13,6 +13,7 @@ import pytest
 
 from app.database import connect
 from tests.app.test_idempotency import context_of, posts_at_once
+from tests.app.test_own_effects import kept_at_once
 from tests.running import Service, command, free_port
 
 SERVERS = sorted(Path("/usr/lib/postgresql").glob("*/bin/pg_ctl"))
@@ -87,7 +88,8 @@ def test_a_service_and_a_worker_share_the_queue(servoident, database, matrix, tm
 
 
 def test_simultaneous_posts_under_one_key_queue_one_job(database, tmp_path):
-    """As on SQLite; last, because nobody works on these jobs."""
+    """And of those that keep an own effect one is the first: as on SQLite; last, because nobody works on these jobs."""
     here = context_of(tmp_path, database)
     posts_at_once(here)
+    kept_at_once(here)
     here.engine.dispose()
