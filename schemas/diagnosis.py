@@ -2,17 +2,16 @@
 
 from pydantic import BaseModel, Field
 
+from schemas.diagnosis_result import DiagnosisResult
 from schemas.fit import Chosen
-from schemas.result import DiagnosisResult
 
 
 class DiagnosisRequest(Chosen):
     """A diagnosis to be queued: of a stored `fit`, or of a `matrix`, whose fit with these settings is made first.
 
     The effects that `custom` defines or names are ranked beside those of the catalogue; with `own` all that the lab
-    keeps and the model can take. After `time` seconds nothing more is
-    tried: what was found by then is the diagnosis. With `propose`, where the catalogue ends above the noise, terms that
-    no list holds are searched for.
+    keeps and the model can take. After `time` seconds nothing more is tried: what was found by then is the diagnosis.
+    With `propose`, where the catalogue ends above the noise, terms that no list holds are searched for.
     """
 
     fit: str | None = None

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from app.cli.tables import output, table
-from ident.diagnosis.words import rises
 from ident.words.percent import percent
 from ident.words.plus_minus import plus_minus_si
 
@@ -36,7 +35,7 @@ def show_diagnosis(found: Diagnosis) -> None:
     if found.proposals:
         for one in found.proposals:
             if one.contradicted:
-                console.print(rises(one.contradicted, one.equation), markup=False)
+                console.print(one.contradicted.told(one.equation), markup=False)
         console.print(table(("proposed by search", "what it would mean", "strength", *uses, "nats (bar)", "or"),
                             proposal_rows(found), numbers=(*uses, "nats (bar)")))  # fmt: skip
     for note in found.notes:

@@ -11,8 +11,8 @@ from app.diagnoses import proposal, service
 from app.errors import COMMON
 from app.idempotency import Key, fingerprint, queued_once
 from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView
+from schemas.diagnosis_result import ProposalView
 from schemas.fit import JobView
-from schemas.result import ProposalView
 
 router = APIRouter(prefix="/diagnoses", tags=["diagnoses"], responses=COMMON)
 Seed = Annotated[int, Query(ge=0, lt=2**31)]

@@ -14,7 +14,7 @@ from app.matrices import service as matrices
 from ident.design.experiment import Experiment
 from ident.design.proposal import propose
 from ident.diagnosis.rivals import rivals
-from schemas.result import ProposalView
+from schemas.diagnosis_result import ProposalView
 
 _MOST = 32  # proposals in memory
 _proposed: LRU[Experiment] = LRU(_MOST)

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from ident.diagnosis.result import Diagnosis
-from ident.diagnosis.words import rises
 from ident.equations.mathml import mathml
 from ident.words.number import plain
 from ident.words.plus_minus import plus_minus
@@ -52,7 +51,7 @@ def proposed(found: Diagnosis) -> Iterator[ProposedCard]:
             else f"A term at the {' and '.join(one.place)}",
             equations=tuple(Markup(mathml(line)) for line in one.effect["equation"]),
             strength=plus_minus(one.strength, one.std_error, one.unit),
-            against=rises(one.contradicted, "it") if one.contradicted else "",
+            against=one.contradicted.told("it") if one.contradicted else "",
             error=one.error,
             evidence=f"{plain(one.nats, 3)} nats, {plain(one.bar, 3)} asked for",
             alike=one.alike,

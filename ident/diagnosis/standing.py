@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ident.matrix import Run, over_runs
 from ident.noise.effective_sample_size import independent_samples
+from ident.words.percent import percent
 
 Array = NDArray[np.float64]
 Standing = Literal["found", "stand_in", "contradicted", "nothing"]
@@ -33,6 +34,13 @@ class Contradiction:
     before: float
     after: float
     deviations: float
+
+    def told(self, named: str) -> str:
+        """In a sentence on what is `named`."""
+        return (
+            f"With {named} the error on verify runs rises from {percent(self.before)} to {percent(self.after)}, "
+            f"{self.deviations:.1f} standard errors: it may stand for something else."
+        )
 
 
 def contradiction(

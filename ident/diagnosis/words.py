@@ -48,7 +48,7 @@ def verdict_text(
     `spoken` tells what an effect is the first time that it is named.
     """
     named = _told_once(spoken)
-    parts = [rises(one, named(one.effect)) for one in against]
+    parts = [one.told(named(one.effect)) for one in against]
     if not complete:
         parts.append("The search was not over: what else is missing, and what could stand in the place of what was "
                      "found, was not looked at.")  # fmt: skip
@@ -83,14 +83,6 @@ def verdict_text(
             parts.append("No command was measured twice: part of it may be noise in the command's band, "
                          "which a repeated run would tell.")  # fmt: skip
     return " ".join(parts)
-
-
-def rises(against: Contradiction, named: str) -> str:
-    """That runs to verify speak against what is `named`."""
-    return (
-        f"With {named} the error on verify runs rises from {percent(against.before)} to {percent(against.after)}, "
-        f"{against.deviations:.1f} standard errors: it may stand for something else."
-    )
 
 
 def _told_once(spoken: Callable[[str], str]) -> Callable[[str], str]:

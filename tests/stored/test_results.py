@@ -15,8 +15,9 @@ from ident.diagnosis.rivals import rivals
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from schemas.diagnosis import DiagnosisView
+from schemas.diagnosis_result import DiagnosisResult
 from schemas.fit import FitView, LadderView
-from schemas.result import DiagnosisResult, FitResultView
+from schemas.result import FitResultView
 
 HERE = Path(__file__).parent
 FITS = ("fit", "bench")

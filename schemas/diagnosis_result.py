@@ -1,0 +1,184 @@
+"""What a diagnosis found, as the contract writes it."""
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from schemas.result import DefinitionView, ErrorBudget, Errors, Nothing, SettingsView
+
+
+class RefittedView(BaseModel):
+    """A parameter of a refit, SI; null where the data do not determine its standard error."""
+
+    value: float
+    unit: str
+    std_error: float | None
+    symbol: str
+
+
+class BaselineView(BaseModel):
+    """Errors and offset of the model that was given."""
+
+    error: Errors
+    offset: float | None
+
+
+class CandidateView(BaseModel):
+    """An effect that the model lacks, best first by held-out error; `group` are those it cannot be told from.
+
+    Without `parameters` there is only the prediction.
+    """
+
+    effect: str
+    error: Errors
+    offset: float | None
+    predicted_error: float | None
+    parameters: dict[str, RefittedView]
+    group: list[str]
+    evidence: dict[str, float | bool | str | None]
+    why: str
+
+
+class RungView(BaseModel):
+    """A step of the ladder: what was added to the model before it, null for the fitted model itself.
+
+    `nats` by which it made the held-out data more likely.
+    """
+
+    added: str | None
+    error: Errors
+    offset: float | None
+    nats: float | None
+    parameters: dict[str, RefittedView]
+
+
+class LabelErrorsView(BaseModel):
+    """Eq. (17) of a run as labelled, what the other runs let expect, and with the label mended."""
+
+    as_labelled: float | None
+    usual: float | None
+    mended: float | None
+
+
+class SuspectView(BaseModel):
+    """A run, which of its labels is doubted, what stands there and what the data say, in `unit`."""
+
+    run: str
+    what: str
+    stated: float | None
+    found: float | None
+    unit: str
+    error: LabelErrorsView
+    evidence: str
+
+
+class VerdictView(BaseModel):
+    """What to add, what the data cannot tell apart, whose label is doubted, whether something is left.
+
+    `standing` is found where the error is at the noise floor, stand_in where something is left, contradicted where
+    the error rises with an effect (`contradicted_by`) on runs to verify, nothing where no effect helps.
+    """
+
+    effects: list[str]
+    standing: Literal["found", "stand_in", "contradicted", "nothing"] | None = None
+    contradicted_by: list[str] = Field(default_factory=list)
+    indistinguishable: list[list[str]]
+    suspects: list[SuspectView]
+    unexplained: bool
+    text: str
+
+
+class SpecimenView(BaseModel):
+    """What the actuator moves, SI."""
+
+    mass: float
+    stiffness: float
+    damping: float
+
+
+class ProposalView(BaseModel):
+    """The run that the lab should add, SI: `text` says why, `conditions` what, `run` is its entry in matrix.yaml.
+
+    `separation` are the standard deviations of the noise by which the models in question will then differ, `so_far`
+    those by the runs there are, `typical` those by another run; `std_errors` the share of each standard error that is
+    expected to be left.
+    """
+
+    specimen: SpecimenView | None
+    gain: float | None
+    amplitude: float
+    unit: str
+    signal: str
+    frequency: float
+    seconds: float
+    sample_rate: float
+    seed: int
+    separation: float | None
+    so_far: float | None
+    typical: float | None
+    information: float
+    std_errors: dict[str, float]
+    text: str
+    conditions: str
+    run: dict[str, str | float | dict[str, str]]
+
+
+class RiseView(BaseModel):
+    """The error on runs to verify without an effect and with it, and by how many standard errors it rises."""
+
+    effect: str
+    before: float
+    after: float
+    deviations: float
+
+
+class TermView(BaseModel):
+    """A term that no list holds, proposed by search: where it acts, its equation, the effect of its own that it is.
+
+    `class` are the forms that the data cannot tell from it; `nats` those of runs that neither search nor choice saw,
+    `bar` what they had to exceed. `formula` is its equation in MathML. With `contradicted` the error rises on runs to
+    verify.
+    """
+
+    model_config = ConfigDict(populate_by_name=True)
+
+    place: list[str]
+    equation: str
+    effect: DefinitionView
+    strength: float
+    std_error: float | None = None
+    unit: str
+    terms: int
+    shapes: int
+    error: Errors
+    nats: float
+    bar: float
+    alike: list[str] = Field(alias="class")
+    beside: list[str]
+    meaning: str
+    formula: str
+    hypothesis: bool
+    contradicted: RiseView | None = None
+
+
+class DiagnosisResult(BaseModel):
+    """The contract's diagnose JSON."""
+
+    model: str
+    effects: list[str]
+    baseline: BaselineView
+    noise_floor: Errors
+    horizon: float | None = None
+    budget: ErrorBudget | Nothing
+    candidates: list[CandidateView]
+    ladder: list[RungView]
+    verdict: VerdictView
+    proposals: list[TermView] = Field(default_factory=list)
+    complete: bool = True
+    next_experiment: ProposalView | Nothing
+    settings: SettingsView
+    seed: int
+    seconds: float
+    version: str
+    data_hash: str
+    notes: list[str]
