@@ -148,6 +148,8 @@ class TermView(BaseModel):
     strength: float
     std_error: float | None = None
     unit: str
+    parameters: dict[str, RefittedView] = Field(default_factory=dict)
+    view: str = ""
     terms: int
     shapes: int
     error: Errors

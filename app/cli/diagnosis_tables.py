@@ -10,7 +10,8 @@ from ident.words.percent import percent
 from ident.words.plus_minus import plus_minus_si
 
 if TYPE_CHECKING:
-    from ident.diagnosis.result import Diagnosis, Found, Ranked
+    from ident.diagnosis.estimate import Found
+    from ident.diagnosis.result import Diagnosis, Ranked
 
 USES = {"fit": "fit", "held_out": "held out", "verify": "verify"}
 Row = tuple[str, ...]

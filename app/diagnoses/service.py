@@ -102,17 +102,25 @@ def stored(context: Context, diagnosis_id: str) -> Stored:
 
 
 def refit(context: Context, diagnosis_id: str, fit: FitResult, effect: str) -> FitResult:
-    """The fit with an effect as the diagnosis refitted or, where it went no further, predicted it; else Failure 404."""
+    """The fit with an effect as the diagnosis refitted or, where it went no further, predicted it; else Failure 404.
+
+    With a term that it proposes there are those before it, and the effects beside which it was found.
+    """
     found = stored(context, diagnosis_id).found
+    terms = found.proposals or ()
+    upto = next((terms[: i + 1] for i, one in enumerate(terms) if one.effect["name"] == effect), ())
     candidate = next((one for one in found.candidates if one.effect == effect), None)
-    if candidate is None:
+    if candidate is None and not upto:
         raise missing("candidate", f"{diagnosis_id}:{effect}")
-    wider = fit.with_custom(found.settings.get("custom", ()))
+    wider = fit.with_custom((*found.settings.get("custom", ()), *(one.effect for one in upto)))
+    more = (*upto[-1].beside, *(str(one.effect["name"]) for one in upto)) if upto else (effect,)
+    parameters = upto[-1].parameters if upto else candidate.parameters if candidate else {}
     estimates = {
         name: Estimate(entry.value, entry.unit, entry.std_error, entry.value, entry.value, False)
-        for name, entry in candidate.parameters.items()
+        for name, entry in parameters.items()
     }
-    return replace(wider, effects=(*fit.effects, effect), parameters={**fit.parameters, **estimates})
+    effects = tuple(dict.fromkeys((*fit.effects, *more)))
+    return replace(wider, effects=effects, parameters={**fit.parameters, **estimates})
 
 
 def listed(context: Context, fit: str | None, after: str | None, limit: int) -> DiagnosisPage:

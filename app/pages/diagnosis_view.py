@@ -116,7 +116,7 @@ def missing(stored: Stored | None, job: JobView | None, run: str = "") -> Missin
         suspects=tuple(map(_suspect, found.verdict.suspects)),
         ladder=tuple(_ladder(found)),
         left=_left(found) if found.verdict.unexplained else "",
-        proposed=tuple(proposed(found)),
+        proposed=tuple(proposed(stored, run)),
         refused=found.notes,
     )
 

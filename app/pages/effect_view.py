@@ -9,7 +9,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from ident.diagnosis.result import Found
+from ident.diagnosis.estimate import Found
 from ident.effects.effect import Effect
 from ident.equations.mathml import mathml
 from ident.fit.result import Estimate

@@ -8,6 +8,7 @@ from urllib.parse import urlencode
 
 from app.diagnoses.service import Stored
 from ident.custom.definition import read_effect
+from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.result import Ranked
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
@@ -41,8 +42,19 @@ def evidence(best: Ranked, found: Stored, own: Mapping[str, Any] | None, run: st
     if effect is None or not best.parameters or found.found.horizon is not None:
         return None
     view = view_of(effect, model)
-    drawn = "residual-curve" if view else "bode"
-    if drawn not in figures_for(model):
+    return _figure(found, best.effect, view.name if view else "", run)
+
+
+def proposal_evidence(term: Proposal, found: Stored, run: str = "") -> tuple[str, str] | None:
+    """The same of a proposed term: what is missing at its place, and the term drawn through it."""
+    if not term.parameters or found.found.horizon is not None:
         return None
-    query = {"candidate": f"{found.id}:{best.effect}", **({"view": view.name} if view else {"run": run})}
+    return _figure(found, str(term.effect["name"]), term.view, run)
+
+
+def _figure(found: Stored, effect: str, view: str, run: str) -> tuple[str, str] | None:
+    drawn = "residual-curve" if view else "bode"
+    if drawn not in figures_for(preset(found.found.model)):
+        return None
+    query = {"candidate": f"{found.id}:{effect}", **({"view": view} if view else {"run": run})}
     return drawn, urlencode({name: text for name, text in query.items() if text})

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from ident.diagnosis.result import Diagnosis
+from app.diagnoses.service import Stored
+from app.pages.evidence_view import proposal_evidence
 from ident.equations.mathml import mathml
 from ident.words.number import plain
 from ident.words.plus_minus import plus_minus
@@ -32,10 +33,12 @@ class ProposedCard:
     hypothesis: bool
     effects: tuple[str, ...]
     definitions: tuple[str, ...]
+    evidence_of: tuple[str, str] | None
 
 
-def proposed(found: Diagnosis) -> Iterator[ProposedCard]:
-    """A card for each term."""
+def proposed(stored: Stored, run: str) -> Iterator[ProposedCard]:
+    """A card for each term; where no curve shows it, the Bode plot of `run` does."""
+    found = stored.found
     names: list[str] = []
     definitions: list[str] = []
     for rank, one in enumerate(found.proposals or (), 1):
@@ -60,4 +63,5 @@ def proposed(found: Diagnosis) -> Iterator[ProposedCard]:
             hypothesis=one.hypothesis,
             effects=(*one.beside, *names),
             definitions=tuple(definitions),
+            evidence_of=proposal_evidence(one, stored, run),
         )

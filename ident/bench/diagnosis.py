@@ -14,7 +14,8 @@ from ident.bench.outputs import errors_of, model_of, noise_floor
 from ident.bench.records import Record, bench_set
 from ident.comparison.compare import fitted
 from ident.diagnosis.course import Course
-from ident.diagnosis.result import Baseline, Diagnosis, Found, Ranked, Rung, Verdict
+from ident.diagnosis.estimate import Found
+from ident.diagnosis.result import Baseline, Diagnosis, Ranked, Rung, Verdict
 from ident.diagnosis.significance import Improvement, improvement
 from ident.diagnosis.standing import standing
 from ident.diagnosis.words import verdict_text, why_of_gain

@@ -16,7 +16,7 @@ from ident.diagnosis.family import ModelFamily, Refit
 from ident.diagnosis.proposals.proposal import Proposals
 from ident.diagnosis.proposals.search import Search
 from ident.diagnosis.ranking import Candidate
-from ident.diagnosis.result import Baseline, Diagnosis, Found, Ranked, Rung, Suspect, Verdict
+from ident.diagnosis.result import Baseline, Diagnosis, Ranked, Rung, Suspect, Verdict
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.standing import Contradiction, contradiction, standing
 from ident.diagnosis.stepwise import StepwiseSelection
@@ -86,7 +86,7 @@ class Diagnoser:
     def _said(self, selection: StepwiseSelection, doubted: Sequence[Suspect]) -> Diagnosis:
         """What a search found so far."""
         steps = selection.ladder()
-        ladder = self._ladder(selection.models, steps)
+        ladder = self._ladder(steps)
         floor = selection.models.floors.of_use(self.models.matrix)
         unexplained = self._unexplained(selection)
         groups = tuple(tuple(c.effect for c in group) for group in selection.groups.values() if len(group) > 1)
@@ -140,14 +140,6 @@ class Diagnoser:
 
     # What is said ----------------------------------------------------------------------------------------------
 
-    def _parameters(self, models: ModelFamily, refit: Refit) -> dict[str, Found]:
-        preset = models.model(refit.effects)
-        found = {}
-        for parameter in preset.parameters:
-            name, unit = parameter.in_equations, refit.fitness.preset.unit(parameter)
-            found[parameter.name] = Found(refit.values[name], unit, refit.deviation(name), parameter.symbol)
-        return found
-
     def _ranked(self, selection: StepwiseSelection, floor: float | None) -> list[Ranked]:
         base, models = selection.base, selection.models
         alike = tuple(candidate.effect for candidate in selection.alike())
@@ -161,21 +153,21 @@ class Diagnoser:
                 error=refit.errors if refit else errors,
                 offset=refit.held_out.offset if refit else None,
                 predicted_error=base.error * candidate.prediction.share,
-                parameters=self._parameters(models, refit) if refit else {},
+                parameters=refit.parameters if refit else {},
                 group=group if candidate.effect in group else (),
                 evidence=_evidence(candidate, models.effects[candidate.effect]),
                 why=why(candidate, models.effects[candidate.effect], base.held_out.error, floor, i == 0),
             ))  # fmt: skip
         return listed
 
-    def _ladder(self, models: ModelFamily, steps: Steps) -> list[Rung]:
+    def _ladder(self, steps: Steps) -> list[Rung]:
         rungs: list[Rung] = []
         before: Refit | None = None
         for added, refit in steps:
             found = None if before is None else improvement(before.held_out, refit.held_out).nats
             rungs.append(Rung(
                 added=added, error=refit.errors, offset=refit.held_out.offset, nats=found,
-                parameters=self._parameters(models, refit),
+                parameters=refit.parameters,
             ))  # fmt: skip
             before = refit
         return rungs

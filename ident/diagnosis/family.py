@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.stats.qmc import Sobol
 
 from ident.diagnosis.cross_validation import CrossValidation, cross_validated
+from ident.diagnosis.estimate import Found
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect, off_values
 from ident.errors import Unusable
@@ -98,6 +99,15 @@ class Refit:
             return None
         error = self._known.deviation(lambda points: self.space.values(points)[parameter])
         return error if np.isfinite(error) and error < _KNOWN * max(abs(self.values[parameter]), 1e-300) else None
+
+    @property
+    def parameters(self) -> dict[str, Found]:
+        """What it found of every parameter, by its name."""
+        preset, found = self.fitness.preset, {}
+        for one in preset.parameters:
+            name = one.in_equations
+            found[one.name] = Found(self.values[name], preset.unit(one), self.deviation(name), one.symbol)
+        return found
 
     @property
     def offset(self) -> float:

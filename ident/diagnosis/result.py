@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from ident.diagnosis.estimate import Found
 from ident.diagnosis.proposals.proposal import Proposal, from_json
 from ident.diagnosis.standing import Standing
 from ident.errors import Unusable
@@ -15,16 +16,6 @@ from ident.residuals.budget import Budget
 
 Errors = Mapping[str, float | None]
 """Eq. (17) averaged over the runs of a kind: fit, held_out, verify; None where there are none."""
-
-
-@dataclass(frozen=True)
-class Found:
-    """One parameter of a refit, SI, with its standard error (None where the data do not determine it)."""
-
-    value: float
-    unit: str = "1"
-    std_error: float | None = None
-    symbol: str = ""
 
 
 @dataclass(frozen=True)

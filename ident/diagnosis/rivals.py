@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 
 from ident.custom.definition import read_effect
 from ident.design.rivals import NOISE, Model, Rivals
-from ident.diagnosis.result import Diagnosis, Found, bad_diagnosis
+from ident.diagnosis.estimate import Found
+from ident.diagnosis.result import Diagnosis, bad_diagnosis
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
 from ident.errors import Unusable

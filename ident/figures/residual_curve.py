@@ -59,7 +59,7 @@ def residual_curve(
     for place, (curve, hint) in enumerate(zip(shown, hints, strict=True)):
         along, across = _axes(curve)
         written = {
-            "name": f"{curve.name.capitalize()}: {_share(curve)}",
+            "name": f"{curve.name[:1].upper()}{curve.name[1:]}: {_share(curve)}",
             "hint": hint,
             "along": along,
             "across": across,

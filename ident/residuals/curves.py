@@ -21,7 +21,7 @@ from ident.parallel import each
 from ident.residuals.curve_fit import CurveFit, settle
 from ident.residuals.normal_equations import deviations, gauge
 from ident.residuals.traces import Band, Traces, traces
-from ident.residuals.views import unit, views
+from ident.residuals.views import looked_along, unit, view_called, views
 
 _BAND = 1.96  # standard errors of 95 %
 
@@ -65,14 +65,15 @@ def curves(
 def traced(comparison: Comparison, of: Comparison | None = None) -> Traces:
     """What moves inside the model, for every signal that a view reads."""
     preset, _, _ = fitted(comparison.fit, comparison.matrix)
-    signals = tuple(dict.fromkeys(name for view in views(preset) for name in view.signals))
-    return traces(comparison, signals, None if of is None else {run.run.id: run.modelled for run in of.runs})
+    return traces(
+        comparison, looked_along(preset), None if of is None else {run.run.id: run.modelled for run in of.runs}
+    )
 
 
 def curve_fits(found: Traces, view: str | None = None) -> tuple[CurveFit, ...]:
     """Every view that the model has the signals for, or one: what takes long, and no band changes."""
-    known = views(found.preset)
-    wanted = [one for one in known if one.name == view] or known  # an unknown name is refused by who draws
+    named = view_called(view or "", found.preset)
+    wanted = [named] if named else views(found.preset)  # an unknown name is refused by who draws
     return tuple(one for one in each(lambda view: settle(found, view), wanted) if one is not None)
 
 

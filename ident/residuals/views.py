@@ -59,15 +59,46 @@ _SEEN = {
 """By the signal that an effect redefines, the view in which that shows."""
 
 
+_MISSING = {
+    "e": "command", "w": "spool opening", "Q": "flow", "R": "resistance", "y": "reading",
+}  # fmt: skip
+_AGAINST = {
+    "w": "Drive signal at the spool", "Q": "Flow", "P": "Load pressure", "v": "Piston velocity",
+    "x": "Piston position", "F": "Force on the specimen",
+}  # fmt: skip
+
+
 def views(preset: Preset) -> tuple[View, ...]:
     """The views that a model's chain has the signals for."""
+    return tuple(view for view in VIEWS if _there(view, preset))
+
+
+def view_called(name: str, preset: Preset) -> View | None:
+    """A view of this model by its name; None where it has none.
+
+    Beside :data:`VIEWS` there is one of whatever may be missing from a signal against any other, "Q(P)", and of its
+    share of that signal, "Q(P)/Q".
+    """
+    whole, _, share = name.partition("/")
+    at, _, by = whole.removesuffix(")").partition("(")
+    if whole == f"{at}({by})" and share in ("", at) and at in _MISSING and by in _AGAINST:
+        missing = f"Missing share of the {_MISSING[at]}" if share else f"Missing {_MISSING[at]}"
+        view = View(name, at, by, missing, _AGAINST[by], f"what is missing from {at} along {by}", relative=share)
+        return view if _there(view, preset) else None
+    return next((view for view in views(preset) if view.name == name), None)
+
+
+def looked_along(preset: Preset) -> tuple[str, ...]:
+    """Every signal of the model that a view reads."""
+    there = {equation.target for equation in preset.core.equations}
+    along = (name for name in _AGAINST if name in there)
+    return tuple(dict.fromkeys((*(name for view in views(preset) for name in view.signals), *along)))
+
+
+def _there(view: View, preset: Preset) -> bool:
     equations = {equation.target: equation for equation in preset.core.equations}
-
-    def fits(view: View) -> bool:
-        where = equations.get(view.at)
-        return where is not None and not where.is_rate and set(view.signals) <= equations.keys()
-
-    return tuple(view for view in VIEWS if fits(view))
+    where = equations.get(view.at)
+    return where is not None and not where.is_rate and set(view.signals) <= equations.keys()
 
 
 def view_of(effect: Effect, preset: Preset) -> View | None:
@@ -79,7 +110,7 @@ def view_of(effect: Effect, preset: Preset) -> View | None:
     name = next((name for signal, name in _SEEN.items() if signal in targets), None)
     if name == "spool" and any(equation.is_memory for equation in effect.equations):
         name = "play"
-    return next((view for view in views(preset) if view.name == name), None)
+    return view_called(name or "", preset)
 
 
 def showing(chain: Chain, signals: tuple[str, ...]) -> Chain:

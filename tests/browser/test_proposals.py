@@ -28,6 +28,7 @@ def test_a_term_is_proposed_added_and_the_error_is_the_noise_s(page, site, scree
     expect(card).to_be_visible(timeout=story.LONG)
     expect(card).to_contain_text("Leakage in one direction")
     expect(card.locator("math")).to_have_count(1)
+    expect(card.locator(".evidence canvas")).to_be_visible(timeout=story.LONG)  # the term through what is missing
     expect(page.locator("#left")).to_contain_text("Something is left")  # what is proposed is no finding
     everywhere(page, screenshots, "proposed")
     the_term_is_kept(page, card, screenshots)

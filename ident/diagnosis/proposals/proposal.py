@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from ident.diagnosis.estimate import Found
 from ident.diagnosis.standing import Contradiction
 from ident.plain import written
 
@@ -19,6 +20,9 @@ class Proposal:
     `terms` counts the terms that were added up to this one, `shapes` the numbers within it that were fitted. `nats` are
     those of runs that neither the search nor the choice saw, `bar` what they had to exceed. `alike`, in the JSON
     ``class``, are the forms that the data cannot tell from it; `beside` the effects of the model that it was added to.
+    `parameters` are those of the model with it, by name, and `view` is where its characteristic shows (see
+    :func:`ident.residuals.views.view_called`); "" where that is no function of one signal.
+
     Of a `hypothesis` there were too few runs to confirm it on others. `contradicted`: the error on runs to verify rises
     with it.
     """
@@ -31,6 +35,8 @@ class Proposal:
     unit: str = "1"
     terms: int = 1
     shapes: int = 0
+    parameters: Mapping[str, Found] = field(default_factory=dict)
+    view: str = ""
     error: Errors = field(default_factory=dict)
     nats: float = 0.0
     bar: float = 0.0

@@ -23,6 +23,7 @@ from ident.diagnosis.proposals.evidence import evidence
 from ident.diagnosis.proposals.meanings import meaning
 from ident.diagnosis.proposals.own import definition
 from ident.diagnosis.proposals.proposal import Proposal, Proposals, Refused
+from ident.diagnosis.proposals.shown import shown_in
 from ident.diagnosis.proposals.sight import Sight, sight
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.standing import Contradiction, contradiction
@@ -98,7 +99,7 @@ class Search:
             return False
         self.models = replace(self.models, effects=family.effects, given=family.given, _known={})
         before, self.base = self.base, self.models.refit(refit.effects, refit.values)
-        proposal = self._proposal(candidate, name, gained, bar, few)
+        proposal = self._proposal(candidate, seen, name, gained, bar, few)
         self.found.append(replace(proposal, contradicted=self._contradiction(name, before)))
         return True
 
@@ -107,7 +108,9 @@ class Search:
         runs = self.models.matrix.of_use("verify")
         return contradiction(name, runs, before.left(runs), self.base.left(runs)) if runs else None
 
-    def _proposal(self, candidate: Candidate, name: str, gained: float, bar: float, hypothesis: bool) -> Proposal:
+    def _proposal(
+        self, candidate: Candidate, seen: Sight, name: str, gained: float, bar: float, hypothesis: bool
+    ) -> Proposal:
         own = dict(next(one for one in self.models.given.custom if one["name"] == name))
         if shapes := self.models.effects[name].added[1:]:  # as the refit found them: added, they are held there
             given = own["shape"]
@@ -119,6 +122,8 @@ class Search:
             strength=self.base.values[self.models.strength(name)],
             std_error=self.base.deviation(self.models.strength(name)),
             unit=self.models.effects[name].strength.unit,
+            parameters=self.base.parameters,
+            view=shown_in(candidate.terms[0], self.models.preset, seen.typical),
             beside=self.beside,
             terms=len(self.found) + 1,
             shapes=sum(term.free_shapes for term in candidate.terms),

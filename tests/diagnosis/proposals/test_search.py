@@ -15,7 +15,7 @@ from ident.errors import TimeIsUp, Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.progress import Progress
-from ident.workflows import diagnose, identify
+from ident.workflows import diagnose, identify, study
 from tests.bench.test_diagnosis import matrix_with
 from tests.blind.machines import matrix_of
 from tests.reference import qian_reference as linear
@@ -129,6 +129,24 @@ def test_verify_runs_neither_rank_nor_choose_and_what_they_speak_against_says_so
     assert against.before < against.after
     assert against.deviations > 2
     assert found.proposals[0].contradicted is None
+
+
+def test_the_missing_characteristic_is_there_with_the_term_through_it():
+    """Flow that leaks by |P|: the residual has that curve, and the proposal predicts it."""
+    matrix, found = with_a_leak()
+    (term,) = found.proposals
+    assert term.view == "Q(P)"
+    fit = identify(matrix, Settings(model="qian2014"))
+    whole = identify(matrix, Settings(model="qian2014", effects=("proposed_1",), custom=(term.effect,)))
+    seen, drawn = (
+        study(matrix, fit).curves(matrix.of_use("fit"), term.view, None, other)[0] for other in (None, whole)
+    )
+    assert seen.explained > 0.95
+    x, y, other = (np.array(of) for of in (seen.x, seen.y, np.interp(seen.x, drawn.x, drawn.y)))
+    visited = slice(2, -2)
+    assert np.abs(y - other)[visited].max() < 0.03 * np.ptp(y)
+    assert np.polyfit(np.abs(x), y, 1)[0] == pytest.approx(term.strength, rel=0.05)
+    assert whole.values["proposed_1.s"] == pytest.approx(term.parameters["proposed_1.s"].value, rel=1e-3)
 
 
 def test_the_strength_comes_with_its_standard_error():
