@@ -14,7 +14,8 @@ class Parameter:
     `name` is what the user calls it, in results and requests; `symbol` how it is written in the literature; `of` the
     effect that it belongs to, none for a model's own. `lower` and `upper` are the physical bounds of the search;
     `value` is the default (for a strength: 0, off), `relative` that of a way on a machine of unknown size, in standard
-    deviations of its motion. A range of more than two decades is searched on a logarithmic
+    deviations of its motion. `searched`: of a shape without which the effect could not be found, free wherever the
+    effect is; other shapes are held at their default. A range of more than two decades is searched on a logarithmic
     scale, any other on a linear one.
     """
 
@@ -28,6 +29,7 @@ class Parameter:
     source: str = ""
     of: str = ""
     relative: float = 0.0
+    searched: bool = False
 
     def __post_init__(self) -> None:
         if not self.lower < self.upper:

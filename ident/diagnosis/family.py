@@ -205,7 +205,7 @@ class ModelFamily:
         if key not in self._known:
             on = set(effects)
             model = self._whole if whole else self.model(on)
-            off = {self.strength(e.name): 0.0 for e in model.effects if e.name not in on}
+            off = off_values(e for e in model.effects if e.name not in on)
             given = replace(self.given, fixed={**self.given.fixed, **off})
             space = search_space(model, self.matrix, given, self.band)
             runs = shortened(self.runs, samples) if samples else self.runs

@@ -120,7 +120,9 @@ def _strong(models: ModelFamily, base: Refit, refit: Refit) -> list[dict[str, fl
     symbol = models.strength(refit.effects[-1])
     lower, upper = refit.fitness.space.bounds(refit.values)[symbol]
     end = lower if refit.values[symbol] < 0 else upper
-    return [{**base.values, symbol: share * end} for share in _STRONG]
+    added = models.effects[refit.effects[-1]].added[1:]
+    shape = {p.in_equations: refit.values[p.in_equations] for p in added if p.in_equations in refit.values}
+    return [{**base.values, **shape, symbol: share * end} for share in _STRONG]
 
 
 def _promises(prediction: Prediction) -> bool:

@@ -9,25 +9,28 @@ tiny ones: kinks need room, and what approaches zero as a fast time constant wou
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.diagnosis.beginnings import beginnings
 from ident.diagnosis.cross_validation import scored, weight_of_offsets
 from ident.diagnosis.family import ModelFamily, Refit
 from ident.fit.bounded_step import bounded_step
 from ident.fit.fitness import STEP
 from ident.fit.responses import Responses, Sensitivities
 from ident.fit.simulated_fitness import SimulatedFitness
+from ident.fit.space import Space
 from ident.parallel import each
 
 Array = NDArray[np.float64]
 SAMPLES = 49_152
 _LADDER = (0.01, 0.03, 0.1, 0.3, 1.0)  # of the way from off to each bound
 _FINER = (1e-4, 3e-4, 1e-3, 3e-3)  # besides, for a machine of unknown size, whose bounds are wide
+_MANY, _AMONG_MANY = 10, (0.3,)  # beginnings of the shapes, from each of which one strength has to do
 _REACH = 2.0  # by which factor a response may be scaled: beyond, it would be another strength's
 _FAR = 0.1  # of an axis: a parameter that hardly matters where it is may be sent anywhere by a linearisation
 _PARTS = (1.0, 0.5, 0.2, 0.05, 0.01)  # of the way to a prediction: it may be too bold
@@ -94,19 +97,28 @@ def _predicted(models: ModelFamily, fitness: SimulatedFitness, base: Refit, name
     off = {symbol: value for symbol, value in models.off.items() if symbol not in base.values}
     known = {name: value for name, value in {**off, **base.values}.items() if name in fitness.space.order}
     sight = _Sensitivities.of(models, fitness, base, known)
-    trials = [(name, strength) for name in names for strength in _strengths(fitness, models.strength(name), known)]
+    trials = [trial for name in names for trial in _trials(models, base, fitness.space, name, known)]
     found = sight.at(trials)
     between = found.thresholds()
     every = [found, sight.at(between)] if between else [found]
     before = sight.before
-    best = {name: (before, np.zeros(len(base.point) + 1), strength) for name, strength in reversed(trials)}
-    for name, after, step, strength in chain.from_iterable(seen.outlooks() for seen in every):
-        if after.score < (1.0 - _ROUNDING) * best[name][0].score:
-            best[name] = after, step, strength
+    best = {trial.effect: (before, np.zeros(len(base.point) + 1), trial) for trial in reversed(trials)}
+    for trial, after, step in chain.from_iterable(seen.outlooks() for seen in every):
+        if after.score < (1.0 - _ROUNDING) * best[trial.effect][0].score:
+            best[trial.effect] = after, step, trial
     return [
-        Prediction(name, after, before, len(sight.gram), _starts(models, base, name, step, strength))
-        for name, (after, step, strength) in ((name, best[name]) for name in names)
+        Prediction(name, after, before, len(sight.gram), _starts(models, base, trial, step))
+        for name, (after, step, trial) in ((name, best[name]) for name in names)
     ]
+
+
+@dataclass(frozen=True)
+class _Trial:
+    """An effect at a strength, and at values of the shapes that are searched with it, by the equations' names."""
+
+    effect: str
+    strength: float
+    shape: Mapping[str, float]
 
 
 @dataclass(frozen=True)
@@ -139,11 +151,13 @@ class _Sensitivities:
         records = _Records(totals, np.array([r.length for r in fitness.runs]))
         return cls(models, base.point, known, found, *found.products(), records)
 
-    def at(self, trials: list[tuple[str, float]]) -> _Seen:
+    def at(self, trials: list[_Trial]) -> _Seen:
         """The model with each effect at its strength alone."""
         values = {name: np.full(len(trials), value) for name, value in self.known.items()}
-        for i, (name, strength) in enumerate(trials):
-            values[self.models.strength(name)][i] = strength
+        for i, trial in enumerate(trials):
+            values[self.models.strength(trial.effect)][i] = trial.strength
+            for name, value in trial.shape.items():
+                values[name][i] = value
         return _Seen(self, trials, self.sensitivities.beside(values))
 
     @cached_property
@@ -157,21 +171,24 @@ class _Seen:
     """The responses of a fitted model to effects of some strengths."""
 
     sight: _Sensitivities
-    trials: list[tuple[str, float]]
+    trials: list[_Trial]
     responses: Responses
 
-    def outlooks(self) -> Iterator[tuple[str, Outlook, Array, float]]:
-        """Effect, what is left with a share of its response, the step to there, the strength that was simulated."""
-        for i, (name, strength) in enumerate(self.trials):
+    def outlooks(self) -> Iterator[tuple[_Trial, Outlook, Array]]:
+        """What was simulated, what is left with a share of its response, and the step to there."""
+        for i, trial in enumerate(self.trials):
             if self._power(i) > 0:
-                yield name, *self._after(i), strength
+                yield trial, *self._after(i)
 
-    def thresholds(self) -> list[tuple[str, float]]:
+    def thresholds(self) -> list[_Trial]:
         """Strengths between two neighbours of which one does next to nothing and the other much."""
-        found: list[tuple[str, float]] = []
-        for i, ((name, a), (other, b)) in enumerate(pairwise(self.trials)):
-            if name == other and 1 < b / a < _WIDE and self._power(i + 1) > _SUDDEN * self._power(i):
-                found += [(name, a * (b / a) ** share) for share in _BETWEEN]
+        found: list[_Trial] = []
+        for i, (one, other) in enumerate(pairwise(self.trials)):
+            if one != replace(other, strength=one.strength):
+                continue
+            ratio = other.strength / one.strength
+            if 1 < ratio < _WIDE and self._power(i + 1) > _SUDDEN * self._power(i):
+                found += [replace(one, strength=one.strength * ratio**share) for share in _BETWEEN]
         return found
 
     def _power(self, trial: int) -> float:
@@ -188,27 +205,29 @@ class _Seen:
         return _after(gram[:, order][:, :, order], means[:, order], sight.records, sight.point, p)
 
 
-def _starts(models: ModelFamily, base: Refit, name: str, step: Array, strength: float) -> tuple[dict[str, float], ...]:
+def _starts(models: ModelFamily, base: Refit, trial: _Trial, step: Array) -> tuple[dict[str, float], ...]:
     """The values from which to refit with the effect: parts of the way to the prediction, and of the way back."""
-    p, symbol = len(base.point), models.strength(name)
+    p, symbol = len(base.point), models.strength(trial.effect)
     moved = np.clip(step[:p], -_FAR, _FAR)
 
     def at(share: float, here: float) -> dict[str, float]:
         point = np.clip(base.point + share * moved, 0.0, 1.0)
         values = {key: float(value[0]) for key, value in base.space.values(point[None]).items()}
-        return {**base.values, **values, symbol: here}
+        return {**base.values, **values, **trial.shape, symbol: here}
 
     scaled = float(step[p])
-    parts = [at(share, share * scaled * strength) for share in _PARTS]
-    return (*parts, *(at(1.0, scaled**share * strength) for share in _BACK)) if scaled else tuple(parts)
+    parts = [at(share, share * scaled * trial.strength) for share in _PARTS]
+    return (*parts, *(at(1.0, scaled**share * trial.strength) for share in _BACK)) if scaled else tuple(parts)
 
 
-def _strengths(fitness: SimulatedFitness, symbol: str, values: Mapping[str, float]) -> list[float]:
-    """The strengths to try, SI: shares of the way from off to each bound."""
-    lower, upper = fitness.space.bounds(values)[symbol]
-    ends = [end for end in (upper, lower) if end]
-    shares = (*_FINER, *_LADDER) if fitness.space.scale_free else _LADDER
-    return [share * end for end in ends for share in shares]
+def _trials(models: ModelFamily, base: Refit, space: Space, name: str, known: Mapping[str, float]) -> Iterator[_Trial]:
+    """The strengths to try, SI: shares of the way from off to each bound, from wherever the shapes may begin."""
+    lower, upper = space.bounds(known)[models.strength(name)]
+    shapes = beginnings(base, models.effects[name], space, known)
+    shares = _AMONG_MANY if len(shapes) > _MANY else (*_FINER, *_LADDER) if space.scale_free else _LADDER
+    for shape in shapes:
+        for end in (upper, lower):
+            yield from (_Trial(name, share * end, shape) for share in shares if end)
 
 
 @dataclass(frozen=True)

@@ -45,6 +45,14 @@ EFFECTS = _of_files(
     "sensor_lag",
     "acquisition_lag",
     "sensor_gain",
+    "flow_force",
+    "pressure_dependent_gain",
+    "supply_ripple",
+    "one_way_leakage",
+    "unequal_areas",
+    "position_friction",
+    "end_stop",
+    "sensor_nonlinearity",
 )
 """Those of hydraulic chains."""
 OF_BENCH = _of_files(

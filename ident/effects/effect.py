@@ -17,7 +17,7 @@ class Effect:
     """What is added to the chain at `place`.
 
     `strength` is the parameter with which the effect is off at 0: the chain is then exactly unchanged. `shape` are its
-    other parameters, held at their defaults unless a fit is told to free them. `equations` redefine signals of the
+    other parameters, held at their defaults unless a fit is told to free them or they are always searched. `equations` redefine signals of the
     chain and give the rates and memories of the effect's own states. An equation reads a signal that its effect
     redefines as it was left by what stands before, every other name in its final value, and a memory of the effect in
     the equation of a memory as it was at the start of the step. `units` are those of the signals of the chain that it

@@ -116,11 +116,12 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     force = _acting(runs, "force" if settings.load == "force" else "load_disturbance")
     if force:  # a mass that would need it
         typical["mL"] = force / (typical["V"] * band)
-    strengths = {effect.added[0].in_equations for effect in preset.effects}
+    of_effects = [p for effect in preset.effects for p in effect.added]
     shapes = {
         p.in_equations: p.relative * typical["L"] if p.relative and preset.relative_ways else p.value
         for effect in preset.effects
         for p in effect.added[1:]
+        if not p.searched
     }
     known = shapes | {name: value for name, value in preset.gains.items() if name != "Kp"}
     fixed = {name: value for name, value in known.items() if name not in given} | fixed
@@ -141,10 +142,9 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
             axes.append(Axis(scale.name, lower, upper, parameter.logarithmic))
         else:
             axes.append(Axis(scale.name, *scale.slower_than(fastest / band), scale.logarithmic, scale.equation))
-    _refuse_bad_values(fixed, strengths | known.keys())
+    _refuse_bad_values(fixed, {p.in_equations for p in of_effects} | known.keys())
     order = tuple(scale.name for scale in preset.scales)
-    of_effects = {p.name for effect in preset.effects for p in effect.added}
-    bounded = {*settings.bounds, *settings.fixed} - of_effects
+    bounded = {*settings.bounds, *settings.fixed} - {p.name for p in of_effects}
     return Space(tuple(axes), order, fixed, typical, convention, not same, not (same or bounded))
 
 

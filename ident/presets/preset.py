@@ -283,7 +283,8 @@ _SCALES = {
     "1": _OWN, "Pa": _OWN, "m/s": _OWN, "s": ("1/W", 3.0), "1/s": ("W", 1.0), "m": ("Z", 1.0), "1/m": ("1/D", 3.0),
     "s/m": ("1/(D*W)", 5.0), "N": ("F", 0.3), "N/m^3": ("F/L**3", 0.3), "N*s^2/m^2": ("F/V**2", 1.0),
     "m/Pa": ("D*A/F", 1.0), "1/Pa": ("A/F", 1.0), "s/m^3": ("1/(A*V)", 1.0), "1/m^2": ("1/L**2", 1.0),
-    "m^3/(s*Pa^0.5)": ("A*V/sqrt(F/A)", 1.0), "m/N": ("L/F", 1.0),
+    "m^3/(s*Pa^0.5)": ("A*V/sqrt(F/A)", 1.0), "m/N": ("L/F", 1.0), "m^3/(s*Pa)": ("A*V/(F/A)", 1.0),
+    "N/m^2": ("F/L**2", 1.0), "N/m": ("F/L", 1e3),
 }  # fmt: skip
 """For a machine of unknown size: what a strength of each unit is measured by, and how much of it is searched.
 
@@ -300,10 +301,14 @@ def scale_of(effect: Effect, parameter: Parameter, sizes: Mapping[str, str]) -> 
     text, reach = _SCALES.get(parameter.unit, _OWN)
     if effect.place not in ("valve", "spool") and parameter.unit == "m":
         text, reach = "L", 0.5
+    if effect.place == "load" and parameter.unit == "1/m":
+        text, reach = "1/L", 1.0
     if "F" in text and not sizes["F"]:
         reach = None
     if reach is None:
         return Scale.by_bounds(parameter, logarithmic=False)
     text = re.sub(r"\b[DZF]\b", lambda found: f"({sizes[found[0]]})", text)
+    if parameter.searched and parameter.logarithmic:
+        return Scale(parameter.in_equations, text, reach * parameter.lower / parameter.upper, reach)
     lower = -reach if parameter.lower < 0 else 0.0
     return Scale(parameter.in_equations, text, lower, reach, logarithmic=False)

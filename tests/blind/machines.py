@@ -28,13 +28,14 @@ _RUN_AWAY = 0.05  # m: a softening spring beyond its range
 
 @dataclass(frozen=True)
 class Machine:
-    """An actuator, what is hidden in it (strengths by effect), the noise and the matrix it is measured over."""
+    """An actuator, what is hidden in it (strengths by effect, shapes as effect.symbol), noise and matrix."""
 
     plant: linear.Plant
     hidden: Mapping[str, float] = field(default_factory=dict)
     noise: float = 0.01
     small: bool = False
     seed: int = 0
+    shapes: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def trials(self) -> list[linear.Trial]:
@@ -43,7 +44,8 @@ class Machine:
 
     def measured(self, seconds: float = SECONDS, every: int = 1) -> Matrix:
         """Its test matrix, from the reference."""
-        f = reference.named({f"{name}.{effect(name).strength.symbol}": value for name, value in self.hidden.items()})
+        strengths = {f"{name}.{effect(name).strength.symbol}": value for name, value in self.hidden.items()}
+        f = reference.named({**self.shapes, **strengths})
         records = reference.measure_all(
             f, self.trials[::every], seconds=seconds, noise=self.noise, seed=self.seed, plant=self.plant
         )
@@ -74,6 +76,18 @@ def drawn_plant(rng: np.random.Generator) -> linear.Plant:
         plant = paper._replace(**values)
         if all(_damped(plant, trial.cell) for trial in linear.trials()):
             return plant
+
+
+def drawn_shapes(rng: np.random.Generator, name: str) -> dict[str, float]:
+    """Values of the shapes that are searched with an effect: an angle anywhere, all else inside of its bounds."""
+    found = {}
+    for shape in effect(name).shape:
+        if shape.searched and shape.unit == "1":
+            found[f"{name}.{shape.symbol}"] = float(rng.uniform(-np.pi, np.pi))
+        elif shape.searched:
+            low, high = np.log([10.0 * shape.lower, 0.4 * shape.upper])
+            found[f"{name}.{shape.symbol}"] = float(np.exp(rng.uniform(low, high)))
+    return found
 
 
 def _damped(plant: linear.Plant, cell: linear.Cell) -> bool:

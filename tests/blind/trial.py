@@ -14,7 +14,9 @@ from ident.effects.effect import Effect
 from ident.fit.settings import Settings
 from ident.matrix import Matrix, Run, Specimen
 from ident.workflows import diagnose, identify
-from tests.blind.machines import OFFSET, Machine, as_fit, drawn_plant, matrix_of, offset_strength, strength_for
+from tests.blind.machines import (
+    OFFSET, Machine, as_fit, drawn_plant, drawn_shapes, matrix_of, offset_strength, strength_for,
+)  # fmt: skip
 from tests.blind.noises import NOISES, with_noise
 from tests.blind.written import written
 from tests.reference import qian_reference as linear
@@ -27,7 +29,7 @@ _REACHED = 0.85  # of the wanted linear error: below it the cell is called unrea
 def single(name: str, level: float, noise: float, small: bool, seed: int) -> dict[str, Any]:
     """One effect hidden, at `level` times the floor where its bounds allow it."""
     rng = np.random.default_rng([seed, NAMES.index(name), round(10 * level), round(1e4 * noise), small])
-    machine = Machine(drawn_plant(rng), {}, noise, small, int(rng.integers(1 << 30)))
+    machine = Machine(drawn_plant(rng), {}, noise, small, int(rng.integers(1 << 30)), drawn_shapes(rng, name))
     sign = -1.0 if rng.random() < 0.5 and EFFECTS[NAMES.index(name)].strength.lower < 0 else 1.0
     if name in OFFSET:
         strength, reached = sign * offset_strength(machine, name, level), noise
@@ -40,7 +42,8 @@ def single(name: str, level: float, noise: float, small: bool, seed: int) -> dic
     }  # fmt: skip
     if not row["reachable"]:
         return row
-    return row | outcome(Machine(machine.plant, {name: strength}, noise, small, machine.seed))
+    shapes = {"shapes": dict(machine.shapes)} if machine.shapes else {}
+    return row | shapes | outcome(replace(machine, hidden={name: strength}))
 
 
 def several(count: int, seed: int, noise: float = 0.01, small: bool = False) -> dict[str, Any]:
@@ -48,17 +51,20 @@ def several(count: int, seed: int, noise: float = 0.01, small: bool = False) -> 
     rng = np.random.default_rng([seed, 1000 + count, *[1] * small])
     plant, start = drawn_plant(rng), int(rng.integers(1 << 30))
     hidden: dict[str, float] = {}
+    shapes: dict[str, float] = {}
     while len(hidden) < count:
         name = str(rng.choice([n for n in NAMES if n not in hidden and n not in OFFSET]))
         wanted = float(np.exp(rng.uniform(np.log(3.1), np.log(6.0))))
-        strength, reached = strength_for(Machine(plant, {}, noise, small, start), name, wanted)
+        drawn = drawn_shapes(rng, name)
+        strength, reached = strength_for(Machine(plant, {}, noise, small, start, drawn), name, wanted)
         if reached >= 2.8 * noise:
             hidden[name] = strength
+            shapes |= drawn
     kinds = {0: "none", 1: "one", 2: "two", 3: "three"}
     row: dict[str, Any] = {
         "kind": kinds[count], "matrix": "small" if small else "full", "noise": noise, "seed": seed, "hidden": hidden,
     }  # fmt: skip
-    return row | outcome(Machine(plant, hidden, noise, small, start))
+    return row | ({"shapes": shapes} if shapes else {}) | outcome(Machine(plant, hidden, noise, small, start, shapes))
 
 
 def outside(kind: str, seed: int, noise: float = 0.01) -> dict[str, Any]:

@@ -5,14 +5,15 @@ and slips, its events located inside the sub-step. Nothing here comes from the p
 nor integrator. All quantities are SI; a machine starts at rest at zero, its command is zero before the record.
 
     eps = u(t - T) - y(t - T)                          command_delay, loop_delay: exact
-    e = clip(Kp eps, 1/a) + Kp Ki ∫eps + Kp Td eps' - kd P
+    e = clip(Kp eps, 1/a) + Kp Ki ∫eps + Kp Td eps' - kd P - f q |P|
     tau q' = e - q;  rate limit, stiction of the spool, two more poles behind it
     w: play, bias, dead zone, underlap, asymmetry, saturation, in this order
-    Q = Z0/A w sqrt(1 - sgn(w) P/Ps) (1 - d z),  T z' + z = |Q|
-    Ke P' = Q - Cl P - C P/(P² + P0²)^¼ - A v,  Ke = Ka (1 + alpha/(1 + (P/Pr)²)) (1 - kappa x²)
-    (m0 + mL) v' = A P - c0 v - c2 v|v| - Fd z + F0 - S - friction,  friction ≤ Fc + dF exp(-(v/vs)²), it sticks
+    Q = Z0/A w sqrt(1 - sgn(w) P/Ps) (1 - d z),  T z' + z = |Q|;  times (1 + g |P|) and (1 + r sin(2 pi f t + phi))
+    Ke P' = Q - Cl P - c |P| - C P/(P² + P0²)^¼ - A' v,  A' = A (1 + a sgn v),  Ke = Ka (1 + alpha/(1 + (P/Pr)²)) (1 - kappa x²)
+    (m0 + mL) v' = A' P - c0 v - c2 v|v| - Fd z + F0 - S - ks (|x| - 1/g)+ sgn x - friction
+    friction ≤ Fc + dF exp(-(v/vs)²) + Fx x², it sticks
     S = k (x - clip(x, -g, g)) + cL v + k3 x³ + fy z;  behind a joint of compliance 1/kj: of the specimen's own motion
-    reading X = x + F/kf;  T y' + y = X;  recorded: T yr' + yr = y, times 1 + g
+    reading X = x + F/kf;  T y' + y = X;  reading y (1 + s y²);  recorded: T yr' + yr = y, times 1 + g
 """
 
 from __future__ import annotations
@@ -77,6 +78,17 @@ class Effects(NamedTuple):
     sensor_lag_T: float = 0.0
     acquisition_lag_T: float = 0.0
     sensor_gain_g: float = 0.0
+    flow_force_f: float = 0.0
+    pressure_dependent_gain_g: float = 0.0
+    supply_ripple_r: float = 0.0
+    supply_ripple_f: float = 25.0
+    supply_ripple_phi: float = 0.0
+    one_way_leakage_c: float = 0.0
+    unequal_areas_a: float = 0.0
+    position_friction_Fx: float = 0.0
+    end_stop_g: float = 0.0
+    end_stop_ks: float = 1e7
+    sensor_nonlinearity_s: float = 0.0
 
 
 def effects(**values: float) -> Effects:
@@ -130,17 +142,29 @@ def follow(f, cell, s):
 
 @njit(cache=True)
 def rod_force(plant, f, cell, s):
-    """All forces on the rod but dry friction (N), and the mass that they move (kg)."""
+    """All forces on the rod but those with the sign of its speed (N), and the mass that they move (kg)."""
     own = plant.A * s[P] - plant.c0 * s[V] - f.quadratic_damping_c2 * s[V] * abs(s[V]) + f.static_load_F0
     own -= f.presliding_friction_Fd * s[ZF]
+    if f.end_stop_g > 0 and abs(s[X]) > 1 / f.end_stop_g:
+        own -= f.end_stop_ks * (s[X] - sign(s[X]) / f.end_stop_g)
     if f.specimen_joint_s > 0:
         return own - force_on_specimen(f, s), plant.m0
     return own - specimen_reaction(f, cell, s[X], s[V], s[ZH]), plant.m0 + cell.mass
 
 
 @njit(cache=True)
-def friction_limit(f, v):
-    return f.coulomb_friction_Fc + f.stribeck_friction_dF * np.exp(-((v / f.stribeck_friction_vs) ** 2))
+def friction_limit(plant, f, s):
+    """What opposes the motion whichever way it goes (N): dry friction, less what unequal areas help."""
+    dry = f.coulomb_friction_Fc + f.position_friction_Fx * s[X] ** 2
+    dry += f.stribeck_friction_dF * np.exp(-((s[V] / f.stribeck_friction_vs) ** 2))
+    return dry - f.unequal_areas_a * plant.A * s[P]
+
+
+@njit(cache=True)
+def holding_limit(plant, f, s):
+    """The same at standstill, where nothing helps yet."""
+    dry = f.coulomb_friction_Fc + f.position_friction_Fx * s[X] ** 2 + f.stribeck_friction_dF
+    return dry + max(-f.unequal_areas_a * plant.A * s[P], 0.0)
 
 
 @njit(cache=True)
@@ -166,17 +190,19 @@ def opening(f, q, play):
 
 
 @njit(cache=True)
-def derivative(plant, f, cell, u, du, y_late, v_late, mode, play, s, out):
+def derivative(plant, f, cell, t, u, du, y_late, v_late, mode, play, s, out):
     """Rates of all states; `mode` is the sign of the sliding speed, 0 while the rod sticks. Returns the reading."""
     if f.specimen_joint_s > 0 and cell.mass == 0:
         follow(f, cell, s)
     force, mass = rod_force(plant, f, cell, s)
-    acceleration = 0.0 if mode == 0 else (force - mode * friction_limit(f, s[V])) / mass
+    acceleration = 0.0 if mode == 0 else (force - mode * friction_limit(plant, f, s)) / mass
     if mode == 2:  # no dry friction at all
         acceleration = force / mass
     position = reading(f, cell, s, acceleration)
     y = s[Y] if f.sensor_lag_T > 0 else position
     v = (position - s[Y]) / f.sensor_lag_T if f.sensor_lag_T > 0 else s[V]
+    v *= 1 + 3 * f.sensor_nonlinearity_s * y**2
+    seen = y = y * (1 + f.sensor_nonlinearity_s * y**2)
     if f.loop_delay_T > 0:
         y, v = y_late, v_late
     eps = u - y
@@ -184,6 +210,7 @@ def derivative(plant, f, cell, u, du, y_late, v_late, mode, play, s, out):
     if f.command_limit_a > 0:
         e = clipped(e, -1 / f.command_limit_a, 1 / f.command_limit_a)
     e += cell.gain * (f.integral_action_Ki * s[EPS] + f.lead_Td * (du - v)) - f.pressure_feedback_kd * s[P]
+    e -= f.flow_force_f * s[Q] * abs(s[P])
     rate = (e - s[Q]) / plant.tau
     rate /= np.sqrt(1 + (f.valve_rate_limit_a * rate) ** 2)
     if abs(e - s[Q]) < f.spool_stiction_s:
@@ -198,10 +225,14 @@ def derivative(plant, f, cell, u, du, y_late, v_late, mode, play, s, out):
     flow = plant.Z0 / plant.A * w * np.sqrt(max(0.0, 1 - sign(w) * s[P] * f.pressure_flow_r))
     flow *= 1 - f.supply_droop_d * s[ZD]
     out[ZD] = (abs(flow) - s[ZD]) / f.supply_droop_T
+    flow *= 1 + f.pressure_dependent_gain_g * abs(s[P])
+    flow *= 1 + f.supply_ripple_r * np.sin(2 * np.pi * f.supply_ripple_f * t + f.supply_ripple_phi)
     soft = plant.Ka * (1 + f.entrained_air_alpha / (1 + (s[P] / f.entrained_air_Pr) ** 2))
     soft *= 1 - f.stroke_dependent_volume_kappa * s[X] ** 2
     leak = plant.Cl * s[P] + f.orifice_leakage_C * s[P] / (s[P] ** 2 + f.orifice_leakage_P0**2) ** 0.25
-    out[P] = (flow - leak - plant.A * s[V]) / soft
+    leak += f.one_way_leakage_c * abs(s[P])
+    area = plant.A * (1 + f.unequal_areas_a * sign(s[V]))
+    out[P] = (flow - leak - area * s[V]) / soft
     out[V] = acceleration
     out[X] = s[V]
     out[EPS] = eps
@@ -210,7 +241,6 @@ def derivative(plant, f, cell, u, du, y_late, v_late, mode, play, s, out):
     bent = 0.5 + 0.5 * sign(own_v * s[ZH])
     out[ZH] = own_v / f.specimen_hysteresis_xy * (1 - abs(s[ZH]) ** f.specimen_hysteresis_n * bent)
     out[Y] = (position - s[Y]) / f.sensor_lag_T if f.sensor_lag_T > 0 else 0.0
-    seen = s[Y] if f.sensor_lag_T > 0 else position
     out[YR] = (seen - s[YR]) / f.acquisition_lag_T if f.acquisition_lag_T > 0 else 0.0
     if f.specimen_joint_s > 0 and cell.mass + cell.damping > 0:
         out[X2] = s[V2]
@@ -236,7 +266,7 @@ def kutta(plant, f, cell, t, h, u0, slope, history, mode, play, s, k, trial):
             else:
                 trial[i] = s[i] + h * (2 * k[1, i] - k[0, i])
         y, v = late(history, t + c * h - f.loop_delay_T) if f.loop_delay_T > 0 else (0.0, 0.0)
-        derivative(plant, f, cell, u0 + slope * c * h, slope, y, v, mode, play, trial, k[stage])
+        derivative(plant, f, cell, t + c * h, u0 + slope * c * h, slope, y, v, mode, play, trial, k[stage])
     for i in range(STATES):
         s[i] += h / 6 * (k[0, i] + 4 * k[1, i] + k[2, i])
 
@@ -293,13 +323,12 @@ def command_at(command, t, rate, linear_hold):
 @njit(cache=True)
 def mode_of(plant, f, cell, s):
     """The sign of sliding, 0 for sticking, 2 where there is no dry friction."""
-    limit = friction_limit(f, 0.0)
-    if limit == 0:
+    if f.coulomb_friction_Fc + f.position_friction_Fx + f.stribeck_friction_dF + abs(f.unequal_areas_a) == 0:
         return 2
     if s[V] != 0:
         return 1 if s[V] > 0 else -1
     force, _ = rod_force(plant, f, cell, s)
-    if abs(force) <= limit:
+    if abs(force) <= holding_limit(plant, f, s):
         return 0
     return 1 if force > 0 else -1
 
@@ -334,9 +363,10 @@ def integrate(  # noqa: PLR0912, PLR0915  the whole story of a step in one place
                     u0, slope = 0.5 * (command[0] + end) * (start + h) / h, 0.0
             mode = mode_of(plant, f, cell, s)
             y, v = late(history, t - f.loop_delay_T) if f.loop_delay_T > 0 else (0.0, 0.0)
-            seen = derivative(plant, f, cell, u0, slope, y, v, mode, play, s, k[0])
+            seen = derivative(plant, f, cell, t, u0, slope, y, v, mode, play, s, k[0])
             history[here, 0] = seen
-            history[here, 1] = k[0, Y] if f.sensor_lag_T > 0 else s[V]
+            bent = 1 + 3 * f.sensor_nonlinearity_s * (s[Y] if f.sensor_lag_T > 0 else s[X]) ** 2
+            history[here, 1] = bent * (k[0, Y] if f.sensor_lag_T > 0 else s[V])
             history[here + 1] = history[here]
             if step == 0:
                 recorded = s[YR] if f.acquisition_lag_T > 0 else seen

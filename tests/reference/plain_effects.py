@@ -7,7 +7,7 @@ The parameters have the letters of the catalogue, in `self.p`.
 
 from __future__ import annotations
 
-from math import copysign, sqrt
+from math import copysign, pi, sin, sqrt
 from typing import Any
 
 import numpy as np
@@ -219,3 +219,32 @@ class EntrainedAir(Machine):
 class StrokeDependentVolume(Machine):
     def softness(self, s: State) -> float:
         return self.plant.Ka * (1 - self.p.kappa * s[3] ** 2)
+
+
+# What was added to the catalogue later ------------------------------------------------------------------------------
+
+
+class FlowForce(Machine):
+    def drive(self, t: float, s: State) -> float:
+        return super().drive(t, s) - self.p.f * s[0] * abs(s[1])
+
+
+class PressureDependentGain(Machine):
+    def flow(self, w: float, s: State) -> float:
+        return super().flow(w, s) * (1 + self.p.g * abs(s[1]))
+
+
+class SupplyRipple(Machine):
+    now = 0.0
+
+    def rates(self, t: float, s: State) -> list[float]:
+        self.now = t
+        return super().rates(t, s)
+
+    def flow(self, w: float, s: State) -> float:
+        return super().flow(w, s) * (1 + self.p.r * sin(2 * pi * self.p.f * self.now + self.p.phi))
+
+
+class OneWayLeakage(Machine):
+    def leak(self, P: float) -> float:
+        return super().leak(P) + self.p.c * abs(P)

@@ -18,7 +18,7 @@ class CoulombFriction(Machine):
 
     longest = 1e-4
 
-    def limit(self, v: float) -> float:
+    def limit(self, s: State) -> float:
         return self.p.Fc
 
     def push(self, s: State) -> float:
@@ -27,7 +27,7 @@ class CoulombFriction(Machine):
     def acceleration(self, s: State) -> float:
         if not self.mode:
             return 0.0
-        return (self.push(s) - self.mode * self.limit(s[2])) / (self.plant.m0 + self.cell.mass)
+        return (self.push(s) - self.mode * self.limit(s)) / (self.plant.m0 + self.cell.mass)
 
     def settle(self, t: float, s: NDArray[np.float64]) -> None:
         if abs(s[2]) > 1e-12:
@@ -35,17 +35,17 @@ class CoulombFriction(Machine):
             return
         s[2] = 0.0
         push = self.push(s)
-        self.mode = int(sgn(push)) if abs(push) > self.limit(0.0) * (1 - 1e-9) else 0
+        self.mode = int(sgn(push)) if abs(push) > self.limit(s) * (1 - 1e-9) else 0
 
     def switches(self) -> list[Switch]:
         if self.mode:
             return [(lambda _, s: s[2], -self.mode)]
-        return [(lambda _, s: self.push(s) - self.limit(0.0), 1), (lambda _, s: self.push(s) + self.limit(0.0), -1)]
+        return [(lambda _, s: self.push(s) - self.limit(s), 1), (lambda _, s: self.push(s) + self.limit(s), -1)]
 
 
 class StribeckFriction(CoulombFriction):
-    def limit(self, v: float) -> float:
-        return self.p.dF * exp(-((v / self.p.vs) ** 2))
+    def limit(self, s: State) -> float:
+        return self.p.dF * exp(-((s[2] / self.p.vs) ** 2))
 
 
 class PreslidingFriction(Machine):
@@ -141,3 +141,56 @@ class AcquisitionLag(Machine):
 class SensorGain(Machine):
     def recorded(self, t: float, s: State) -> float:
         return s[3] * (1 + self.p.g)
+
+
+# What was added to the catalogue later ------------------------------------------------------------------------------
+
+
+class Vanishing(CoulombFriction):
+    """Friction that may vanish: where nothing holds the rod it does not stick, and follows the command from rest."""
+
+    def settle(self, t: float, s: NDArray[np.float64]) -> None:
+        if abs(s[2]) < 1e-11:
+            s[2] = 0.0
+        super().settle(t, s)
+        if not self.mode and self.limit(s) < 1e-9:
+            self.mode = int(sgn(self.push(s)) or sgn(self.slope) or sgn(self.u0) or 1)
+
+    def switches(self) -> list[Switch]:
+        if self.mode:  # beyond zero: it begins there
+            return [(lambda _, s: s[2] + 2e-12 * self.mode, -self.mode)]
+        return super().switches()
+
+
+class UnequalAreas(Vanishing):
+    """The area A (1 + a sgn v) of flow and force: against the motion it holds the rod as dry friction does."""
+
+    def limit(self, s: State) -> float:
+        return max(-self.p.a * self.plant.A * s[1], 0.0)
+
+    def rates(self, t: float, s: State) -> list[float]:
+        rates = super().rates(t, s)
+        rates[1] -= self.p.a * self.plant.A * abs(s[2]) / self.softness(s)
+        return rates
+
+    def acceleration(self, s: State) -> float:
+        if not self.mode:
+            return 0.0
+        push = self.push(s) + self.mode * self.p.a * self.plant.A * s[1]
+        return push / (self.plant.m0 + self.cell.mass)
+
+
+class PositionFriction(Vanishing):
+    def limit(self, s: State) -> float:
+        return self.p.Fx * s[3] ** 2
+
+
+class EndStop(Machine):
+    def resistance(self, s: State) -> float:
+        beyond = max(abs(s[3]) - 1 / self.p.g, 0.0)
+        return super().resistance(s) + self.p.ks * beyond * sgn(s[3])
+
+
+class SensorNonlinearity(Machine):
+    def reading(self, t: float, s: State) -> float:
+        return s[3] + self.p.s * s[3] ** 3

@@ -80,6 +80,14 @@ CASES = {
     "sensor_lag": Case({"T": (1.5e-3, 1.5e-3)}),
     "acquisition_lag": Case({"T": (1.5e-3, 1.5e-3)}),
     "sensor_gain": Case({"g": (0.05, -0.05)}),
+    "flow_force": Case({"f": (3e-7, 3e-7)}, KINKS),
+    "pressure_dependent_gain": Case({"g": (3e-7, -3e-7)}, KINKS),
+    "supply_ripple": Case({"r": (0.2, 0.2), "f": (25.0, 41.0), "phi": (0.0, 1.0)}),
+    "one_way_leakage": Case({"c": (1e-11, -1e-11)}, KINKS),
+    "unequal_areas": Case({"a": (0.2, -0.2)}, STICKS),
+    "position_friction": Case({"Fx": (5e7, 5e7)}, STICKS),
+    "end_stop": Case({"g": (1e3, 1e3), "ks": (1e7, 3e6)}, KINKS),
+    "sensor_nonlinearity": Case({"s": (2e3, -2e3)}),
 }
 
 

@@ -1,0 +1,84 @@
+"""From where the shapes begin that are searched with an effect: a ripple's frequency and phase, a stop's stiffness."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.diagnosis.family import Refit
+from ident.effects.effect import Effect
+from ident.fit.space import Space
+from ident.matrix import Run
+from ident.parameter import Parameter
+
+Array = NDArray[np.float64]
+_LINES = 6  # frequencies
+_ANGLES = tuple(np.arange(6) * np.pi / 3)
+_ALONG = (0.25, 0.5, 0.75)  # of an axis
+_FINE = 4  # points of a spectrum for each that the record resolves
+
+
+def beginnings(base: Refit, effect: Effect, space: Space, known: Mapping[str, float]) -> list[dict[str, float]]:
+    """Every combination of where an effect's searched shapes may begin, by the equations' names; the empty one without any.
+
+    `known` are the values of everything in the space, the effect off.
+    """
+    searched = [p for p in effect.added if p.searched and p.in_equations in space.names]
+    values = [_values(base, parameter, space, known) for parameter in searched]
+    names = [parameter.in_equations for parameter in searched]
+    return [dict(zip(names, found, strict=True)) for found in product(*values)]
+
+
+def _values(base: Refit, parameter: Parameter, space: Space, known: Mapping[str, float]) -> tuple[float, ...]:
+    """A frequency begins where the residual has lines, an angle all around, all else along its range."""
+    if parameter.unit == "1":
+        return _ANGLES
+    if parameter.unit == "1/s":
+        return lines(base, *space.bounds(known)[parameter.in_equations])
+    axis = space.names.index(parameter.in_equations)
+    points = space.point(known) + np.zeros((len(_ALONG), 1))
+    points[:, axis] = _ALONG
+    return tuple(float(value) for value in space.values(points)[parameter.in_equations])
+
+
+def lines(base: Refit, lower: float, upper: float) -> tuple[float, ...]:
+    """The frequencies (1/s) between the bounds at which the residual's rate beats with the motion's, clearest first.
+
+    A gain that pulsates leaves of each line of the motion two neighbours. Times the motion itself these fall together
+    into one line, at the frequency of the pulsation, and all else is spread.
+    """
+    fitness, outputs = base.fitness, base.fitness.outputs(base.point)
+    shortest = min(run.length / run.sample_rate for run in fitness.runs)
+    longest = max(run.length / run.sample_rate for run in fitness.runs)
+    lower = max(lower, 1.0 / shortest)
+    grid = np.arange(lower, min(upper, fitness.band / 2.0), 1.0 / (_FINE * longest))
+    total = np.zeros(len(grid), complex)
+    for run in fitness.runs:
+        left, moved = (_rate(run, signal, fitness.band) for signal in (run.measured - outputs[run.id], outputs[run.id]))
+        size = float(np.std(moved)) * float(np.std(left)) or 1.0
+        n = _FINE * run.length
+        spectrum = np.fft.rfft(left * moved / size, n) / run.sample_rate
+        frequencies = np.fft.rfftfreq(n, 1.0 / run.sample_rate)
+        total += np.interp(grid, frequencies, spectrum.real) + 1j * np.interp(grid, frequencies, spectrum.imag)
+    return _peaks(grid, np.abs(total), 1.0 / longest)
+
+
+def _rate(run: Run, signal: Array, band: float) -> Array:
+    """The rate of a displacement, any other signal itself, within the band (rad/s) and without its mean."""
+    spectrum = np.fft.rfft(signal - signal.mean())
+    omega = 2 * np.pi * np.fft.rfftfreq(len(signal), 1.0 / run.sample_rate)
+    spectrum[omega > 2.0 * band] = 0.0
+    return np.fft.irfft(spectrum * 1j * omega if run.output == "displacement" else spectrum, len(signal))
+
+
+def _peaks(grid: Array, heights: Array, apart: float) -> tuple[float, ...]:
+    found: list[float] = []
+    for i in np.argsort(heights)[::-1]:
+        if all(abs(grid[i] - other) > apart for other in found):
+            found.append(float(grid[i]))
+        if len(found) == _LINES:
+            break
+    return tuple(found)

@@ -1,0 +1,20 @@
+"""The pump's pulsation modulates the flow."""
+
+from ident.effects.effect import Effect
+from ident.parameter import Parameter
+
+SUPPLY_RIPPLE = Effect(
+    name="supply_ripple",
+    place="flow",
+    meaning="the pump's pulsation modulates the flow",
+    does="a gain that pulsates",
+    strength=Parameter("depth", "r", "1", 0.0, 0.5, 0.0, "relative modulation of the flow"),
+    texts=("Q = Q * (1 + r * sin(2 * pi * f * t + phi))",),
+    units={"Q": "m^3/s"},
+    shape=(
+        Parameter("frequency", "f", "1/s", 0.5, 250.0, 25.0, "frequency of the pulsation", searched=True),
+        Parameter("phase", "phi", "1", -6.3, 6.3, 0.0, "its phase where the record begins", searched=True),
+    ),
+    looks="every line of the motion has two neighbours, as far from it as the pump's frequency",
+    source="pump without accumulator; one phase for all runs, so runs begun at one angle of the pump or a single run",
+)

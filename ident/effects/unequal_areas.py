@@ -1,0 +1,22 @@
+"""The piston's area differs between the directions of motion."""
+
+from ident.effects.effect import Effect
+from ident.parameter import Parameter
+
+UNEQUAL_AREAS = Effect(
+    name="unequal_areas",
+    place="load",
+    meaning="the piston's area differs between out and in: it takes other flows and gives other forces",
+    strength=Parameter(
+        "asymmetry", "a", "1", -0.5, 0.5, 0.0, "relative difference of the two directions' areas from their mean"
+    ),
+    texts=(
+        "L = L + a * A * abs(v)",
+        "D = D + max(a * A * P, 0) * sgn(v)",
+        "Ff = Ff + max(-a * A * P, 0)",
+    ),
+    units={"L": "m^3/s", "D": "N", "Ff": "N"},
+    looks="one direction faster and weaker than the other; even harmonics, and an offset that grows with amplitude",
+    source="single-rod cylinder, flow and force with A (1 + a sgn v); what opposes the motion sticks as dry friction does",
+    steps=4,
+)
