@@ -22,7 +22,7 @@ _FINE = 4  # points of a spectrum for each that the record resolves
 
 
 def beginnings(base: Refit, effect: Effect, space: Space, known: Mapping[str, float]) -> list[dict[str, float]]:
-    """Every combination of where an effect's searched shapes may begin, by the equations' names; the empty one without any.
+    """Every combination of where an effect's searched shapes may begin, by the equations' names.
 
     `known` are the values of everything in the space, the effect off.
     """

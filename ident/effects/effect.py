@@ -17,15 +17,15 @@ class Effect:
     """What is added to the chain at `place`.
 
     `strength` is the parameter with which the effect is off at 0: the chain is then exactly unchanged. `shape` are its
-    other parameters, held at their defaults unless a fit is told to free them or they are always searched. `equations` redefine signals of the
-    chain and give the rates and memories of the effect's own states. An equation reads a signal that its effect
-    redefines as it was left by what stands before, every other name in its final value, and a memory of the effect in
-    the equation of a memory as it was at the start of the step. `units` are those of the signals of the chain that it
-    redefines, for which its strength is made ("": for any): a chain that has such a signal in another unit refuses it.
-    `looks` says what the effect looks like in data, `steps` into how many a sample has to be divided so that its kinks
-    are met closely enough, `stride` by which share of its range its strength is moved for a sensitivity: far where it
-    acts in jumps. `does` says in a few words what it does where its name is of a part that a machine need not have.
-    `of_specimen`: it is a specimen's, and no diagnosis names it where nothing is known of one.
+    other parameters, held at their defaults unless a fit is told to free them, or `searched` as the strength is.
+    `equations` redefine signals of the chain and give the rates and memories of the effect's own states. An equation
+    reads a signal that its effect redefines as it was left by what stands before, every other name in its final value,
+    and a memory of the effect in the equation of a memory as it was at the start of the step. `units` are those of the
+    signals of the chain that it redefines, for which its strength is made ("": for any): a chain that has such a signal
+    in another unit refuses it. `looks` says what the effect looks like in data, `steps` into how many a sample has to
+    be divided so that its kinks are met closely enough, `stride` by which share of its range its strength is moved for
+    a sensitivity: far where it acts in jumps. `does` says in a few words what it does where its name is of a part that
+    a machine need not have. `of_specimen`: it is a specimen's, and no diagnosis names it where nothing is known of one.
 
     Raises Unusable where place or strength are not of that form.
     """

@@ -13,6 +13,6 @@ ONE_WAY_LEAKAGE = Effect(
     ),
     texts=("L = L + c * abs(P)",),
     units={"L": "m^3/s"},
-    looks="a drift one way under loads that change their sign, even harmonics; less damping of the oil column on one side",
+    looks="a drift one way under loads that change their sign; even harmonics",
     source="check valves, a seal that lifts; what leaks l more one way is l/2 of Cl and l/2 of this",
 )

@@ -14,5 +14,5 @@ POSITION_FRICTION = Effect(
     units={"Ff": "N"},
     looks="flat tops at large displacements, none at small ones; damping that grows with amplitude",
     source="bent rod, seals and guides that are tighter towards the ends",
-    steps=2,
+    steps=4,
 )

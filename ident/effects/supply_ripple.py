@@ -12,7 +12,7 @@ SUPPLY_RIPPLE = Effect(
     texts=("Q = Q * (1 + r * sin(2 * pi * f * t + phi))",),
     units={"Q": "m^3/s"},
     shape=(
-        Parameter("frequency", "f", "1/s", 0.5, 250.0, 25.0, "frequency of the pulsation", searched=True),
+        Parameter("frequency", "f", "1/s", 3.0, 300.0, 25.0, "frequency of the pulsation", searched=True),
         Parameter("phase", "phi", "1", -6.3, 6.3, 0.0, "its phase where the record begins", searched=True),
     ),
     looks="every line of the motion has two neighbours, as far from it as the pump's frequency",

@@ -17,6 +17,6 @@ UNEQUAL_AREAS = Effect(
     ),
     units={"L": "m^3/s", "D": "N", "Ff": "N"},
     looks="one direction faster and weaker than the other; even harmonics, and an offset that grows with amplitude",
-    source="single-rod cylinder, flow and force with A (1 + a sgn v); what opposes the motion sticks as dry friction does",
+    source="single-rod cylinder, flow and force with A (1 + a sgn v); what opposes motion sticks",
     steps=4,
 )

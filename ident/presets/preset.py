@@ -308,7 +308,7 @@ def scale_of(effect: Effect, parameter: Parameter, sizes: Mapping[str, str]) -> 
     if reach is None:
         return Scale.by_bounds(parameter, logarithmic=False)
     text = re.sub(r"\b[DZF]\b", lambda found: f"({sizes[found[0]]})", text)
-    if parameter.searched and parameter.logarithmic:
-        return Scale(parameter.in_equations, text, reach * parameter.lower / parameter.upper, reach)
     lower = -reach if parameter.lower < 0 else 0.0
-    return Scale(parameter.in_equations, text, lower, reach, logarithmic=False)
+    if parameter.searched:  # as many decades as between its bounds
+        lower = reach * parameter.lower / parameter.upper
+    return Scale(parameter.in_equations, text, lower, reach, logarithmic=parameter.searched and parameter.logarithmic)

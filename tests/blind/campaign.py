@@ -17,10 +17,10 @@ from typing import Any
 from tests.blind.noises import NOISES
 from tests.blind.trial import NAMES, label, noisy, outside, own, several, single
 from tests.blind.written import WRITTEN
-from tests.reference.outside_reference import Outside
+from tests.reference.outside_reference import UNLISTED
 
 NAMED = {
-    "one": NAMES, "outside": Outside._fields, "own": WRITTEN, "label": ("mass", "stiffness", "gain"),
+    "one": NAMES, "outside": UNLISTED, "own": WRITTEN, "label": ("mass", "stiffness", "gain"),
     "noise": tuple(NOISES),
 }  # fmt: skip
 """What the trials of a kind are about, by name: what is hidden, but for noise; the other kinds draw it."""
@@ -35,7 +35,7 @@ def key(row: dict[str, Any]) -> tuple[Any, ...]:
 
 
 def rows(path: Path = OUT) -> list[dict[str, Any]]:
-    """All rows so far."""
+    """All rows so far; one that says why it is `void` tells of a trial that does not count any more."""
     return [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
 
 

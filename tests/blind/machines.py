@@ -85,7 +85,7 @@ def drawn_shapes(rng: np.random.Generator, name: str) -> dict[str, float]:
         if shape.searched and shape.unit == "1":
             found[f"{name}.{shape.symbol}"] = float(rng.uniform(-np.pi, np.pi))
         elif shape.searched:
-            low, high = np.log([10.0 * shape.lower, 0.4 * shape.upper])
+            low, high = np.log([2.0 * shape.lower, 0.4 * shape.upper])
             found[f"{name}.{shape.symbol}"] = float(np.exp(rng.uniform(low, high)))
     return found
 

@@ -101,7 +101,7 @@ def unreachable(everything: Sequence[Row]) -> Iterable[str]:
 
 def page(everything: Sequence[Row]) -> str:
     """The whole page."""
-    tried = [row for row in everything if row.get("reachable", True)]
+    tried = [row for row in everything if row.get("reachable", True) and not row.get("void")]
     parts: list[tuple[str, Callable[[Sequence[Row]], Iterable[str]], Sequence[Row]]] = [
         ("Rates", summary, tried), ("One effect, by noise and size", levels, tried),
         ("Noise of other kinds", noises, tried), ("What was named", confusion, tried),
@@ -112,7 +112,8 @@ def page(everything: Sequence[Row]) -> str:
         "independent reference with parameters drawn anew for each trial; the seed of each stands in its row. `named`: "
         "the verdict is the hidden set, each effect itself or in a group of at most three. For an effect that is not "
         "listed: not a confident wrong name, unless the error is at the floor; written as an equation: it is named and "
-        "the error falls to 1.1 times the floor.\n"
+        "the error falls to 1.1 times the floor. A row that is `void`, for the reason that stands there, is not "
+        "counted.\n"
     )
     return head + "\n".join(f"\n## {title}\n\n" + "\n".join(make(of)) + "\n" for title, make, of in parts)
 

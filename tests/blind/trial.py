@@ -15,7 +15,14 @@ from ident.fit.settings import Settings
 from ident.matrix import Matrix, Run, Specimen
 from ident.workflows import diagnose, identify
 from tests.blind.machines import (
-    OFFSET, Machine, as_fit, drawn_plant, drawn_shapes, matrix_of, offset_strength, strength_for,
+    OFFSET,
+    Machine,
+    as_fit,
+    drawn_plant,
+    drawn_shapes,
+    matrix_of,
+    offset_strength,
+    strength_for,
 )  # fmt: skip
 from tests.blind.noises import NOISES, with_noise
 from tests.blind.written import written

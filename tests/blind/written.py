@@ -8,11 +8,13 @@ from ident.custom.definition import read_effect
 from ident.effects.effect import Effect
 
 _TEXTS: dict[str, tuple[str, str, str, float]] = {
-    "flow_force": ("valve", "dq = dq - s * q1 * abs(P) / 1e6 / tau", "1", 2.0),
     "gain_drift": ("flow", "Q = Q * (1 + s * t)", "1/s", 1.0),
-    "pump_ripple": ("flow", "Q = Q * (1 + s * sin(2 * pi * 23 * t))", "1", 1.0),
-    "position_friction": ("load", "R = R + s * (x / 2e-3)**2 * tanh(v / 2e-4)", "N", 1000.0),
     "sensor_curve": ("sensor", "y = y * (1 + s * (X / 2e-3)**2)", "1", 1.0),
+    "loaded_lag": ("valve", "dq = dq / (1 + s * abs(P) / 1e6)", "1", 5.0),
+    "gain_bump": ("flow", "Q = Q * (1 + s * exp(-((x - 5e-4) / 5e-4)**2))", "1", 2.0),
+    "relief_leakage": ("pressure", "L = L + s * Cl * sgn(P) * max(abs(P) - 5e5, 0)", "1", 20.0),
+    "growing_friction": ("load", "R = R + s * t * tanh(v / 2e-4)", "N/s", 1000.0),
+    "position_damping": ("load", "R = R + s * (x / 2e-3)**2 * v", "N*s/m", 1e5),
 }
 """Place, equation, unit and largest strength. The gain that follows a temperature is none: nobody recorded it."""
 WRITTEN = tuple(_TEXTS)

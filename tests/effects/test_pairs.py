@@ -58,7 +58,7 @@ def deviations(cell: linear.Cell, number: int, hold: str) -> dict[frozenset[str]
 
 @pytest.mark.parametrize(("number", "hold"), [(0, "linear"), (2, "zoh")])
 def test_two_effects_at_once_agree_with_the_reference(number, hold):
-    """All 528 pairs; friction that sticks to ten times the tolerance of everything else."""
+    """All 820 pairs; friction that sticks to ten times the tolerance of everything else."""
     found = deviations(CELLS[number], number, hold)
     allowed = {pair: FAR.get(pair, 10 * CLOSE if pair & STICKS else CLOSE) for pair in found}
     assert {tuple(sorted(pair)): miss for pair, miss in found.items() if not miss < allowed[pair]} == {}

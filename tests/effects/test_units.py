@@ -26,8 +26,8 @@ OTHER_UNIT = {
     "motor": {"second_lag"},
     "kononykhin": {"command_limit", "integral_action", "lead", "pressure_feedback", "valve_second_order",
                    "valve_rate_limit", "spool_stiction", "backlash", "null_bias", "dead_zone", "underlap",
-                   "gain_asymmetry", "flow_saturation"},
-    "drive under control": {"command_limit", "integral_action", "lead", "pressure_feedback"},
+                   "gain_asymmetry", "flow_saturation", "flow_force"},
+    "drive under control": {"command_limit", "integral_action", "lead", "pressure_feedback", "flow_force"},
 }  # fmt: skip
 """What has a signal to act on there, but in rated currents or newtons where the effect is of metres."""
 NULL_BIAS: Effect = next(effect for effect in CATALOGUE if effect.name == "null_bias")

@@ -9,7 +9,8 @@ nor integrator. All quantities are SI; a machine starts at rest at zero, its com
     tau q' = e - q;  rate limit, stiction of the spool, two more poles behind it
     w: play, bias, dead zone, underlap, asymmetry, saturation, in this order
     Q = Z0/A w sqrt(1 - sgn(w) P/Ps) (1 - d z),  T z' + z = |Q|;  times (1 + g |P|) and (1 + r sin(2 pi f t + phi))
-    Ke P' = Q - Cl P - c |P| - C P/(P² + P0²)^¼ - A' v,  A' = A (1 + a sgn v),  Ke = Ka (1 + alpha/(1 + (P/Pr)²)) (1 - kappa x²)
+    Ke P' = Q - Cl P - c |P| - C P/(P² + P0²)^¼ - A' v,  A' = A (1 + a sgn v)
+    Ke = Ka (1 + alpha/(1 + (P/Pr)²)) (1 - kappa x²)
     (m0 + mL) v' = A' P - c0 v - c2 v|v| - Fd z + F0 - S - ks (|x| - 1/g)+ sgn x - friction
     friction ≤ Fc + dF exp(-(v/vs)²) + Fx x², it sticks
     S = k (x - clip(x, -g, g)) + cL v + k3 x³ + fy z;  behind a joint of compliance 1/kj: of the specimen's own motion
@@ -190,6 +191,18 @@ def opening(f, q, play):
 
 
 @njit(cache=True)
+def pressure_rate(plant, f, flow, t, s):
+    flow *= 1 + f.pressure_dependent_gain_g * abs(s[P])
+    flow *= 1 + f.supply_ripple_r * np.sin(2 * np.pi * f.supply_ripple_f * t + f.supply_ripple_phi)
+    soft = plant.Ka * (1 + f.entrained_air_alpha / (1 + (s[P] / f.entrained_air_Pr) ** 2))
+    soft *= 1 - f.stroke_dependent_volume_kappa * s[X] ** 2
+    leak = plant.Cl * s[P] + f.orifice_leakage_C * s[P] / (s[P] ** 2 + f.orifice_leakage_P0**2) ** 0.25
+    leak += f.one_way_leakage_c * abs(s[P])
+    area = plant.A * (1 + f.unequal_areas_a * sign(s[V]))
+    return (flow - leak - area * s[V]) / soft
+
+
+@njit(cache=True)
 def derivative(plant, f, cell, t, u, du, y_late, v_late, mode, play, s, out):
     """Rates of all states; `mode` is the sign of the sliding speed, 0 while the rod sticks. Returns the reading."""
     if f.specimen_joint_s > 0 and cell.mass == 0:
@@ -209,8 +222,8 @@ def derivative(plant, f, cell, t, u, du, y_late, v_late, mode, play, s, out):
     e = cell.gain * eps
     if f.command_limit_a > 0:
         e = clipped(e, -1 / f.command_limit_a, 1 / f.command_limit_a)
-    e += cell.gain * (f.integral_action_Ki * s[EPS] + f.lead_Td * (du - v)) - f.pressure_feedback_kd * s[P]
-    e -= f.flow_force_f * s[Q] * abs(s[P])
+    e += cell.gain * (f.integral_action_Ki * s[EPS] + f.lead_Td * (du - v))
+    e -= f.pressure_feedback_kd * s[P] + f.flow_force_f * s[Q] * abs(s[P])
     rate = (e - s[Q]) / plant.tau
     rate /= np.sqrt(1 + (f.valve_rate_limit_a * rate) ** 2)
     if abs(e - s[Q]) < f.spool_stiction_s:
@@ -225,14 +238,7 @@ def derivative(plant, f, cell, t, u, du, y_late, v_late, mode, play, s, out):
     flow = plant.Z0 / plant.A * w * np.sqrt(max(0.0, 1 - sign(w) * s[P] * f.pressure_flow_r))
     flow *= 1 - f.supply_droop_d * s[ZD]
     out[ZD] = (abs(flow) - s[ZD]) / f.supply_droop_T
-    flow *= 1 + f.pressure_dependent_gain_g * abs(s[P])
-    flow *= 1 + f.supply_ripple_r * np.sin(2 * np.pi * f.supply_ripple_f * t + f.supply_ripple_phi)
-    soft = plant.Ka * (1 + f.entrained_air_alpha / (1 + (s[P] / f.entrained_air_Pr) ** 2))
-    soft *= 1 - f.stroke_dependent_volume_kappa * s[X] ** 2
-    leak = plant.Cl * s[P] + f.orifice_leakage_C * s[P] / (s[P] ** 2 + f.orifice_leakage_P0**2) ** 0.25
-    leak += f.one_way_leakage_c * abs(s[P])
-    area = plant.A * (1 + f.unequal_areas_a * sign(s[V]))
-    out[P] = (flow - leak - area * s[V]) / soft
+    out[P] = pressure_rate(plant, f, flow, t, s)
     out[V] = acceleration
     out[X] = s[V]
     out[EPS] = eps

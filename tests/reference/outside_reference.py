@@ -1,12 +1,15 @@
-"""The linear actuator with one effect that the catalogue does not hold: a judge of what the diagnosis says then.
+"""The linear actuator with one effect written as no list has it: a judge of what is said of what is not listed.
 
-Kutta's classical rule with many sub-steps a sample; flat, SI, from rest; the command is straight between samples.
+Of some the catalogue has the like since, for the search for terms beside it; `UNLISTED` are those that it does not
+hold. Kutta's classical rule with many sub-steps a sample; flat, SI, from rest; the command is straight between samples.
 
-    tau q' = Kp (u - y) - q - f q |P| / P0                          flow_force on the spool
+    tau (1 + c |P| / P0) q' = Kp (u - y) - q - f q |P| / P0         loaded_lag; flow_force on the spool
     Q = Z0/A q (1 + d t) (1 + p sin(2 pi 23 t)) (1 + w)    gain_drift, pump_ripple, valve_temperature: w of the run
-        (1 + g |P| / P0)                                    pressure_gain
+        (1 + g |P| / P0) (1 + b exp(-((x - X/4) / (X/4))²))     pressure_gain; gain_bump
     Ka P' = Q - Cl P - l Cl max(P, 0) - A (1 + a sgn v) v   one_way_leakage; unequal_areas
+        - n Cl sgn(P) max(|P| - P0/2, 0)                    relief_leakage
     (m0 + mL) v' = A (1 + a sgn v) P - (c0 + cL) v - k x - F (x/X)² tanh(v/Vs)    position_friction
+        - G t tanh(v/Vs) - d (x/X)² v                       growing_friction; position_damping
     y = x (1 + s (x/X)²)                                            sensor_curve, outside the loop
 """
 
@@ -37,18 +40,32 @@ class Outside(NamedTuple):
     pressure_gain: float = 0.0
     one_way_leakage: float = 0.0
     unequal_areas: float = 0.0
+    loaded_lag: float = 0.0
+    gain_bump: float = 0.0
+    relief_leakage: float = 0.0
+    growing_friction: float = 0.0  # N/s
+    position_damping: float = 0.0  # N s/m
+
+
+UNLISTED = ("gain_drift", "valve_temperature", "sensor_curve", "loaded_lag", "gain_bump", "relief_leakage",
+            "growing_friction", "position_damping")  # fmt: skip
 
 
 @njit(inline="always")
 def derivative(plant, cell, o, warm, t, u, s, out):
     q, p, v, x = s[0], s[1], s[2], s[3]
-    out[0] = (cell.gain * (u - x) - q - o.flow_force * q * abs(p) / P0) / plant.tau
+    out[0] = (cell.gain * (u - x) - q - o.flow_force * q * abs(p) / P0) / (
+        plant.tau * (1.0 + o.loaded_lag * abs(p) / P0)
+    )
     gain = (1.0 + o.gain_drift * t) * (1.0 + o.pump_ripple * np.sin(RIPPLE * t)) * (1.0 + warm)
     gain *= 1.0 + o.pressure_gain * abs(p) / P0
+    gain *= 1.0 + o.gain_bump * np.exp(-((4.0 * x / X - 1.0) ** 2))
     leak = plant.Cl * (p + o.one_way_leakage * max(p, 0.0))
+    leak += plant.Cl * o.relief_leakage * np.sign(p) * max(abs(p) - 0.5 * P0, 0.0)
     area = plant.A * (1.0 + o.unequal_areas * np.sign(v))
     out[1] = (plant.Z0 / plant.A * q * gain - leak - area * v) / plant.Ka
-    friction = o.position_friction * (x / X) ** 2 * np.tanh(v / VS)
+    friction = (o.position_friction * (x / X) ** 2 + o.growing_friction * t) * np.tanh(v / VS)
+    friction += o.position_damping * (x / X) ** 2 * v
     force = area * p - (plant.c0 + cell.damping) * v - cell.stiffness * x - friction
     out[2] = force / (plant.m0 + cell.mass)
     out[3] = v

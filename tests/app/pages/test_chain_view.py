@@ -12,13 +12,13 @@ from ident.fit.settings import Settings
 from ident.presets import PRESETS, preset
 
 TAKEN = {
-    "qian2014": 33,
-    "first_order": 12,
-    "drive": 13,
-    "open_valve": 30,
-    "motor": 22,
-    "specimen": 8,
-    "force_loop": 33,
+    "qian2014": 41,
+    "first_order": 13,
+    "drive": 16,
+    "open_valve": 38,
+    "motor": 25,
+    "specimen": 10,
+    "force_loop": 41,
     "kononykhin": 7,
 }
 LOOPS = {
