@@ -167,10 +167,10 @@ class ModelFamily:
         on = set(effects)
         return self.preset.with_effects(tuple(effect for name, effect in self.effects.items() if name in on))
 
-    @cached_property
-    def _whole(self) -> Preset:
-        """The preset with every effect."""
-        return self.preset.with_effects(tuple(self.effects.values()))
+    def _whole(self, on: Iterable[str] = ()) -> Preset:
+        """The preset with every effect, of those that are looked at for themselves only the ones that are on."""
+        apart = {name for name, effect in self.effects.items() if effect.has_searched_shapes} - set(on)
+        return self.preset.with_effects(tuple(e for name, e in self.effects.items() if name not in apart))
 
     @cached_property
     def off(self) -> dict[str, float]:
@@ -181,7 +181,7 @@ class ModelFamily:
     def fit_together(self) -> bool:
         """Whether one chain can hold every effect: in a drive without a valve some close a circle of signals."""
         try:
-            _ = self._whole.chain.signals
+            _ = self._whole().chain.signals
         except Unusable:
             return False
         return True
@@ -204,7 +204,7 @@ class ModelFamily:
         key = (effects, samples, whole)
         if key not in self._known:
             on = set(effects)
-            model = self._whole if whole else self.model(on)
+            model = self._whole(on) if whole else self.model(on)
             off = off_values(e for e in model.effects if e.name not in on)
             given = replace(self.given, fixed={**self.given.fixed, **off})
             space = search_space(model, self.matrix, given, self.band)

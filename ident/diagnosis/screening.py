@@ -83,13 +83,15 @@ class Prediction:
 
 def predict(models: ModelFamily, base: Refit, names: Sequence[str]) -> list[Prediction]:
     """What adding each effect to the refitted model promises, in the order of the names."""
-    if models.fit_together:
-        return _predicted(models, models.fitness((*base.effects, *names), SAMPLES, whole=True), base, names)
+    together = [name for name in names if models.fit_together and not models.effects[name].has_searched_shapes]
+    fitness = models.fitness((*base.effects, *together), SAMPLES, whole=True) if together else None
 
     def of_one(name: str) -> list[Prediction]:
         return _predicted(models, models.fitness((*base.effects, name), SAMPLES), base, [name])
 
-    return list(chain.from_iterable(each(of_one, names)))
+    found = _predicted(models, fitness, base, together) if fitness else []
+    found += chain.from_iterable(each(of_one, [name for name in names if name not in together]))
+    return sorted(found, key=lambda prediction: names.index(prediction.effect))
 
 
 def _predicted(models: ModelFamily, fitness: SimulatedFitness, base: Refit, names: Sequence[str]) -> list[Prediction]:

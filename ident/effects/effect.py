@@ -68,6 +68,11 @@ class Effect:
         """Strength and shape as parameters of a model that has the effect, the strength first."""
         return tuple(parameter.of_effect(self.name) for parameter in self.parameters)
 
+    @property
+    def has_searched_shapes(self) -> bool:
+        """Whether shapes are searched with the strength: it is then tried at many of them, for itself."""
+        return any(parameter.searched for parameter in self.shape)
+
     def symbol(self, name: str) -> str:
         """The name of one of its own quantities in the equations of a whole chain."""
         return f"{self.name}__{name}"
