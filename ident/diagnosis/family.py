@@ -190,8 +190,13 @@ class ModelFamily:
         """The name of an effect's strength in the equations."""
         return self.effects[effect].added[0].in_equations
 
-    def faint(self, refit: Refit, effect: str) -> bool:
-        """Whether an effect of a refit is as good as off."""
+    def doubtful(self, refit: Refit, effect: str) -> bool:
+        """Whether an effect of a refit may be but the way to a better optimum without it.
+
+        So it may where it is as good as off, or is tried with many shapes of its own.
+        """
+        if self.effects[effect].has_searched_shapes:
+            return True
         strength = self.strength(effect)
         lower, upper = refit.space.bounds(refit.values)[strength]
         return abs(refit.values[strength]) < _OFF * max(-lower, upper)

@@ -145,9 +145,9 @@ class StepwiseSelection:
         return len(self.added) > _WEIGHED and self._replaced()
 
     def _settled(self, refit: Refit) -> bool:
-        """Where what was added is as good as off, it was the way to a better optimum without it: True, and there."""
+        """Where the model does as well without what was added, that was the way to a better optimum: True, and there."""
         name = refit.effects[-1]
-        if not self.models.faint(refit, name):
+        if not self.models.doubtful(refit, name):
             return False
         less = self.models.refit(refit.effects[:-1], _without(refit.values, name))
         worse = not less.finite or less.held_out.score >= self.found.held_out.score

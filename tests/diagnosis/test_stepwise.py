@@ -63,7 +63,7 @@ class Judged:
         """An effect that no start near the fit leads to is found from anywhere."""
         return self.refit(effects, {})
 
-    def faint(self, _refit, effect):
+    def doubtful(self, _refit, effect):
         """Whether an effect that is off led to where it is not needed."""
         return effect in self.off
 
