@@ -145,7 +145,7 @@ class StepwiseSelection:
         return len(self.added) > _WEIGHED and self._replaced()
 
     def _settled(self, refit: Refit) -> bool:
-        """Where the model does as well without what was added, that was the way to a better optimum: True, and there."""
+        """Where the model does as well without what was added, that was but a way to a better optimum: True, there."""
         name = refit.effects[-1]
         if not self.models.doubtful(refit, name):
             return False

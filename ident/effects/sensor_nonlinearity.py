@@ -9,8 +9,8 @@ SENSOR_NONLINEARITY = Effect(
     meaning="the transducer's reading bends away from the displacement, inside the loop",
     strength=Parameter("curvature", "s", "1/m^2", -1e5, 1e5, 0.0, "relative error for each square metre of reading"),
     texts=(
-        "y_fb = y_fb * (1 + s * y_fb**2)",
         "v_fb = v_fb * (1 + 3 * s * y_fb**2)",
+        "y_fb = y_fb * (1 + s * y_fb**2)",
     ),
     units={"y_fb": "m", "v_fb": "m/s"},
     looks="a loop gain that changes with the displacement, in open loop a bent record; odd harmonics",
