@@ -76,10 +76,11 @@ class Diagnoser:
 
         What was found may stand for something else: with the term itself it is not needed.
         """
-        alone = Search(selection.models, selection.base, self.course.tell).run()
+        given = selection.base.effects
+        alone = Search(selection.models, selection.base, self.course.tell, given).run()
         if not selection.added or not alone.complete or self.models.is_noise(alone.left(selection.base.error)):
             return alone
-        beside = Search(selection.models, selection.found, self.course.tell).run()
+        beside = Search(selection.models, selection.found, self.course.tell, given).run()
         with_both = beside.left(selection.found.error)
         return alone if alone.left(selection.base.error) < min(with_both * _SIMPLER, selection.found.error) else beside
 

@@ -9,7 +9,7 @@ from playwright.sync_api import expect
 
 from tests.browser import story
 from tests.browser.looks import everywhere
-from tests.hidden_drift import NOISE, zipped
+from tests.hidden_bump import NOISE, zipped
 
 
 def test_a_term_is_proposed_added_and_the_error_is_the_noise_s(page, site, screenshots):
@@ -26,7 +26,7 @@ def test_a_term_is_proposed_added_and_the_error_is_the_noise_s(page, site, scree
     page.get_by_role("button", name="Search for what no list holds").click()
     card = page.locator(".card").filter(has_text="proposed by search")
     expect(card).to_be_visible(timeout=story.LONG)
-    expect(card).to_contain_text("Changes with a condition of the run, or with time")
+    expect(card).to_contain_text("Acts at one part of the way")
     expect(card.locator("math")).to_have_count(1)
     expect(card.locator(".evidence canvas")).to_be_visible(timeout=story.LONG)  # the term through what is missing
     expect(page.locator("#left")).to_contain_text("Something is left")  # what is proposed is no finding
@@ -44,38 +44,38 @@ def test_a_term_is_proposed_added_and_the_error_is_the_noise_s(page, site, scree
 def the_term_is_kept(page, card, screenshots):
     """Under the name that is typed over the one that was suggested; it says so, also when the page is opened again."""
     name = card.get_by_label("Keep it for other actuators, as")
-    expect(name).to_have_value("leakage_in_one_direction")
-    name.fill("one_way_leak")
+    expect(name).to_have_value("acts_at_one_part_of_the_way")
+    name.fill("uneven_port")
     card.get_by_role("button", name="Keep term 1").click()
-    expect(card.get_by_role("status")).to_contain_text("Kept as one_way_leak")
+    expect(card.get_by_role("status")).to_contain_text("Kept as uneven_port")
     expect(name).to_be_hidden()
     page.reload()
-    expect(card).to_contain_text("Kept as one_way_leak")
+    expect(card).to_contain_text("Kept as uneven_port")
     everywhere(page, screenshots, "kept")
 
 
 def another_actuator_has_it_in_the_list(page, site, screenshots):
     """With its equation, what it means and where it comes from; added, it leaves the noise."""
-    stored = site.client.post("/matrices", files={"files": ("matrix.zip", zipped("LEAK-2"))}).json()
+    stored = site.client.post("/matrices", files={"files": ("matrix.zip", zipped("BUMP-2"))}).json()
     page.goto(f"{site.address}/matrices/{stored['id']}")
     page.get_by_text("Physical effects to add").click()
-    expect(page.locator("#start").get_by_label("one way leak")).not_to_be_checked()
+    expect(page.locator("#start").get_by_label("uneven port")).not_to_be_checked()
     story.fit(page)
     listed = page.get_by_role("region", name="This lab's own effects")
-    expect(listed).to_contain_text("one way leak")
-    expect(listed).to_contain_text("Leakage in one direction", ignore_case=True)
+    expect(listed).to_contain_text("uneven port")
+    expect(listed).to_contain_text("Acts at one part of the way", ignore_case=True)
     expect(listed).to_contain_text("proposed by search")
     expect(listed.locator("math")).to_have_count(1)
     expect(page.locator("#missing").get_by_label("with this lab's own effects")).not_to_be_checked()
     everywhere(page, screenshots, "own-list")
-    first, second = story.add(page, listed, "one way leak")
+    first, second = story.add(page, listed, "uneven port")
     assert first > 5 * 100 * NOISE
     assert second < 1.05 * 100 * NOISE
-    expect(page.locator("h1")).to_contain_text("LEAK-2: ")
-    expect(page.locator("h1")).to_contain_text("one way leak")
+    expect(page.locator("h1")).to_contain_text("BUMP-2: ")
+    expect(page.locator("h1")).to_contain_text("uneven port")
     expect(listed).to_contain_text("switched on")
-    page.locator(".chain").get_by_role("link", name="flow").click()
-    expect(page.locator("#place-flow .lives").first).to_contain_text("proposed by search")
+    page.locator(".chain").get_by_role("link", name="spool").click()
+    expect(page.locator("#place-spool .lives").first).to_contain_text("proposed by search")
 
 
 def a_written_one_is_kept_too(page, site):
@@ -96,10 +96,10 @@ def it_is_deleted_from_the_list(page, site, screenshots):
     page.get_by_role("link", name="Own effects", exact=True).click()
     expect(page.locator("h1")).to_have_text("This lab's own effects")
     everywhere(page, screenshots, "own-effects")
-    page.get_by_role("button", name="Delete one way leak").click()
+    page.get_by_role("button", name="Delete uneven port").click()
     expect(page.locator(".lives")).to_have_count(1)
     page.get_by_role("button", name="Delete lapped").click()
     expect(page.locator("#main")).to_contain_text("No effect is kept yet")
     assert site.client.get("/own-effects").json()["items"] == []
     page.goto(fit)
-    expect(page.locator("h1")).to_contain_text("one way leak")
+    expect(page.locator("h1")).to_contain_text("uneven port")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.cli import interrupts, output
-from tests import hidden_dead_zone, hidden_drift
+from tests import hidden_bump, hidden_dead_zone
 
 
 @pytest.fixture(scope="module")
@@ -109,16 +109,17 @@ def test_a_fit_from_a_file_is_diagnosed_as_it_is(servoident, matrix, tmp_path):
 
 
 def test_a_proposed_term_goes_from_a_diagnosis_into_a_fit(servoident, tmp_path):
-    matrix, found, fitted = hidden_drift.write(tmp_path / "drift"), tmp_path / "found.json", tmp_path / "fit.json"
+    matrix, found, fitted = hidden_bump.write(tmp_path / "bump"), tmp_path / "found.json", tmp_path / "fit.json"
     done = servoident("diagnose", matrix, "--model", "qian2014", "--max-effects", 0, "--propose", "--json", found)
     assert done.returncode == 0, done.stderr
-    assert "w = w + s * (t * w)" in done.stdout
-    assert "changes with a condition of the run, or with time" in " ".join(done.stdout.split())
+    (term,) = json.loads(found.read_text())["proposals"]
+    assert term["equation"] == "w = w + s * (w * exp(-((x - xm) / d)**2))"
+    assert "acts at one part of the way" in " ".join(done.stdout.split())
     done = servoident("fit", matrix, "--custom", found, "--json", fitted)
     assert done.returncode == 0, done.stderr
     fit = json.loads(fitted.read_text())
     assert fit["effects"] == ["proposed_1"]
-    assert fit["error"]["verify"] < 1.05 * hidden_drift.NOISE
+    assert fit["error"]["verify"] < 1.05 * hidden_bump.NOISE
     done = servoident("diagnose", matrix, "--model", "qian2014", "--max-effects", 0, "--json", found)
     assert done.returncode == 0, done.stderr
     done = servoident("fit", matrix, "--custom", found)

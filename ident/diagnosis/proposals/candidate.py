@@ -15,6 +15,7 @@ from ident.stages import PLACES
 from ident.units.quantity import known_powers, shape
 
 _TRIED, _PAIRS, _PAIRED = 6, 3, 12  # single terms and pairs that are refitted, and terms that are paired with all
+_MAY_WIN = 0.5  # times the best one's promise, which a shape that is not yet where it belongs may keep
 _DRIVE = ("controller", "valve", "spool", "flow")  # one input of the machine: of two terms there one is enough
 
 
@@ -44,9 +45,23 @@ class Candidate:
 def offered(found: Regression, units: Mapping[str, str]) -> tuple[tuple[Candidate, ...], int]:
     """The terms and pairs that promise most, and how many were looked at."""
     classes = found.classes()
-    singles = [_single(found, group) for group in classes[:_TRIED]]
+    singles = [_single(found, group) for group in (*classes[:_TRIED], *_shaped(found, classes))]
     pairs = _pairs(found, [group[0] for group in classes[:_PAIRED]], units)
     return (*singles, *pairs), (1 + _PAIRED) * len(found.terms)
+
+
+def _shaped(found: Regression, classes: Sequence[Sequence[int]]) -> list[Sequence[int]]:
+    """Of every kind with shapes that is not yet among those tried, the best class: a refit moves its shapes."""
+    seen = {found.terms[i].kind for group in classes[:_TRIED] for i in group}
+    more: list[Sequence[int]] = []
+    for group in classes[_TRIED:]:
+        term = found.terms[group[0]]
+        if found.gains[group[0]] < _MAY_WIN * found.gains[classes[0][0]]:
+            break
+        if term.free_shapes and term.kind not in seen:
+            seen.add(term.kind)
+            more.append(group)
+    return more
 
 
 def _single(found: Regression, group: Sequence[int]) -> Candidate:

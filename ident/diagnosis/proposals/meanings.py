@@ -33,6 +33,7 @@ _KINDS = {
     "below": "acts below a threshold", "lag": "acts late", "play": "has play",
     "friction at": "dry friction at one part of the way", "hill of": "acts at one part of the way",
     "hill": "acts at one part of the way", "condition": "changes with a condition of the run, or with time",
+    "friction with": "dry friction that changes with a condition of the run, or with time",
     "periodic": "comes and goes with time, as the pulses of a pump",
 }  # fmt: skip
 

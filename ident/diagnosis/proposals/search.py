@@ -43,11 +43,15 @@ _FEWEST = 3  # runs, of which one each searches, chooses and confirms
 
 @dataclass
 class Search:
-    """A search from a model that ended above the noise; `models` are those of all fitted runs."""
+    """A search from a model that ended above the noise; `models` are those of all fitted runs.
+
+    Effects that are `given` stay; others, as the terms before, are left out again where a later term does it all.
+    """
 
     models: ModelFamily
     base: Refit
     report: Report
+    given: tuple[str, ...]
     most: int = MOST
     looked_at: int = 0
     found: list[Proposal] = field(default_factory=list)
@@ -99,9 +103,21 @@ class Search:
             return False
         self.models = replace(self.models, effects=family.effects, given=family.given, _known={})
         before, self.base = self.base, self.models.refit(refit.effects, refit.values)
+        self._prune(name)
         proposal = self._proposal(candidate, seen, name, gained, bar, few)
         self.found.append(replace(proposal, contradicted=self._contradiction(name, before)))
         return True
+
+    def _prune(self, latest: str) -> None:
+        """Leave out what the model does as well without since the latest term."""
+        for name in self.base.effects:
+            if name in (latest, *self.given):
+                continue
+            less = self.models.refit(tuple(e for e in self.base.effects if e != name), self.base.values)
+            if less.finite and not improvement(less.held_out, self.base.held_out).beyond_chance:
+                self.base = less
+        self.beside = tuple(name for name in self.beside if name in self.base.effects)
+        self.found = [one for one in self.found if one.effect["name"] in self.base.effects]
 
     def _contradiction(self, name: str, before: Refit) -> Contradiction | None:
         """Whether runs to verify speak against the latest term."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +21,7 @@ from ident.units.grammar import Powers, powers_of
 Array = NDArray[np.float64]
 Signals = Mapping[str, Array]
 _QUANTILES = (0.3, 0.5, 0.7, 0.85, 0.95)  # of the size of a signal: thresholds
-_HILLS, _HILL = (0.1, 0.3, 0.5, 0.7, 0.9), 0.15  # quantiles of the position, and the width of a hill in its range
+_HILLS, _HILL = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95), (0.1, 0.25)  # quantiles of the position, widths in its range
 _LAGS = (0.02, 0.06, 0.2, 0.6)  # of a period at the end of the band, times 2π
 _PLAYS = (0.1, 0.3, 0.6)  # of the deviation of a signal
 
@@ -172,16 +173,19 @@ class Library:
         if "x" not in self.typical:
             return
         x = self.typical["x"]
-        width = Shape("d", _HILL * float(np.ptp(np.quantile(x, [0.02, 0.98]))), self.units["x"])
-        for share in _HILLS if width.value > 0 else ():
-            middle = Shape("xm", float(np.quantile(x, share)), self.units["x"])
+        span = float(np.ptp(np.quantile(x, [0.02, 0.98])))
+        for share, wide in product(_HILLS, _HILL) if span > 0 else ():
+            middle = Shape(
+                "xm", float(np.quantile(x, share)), self.units["x"], lower=float(x.min()), upper=float(x.max())
+            )
+            shapes = (middle, Shape("d", wide * span, self.units["x"]))
             hill = "exp(-((x - xm) / d)**2)"
-            yield Term(place, at, hill, "hill", ("x",), {}, (middle, width))
+            yield Term(place, at, hill, "hill", ("x",), {}, shapes)
             for b in self.signals[place]:
                 if b in (at, "v") and b != "x":
-                    yield Term(place, at, f"{b} * {hill}", "hill of", (b, "x"), self._unit((b, 1)), (middle, width))
+                    yield Term(place, at, f"{b} * {hill}", "hill of", (b, "x"), self._unit((b, 1)), shapes)
             if "v" in self.signals[place]:
-                yield Term(place, at, f"sgn(v) * {hill}", "friction at", ("v", "x"), {}, (middle, width))
+                yield Term(place, at, f"sgn(v) * {hill}", "friction at", ("v", "x"), {}, shapes)
 
     def _with_conditions(self, place: str, at: str) -> Iterator[Term]:
         """Terms that grow with a condition of the run, where it differs, or with time."""
@@ -191,6 +195,9 @@ class Library:
                 if a in (at, "v"):
                     powers = _multiplied(self._unit((a, 1)), powers_of(unit) or {}, 1)
                     yield Term(place, at, f"{name} * {a}", "condition", (name, a), powers)
+                if a == "v":
+                    powers = dict(powers_of(unit) or {})
+                    yield Term(place, at, f"{name} * sgn({a})", "friction with", (name, a), powers)
         if "t" not in self.varied:
             yield Term(place, at, "t", "drift", ("t",), {"s": 1.0})
 

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from ident.custom.definition import read_effect
+from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.proposals.search import Search
 from ident.diagnosis.result import Diagnosis
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.settings import Settings
@@ -129,6 +131,22 @@ def test_verify_runs_neither_rank_nor_choose_and_what_they_speak_against_says_so
     assert against.before < against.after
     assert against.deviations > 2
     assert found.proposals[0].contradicted is None
+
+
+def test_what_stood_in_for_a_term_is_left_out_again():
+    """An asymmetry helps where the flow gain has a hill: with the hill it is not needed."""
+    matrix = machine(2, gain_bump=0.25)
+    models = ModelFamily.of(matrix, Settings(model="qian2014"))
+    fit = identify(matrix, Settings(model="qian2014"))
+    values = {models.preset.parameter(name).in_equations: value for name, value in fit.values.items()}
+    base = models.refit(("gain_asymmetry",), {**models.off, **values})
+    found = Search(models, base, report=lambda _: None, given=()).run()
+    (term,) = found.found
+    assert "exp(-((x - xm) / d)**2)" in term.equation
+    assert term.beside == ()
+    assert term.error["fit"] == pytest.approx(NOISE, rel=0.03)
+    kept = Search(models, base, report=lambda _: None, given=("gain_asymmetry",)).run()  # the user's own stays
+    assert kept.found[0].beside == ("gain_asymmetry",)
 
 
 def test_the_missing_characteristic_is_there_with_the_term_through_it():
