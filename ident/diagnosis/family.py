@@ -12,6 +12,7 @@ from scipy.stats.qmc import Sobol
 
 from ident.diagnosis.cross_validation import CrossValidation, cross_validated
 from ident.diagnosis.estimate import Found
+from ident.diagnosis.ties import first_least
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect, off_values
 from ident.errors import Unusable
@@ -31,7 +32,8 @@ from ident.words.titles import title
 
 Array = NDArray[np.float64]
 _TRIAL = 131_072  # samples of a first refit; the finalists take every sample
-_FITTING, _TRYING, _SEARCHING = Way(1e-7, 20), Way(1e-5, 10), Way(1e-5, 30)  # of a refit, a first one, one far off
+_FITTING, _TRYING = Way(1e-7, 20), Way(1e-5, 10)  # of a refit, a first one
+_SETTING_OUT, _SEARCHING = Way(1e-5, 10), Way(1e-5, 20)  # of one far off, and where it is ahead of others
 _SCATTERED, _LEADING = 128, 4  # points of a whole search space, and those of them from which a refit begins
 _SIGHT = 32_768  # samples that they are judged by
 _OFF = 0.01  # of the largest strength
@@ -186,6 +188,11 @@ class ModelFamily:
             return False
         return True
 
+    def simplicity(self, effect: str) -> tuple[int, int]:
+        """What of two effects that explain as much comes first: fewer numbers to search, then as they are listed."""
+        searched = 1 + sum(parameter.searched for parameter in self.effects[effect].added[1:])
+        return searched, list(self.effects).index(effect)
+
     def strength(self, effect: str) -> str:
         """The name of an effect's strength in the equations."""
         return self.effects[effect].added[0].in_equations
@@ -241,15 +248,20 @@ class ModelFamily:
 
     def best_of(self, refit: Refit, starts: Sequence[Mapping[str, float]]) -> Refit | None:
         """The best refit of the same model from other starts, where one is better than `refit`."""
-        best = min(self.searched(refit, starts), key=lambda other: other.here.error)
+        best = self.searched(refit, starts)
         if best.here.error > _BETTER * self.tried(refit):
             return None
         found = self.refit(refit.effects, best.values)
         return found if found.here.error < refit.here.error else None
 
-    def searched(self, refit: Refit, starts: Sequence[Mapping[str, float]]) -> list[Refit]:
-        """First refits of the same model from other starts, far off: on the beginnings of the records."""
-        return [self.refit(refit.effects, start, _TRIAL, _SEARCHING) for start in starts]
+    def searched(self, refit: Refit, starts: Sequence[Mapping[str, float]]) -> Refit:
+        """The best first refit of the same model from other starts, far off: on the beginnings of the records.
+
+        All set out; the one that is ahead after some steps goes on.
+        """
+        ahead = [self.refit(refit.effects, start, _TRIAL, _SETTING_OUT) for start in starts]
+        best = first_least(ahead, lambda one: one.here.error)
+        return self.refit(refit.effects, best.values, _TRIAL, _SEARCHING) if best.finite else best
 
     def scattered(self, effects: tuple[str, ...]) -> Refit:
         """The best first refit of a model from anywhere in its search space, on the beginnings of the records.
@@ -260,7 +272,7 @@ class ModelFamily:
         points = Sobol(len(fitness.space.axes), rng=0).random(_SCATTERED)
         best = points[np.argsort(fitness.errors(points), kind="stable")[:_LEADING]]
         starts = [{name: float(v[0]) for name, v in fitness.space.values(point[None]).items()} for point in best]
-        return min((self.refit(effects, start, _TRIAL) for start in starts), key=lambda refit: refit.here.error)
+        return first_least([self.refit(effects, start, _TRIAL) for start in starts], lambda refit: refit.here.error)
 
     def refit(
         self,
@@ -286,9 +298,9 @@ class ModelFamily:
     def trial(self, effects: tuple[str, ...], starts: Sequence[Mapping[str, float]]) -> Refit:
         """A first refit on the beginnings of the records, from the one of the starts where the error is least."""
 
-        def error(start: Mapping[str, float]) -> float:
-            fitness = self.fitness(effects, _TRIAL)
-            point = fitness.space.point({**self.off, **start, **fitness.space.fixed})
-            return fitness.exact(point, sensitivities=False).error
-
-        return self.refit(effects, min(starts, key=error), _TRIAL)
+        fitness = self.fitness(effects, _TRIAL)
+        errors = fitness.errors(
+            np.array([fitness.space.point({**self.off, **s, **fitness.space.fixed}) for s in starts])
+        )
+        start, _ = first_least(list(zip(starts, errors.tolist(), strict=True)), lambda one: one[1])
+        return self.refit(effects, start, _TRIAL)

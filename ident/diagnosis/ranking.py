@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import groupby
 
 from ident.diagnosis.family import ModelFamily, Refit
 from ident.diagnosis.screening import Prediction, predict
 from ident.diagnosis.significance import VISIBLE, WORTHWHILE, Improvement, improvement
+from ident.diagnosis.ties import first_least, in_order
 from ident.parallel import each
 from ident.progress import Expected, Progress, Report
 
@@ -44,11 +46,16 @@ class Candidate:
         return self.gain is not None and self.gain.beyond_chance
 
     @property
-    def score(self) -> tuple[int, float]:
-        """What it is sorted by: finalists by the held-out score, then trials, then predictions."""
+    def stage(self) -> int:
+        """How far it came: 0 a finalist, 1 a trial, 2 a prediction."""
+        return 0 if self.refit is not None else 1 if self.trial is not None else 2
+
+    @property
+    def score(self) -> float:
+        """What it is sorted by among those that came as far: the held-out score, the trial's error, the prediction."""
         if self.refit is not None:
-            return 0, self.refit.held_out.score
-        return (1, self.trial.here.error) if self.trial is not None else (2, self.prediction.after.score)
+            return self.refit.held_out.score
+        return self.trial.here.error if self.trial is not None else self.prediction.after.score
 
     def refitted(self, base: Refit, refit: Refit) -> Candidate:
         """The candidate with a refit on all records, and what that gains over the model without the effect."""
@@ -64,7 +71,8 @@ def rank(
     promise made with the fitted parameters does not see where these have gone far astray for want of the effect.
     """
     report(Progress("predicting", 0, 1))
-    predictions = sorted(predict(models, base, list(names)), key=lambda p: p.after.score)
+    listed = sorted(names, key=models.simplicity)
+    predictions = in_order(predict(models, base, listed), lambda p: p.after.score)
     first = tuple(Expected(p.effect, base.error * p.share) for p in predictions[:_SIGHT])
     report(Progress("predicting", 1, 1, base.error, first))
     contenders = predictions[:_CONTENDERS]
@@ -79,16 +87,16 @@ def rank(
         nonlocal done
         refit = models.trial((*base.effects, prediction.effect), prediction.starts)
         if strong:
-            refit = min([refit, *models.searched(refit, _strong(models, base, refit))], key=lambda r: r.here.error)
+            refit = first_least([refit, models.searched(refit, _strong(models, base, refit))], lambda r: r.here.error)
         done += 1
         report(Progress("trying", done, len(contenders) + _FINALISTS))
         return Candidate(prediction, refit if refit.finite else None)
 
-    tried = sorted(each(trial, contenders), key=lambda candidate: candidate.score)
-    best = tried[0].score[1] if tried else 0.0
+    tried = ranked(models, each(trial, contenders))
+    best = tried[0].score if tried else 0.0
     sure = _FINALISTS if thorough else 2
     good = min(_CLOSE * best, (1.0 - _PROMISING) * models.tried(base))
-    finalists = [c for i, c in enumerate(tried) if c.trial and (i < sure or c.score[1] < good)]
+    finalists = [c for i, c in enumerate(tried) if c.trial and (i < sure or c.score < good)]
 
     def final(candidate: Candidate) -> Candidate:
         nonlocal done
@@ -98,12 +106,19 @@ def rank(
         report(Progress("confirming", done, len(contenders) + len(finalists)))
         return candidate.refitted(base, refit) if refit.finite else replace(candidate, trial=None)
 
-    found = sorted(each(final, finalists), key=lambda candidate: candidate.score)
+    found = ranked(models, each(final, finalists))
     report(Progress("confirming", done, done + 1))
     found = [*each(partial(_elsewhere, models, base), found[:_DEEPER]), *found[_DEEPER:]]
     confirmed = {candidate.effect: candidate for candidate in (*tried, *found)}
     rest = [confirmed.get(p.effect, Candidate(p)) for p in predictions]
-    return sorted(rest, key=lambda candidate: candidate.score)
+    return ranked(models, rest)
+
+
+def ranked(models: ModelFamily, candidates: Iterable[Candidate]) -> list[Candidate]:
+    """Best first: by how far they came, then by their score; of those that tie the simplest, then as listed."""
+    listed = sorted(candidates, key=lambda candidate: (candidate.stage, *models.simplicity(candidate.effect)))
+    by_stage = groupby(listed, key=lambda candidate: candidate.stage)
+    return [one for _, group in by_stage for one in in_order(list(group), lambda candidate: candidate.score)]
 
 
 def _elsewhere(models: ModelFamily, base: Refit, candidate: Candidate) -> Candidate:

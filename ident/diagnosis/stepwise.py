@@ -14,8 +14,9 @@ from dataclasses import dataclass, field
 from itertools import combinations
 
 from ident.diagnosis.family import ModelFamily, Refit
-from ident.diagnosis.ranking import Candidate, rank
+from ident.diagnosis.ranking import Candidate, rank, ranked
 from ident.diagnosis.significance import improvement
+from ident.diagnosis.ties import first_least
 from ident.errors import TimeIsUp
 from ident.parallel import each
 from ident.progress import Progress, Report
@@ -86,7 +87,7 @@ class StepwiseSelection:
             met, known = alone.get(candidate.effect), candidate.refit
             if met is not None and (known is None or met.held_out.score < known.held_out.score):
                 self.ranking[i] = candidate.refitted(self.base, met)
-        self.ranking.sort(key=lambda candidate: candidate.score)
+        self.ranking = ranked(self.models, self.ranking)
 
     def _rounds(self) -> None:
         self.groups = {}
@@ -179,7 +180,7 @@ class StepwiseSelection:
 
     def _better(self, tried: Sequence[Refit]) -> bool:
         """Go on with the best of first refits, where it is better beyond chance on all records."""
-        best = min(tried, key=lambda trial: trial.here.error, default=None)
+        best = first_least(tried, lambda trial: trial.here.error) if tried else None
         if best is None or not best.here.error < self.models.tried(self.found):
             return False
         refit = self.models.refit(best.effects, best.values)
@@ -241,7 +242,7 @@ class StepwiseSelection:
                 known = [i for i, step in enumerate(self.steps) if set(step.effects) == set(effects)]
                 self._step(less)
                 if known:
-                    self._step(min(self.steps[known[0] :], key=lambda step: step.held_out.score))
+                    self._step(first_least(self.steps[known[0] :], lambda step: step.held_out.score))
                     return True
         return False
 
@@ -279,4 +280,4 @@ def _group(name: str, here: Refit, ranking: list[Candidate]) -> list[Candidate]:
     refits = [c for c in ranking if c.refit is not None]
     best = min([here, *(c.refit for c in refits if c.refit)], key=lambda r: r.held_out.score)
     alike = [c for c in refits if c.refit and improvement(c.refit.held_out, best.held_out).within_chance]
-    return sorted(alike, key=lambda c: (c.effect != name, c.score))
+    return sorted(alike, key=lambda c: c.effect != name)

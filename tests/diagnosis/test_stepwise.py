@@ -23,7 +23,12 @@ class Judgement:
     @property
     def score(self):
         """What it is sorted by."""
-        return (0, self.refit.held_out.score) if self.refit else (1, 0.0)
+        return self.refit.held_out.score if self.refit else 0.0
+
+    @property
+    def stage(self):
+        """How far it came."""
+        return 0 if self.refit else 2
 
     def refitted(self, _base, refit):
         """It helps, since its refit was met on the way."""
@@ -67,6 +72,10 @@ class Judged:
         """Whether an effect that is off led to where it is not needed."""
         return effect in self.off
 
+    def simplicity(self, effect):
+        """Of two that are as good the first."""
+        return (1, self.effects.index(effect))
+
     def strength(self, effect):
         """An effect has one parameter of its own name."""
         return effect
@@ -81,7 +90,7 @@ class Judged:
             together = {"b", "c"} <= set(refit.effects)
             return Judgement(name, refit, helps=refit.held_out.score < base.held_out.score and not together)
 
-        return sorted(map(judged, names), key=lambda candidate: candidate.score)
+        return stepwise.ranked(self, map(judged, names))
 
     def improvement(self, less, more):
         """Whether an effect that only one of them has was needed, or the other does better by far."""
