@@ -104,14 +104,19 @@ def _without(point: Array, here: Local, used: list[Mask], evaluate: Callable[[Ar
     if not len(step) or np.abs(step).max() <= _FAR:
         return here, step
 
+    seen: dict[bytes, Local] = {point.tobytes(): here}
+
     def of_used(trial: Array) -> Local:
-        return _partly(evaluate(trial), used)
+        at = trial.tobytes()
+        if at not in seen:
+            seen[at] = evaluate(trial)
+        return _partly(seen[at], used)
 
     end, _ = levenberg_marquardt(of_used, point, _CLOSE)
-    there = evaluate(end)
-    if not np.isfinite(there.error):  # the point lies at the edge of what is stable: judged by its linearisation
+    tried = [one.error for one in seen.values() if one is not here]
+    if not any(map(np.isfinite, tried)):  # the point lies at the edge of what is stable: judged by its linearisation
         return here, step
-    return there, np.zeros(len(point))
+    return seen[end.tobytes()], np.zeros(len(point))
 
 
 def _partly(here: Local, used: list[Mask]) -> Local:

@@ -108,7 +108,8 @@ def rank(
 
     found = ranked(models, each(final, finalists))
     report(Progress("confirming", done, done + 1))
-    found = [*each(partial(_elsewhere, models, base), found[:_DEEPER]), *found[_DEEPER:]]
+    deeper = _DEEPER if thorough else 1
+    found = [*each(partial(_elsewhere, models, base), found[:deeper]), *found[deeper:]]
     confirmed = {candidate.effect: candidate for candidate in (*tried, *found)}
     rest = [confirmed.get(p.effect, Candidate(p)) for p in predictions]
     return ranked(models, rest)
