@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import groupby
@@ -75,12 +75,7 @@ def rank(
     predictions = in_order(predict(models, base, listed), lambda p: p.after.score)
     first = tuple(Expected(p.effect, base.error * p.share) for p in predictions[:_SIGHT])
     report(Progress("predicting", 1, 1, base.error, first))
-    contenders = predictions[:_CONTENDERS]
-    if not thorough:
-        near = _NEAR * predictions[0].after.error
-        quick = sum(run.length for run in models.runs) < _QUICK
-        few = _CONTENDERS if quick else max(_FEW - 2 * len(base.effects), _FINALISTS)
-        contenders = [p for p in predictions if _promises(p) and p.after.error < near][:few]
+    contenders = predictions[:_CONTENDERS] if thorough else _near(models, base, predictions)
     done = 0
 
     def trial(prediction: Prediction) -> Candidate:
@@ -113,6 +108,14 @@ def rank(
     confirmed = {candidate.effect: candidate for candidate in (*tried, *found)}
     rest = [confirmed.get(p.effect, Candidate(p)) for p in predictions]
     return ranked(models, rest)
+
+
+def _near(models: ModelFamily, base: Refit, predictions: Sequence[Prediction]) -> list[Prediction]:
+    """The contenders for a further effect: those that promise anything near what the best promises."""
+    near = _NEAR * predictions[0].after.error
+    quick = sum(run.length for run in models.runs) < _QUICK
+    few = _CONTENDERS if quick else max(_FEW - 2 * len(base.effects), _FINALISTS)
+    return [p for p in predictions if _promises(p) and p.after.error < near][:few]
 
 
 def ranked(models: ModelFamily, candidates: Iterable[Candidate]) -> list[Candidate]:
