@@ -220,7 +220,9 @@ class ModelFamily:
             on = set(effects)
             model = self._whole(on) if whole else self.model(on)
             off = off_values(e for e in model.effects if e.name not in on)
-            given = replace(self.given, fixed={**self.given.fixed, **off})
+            out = self.effects.keys() - {e.name for e in model.effects}
+            bounds = {name: of for name, of in self.given.bounds.items() if name.partition(".")[0] not in out}
+            given = replace(self.given, fixed={**self.given.fixed, **off}, bounds=bounds)
             space = search_space(model, self.matrix, given, self.band)
             runs = shortened(self.runs, samples) if samples else self.runs
             self._known[key] = SimulatedFitness(model, self.matrix, runs, space, self.band, horizon=self.horizon)

@@ -1,4 +1,4 @@
-"""Machines with an effect that no list holds, and its equation in the words of a user, for the best that can be found."""
+"""Machines with an effect that no list holds, and its equation in the words of a user."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _EQUATIONS: dict[str, tuple[str, ...]] = {
     "relief_valve": ("Q = Q - s * A * V0 * max(P - a, 0) / P0",),
     "bumper": ("R = R + s * A * P0 * max(x - a, 0) / X0",),
     "wide_opening": ("w = w + s * max(w - a, 0)",),
-    "feedback_play": ("p := clip(p, X - s * X0, X + s * X0)", "y_fb = y_fb + p - X"),
+    "feedback_play": ("p := clip(p, x - s * X0, x + s * X0)", "e = e + Kp * (x - p)"),
     "yielding_element": ("p := clip(p, x - a, x + a)", "R = R + s * A * P0 * (x - p) / a"),
     "flow_hysteresis": ("p := clip(p, w - a, w + a)", "w = w + s * (p - w)"),
     "late_leakage": ("Q = Q - s * A * V0 * lag(P, a) / P0",),
@@ -47,7 +47,7 @@ _EQUATIONS: dict[str, tuple[str, ...]] = {
     "breathing": ("Q = Q - s * A * abs(P) / P0 * v", "R = R - s * A * abs(P) / P0 * P"),
 }
 _SIZES = {"X0": X, "V0": V0, "P0": P0, "MS": MS, "slip": f"tanh(v / {VS!r})"}
-_PLACES = {"Q": "flow", "R": "load", "w": "spool", "y_fb": "sensor"}
+_PLACES = {"e": "controller", "w": "spool", "Q": "flow", "R": "load"}
 
 
 def written(hidden: Hidden) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
+from scipy.signal import bilinear, lfilter
 
 from ident.equations.equation import Equation
 from ident.units.grammar import Powers, powers_of
@@ -24,6 +24,9 @@ _QUANTILES = (0.3, 0.5, 0.7, 0.85, 0.95)  # of the size of a signal: thresholds
 _HILLS, _HILL = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95), (0.1, 0.25)  # quantiles of the position, widths in its range
 _LAGS = (0.02, 0.06, 0.2, 0.6)  # of a period at the end of the band, times 2π
 _PLAYS = (0.1, 0.3, 0.6)  # of the deviation of a signal
+_RESONANCES, _DAMPED = (0.15, 0.2, 0.27, 0.36, 0.48, 0.65, 0.9), 0.1  # of the end of the band; of critical damping
+_FADING = (0.15, 0.5)  # of the shortest run
+_REMEMBERED = {("controller", "x"), ("flow", "P"), ("load", "v"), ("load", "x")}  # places of another signal's memory
 
 
 @dataclass(frozen=True)
@@ -125,23 +128,30 @@ class Library:
                     ("{a} - clip({a}, -h, h)", "beyond"), ("max({a} - h, 0)", "above"), ("min({a} + h, 0)", "below"),
                 ):  # fmt: skip
                     yield Term(place, at, text.format(a=a), kind, (a,), self._unit((a, 1)), (width,))
-        if a == at or (place == "load" and a == "v"):
+        if a == at or (place, a) in _REMEMBERED:
             yield from self._late(place, at, a)
             yield from self._play(place, at, a)
+        if a == at or (place, a) == ("load", "x"):
+            yield from self._resonant(place, at, a)
 
     def _late(self, place: str, at: str, a: str) -> Iterator[Term]:
+        by, unit = self._by(place, at, a)
         for share in _LAGS:
-            T = share / self.band * 2 * np.pi
+            T = Shape("T", share / self.band * 2 * np.pi, "s")
 
-            def late(signals: Signals, rate: float, T: float = T) -> Array:
-                decay = np.exp(-1.0 / rate / T)
-                x = signals[a]
-                return np.asarray(lfilter([1 - decay], [1, -decay], x) - x)
+            def late(signals: Signals, rate: float, T: float = T.value) -> Array:
+                return np.asarray(_factor(by, signals) * (_lagging(signals[a], rate, T) - signals[a]))
 
-            shape = Shape("T", T, "s")
-            yield Term(place, at, f"lag({a}, T) - {a}", "lag", (a,), self._unit((a, 1)), (shape,), (), late)
+            yield Term(place, at, _times(by, f"lag({a}, T) - {a}"), "lag", (a,), unit, (T,), (), late)
+            if (place, a) == ("load", "v"):
+
+                def dragged(signals: Signals, rate: float, T: float = T.value) -> Array:
+                    return _lagging(np.sign(signals["v"]), rate, T)
+
+                yield Term(place, at, "lag(sgn(v), T)", "late friction", (a,), {}, (T,), (), dragged)
 
     def _play(self, place: str, at: str, a: str) -> Iterator[Term]:
+        by, unit = self._by(place, at, a)
         for share in _PLAYS:
             half = share * float(np.std(self.typical[a]))
 
@@ -150,11 +160,31 @@ class Library:
                 for k, now in enumerate(x):
                     p = min(max(p, now - half), now + half)
                     out[k] = p - now
-                return out
+                return np.asarray(_factor(by, signals) * out)
 
             shape = Shape("b", half, self.units[a])
             memory = (f"p := clip(p, {a} - b, {a} + b)",)
-            yield Term(place, at, f"p - {a}", "play", (a,), self._unit((a, 1)), (shape,), memory, held)
+            yield Term(place, at, _times(by, f"p - {a}"), "play", (a,), unit, (shape,), memory, held)
+
+    def _resonant(self, place: str, at: str, a: str) -> Iterator[Term]:
+        """A mass on a spring that a signal moves: its motion beside that."""
+        for share in _RESONANCES:
+            w = share * self.band
+            a1, a2 = Shape("a1", 2 * _DAMPED / w, "s"), Shape("a2", 1 / w**2, "s^2")
+
+            def beside(signals: Signals, rate: float, w: float = w) -> Array:
+                warped = 0.5 * w / np.tan(0.5 * w / rate)  # the bilinear rule, right at w
+                over, under = bilinear([1.0], [1 / w**2, 2 * _DAMPED / w, 1.0], warped)
+                return np.asarray(lfilter(over, under, signals[a]) - signals[a])
+
+            yield Term(
+                place, at, f"lag2({a}, a1, a2) - {a}", "resonance", (a,), self._unit((a, 1)), (a1, a2), (), beside
+            )
+
+    def _by(self, place: str, at: str, a: str) -> tuple[str, Powers]:
+        """What multiplies a memory of a signal, as the loop's gain does where it is fed back, and its unit."""
+        by = "Kp" if place == "controller" and a != at and "Kp" in self.typical else ""
+        return by, self._unit((a, 1), *[(by, 1)] * bool(by))
 
     def _of_two(self, place: str, at: str, a: str, b: str) -> Iterator[Term]:
         for text, kind, powers, symmetric in (
@@ -192,32 +222,54 @@ class Library:
         for name in (*self.varied, "t"):
             unit = {"t": "s"}.get(name) or self.units.get(name, "1")
             for a in self.signals[place]:
-                if a in (at, "v"):
-                    powers = _multiplied(self._unit((a, 1)), powers_of(unit) or {}, 1)
-                    yield Term(place, at, f"{name} * {a}", "condition", (name, a), powers)
+                powers = _multiplied(self._unit((a, 1)), powers_of(unit) or {}, 1)
+                yield Term(place, at, f"{name} * {a}", "condition", (name, a), powers)
                 if a == "v":
                     powers = dict(powers_of(unit) or {})
                     yield Term(place, at, f"{name} * sgn({a})", "friction with", (name, a), powers)
         if "t" not in self.varied:
             yield Term(place, at, "t", "drift", ("t",), {"s": 1.0})
+        for share in _FADING:
+            T = Shape("T", share * self.seconds, "s")
+            for a in self.signals[place]:
+                if a in (at, "v"):
+                    yield Term(place, at, f"{a} * exp(-t / T)", "fading", ("t", a), self._unit((a, 1)), (T,))
+                if (place, a) == ("load", "v"):
+                    yield Term(place, at, f"sgn({a}) * exp(-t / T)", "fading friction", ("t", a), {}, (T,))
 
     def _periodic(self, place: str, at: str) -> Iterator[Term]:
         """What comes and goes with time, each frequency of the band that the shortest run resolves."""
-        if place not in ("flow", "spool") or (place == "spool" and "flow" in self.places):
+        of = at if place in ("flow", "spool") and not (place == "spool" and "flow" in self.places) else ""
+        if not of and place != "load":
             return
         step = 1.0 / self.seconds
         for number in range(1, int(self.band / (2 * np.pi) / step)):
             f = Shape("fp", number * step, "1/s", spread=1.0 + 0.7 / number)
             for phase in (0.0, 0.25):
                 turn = Shape("g", phase, "1", lower=-0.5, upper=0.5)
-                text = f"{at} * sin(2 * pi * (fp * t + g))"
-                yield Term(place, at, text, "periodic", (at, "t"), self._unit((at, 1)), (f, turn))
+                wave, unit = "sin(2 * pi * (fp * t + g))", self._unit((of, 1)) if of else {}
+                text, kind = (f"{of} * {wave}", "periodic") if of else (wave, "pulsation")
+                yield Term(place, at, text, kind, (of, "t") if of else ("t",), unit, (f, turn))
 
     def _unit(self, *of: tuple[str, int]) -> Powers:
         found: Powers = {}
         for name, power in of:
             found = _multiplied(found, powers_of(self.units[name]) or {}, power)
         return found
+
+
+def _lagging(x: Array, rate: float, T: float) -> Array:
+    """x behind a lag of T."""
+    decay = np.exp(-1.0 / rate / T)
+    return np.asarray(lfilter([1 - decay], [1, -decay], x))
+
+
+def _factor(by: str, signals: Signals) -> Array | float:
+    return signals[by] if by else 1.0
+
+
+def _times(by: str, text: str) -> str:
+    return f"{by} * ({text})" if by else text
 
 
 def _multiplied(a: Powers, b: Powers, power: int) -> Powers:
