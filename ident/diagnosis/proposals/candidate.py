@@ -44,10 +44,19 @@ class Candidate:
 
 def offered(found: Regression, units: Mapping[str, str]) -> tuple[tuple[Candidate, ...], int]:
     """The terms and pairs that promise most, and how many were looked at."""
-    classes = found.classes()
+    classes = _apart(found)
     singles = [_single(found, group) for group in (*classes[:_TRIED], *_shaped(found, classes))]
     pairs = _pairs(found, [group[0] for group in classes[:_PAIRED]], units)
     return (*singles, *pairs), (1 + _PAIRED) * len(found.terms)
+
+
+def _apart(found: Regression) -> list[list[int]]:
+    """The best class of every form: those that differ by where their shapes begin come to the same in a refit."""
+    best: dict[object, list[int]] = {}
+    for group in found.classes():
+        term = found.terms[group[0]]
+        best.setdefault((term.at, term.kind, term.of) if term.free_shapes else group[0], group)
+    return list(best.values())
 
 
 def _shaped(found: Regression, classes: Sequence[Sequence[int]]) -> list[Sequence[int]]:

@@ -222,3 +222,15 @@ def test_a_search_that_is_cut_says_so():
     assert "proposing" in steps
     assert not found.complete
     assert found.proposals == ()
+
+
+def test_a_model_without_a_term_has_no_bounds_of_its_shapes():
+    own = {
+        "name": "late", "place": "load", "equation": "R = R + s * (lag(v, T) - v)",
+        "strength": {"symbol": "s", "unit": "N*s/m", "lower": -1e4, "upper": 1e4},
+        "shape": {"T": {"unit": "s", "lower": 1e-4, "upper": 1e-2, "value": 1e-3}},
+    }  # fmt: skip
+    settings = Settings(model="qian2014", custom=(own,), bounds={"late.T": (1e-4, 1e-2)})
+    models = ModelFamily.of(machine(1), settings, (read_effect(own, model="qian2014"),))
+    with_it, without = (models.fitness(effects).space.axes for effects in (("late",), ()))
+    assert len(with_it) == len(without) + 2
