@@ -35,6 +35,11 @@ class Candidate:
         return "; ".join(map(added, self.terms, self.signs))
 
     @property
+    def starts(self) -> tuple[float, ...]:
+        """Where the shapes of its terms begin."""
+        return tuple(shape.value for term in self.terms for shape in term.shapes)
+
+    @property
     def simplicity(self) -> tuple[object, ...]:
         """What of two that are as good comes first."""
         text = "".join(term.text for term in self.terms)

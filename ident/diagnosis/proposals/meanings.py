@@ -30,7 +30,7 @@ _MEANINGS = {
 }  # fmt: skip
 _KINDS = {
     "beyond": "acts beyond a threshold to both sides", "above": "acts above a threshold",
-    "below": "acts below a threshold", "lag": "acts late", "play": "has play",
+    "below": "acts below a threshold", "lag": "acts late", "late": "acts late", "play": "has play",
     "friction at": "dry friction at one part of the way", "hill of": "acts at one part of the way",
     "hill": "acts at one part of the way", "condition": "changes with a condition of the run, or with time",
     "friction with": "dry friction that changes with a condition of the run, or with time",

@@ -44,8 +44,12 @@ class Record:
     signals: Mapping[str, Array]
 
 
-def records(refit: Refit, names: Sequence[str]) -> tuple[Record, ...]:
-    """The runs that a refit was made for, with the signals of these names."""
+def records(refit: Refit, names: Sequence[str], instead_of: Sequence[str] = ()) -> tuple[Record, ...]:
+    """The runs that a refit was made for, with the signals of these names.
+
+    Where what takes the place of a term is sought, `instead_of` are its strength and its shapes in the equations'
+    names: they are no parameters then, and what its strength explains is a part of the residual again.
+    """
     fitness, point = refit.fitness, refit.point
     windows = [fitness.window(run) for run in fitness.runs]
     count = next(n for n in range(stride(fitness.runs), 0, -1) if all(window % n == 0 for window in windows))
@@ -56,6 +60,9 @@ def records(refit: Refit, names: Sequence[str]) -> tuple[Record, ...]:
     simulated = SimulatedRuns(fitness.preset, fitness.matrix, fitness.runs, starts=dict(fitness.starts))
     inner = inside(simulated, {name: float(value[0]) for name, value in moved.items()}, names)
 
+    kept = [i for i, name in enumerate(refit.space.names) if name not in instead_of]
+    put_back = point - refit.space.point({**refit.values, **dict.fromkeys(instead_of[:1], 0.0)})
+
     def one(run: Run) -> Record:
         Z = sensitivities.columns[run.id].Z
         coarse = np.array([averaged(row, count)[:most] for row in Z]).T
@@ -64,8 +71,9 @@ def records(refit: Refit, names: Sequence[str]) -> tuple[Record, ...]:
         known = {name: np.full(n, value) for name, value in conditions(run, fitness.matrix.actuator).items()}
         time = {"t": (np.arange(n) + 0.5) / rate}
         p = len(point)
+        residual = coarse[:, -1] + coarse[:, :p] @ put_back
         return Record(
-            run, rate, coarse[:, :p], coarse[:, p:-2], coarse[:, -1], fitness.window(run) // count, known | time | shown
+            run, rate, coarse[:, kept], coarse[:, p:-2], residual, fitness.window(run) // count, known | time | shown
         )
 
     return tuple(each(one, fitness.runs))

@@ -35,6 +35,7 @@ from ident.progress import Progress, Report
 
 Array = NDArray[np.float64]
 MOST = 3  # terms
+Tried = tuple[Candidate, Refit, ModelFamily]
 _PREFIX = "proposed_"
 _EVIDENCE = 5.0  # nats beyond the logarithm of how many were looked at
 _AS_GOOD = 1.02  # times the least error: a simpler one is taken
@@ -83,7 +84,7 @@ class Search:
         seen = sight(self.models, base)
         self.looked_at += seen.looked_at
         self.report(Progress("proposing", len(self.found), self.most, base.error))
-        tried = [one for one in each(lambda c: self._tried(searching, base, name, c, seen), seen.candidates) if one]
+        tried = self._all_tried(searching, base, name, seen)
         if not tried:
             return False
         few = _few(self.models.runs)
@@ -107,6 +108,25 @@ class Search:
         proposal = self._proposal(candidate, seen, name, gained, bar, few)
         self.found.append(replace(proposal, contradicted=self._contradiction(name, before)))
         return True
+
+    def _all_tried(self, searching: ModelFamily, base: Refit, name: str, seen: Sight) -> list[Tried]:
+        """The refits with every candidate.
+
+        What is strong moves the signals that terms are of: where the best leaves more than noise, what could be in its
+        place is sought once more, with the signals of the model that has it.
+        """
+
+        def refits(candidates: Sequence[Candidate]) -> list[Tried]:
+            return [one for one in each(lambda c: self._tried(searching, base, name, c, seen), candidates) if one]
+
+        tried = refits(seen.candidates)
+        best = min(tried, key=lambda one: one[1].error, default=None)
+        if best is None or searching.at_floor(best[1]):
+            return tried
+        again = sight(self.models, best[1], best[2].effects[name])
+        self.looked_at += again.looked_at
+        known = {(one.equation, *one.starts) for one in seen.candidates}
+        return tried + refits([one for one in again.candidates if (one.equation, *one.starts) not in known])
 
     def _prune(self, latest: str) -> None:
         """Leave out what the model does as well without since the latest term."""
@@ -152,9 +172,7 @@ class Search:
             hypothesis=hypothesis,
         )
 
-    def _tried(
-        self, searching: ModelFamily, base: Refit, name: str, candidate: Candidate, seen: Sight
-    ) -> tuple[Candidate, Refit, ModelFamily] | None:
+    def _tried(self, searching: ModelFamily, base: Refit, name: str, candidate: Candidate, seen: Sight) -> Tried | None:
         """The refit with a candidate to the runs that search; None where it cannot be added."""
         own = definition(name, candidate.terms, candidate.signs, candidate.strength, seen.typical, seen.units)
         try:

@@ -35,13 +35,14 @@ class Sight:
     units: Mapping[str, str]
 
 
-def sight(models: ModelFamily, base: Refit) -> Sight:
-    """Of a model that was refitted to the runs that search."""
+def sight(models: ModelFamily, base: Refit, instead_of: Effect | None = None) -> Sight:
+    """Of a model that was refitted to the runs that search; what could be there `instead_of` an effect that it has."""
     preset = models.preset
     named = {equation.target for equation in preset.core.equations if not equation.is_rate} | {*preset.core.states}
     names = [name for name in _SIGNALS if name in named]
     places = {place: at for place, at in _PLACES.items() if at in named}
-    runs = records(base, list(dict.fromkeys((*names, *places.values()))))
+    numbers = [p.in_equations for p in instead_of.parameters] if instead_of else []
+    runs = records(base, list(dict.fromkeys((*names, *places.values()))), numbers)
     typical = {name: np.concatenate([record.signals[name] for record in runs]) for name in runs[0].signals}
     units = {name: quantity.unit for name, quantity in CONDITIONS.items()} | dict(preset.chain.units)
     shortest = min(run.duration for run in models.runs)

@@ -143,6 +143,12 @@ class Library:
                 return np.asarray(_factor(by, signals) * (_lagging(signals[a], rate, T) - signals[a]))
 
             yield Term(place, at, _times(by, f"lag({a}, T) - {a}"), "lag", (a,), unit, (T,), (), late)
+            if not by and a != at:
+
+                def behind(signals: Signals, rate: float, T: float = T.value) -> Array:
+                    return _lagging(signals[a], rate, T)
+
+                yield Term(place, at, f"lag({a}, T)", "late", (a,), unit, (T,), (), behind)
             if (place, a) == ("load", "v"):
 
                 def dragged(signals: Signals, rate: float, T: float = T.value) -> Array:
