@@ -9,12 +9,14 @@ import numpy as np
 
 from ident.diagnosis.proposals.meanings import meaning
 from ident.diagnosis.proposals.own import added
-from ident.diagnosis.proposals.regression import Regression
+from ident.diagnosis.proposals.regression import ALIKE, Regression
 from ident.diagnosis.proposals.terms import Term, ratio
 from ident.stages import PLACES
 from ident.units.quantity import known_powers, shape
 
-_TRIED, _PAIRS, _PAIRED = 6, 3, 12  # single terms and pairs that are refitted, and terms that are paired with all
+_TRIED, _PAIRS = 6, 3  # single terms and pairs that are refitted
+_SEEN = 200  # pairs that promise most, of which those are taken that are not alike
+_CANCELLED = 1e-6  # of the power of both: a pair that leaves less is none
 _MAY_WIN = 0.5  # times the best one's promise, which a shape that is not yet where it belongs may keep
 _DRIVE = ("controller", "valve", "spool", "flow")  # one input of the machine: of two terms there one is enough
 
@@ -51,8 +53,8 @@ def offered(found: Regression, units: Mapping[str, str]) -> tuple[tuple[Candidat
     """The terms and pairs that promise most, and how many were looked at."""
     classes = _apart(found)
     singles = [_single(found, group) for group in (*classes[:_TRIED], *_shaped(found, classes))]
-    pairs = _pairs(found, [group[0] for group in classes[:_PAIRED]], units)
-    return (*singles, *pairs), (1 + _PAIRED) * len(found.terms)
+    pairs, count = _pairs(found, units)
+    return (*singles, *pairs), len(found.terms) + count
 
 
 def _apart(found: Regression) -> list[list[int]]:
@@ -88,31 +90,42 @@ def _single(found: Regression, group: Sequence[int]) -> Candidate:
     return Candidate((terms[best],), (1.0,), strength, share, others)
 
 
-def _pairs(found: Regression, leading: Sequence[int], units: Mapping[str, str]) -> list[Candidate]:
-    """Two places with one strength: terms whose strengths have one unit, one where the drive is and one elsewhere."""
-    power, dimensions = np.diag(found.products), [_dimension(term, units) for term in found.terms]
+def _pairs(found: Regression, units: Mapping[str, str]) -> tuple[list[Candidate], int]:
+    """Two places with one strength: terms whose strengths have one unit, one where the drive is and one elsewhere.
+
+    Those that promise most, no two of them alike, and how many there are.
+    """
+    power = np.diag(found.products)
+    dimensions = np.unique([repr(_dimension(term, units)) for term in found.terms], return_inverse=True)[1]
     plain = np.array([not term.shapes and power[i] > 0 for i, term in enumerate(found.terms)])
     driven = np.array([term.place in _DRIVE for term in found.terms])
-    best: dict[tuple[int, int], tuple[float, float, float]] = {}
-    for i in leading:
-        alike = np.array([dimensions[i] == other for other in dimensions])
-        others = np.flatnonzero(plain[i] & plain & (driven != driven[i]) & alike)
-        for j in map(int, others):
-            for sign in (1.0, -1.0):
-                both = power[i] + power[j] + 2 * sign * found.products[i, j]
-                with_residual = found.with_residual[i] + sign * found.with_residual[j]
-                if both > 0:
-                    share, strength = float(with_residual**2 / both / found.left), float(with_residual / both)
-                    key = (min(i, j), max(i, j))
-                    best[key] = max(best.get(key, (0.0, 0.0, 0.0)), (share, strength * (1 if i < j else sign), sign))
-    chosen = sorted(best.items(), key=lambda one: -one[1][0])[:_PAIRS]
-    listed = []
-    for (i, j), (share, strength, sign) in chosen:
-        both_terms = [(found.terms[i], 1.0), (found.terms[j], sign)]
-        terms, signs = zip(*sorted(both_terms, key=lambda one: PLACES.index(one[0].place)), strict=True)
-        turned = signs[0]
-        listed.append(Candidate(terms, tuple(turned * one for one in signs), turned * strength, share))
-    return listed
+    rows, columns = np.flatnonzero(plain & driven), np.flatnonzero(plain & ~driven)
+    of_rows, of_columns = np.nonzero(dimensions[rows, None] == dimensions[columns])
+    i, j = np.tile(rows[of_rows], 2), np.tile(columns[of_columns], 2)
+    signs = np.repeat([1.0, -1.0], len(of_rows))
+    both = power[i] + power[j] + 2 * signs * found.products[i, j]
+    sound = both > _CANCELLED * (power[i] + power[j])
+    with_residual = found.with_residual[i] + signs * found.with_residual[j]
+    share = np.where(sound, with_residual**2 / np.where(sound, both, 1.0) / found.left, 0.0)
+
+    def alike(k: int, other: int) -> bool:
+        (a, b, s), (c, d, t) = ((i[n], j[n], signs[n]) for n in (k, other))
+        product = found.products
+        common = product[a, c] + t * product[a, d] + s * product[b, c] + s * t * product[b, d]
+        return bool(abs(common) > ALIKE * np.sqrt(both[k] * both[other]))
+
+    taken: list[int] = []
+    for k in map(int, np.argsort(-share, kind="stable")[:_SEEN]):
+        if len(taken) < _PAIRS and share[k] > 0 and not any(alike(k, other) for other in taken):
+            taken.append(k)
+    return [_pair(found, (i[k], j[k]), signs[k], with_residual[k] / both[k], share[k]) for k in taken], len(i)
+
+
+def _pair(found: Regression, of: tuple[int, int], sign: float, strength: float, share: float) -> Candidate:
+    """Two terms, the second with a sign, in the order of their places."""
+    both = ((found.terms[of[0]], 1.0), (found.terms[of[1]], float(sign)))
+    terms, signs = zip(*sorted(both, key=lambda one: PLACES.index(one[0].place)), strict=True)
+    return Candidate(terms, tuple(signs[0] * one for one in signs), float(signs[0] * strength), float(share))
 
 
 def _dimension(term: Term, units: Mapping[str, str]) -> object:

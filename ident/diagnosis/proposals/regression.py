@@ -27,7 +27,7 @@ from ident.residuals.decimation import Response
 
 Array = NDArray[np.float64]
 _ABSORBED = 1e-4  # of a term's power that the parameters leave: less, and they do what it does
-_ALIKE = 0.999  # cosine of two terms that the data cannot tell apart
+ALIKE = 0.999  # cosine of two terms that the data cannot tell apart
 WIDE = 1.3  # of the command's band is looked at
 
 
@@ -54,8 +54,8 @@ class Regression:
         while rest:
             first = rest[0]
             cosine = np.abs(self.products[first, rest]) / size[first] / size[rest]
-            found.append([i for i, c in zip(rest, cosine, strict=True) if c > _ALIKE])
-            rest = [i for i, c in zip(rest, cosine, strict=True) if c <= _ALIKE]
+            found.append([i for i, c in zip(rest, cosine, strict=True) if c > ALIKE])
+            rest = [i for i, c in zip(rest, cosine, strict=True) if c <= ALIKE]
         return found
 
 
