@@ -25,6 +25,7 @@ from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.workflows import diagnose, identify
 from tests.blind.campaign import add, rows
+from tests.blind.machines import runs_away
 from tests.blind.unlisted_effects import KIND, MODEL, Secret, secret
 from tests.reference import qian_reference as linear
 from tests.reference.unlisted_reference import KINDS, NAMES
@@ -61,7 +62,8 @@ def outcome(machine: Secret, catalogue: bool) -> Row:
     errors = {use: ((proposed or [listed])[-1].error[use] or 0.0) / machine.noise for use in ("fit", "verify")}
     shapes = [one.shapes for one in proposed]
     accepted = bool(proposed) and len(proposed) <= TERMS and sum(shapes) <= SHAPES and errors["verify"] <= VERIFY
-    off = [_off(found, clean, machine.noise) for clean in (machine.measured(noise=0.0), machine.measured(_NEW, 0.0))]
+    new = [t for t in _NEW if not runs_away(machine.measured([t], 0.0))] or machine.trials  # within the stroke
+    off = [_off(found, machine.measured(trials, 0.0), machine.noise) for trials in (machine.trials, new)]
     return {
         "named": list(found.verdict.effects), "listed": (listed.error["verify"] or 0.0) / machine.noise,
         "found": [one.equation for one in proposed], "shapes": shapes, **errors, "accepted": accepted,
@@ -79,7 +81,8 @@ def _off(found: Diagnosis, clean: Matrix, noise: float) -> float:
     model, driven = preset_with(MODEL, (*effects, *(one["name"] for one in custom)), custom).for_matrix(clean)
     values = {p.in_equations: parameters[p.name].value if p.name in parameters else p.value for p in model.parameters}
     outputs = modelled(model, values, driven)
-    return float(np.mean([np.std(run.measured - outputs[run.id]) / np.std(run.measured) for run in clean.runs])) / noise
+    left = [np.std(run.measured - outputs[run.id]) / np.std(run.measured) for run in clean.runs]
+    return float(np.mean(left)) / noise
 
 
 def show(row: Row) -> None:

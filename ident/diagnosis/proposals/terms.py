@@ -239,7 +239,7 @@ class Library:
             T = Shape("T", share * self.seconds, "s")
             for a in self.signals[place]:
                 if a in (at, "v"):
-                    yield Term(place, at, f"{a} * exp(-t / T)", "fading", ("t", a), self._unit((a, 1)), (T,))
+                    yield Term(place, at, f"{a} * (1 - exp(-t / T))", "fading", ("t", a), self._unit((a, 1)), (T,))
                 if (place, a) == ("load", "v"):
                     yield Term(place, at, f"sgn({a}) * exp(-t / T)", "fading friction", ("t", a), {}, (T,))
 
