@@ -244,18 +244,19 @@ class Library:
                     yield Term(place, at, f"sgn({a}) * exp(-t / T)", "fading friction", ("t", a), {}, (T,))
 
     def _periodic(self, place: str, at: str) -> Iterator[Term]:
-        """What comes and goes with time, each frequency of the band that the shortest run resolves."""
-        of = at if place in ("flow", "spool") and not (place == "spool" and "flow" in self.places) else ""
-        if not of and place != "load":
+        """What comes and goes with time, each frequency of the band that the shortest run resolves.
+
+        Only what modulates: a sum with a wave of one phase in every run is what hum in the records looks like.
+        """
+        if place not in ("flow", "spool") or (place == "spool" and "flow" in self.places):
             return
         step = 1.0 / self.seconds
         for number in range(1, int(self.band / (2 * np.pi) / step)):
             f = Shape("fp", number * step, "1/s", spread=1.0 + 0.7 / number)
             for phase in (0.0, 0.25):
                 turn = Shape("g", phase, "1", lower=-0.5, upper=0.5)
-                wave, unit = "sin(2 * pi * (fp * t + g))", self._unit((of, 1)) if of else {}
-                text, kind = (f"{of} * {wave}", "periodic") if of else (wave, "pulsation")
-                yield Term(place, at, text, kind, (of, "t") if of else ("t",), unit, (f, turn))
+                text = f"{at} * sin(2 * pi * (fp * t + g))"
+                yield Term(place, at, text, "periodic", (at, "t"), self._unit((at, 1)), (f, turn))
 
     def _unit(self, *of: tuple[str, int]) -> Powers:
         found: Powers = {}
