@@ -34,10 +34,8 @@ Array = NDArray[np.float64]
 _TRIAL = 131_072  # samples of a first refit; the finalists take every sample
 _FITTING, _TRYING = Way(1e-7, 20), Way(1e-5, 10)  # of a refit, a first one
 _SETTING_OUT, _SEARCHING = Way(1e-5, 10), Way(1e-5, 20)  # of one far off, and where it is ahead of others
-_GLANCE = Way(1e-5, 4)  # of one from anywhere
 _SCATTERED, _LEADING = 128, 4  # points of a whole search space, and those of them from which a refit begins
 _SIGHT = 32_768  # samples that they are judged by
-_SEEN = 8  # steps a sample: what asks for more has modes that the samples do not show
 _OFF = 0.01  # of the largest strength
 _BETTER = 0.99  # times the error: a new optimum, not the same one
 _AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be noise, beside
@@ -259,8 +257,13 @@ class ModelFamily:
         return found if found.here.error < refit.here.error else None
 
     def searched(self, refit: Refit, starts: Sequence[Mapping[str, float]]) -> Refit:
-        """The best first refit of the same model from other starts, far off: on the beginnings of the records."""
-        return self._ahead(refit.effects, starts, _SETTING_OUT, _SEARCHING)
+        """The best first refit of the same model from other starts, far off: on the beginnings of the records.
+
+        All set out, and the one that is ahead goes on.
+        """
+        tried = [self.refit(refit.effects, start, _TRIAL, _SETTING_OUT) for start in starts]
+        ahead = first_least(tried, lambda one: one.here.error)
+        return self.refit(refit.effects, ahead.values, _TRIAL, _SEARCHING) if ahead.finite else ahead
 
     def scattered(self, effects: tuple[str, ...]) -> Refit:
         """The best first refit of a model from anywhere in its search space, on the beginnings of the records.
@@ -269,17 +272,9 @@ class ModelFamily:
         """
         fitness = self.fitness(effects, _SIGHT)
         points = Sobol(len(fitness.space.axes), rng=0).random(_SCATTERED)
-        seen = fitness.steps(fitness.space.values(points)) <= _SEEN
-        points = points[seen] if seen.sum() > _LEADING else points
         best = points[np.argsort(fitness.errors(points), kind="stable")[:_LEADING]]
         starts = [{name: float(v[0]) for name, v in fitness.space.values(point[None]).items()} for point in best]
-        return self._ahead(effects, starts, _GLANCE, _TRYING)
-
-    def _ahead(self, effects: tuple[str, ...], starts: Sequence[Mapping[str, float]], first: Way, then: Way) -> Refit:
-        """First refits of a model from several starts: all set out, and the one that is ahead goes on."""
-        tried = [self.refit(effects, start, _TRIAL, first) for start in starts]
-        best = first_least(tried, lambda one: one.here.error)
-        return self.refit(effects, best.values, _TRIAL, then) if best.finite else best
+        return first_least([self.refit(effects, start, _TRIAL) for start in starts], lambda refit: refit.here.error)
 
     def refit(
         self,

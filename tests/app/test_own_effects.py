@@ -18,7 +18,7 @@ from schemas.catalogue import OwnEffectRequest, OwnEffectView
 from tests.app.test_custom_effects import OWN
 from tests.app.test_diagnoses import ended
 from tests.app.test_idempotency import context_of
-from tests.hidden_leak import NOISE, zipped
+from tests.hidden_bump import NOISE, zipped
 
 API = "/api/v1"
 AT = f"{API}/own-effects"
@@ -38,7 +38,7 @@ def _none_is_left(service: TestClient) -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def fitted(service: TestClient) -> str:
-    """A fit that lacks a leak in one direction."""
+    """A fit that lacks a hill of the flow gain."""
     stored = service.post(f"{API}/matrices", files={"files": ("m.zip", zipped())}).json()
     job = ended(service, service.post(f"{API}/fits", json={"matrix": stored["id"]}))
     assert job["state"] == "succeeded", job
@@ -182,15 +182,15 @@ def test_a_dropped_effect_is_gone_and_the_fit_that_has_it_stays(service: TestCli
 def test_what_was_proposed_says_so_wherever_it_goes(service: TestClient, found: dict[str, Any]) -> None:
     """Kept from its diagnosis, and kept again from the definition that a client was given."""
     term = found["proposals"][0]
-    made = service.post(AT, json={"name": "leak", "diagnosis": found["id"], "proposal": 0})
+    made = service.post(AT, json={"name": "hill", "diagnosis": found["id"], "proposal": 0})
     assert made.status_code == 201, made.text
     kept = made.json()
     assert kept["definition"]["equation"] == term["effect"]["equation"]
-    assert (kept["name"], kept["definition"]["name"], kept["meaning"]) == ("leak", "leak", term["meaning"])
+    assert (kept["name"], kept["definition"]["name"], kept["meaning"]) == ("hill", "hill", term["meaning"])
     assert (kept["origin"], kept["model"], kept["diagnosis"]) == ("proposed by search", "qian2014", found["id"])
     assert (kept["nats"], kept["bar"], kept["class"]) == (term["nats"], term["bar"], term["class"])
     assert (kept["data_hash"], kept["version"]) == (found["data_hash"], found["version"])
-    assert keep(service, "leak_again", kept["definition"]).json()["origin"] == "proposed by search"
+    assert keep(service, "hill_again", kept["definition"]).json()["origin"] == "proposed by search"
     answer = service.post(AT, json={"name": "second", "diagnosis": found["id"], "proposal": 1})
     assert (answer.status_code, answer.json()["code"]) == (422, "no-such-proposal")
 
@@ -198,25 +198,25 @@ def test_what_was_proposed_says_so_wherever_it_goes(service: TestClient, found: 
 @pytest.mark.usefixtures("few_effects")
 def test_the_next_actuator_has_it_by_name(service: TestClient, found: dict[str, Any]) -> None:
     """In a new fit, in a diagnosis that ranks the lab's own, and in one that names it; else it is not ranked."""
-    service.post(AT, json={"name": "leak", "diagnosis": found["id"]})
-    stored = service.post(f"{API}/matrices", files={"files": ("m.zip", zipped("LEAK-2"))}).json()
-    job = ended(service, service.post(f"{API}/fits", json={"matrix": stored["id"], "effects": ["leak"]}))
+    service.post(AT, json={"name": "hill", "diagnosis": found["id"]})
+    stored = service.post(f"{API}/matrices", files={"files": ("m.zip", zipped("BUMP-2"))}).json()
+    job = ended(service, service.post(f"{API}/fits", json={"matrix": stored["id"], "effects": ["hill"]}))
     result = service.get(f"{API}/fits/{job['fit']}").json()["result"]
-    assert result["effects"] == ["leak"]
+    assert result["effects"] == ["hill"]
     assert result["settings"]["custom"][0]["source"] == "proposed by search"
     assert result["error"]["verify"] < 1.1 * NOISE
 
     plain = ended(service, service.post(f"{API}/fits", json={"matrix": stored["id"]}))["fit"]
     ranked = {}
-    for name, asked in (("own", {"own": True}), ("named", {"custom": ["leak"]}), ("without", {})):
+    for name, asked in (("own", {"own": True}), ("named", {"custom": ["hill"]}), ("without", {})):
         job = ended(service, service.post(f"{API}/diagnoses", json={"fit": plain, "max_effects": 1, **asked}))
         assert job["state"] == "succeeded", job
         ranked[name] = service.get(f"{API}/diagnoses/{job['diagnosis']}").json()
-    assert ranked["own"]["candidates"][0]["effect"] == "leak"
-    assert ranked["own"]["verdict"]["effects"] == ["leak"]
+    assert ranked["own"]["candidates"][0]["effect"] == "hill"
+    assert ranked["own"]["verdict"]["effects"] == ["hill"]
     assert not ranked["own"]["verdict"]["unexplained"]
-    assert ranked["named"]["verdict"]["effects"] == ["leak"]
-    assert "leak" not in [one["effect"] for one in ranked["without"]["candidates"]]
+    assert ranked["named"]["verdict"]["effects"] == ["hill"]
+    assert "hill" not in [one["effect"] for one in ranked["without"]["candidates"]]
     answer = service.post(f"{API}/diagnoses", json={"fit": plain, "custom": ["leek"]})
     assert (answer.status_code, answer.json()["code"]) == (422, "no-such-effect")
 
@@ -238,21 +238,21 @@ def test_a_diagnosis_of_a_matrix_ranks_them_once_its_model_is_known(service: Tes
 def test_pages_offer_what_is_kept(service: TestClient, found: dict[str, Any], fitted: str) -> None:
     """On the card of the term, in the list of a fit that can take it, on the form that starts one, on a page of all."""
     page = service.get(f"/fits/{fitted}").text
-    assert 'value="leakage_in_one_direction"' in page
+    assert 'value="acts_at_one_part_of_the_way"' in page
     assert "This lab's own effects" not in page
     assert 'name="own" type="checkbox"' not in page
     assert "No effect is kept yet" in service.get("/effects").text
-    service.post(AT, json={"name": "leak", "diagnosis": found["id"]})
+    service.post(AT, json={"name": "hill", "diagnosis": found["id"]})
     keep(service, "of_bench", OF_BENCH, model="kononykhin")
     page = service.get(f"/fits/{fitted}").text
-    assert "Kept as leak" in page
-    assert 'value="leakage_in_one_direction"' not in page
+    assert "Kept as hill" in page
+    assert 'value="acts_at_one_part_of_the_way"' not in page
     listed = page.partition('aria-labelledby="kept-title"')[2].partition("</section>")[0]
-    assert "<b>leak</b>" in listed
+    assert "<b>hill</b>" in listed
     assert "proposed by search" in listed
     assert "of bench" not in listed
     assert 'name="own" type="checkbox"> with' in page
-    assert 'value="leak"' in service.get(f"/matrices/{found['matrix']}").text
+    assert 'value="hill"' in service.get(f"/matrices/{found['matrix']}").text
     everything = service.get("/effects").text
     assert f"proposed by search: {found['proposals'][0]['nats']:.0f} nats" in everything
     assert 'data-drop="/api/v1/own-effects/of_bench"' in everything

@@ -78,7 +78,9 @@ def test_a_force_loop_is_taken_for_one_and_fitted_to_the_noise():
     assert {"m0", "Ka", "Cl"} <= {entry.name for entry in fit.undetermined}  # no position was recorded
 
 
-def test_what_a_force_loop_lacks_is_found():
+def test_what_a_force_loop_lacks_is_found(full):
+    if not full:
+        pytest.skip("half a minute: run with --full")
     found = diagnose(force_loop(2, overlap=600.0), settings=Settings(model="force_loop"), most=1)
     assert found.candidates[0].effect == "dead_zone"
     assert found.verdict.effects == ("dead_zone",)

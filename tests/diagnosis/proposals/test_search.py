@@ -177,7 +177,7 @@ def test_the_strength_comes_with_its_standard_error():
 @pytest.mark.parametrize("colour", ["white", "slow", "hum", "drift"])
 @pytest.mark.parametrize("seed", [1, 2])
 def test_noise_of_any_colour_is_no_physics(colour, seed, full):
-    if not full and (colour, seed) not in (("slow", 1), ("drift", 2)):
+    if not full and (colour, seed) != ("slow", 1):
         pytest.skip("some seconds each: run with --full")
     matrix = machine(seed)
     runs = []
