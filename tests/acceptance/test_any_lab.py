@@ -11,7 +11,7 @@ from tests.blind.any_trial import rates, trial
 
 @pytest.mark.parametrize("seed", [3, 301])
 def test_a_machine_nobody_described_is_taken_for_what_it_is(seed, full):
-    if not full and seed != 3:
+    if not full:
         pytest.skip("half a minute each: run with --full")
     outcome = trial(seed, hidden=True)
     assert outcome.structure_right, str(outcome)

@@ -20,7 +20,7 @@ from tests.reference import kononykhin_reference as reference
 SEED = 66
 HIDDEN = {"delay": 0.004, "second_lag": 0.005, "stiction": 0.3, "load": 0.005}
 SI = {"delay": 1.0, "second_lag": 1.0, "stiction": 1e6, "load": 1e9}
-SLOW = ("delay", "load")
+SLOW = ("delay", "second_lag", "load")
 CALLED = {"delay": "command_delay", "load": "spring_load"}  # where the reference has another name
 
 

@@ -45,7 +45,9 @@ def axis(seed: int, told: bool = True) -> Matrix:
 
 
 @pytest.mark.parametrize("seed", [2])
-def test_a_measured_load_is_no_error_of_the_model_and_gives_forces_a_scale(seed):
+def test_a_measured_load_is_no_error_of_the_model_and_gives_forces_a_scale(seed, full):
+    if not full:
+        pytest.skip("a third of a minute: run with --full")
     matrix = axis(seed)
     fit = identify(matrix, Settings(model=""))
     assert fit.model == "motor"
