@@ -57,8 +57,10 @@ def deviations(cell: linear.Cell, number: int, hold: str) -> dict[frozenset[str]
 
 
 @pytest.mark.parametrize(("number", "hold"), [(0, "linear"), (2, "zoh")])
-def test_two_effects_at_once_agree_with_the_reference(number, hold):
+def test_two_effects_at_once_agree_with_the_reference(number, hold, full):
     """All 820 pairs; friction that sticks to ten times the tolerance of everything else."""
+    if hold == "zoh" and not full:
+        pytest.skip("820 pairs more: run with --full")
     found = deviations(CELLS[number], number, hold)
     allowed = {pair: FAR.get(pair, 10 * CLOSE if pair & STICKS else CLOSE) for pair in found}
     assert {tuple(sorted(pair)): miss for pair, miss in found.items() if not miss < allowed[pair]} == {}
