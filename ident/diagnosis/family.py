@@ -299,7 +299,6 @@ class ModelFamily:
 
     def trial(self, effects: tuple[str, ...], starts: Sequence[Mapping[str, float]]) -> Refit:
         """A first refit on the beginnings of the records, from the one of the starts where the error is least."""
-
         fitness = self.fitness(effects, _TRIAL)
         errors = fitness.errors(
             np.array([fitness.space.point({**self.off, **s, **fitness.space.fixed}) for s in starts])

@@ -42,7 +42,7 @@ def _render(node: ast.expr) -> str:
         case ast.BinOp(left=left, op=ast.Div(), right=right):
             return f"<mfrac><mrow>{_render(left)}</mrow><mrow>{_render(right)}</mrow></mfrac>"
         case ast.BinOp(left=left, op=ast.Pow(), right=right):
-            return f"<msup>{_inside(left, 5)}<mrow>{_render(right)}</mrow></msup>"
+            return f"<msup>{_base(left)}<mrow>{_render(right)}</mrow></msup>"
         case ast.BinOp(left=left, op=op, right=right):
             rank = _RANK[type(op)]
             tight = rank + 1 if isinstance(op, ast.Sub) else rank
@@ -72,7 +72,7 @@ def _call(name: str, arguments: Sequence[ast.expr]) -> str:
             )
             return _filtered(x, f"<mn>1</mn><mo>+</mo>{first}<mo>+</mo>{second}")
         case "delay", [x, T]:
-            return f"{_inside(x, 9)}<mo>⁡</mo><mrow><mo>(</mo><mi>t</mi><mo>−</mo>{_inside(T, 2)}<mo>)</mo></mrow>"
+            return f"{_base(x)}<mo>⁡</mo><mrow><mo>(</mo><mi>t</mi><mo>−</mo>{_inside(T, 2)}<mo>)</mo></mrow>"
         case "lines" | "monotone", [x, *table]:
             pairs = zip(table[::2], table[1::2], strict=True)
             rows = "".join(f"<mtr><mtd>{_render(a)}</mtd><mtd>{_render(b)}</mtd></mtr>" for a, b in pairs)
@@ -89,10 +89,20 @@ def _filtered(x: ast.expr, denominator: str) -> str:
     return f"<mfrac><mn>1</mn><mrow>{denominator}</mrow></mfrac><mo>·</mo>{_inside(x, 2)}"
 
 
+def _base(node: ast.expr) -> str:
+    """What a power or a time belongs to as a whole: in parentheses where it is a sum, a product or a fraction."""
+    fraction = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div)
+    return _bracketed(_render(node)) if fraction else _inside(node, 5)
+
+
 def _inside(node: ast.expr, rank: int) -> str:
     """The operand, in parentheses where it binds weaker than `rank`."""
     own = _RANK[type(node.op)] if isinstance(node, ast.BinOp | ast.UnaryOp) else 9
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div):
         own = 9  # a fraction needs no parentheses
     text = _render(node)
-    return f"<mrow><mo>(</mo>{text}<mo>)</mo></mrow>" if own < rank else f"<mrow>{text}</mrow>"
+    return _bracketed(text) if own < rank else f"<mrow>{text}</mrow>"
+
+
+def _bracketed(text: str) -> str:
+    return f"<mrow><mo>(</mo>{text}<mo>)</mo></mrow>"

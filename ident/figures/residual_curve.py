@@ -59,7 +59,7 @@ def residual_curve(
     for place, (curve, hint) in enumerate(zip(shown, hints, strict=True)):
         along, across = _axes(curve)
         written = {
-            "name": f"{curve.name[:1].upper()}{curve.name[1:]}: {_share(curve)}",
+            "name": f"{_heading(curve.name)}: {_share(curve)}",
             "hint": hint,
             "along": along,
             "across": across,
@@ -166,6 +166,11 @@ def _panel(place: int, compared: bool, look: Look, *, wide: bool) -> Panel:
     )  # fmt: skip
     panel: Panel = alt.layer(*layers, width=look.across(width), height=height, title=title)
     return panel
+
+
+def _heading(name: str) -> str:
+    """A name in words begins with a capital; one of symbols, as ``w(x)/w``, stays as it is."""
+    return name if "(" in name else f"{name[:1].upper()}{name[1:]}"
 
 
 def _share(curve: Curve) -> str:

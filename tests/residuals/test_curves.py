@@ -137,6 +137,14 @@ def test_an_unknown_curve_is_refused_with_those_there_are():
     assert all(view.name in refused.value.remedy for view in VIEWS[:3])
 
 
+@pytest.mark.parametrize(("view", "heading"), [("w(x)/w", "w(x)/w: explains"), ("spool", "Spool: explains")])
+def test_symbols_keep_their_case_in_a_heading(view, heading):
+    """A drive signal w is not its upper case."""
+    base = compared("dead_zone")
+    drawn = figure("residual-curve", base.matrix, base.fit, view=view)
+    assert f'"{heading}' in drawn.to_json()
+
+
 def test_of_a_machine_that_integrates_no_curve_over_whole_runs_is_drawn():
     """It is said so, not that the fit of this very matrix were unstable."""
     matrix = cylinder(2, wander=1e-3)

@@ -27,6 +27,7 @@ from ident.diagnosis.proposals.shown import shown_in
 from ident.diagnosis.proposals.sight import Sight, sight
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.standing import Contradiction, contradiction
+from ident.diagnosis.ties import first_least
 from ident.equations.mathml import mathml
 from ident.errors import TimeIsUp, Unusable
 from ident.matrix import Run, over_runs
@@ -120,8 +121,10 @@ class Search:
             return [one for one in each(lambda c: self._tried(searching, base, name, c, seen), candidates) if one]
 
         tried = refits(seen.candidates)
-        best = min(tried, key=lambda one: one[1].error, default=None)
-        if best is None or searching.at_floor(best[1]):
+        if not tried:
+            return tried
+        best = first_least(tried, lambda one: one[1].error)
+        if searching.at_floor(best[1]):
             return tried
         again = sight(self.models, best[1], best[2].effects[name])
         self.looked_at += again.looked_at

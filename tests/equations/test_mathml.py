@@ -1,0 +1,24 @@
+"""Equations as they are read: what belongs together is seen to."""
+
+from __future__ import annotations
+
+import pytest
+
+from ident.equations.mathml import mathml
+
+OPEN, CLOSE = "<mrow><mo>(</mo>", "<mo>)</mo></mrow>"
+X_OVER_D = "<mfrac><mrow><mi>x</mi></mrow><mrow><mi>d</mi></mrow></mfrac>"
+
+
+@pytest.mark.parametrize(
+    ("text", "drawn"),
+    [
+        ("F = (x/d)**2", f"<msup>{OPEN}{X_OVER_D}{CLOSE}<mrow><mn>2</mn></mrow></msup>"),
+        ("F = delay(x/d, 0.1)", f"{OPEN}{X_OVER_D}{CLOSE}<mo>⁡</mo>"),
+        ("F = (x + d)**2", f"<msup>{OPEN}<mrow><mi>x</mi></mrow><mo>+</mo><mrow><mi>d</mi></mrow>{CLOSE}"),
+        ("F = x**2", "<msup><mrow><mi>x</mi></mrow><mrow><mn>2</mn></mrow></msup>"),
+        ("F = 3*(x/d)", f"<mrow><mn>3</mn></mrow><mo>·</mo><mrow>{X_OVER_D}</mrow>"),
+    ],
+)
+def test_brackets_stand_where_a_reader_needs_them_and_only_there(text, drawn):
+    assert drawn in mathml(text)
