@@ -116,7 +116,7 @@ def gauss_newton() -> tuple[float, int]:
     matrix = Matrix(Actuator("", piston_area=PLANT.A), runs)
     model = preset("qian2014", ("dead_zone", "quadratic_damping"))
     space = search_space(model, matrix, Settings(effects=("dead_zone", "quadratic_damping")), 500.0)
-    fitness = SimulatedFitness(model, matrix, runs, space, 500.0)
+    fitness = SimulatedFitness(model, matrix, runs, 500.0, space)
     truth = PLANT._asdict() | {"dead_zone__half_width": 2e-4, "quadratic_damping__coefficient": 2e3}
     start = space.point({name: value * 1.03 for name, value in truth.items()} | dict(space.fixed))
     fitness.exact(start)  # compiles

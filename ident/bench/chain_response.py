@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from ident.chain.chain import Chain
 from ident.chain.conditions import conditions
 from ident.matrix import Actuator, Run
-from ident.simulation.simulate import rates, responses, steps_needed
+from ident.simulation.simulate import responses
+from ident.simulation.steps import rates, steps_needed
 
 Array = NDArray[np.float64]
 SHOWN = {"position": "y", "pressure": "P", "after_play": "wb"}

@@ -14,6 +14,7 @@ from ident.chain.chain import linear_model
 from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.fit.normal_matrices import output
+from ident.fit.reduction import excited_band
 from ident.fit.result import FitResult
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.linear import LinearModel
@@ -114,7 +115,9 @@ class Comparison:
 
 def modelled(preset: Preset, values: Mapping[str, float], matrix: Matrix) -> dict[str, Array]:
     """The output of a model with effects for every run of a matrix, by the run's id."""
-    return SimulatedRuns(preset, matrix, matrix.runs).outputs_at(values)
+    return SimulatedRuns(preset, matrix, matrix.runs, excited_band(matrix.of_use("fit") or matrix.runs)).outputs_at(
+        values
+    )
 
 
 def compare(matrix: Matrix, fit: FitResult, simulator: Simulator = modelled) -> Comparison:

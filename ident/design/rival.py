@@ -54,7 +54,7 @@ class Rival:
         }  # fmt: skip
         space = search_space(self.preset, self.matrix, Settings(self.preset.name, fixed=shapes), self.band)
         runs = shortened(self.matrix.of_use("fit"), _SAMPLES)
-        return SimulatedFitness(self.preset, self.matrix, runs, space, self.band)
+        return SimulatedFitness(self.preset, self.matrix, runs, self.band, space)
 
     @cached_property
     def point(self) -> Array:

@@ -32,10 +32,11 @@ from ident.words.titles import title
 
 Array = NDArray[np.float64]
 _TRIAL = 131_072  # samples of a first refit; the finalists take every sample
-_FITTING, _TRYING = Way(1e-7, 20), Way(1e-5, 10)  # of a refit, a first one
+_FITTING, TRYING = Way(1e-7, 20), Way(1e-5, 10)  # of a refit, a first one
 _SETTING_OUT, _SEARCHING = Way(1e-5, 10), Way(1e-5, 20)  # of one far off, and where it is ahead of others
 _SCATTERED, _LEADING = 128, 4  # points of a whole search space, and those of them from which a refit begins
 _SIGHT = 32_768  # samples that they are judged by
+_SIDE_BY_SIDE = 8  # effects of a chain of which each lane carries one
 _OFF = 0.01  # of the largest strength
 _BETTER = 0.99  # times the error: a new optimum, not the same one
 _AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be noise, beside
@@ -132,7 +133,7 @@ class ModelFamily:
     effects: Mapping[str, Effect]
     left_out: frozenset[str] = frozenset()
     horizon: float | None = None
-    _known: dict[tuple[tuple[str, ...], int, bool], SimulatedFitness] = field(default_factory=dict)
+    _known: dict[tuple[tuple[str, ...], int], SimulatedFitness] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -169,21 +170,28 @@ class ModelFamily:
         on = set(effects)
         return self.preset.with_effects(tuple(effect for name, effect in self.effects.items() if name in on))
 
-    def _whole(self, on: Iterable[str] = ()) -> Preset:
-        """The preset with every effect, of those that are looked at for themselves only the ones that are on."""
-        apart = {name for name, effect in self.effects.items() if effect.has_searched_shapes} - set(on)
-        return self.preset.with_effects(tuple(e for name, e in self.effects.items() if name not in apart))
-
     @cached_property
     def off(self) -> dict[str, float]:
         """The values of all effects' parameters where they are off, by the equations' names."""
         return off_values(self.effects.values())
 
-    @cached_property
-    def fit_together(self) -> bool:
-        """Whether one chain can hold every effect: in a drive without a valve some close a circle of signals."""
+    def groups(self, base: tuple[str, ...], names: Sequence[str]) -> list[list[str]]:
+        """Effects that one chain beside those of `base` can hold side by side, few enough that none waits for many.
+
+        Apart stand those that are looked at for themselves, and in a drive without a valve those that together close
+        a circle of signals.
+        """
+        apart = [name for name in names if self.effects[name].has_searched_shapes]
+        rest = [name for name in names if name not in apart]
+        found = [[name] for name in apart]
+        for first in range(0, len(rest), _SIDE_BY_SIDE):
+            group = rest[first : first + _SIDE_BY_SIDE]
+            found += [group] if self._fit_together((*base, *group)) else [[name] for name in group]
+        return found
+
+    def _fit_together(self, effects: Iterable[str]) -> bool:
         try:
-            _ = self._whole().chain.signals
+            _ = self.model(effects).chain.signals
         except Unusable:
             return False
         return True
@@ -208,22 +216,17 @@ class ModelFamily:
         lower, upper = refit.space.bounds(refit.values)[strength]
         return abs(refit.values[strength]) < _OFF * max(-lower, upper)
 
-    def fitness(self, effects: tuple[str, ...], samples: int = 0, whole: bool = False) -> SimulatedFitness:
-        """The objective of the model with these effects, on records of at most `samples` in all where that is given.
-
-        `whole`: simulated by the kernel of the whole catalogue, the other effects off, instead of one of its own.
-        """
-        key = (effects, samples, whole)
+    def fitness(self, effects: tuple[str, ...], samples: int = 0) -> SimulatedFitness:
+        """The objective of the model with these effects, on records of at most `samples` in all where that is given."""
+        key = (effects, samples)
         if key not in self._known:
-            on = set(effects)
-            model = self._whole(on) if whole else self.model(on)
-            off = off_values(e for e in model.effects if e.name not in on)
-            out = self.effects.keys() - {e.name for e in model.effects}
+            model = self.model(effects)
+            out = self.effects.keys() - set(effects)
             bounds = {name: of for name, of in self.given.bounds.items() if name.partition(".")[0] not in out}
-            given = replace(self.given, fixed={**self.given.fixed, **off}, bounds=bounds)
+            given = replace(self.given, bounds=bounds)
             space = search_space(model, self.matrix, given, self.band)
             runs = shortened(self.runs, samples) if samples else self.runs
-            self._known[key] = SimulatedFitness(model, self.matrix, runs, space, self.band, horizon=self.horizon)
+            self._known[key] = SimulatedFitness(model, self.matrix, runs, self.band, space, horizon=self.horizon)
         known = self._known[key]
         return known.fresh(known.runs)  # no search goes on from the first states in which another one ended
 
@@ -287,7 +290,7 @@ class ModelFamily:
         fitness = self.fitness(effects, samples)
         known = {p.in_equations: p.value for p in fitness.preset.parameters} | dict(start)
         point = fitness.space.point({**known, **fitness.space.fixed})
-        way = way or (_TRYING if samples else _FITTING)
+        way = way or (TRYING if samples else _FITTING)
         point, here = levenberg_marquardt(fitness.exact, point, way, accept=fitness.accept)
         off = {p.in_equations for name, e in self.effects.items() if name not in effects for p in e.added}
         values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}

@@ -83,26 +83,20 @@ class Prediction:
 
 def predict(models: ModelFamily, base: Refit, names: Sequence[str]) -> list[Prediction]:
     """What adding each effect to the refitted model promises, in the order of the names."""
-    together = [name for name in names if models.fit_together and not models.effects[name].has_searched_shapes]
-    fitness = models.fitness((*base.effects, *together), SAMPLES, whole=True) if together else None
-
-    def of_one(name: str) -> list[Prediction]:
-        return _predicted(models, models.fitness((*base.effects, name), SAMPLES), base, [name])
-
-    found = _predicted(models, fitness, base, together) if fitness else []
-    found += chain.from_iterable(each(of_one, [name for name in names if name not in together]))
-    return sorted(found, key=lambda prediction: names.index(prediction.effect))
+    sight = _Sensitivities.of(models, base)
+    found = each(lambda group: _predicted(sight, base, group), models.groups(base.effects, names))
+    return sorted(chain.from_iterable(found), key=lambda prediction: names.index(prediction.effect))
 
 
-def _predicted(models: ModelFamily, fitness: SimulatedFitness, base: Refit, names: Sequence[str]) -> list[Prediction]:
+def _predicted(sight: _Sensitivities, base: Refit, names: Sequence[str]) -> list[Prediction]:
     """The predictions of effects that one chain holds; strengths are added where a threshold was jumped over."""
+    models, fitness = sight.models, sight.models.fitness((*base.effects, *names), SAMPLES)
     off = {symbol: value for symbol, value in models.off.items() if symbol not in base.values}
     known = {name: value for name, value in {**off, **base.values}.items() if name in fitness.space.order}
-    sight = _Sensitivities.of(models, fitness, base, known)
     trials = [trial for name in names for trial in _trials(models, base, fitness.space, name, known)]
-    found = sight.at(trials)
+    found = sight.at(fitness, known, trials)
     between = found.thresholds()
-    every = [found, sight.at(between)] if between else [found]
+    every = [found, sight.at(fitness, known, between)] if between else [found]
     before = sight.before
     best = {trial.effect: (before, np.zeros(len(base.point) + 1), trial) for trial in reversed(trials)}
     for trial, after, step in chain.from_iterable(seen.outlooks() for seen in every):
@@ -127,40 +121,35 @@ class _Trial:
 class _Sensitivities:
     """A fitted model's sensitivities and residual at each run, beside which effects are set.
 
-    `known` are its values with every effect off by the equations' names; `gram` (runs, p+1, p+1) and `means` (runs,
-    p+1) of the p parameters and the residual.
+    `gram` (runs, p+1, p+1) and `means` (runs, p+1) are of the p parameters and the residual.
     """
 
     models: ModelFamily
     point: Array
-    known: Mapping[str, float]
     sensitivities: Sensitivities
     gram: Array
     means: Array
     records: _Records
 
     @classmethod
-    def of(
-        cls, models: ModelFamily, fitness: SimulatedFitness, base: Refit, known: Mapping[str, float]
-    ) -> _Sensitivities:
+    def of(cls, models: ModelFamily, base: Refit) -> _Sensitivities:
         """Simulate the model with each parameter moved."""
+        fitness = models.fitness(base.effects, SAMPLES)
         signs = np.where(base.point + STEP > 1.0, -1.0, 1.0)
         moved = base.space.values(np.concatenate([base.point[None], base.point + np.diag(STEP * signs)]))
-        values = {name: np.full(len(base.point) + 1, value) for name, value in known.items()}
-        values |= {name: value for name, value in moved.items() if name in known}
-        found = Sensitivities.of(fitness, values, STEP * signs)
+        found = Sensitivities.of(fitness, moved, STEP * signs)
         totals = np.array([np.sum((r.measured - r.measured.mean()) ** 2) for r in fitness.runs])
         records = _Records(totals, np.array([r.length for r in fitness.runs]))
-        return cls(models, base.point, known, found, *found.products(), records)
+        return cls(models, base.point, found, *found.products(), records)
 
-    def at(self, trials: list[_Trial]) -> _Seen:
-        """The model with each effect at its strength alone."""
-        values = {name: np.full(len(trials), value) for name, value in self.known.items()}
+    def at(self, fitness: SimulatedFitness, known: Mapping[str, float], trials: list[_Trial]) -> _Seen:
+        """The model with each effect at its strength alone; `known` are its values without, by the equations' names."""
+        values = {name: np.full(len(trials), value) for name, value in known.items()}
         for i, trial in enumerate(trials):
             values[self.models.strength(trial.effect)][i] = trial.strength
             for name, value in trial.shape.items():
                 values[name][i] = value
-        return _Seen(self, trials, self.sensitivities.beside(values))
+        return _Seen(self, trials, self.sensitivities.beside(fitness, known, values))
 
     @cached_property
     def before(self) -> Outlook:

@@ -16,7 +16,8 @@ from __future__ import annotations
 import ast
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
+from types import CodeType
 from typing import Any
 
 from ident.equations.grammar import FUNCTIONS, parsed, refused, tree_of
@@ -36,7 +37,7 @@ class Equation:
     def __post_init__(self) -> None:
         _ = self.tree
 
-    @property
+    @cached_property
     def target(self) -> str:
         """The quantity on the left, without the prime of a rate or the colon of a memory."""
         return self._left.removesuffix("'").removesuffix(":").rstrip()
@@ -51,7 +52,7 @@ class Equation:
         """True for ``x' = ...``."""
         return self._left.endswith("'")
 
-    @property
+    @cached_property
     def _left(self) -> str:
         return self.text.partition("=")[0].strip()
 
@@ -61,7 +62,7 @@ class Equation:
         left, equals, _ = self.text.partition("=")
         if not equals or not self.target.isidentifier():
             raise refused(0, "an equation reads NAME = , NAME' = or NAME := EXPRESSION", "begin it so")
-        return parsed(self.text, len(left) + 1)
+        return _tree(self.text, len(left) + 1)
 
     @cached_property
     def names(self) -> frozenset[str]:
@@ -88,12 +89,24 @@ class Equation:
         """The right-hand side where every quantity it reads has a value: numbers or arrays that broadcast."""
         namespace = {"__builtins__": {}, **FUNCTIONS}
         # The tree passed the grammar, so nothing but arithmetic on `known` can happen here.
-        return eval(compile(ast.Expression(self.tree), "<equation>", "eval"), namespace, dict(known))
+        return eval(_code(self.text), namespace, dict(known))
 
     @property
     def python(self) -> str:
         """The right-hand side as Python source, to be put into a generated function."""
         return ast.unparse(self.tree)
+
+
+@lru_cache(maxsize=8192)
+def _tree(text: str, first: int) -> ast.expr:
+    """The right-hand side from its first character on; the same few thousand lines are read again and again."""
+    return parsed(text, first)
+
+
+@lru_cache(maxsize=8192)
+def _code(text: str) -> CodeType:
+    """The right-hand side compiled for Python."""
+    return compile(ast.Expression(Equation(text).tree), "<equation>", "eval")
 
 
 def _replaced(text: str, values: Mapping[str, ast.expr]) -> str:

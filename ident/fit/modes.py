@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ident.chain.chain import Chain
 from ident.chain.conditions import conditions
 from ident.matrix import Actuator, Run
-from ident.simulation.simulate import MOST, rates
+from ident.simulation.steps import MOST, rates
 
 Array = NDArray[np.float64]
 FOLLOWED = 2.5 * MOST

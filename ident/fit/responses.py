@@ -6,7 +6,7 @@ products with the sensitivities and the residual are wanted, and its own power: 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,18 +48,16 @@ class _Columns:
 class Sensitivities:
     """J, the sensitivities of a fitted model to its p parameters, and its residual r, at every run of a fitness.
 
-    `values` (p+1,) are the model and its neighbours, each with one parameter moved by a stride (p,). Kinks of effects
-    are met at whole samples: for a first sight only.
+    Kinks of effects are met at whole samples: for a first sight only.
     """
 
     fitness: SimulatedFitness
-    values: Mapping[str, Array]
     strides: Array
     columns: Mapping[str, _Columns]
 
     @classmethod
     def of(cls, fitness: SimulatedFitness, values: Mapping[str, Array], strides: Array) -> Sensitivities:
-        """Simulate the model and its neighbours; begins the fitness's first states."""
+        """Simulate the model and its neighbours, `values` (p+1,), each with one parameter moved by a stride (p,)."""
         steps = int(fitness.steps(values, kinks=False).max())
         fitness.begin({name: float(value[0]) for name, value in values.items()})
 
@@ -85,7 +83,7 @@ class Sensitivities:
         todo = list(fitness.together(len(strides) + 1 + len(fitness.chain.states)))
         parts = zip(todo, each(of_share, todo), strict=True)
         columns = {run.id: found for runs, part in parts for run, found in zip(runs, part, strict=True)}
-        return cls(fitness, values, strides, columns)
+        return cls(fitness, strides, columns)
 
     def products(self) -> tuple[Array, Array]:
         """Σ of products of [J, r] of each run, (runs, p+1, p+1), and their means, (runs, p+1)."""
@@ -95,36 +93,45 @@ class Sensitivities:
             means[:, -1] += [run.measured.mean() for run in self.fitness.runs]
         return np.array([without(known.remove, known.gram) for known in found]), means
 
-    def beside(self, values: Mapping[str, Array]) -> Responses:
-        """The responses to n changes, each an entry (n,) of `values`."""
+    def beside(self, fitness: SimulatedFitness, known: Mapping[str, float], values: Mapping[str, Array]) -> Responses:
+        """The responses to n changes, each an entry (n,) of `values`; `known` are the model's own.
+
+        The model is that of `fitness` there, on the same runs: it may hold more that is off at the known values.
+        """
+        fitness.begin(known)
         count, runs = len(next(iter(values.values()))), self.fitness.runs
         found = Responses(np.zeros((len(runs), len(self.strides) + 1, count)), *np.zeros((2, len(runs), count)))
         where = {run.id: i for i, run in enumerate(runs)}
-        steps = self.fitness.steps(values, kinks=False)
+        steps = fitness.steps(values, kinks=False)
         todo = [
             (share, np.flatnonzero(steps == level), int(level))
             for level in np.unique(steps)
-            for share in self.fitness.together(1 + int(np.sum(steps == level)), _LANES)
+            for share in fitness.together(1 + int(np.sum(steps == level)), _LANES)
         ]
 
         def of_share(share: tuple[tuple[Run, ...], NDArray[np.intp], int]) -> None:
             rows, columns = np.ix_(np.array([where[run.id] for run in share[0]]), share[1])
-            products, found.power[rows, columns], found.means[rows, columns] = self._responses(*share, values)
+            lanes = {name: np.append(known[name], value[share[1]]) for name, value in values.items()}
+            shown = fitness.outputs_of(fitness.simulation(share[0], lanes, share[2]))
+            products, power, means = self._responses(share[0], len(share[1]), shown)
             found.products[rows, :, columns] = products.transpose(0, 2, 1)
+            found.power[rows, columns], found.means[rows, columns] = power, means
 
         each(of_share, todo)
         return found
 
     def _responses(
-        self, runs: tuple[Run, ...], changes: NDArray[np.intp], steps: int, values: Mapping[str, Array]
-    ) -> tuple[Array, Array, Array]:  # fmt: skip
-        """Products, power and means of some changes at runs of a kind; the model itself is the first of the lanes."""
+        self, runs: tuple[Run, ...], changes: int, shown: Iterable[tuple[Array, int, int]]
+    ) -> tuple[Array, Array, Array]:
+        """Products, power and means of so many changes at runs of a kind, from the blocks that are `shown` of them.
+
+        The model itself is the first of the lanes.
+        """
         known = [self.columns[run.id] for run in runs]
         Z = np.array([columns.Z for columns in known])
-        lanes = {name: np.append(self.values[name][:1], value[changes]) for name, value in values.items()}
-        cross = np.zeros((len(runs), Z.shape[1], len(changes)))
-        power = np.zeros((len(runs), len(changes)))
-        for rows, first, last in self.fitness.outputs_of(self.fitness.simulation(runs, lanes, steps)):
+        cross = np.zeros((len(runs), Z.shape[1], changes))
+        power = np.zeros((len(runs), changes))
+        for rows, first, last in shown:
             _add(rows, Z[:, :, first:last], cross, power)
         sound = power < _LARGEST  # false where it is not a number
         cross, power = np.where(sound[:, None], cross, 0.0), np.where(sound, power, 0.0)

@@ -27,7 +27,6 @@ class SimulatedFitness(SimulatedRuns):
     """
 
     space: Space
-    band: float
     evaluations: int = 0
     unstable: int = 0
 

@@ -24,7 +24,8 @@ from ident.matrix import Matrix, Run
 from ident.parallel import cores, each
 from ident.presets import Preset
 from ident.simulation.equilibrium import equilibrium
-from ident.simulation.simulate import Simulation, steps_needed
+from ident.simulation.simulate import Simulation
+from ident.simulation.steps import steps_needed
 
 Array = NDArray[np.float64]
 _TOGETHER = 256  # lanes simulated in one go: memory stays small, the cores stay busy
@@ -38,13 +39,15 @@ _SETTLING = 3  # rounds in which the first states of a model are found
 class SimulatedRuns:
     """Runs of a matrix as a preset simulates them; `starts` are the first states that are known, by the run's id.
 
-    Values are by the equations' names, SI: numbers, or arrays of v parameter vectors side by side. With a `horizon` (s)
+    `band` (rad/s) is what the commands excite: see :func:`ident.fit.reduction.excited_band`. Values are by the
+    equations' names, SI: numbers, or arrays of v parameter vectors side by side. With a `horizon` (s)
     the moments are those of windows of that length, each begun where it was measured: see :mod:`ident.fit.windows`.
     """
 
     preset: Preset
     matrix: Matrix
     runs: tuple[Run, ...]
+    band: float
     starts: dict[str, Array] = field(default_factory=dict, kw_only=True)
     horizon: float | None = field(default=None, kw_only=True)
 
@@ -230,14 +233,14 @@ class SimulatedRuns:
 
     def steps(self, values: Mapping[str, Array], kinks: bool = True) -> NDArray[np.int64]:
         """Steps a sample for each vector."""
-        found, holds = self.fastest(values), {run.hold for run in self.runs}
+        found, kinds = self.fastest(values), {(run.hold, self.band / run.sample_rate) for run in self.runs}
         on = [effect for effect in self.preset.effects if kinks and self._is_on(effect, values)]
-        return np.asarray(np.max([steps_needed(self.chain, found, hold, on) for hold in holds], axis=0))
+        return np.asarray(np.max([steps_needed(self.chain, found, hold, on, band) for hold, band in kinds], axis=0))
 
     def fastest(self, values: Mapping[str, Array]) -> Array:
         """Radians a sample of each vector's fastest mode, of the linear core and the effects at small signals.
 
-        Beyond :data:`ident.simulation.simulate.FASTEST` it is followed only roughly.
+        Beyond :data:`ident.simulation.steps.FASTEST` it is followed only roughly.
         """
         return fastest(self.chain, self._extreme, self.matrix.actuator, values)
 

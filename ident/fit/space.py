@@ -15,7 +15,7 @@ from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Matrix, Run
 from ident.presets import Preset
-from ident.simulation.simulate import FASTEST
+from ident.simulation.steps import FASTEST
 
 Array = NDArray[np.float64]
 _OF_STEPS = 10.0  # times as far as where it says much reaches the power of a single step, which falls by 1/f² alone

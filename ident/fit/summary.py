@@ -24,7 +24,7 @@ from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
 from ident.matrix import Run, over_runs
 from ident.noise.floor import Floors
 from ident.presets.preset import Combined
-from ident.simulation.simulate import FASTEST, MOST
+from ident.simulation.steps import FASTEST, MOST
 from ident.words.percent import percent
 
 _DRAWN = 100  # parameter vectors within their standard errors

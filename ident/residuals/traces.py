@@ -14,6 +14,7 @@ from ident.chain.conditions import conditions
 from ident.comparison.compare import Comparison, fitted
 from ident.errors import Unusable
 from ident.fit.normal_matrices import first_state
+from ident.fit.reduction import excited_band
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Run
@@ -185,7 +186,8 @@ def _simulated(
 ) -> dict[str, dict[str, Array]]:
     """The internal signals of a model with effects, from its compiled kernel: name, then run."""
     _, matrix, values = fitted(comparison.fit, replace(comparison.matrix, runs=tuple(runs)))
-    return inside(SimulatedRuns(preset, matrix, matrix.runs), values, signals)
+    band = excited_band(comparison.matrix.of_use("fit") or matrix.runs)
+    return inside(SimulatedRuns(preset, matrix, matrix.runs, band), values, signals)
 
 
 def inside(

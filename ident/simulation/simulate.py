@@ -11,17 +11,13 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from ident.chain.chain import DISTURBANCE, FORCE, INPUT, INPUT_RATE, MEASURED, STEP, Chain
-from ident.effects.effect import Effect
+from ident.chain.chain import DISTURBANCE, FORCE, INPUT, MEASURED, STEP, Chain
 from ident.equations.grammar import TIME
 from ident.matrix import DISTURBANCES, Run
 from ident.simulation.kernel import HELD, LANES, SHARE, Filter, Kernel, constant, kernel
 
 Array = NDArray[np.float64]
-FINE = 0.4  # radians or time constants a step: the largest eigenvalue times the step, above which steps are divided
-MOST = 32  # steps a sample
 _CHUNK = 1 << 20  # outputs that are simulated in one go
-FASTEST = FINE * MOST  # radians a sample of the fastest mode that is followed closely; one beyond is said
 
 
 @dataclass(frozen=True)
@@ -216,7 +212,8 @@ def _fine(run: Run, channel: str, steps: int, before: int) -> Array:
     if steps > 1 and run.hold == "zoh" and channel == INPUT:
         fine = np.repeat(samples, steps)
     elif steps > 1:
-        fine = np.interp(np.arange((len(samples) - 1) * steps + 1) / steps, np.arange(len(samples)), samples)
+        between = samples[:-1, None] + np.arange(steps) / steps * np.diff(samples)[:, None]
+        fine = np.append(between.ravel(), samples[-1])
     else:
         fine = samples
     first = len(past) * steps
@@ -318,29 +315,6 @@ def _responses(coefficients: Array, duration: float) -> tuple[Array, Array, Arra
     if order == 2:
         phi = phi / scale[:, None] * scale
     return phi[:order, :order], phi[:order, order], phi[:order, order + 1], 2.0 * phi[:order, order + 2]
-
-
-# Steps ------------------------------------------------------------------------------------------------------------
-
-
-def rates(chain: Chain, values: Mapping[str, Any], output: str) -> Array:
-    """The largest eigenvalue of the chain's small-signal behaviour in magnitude, 1/s, for a batch of values."""
-    jacobian = chain.linearise({name: values[name] for name in chain.symbols}, output).A
-    jacobian = np.where(np.isfinite(jacobian), jacobian, 0.0)
-    return np.asarray(np.abs(np.linalg.eigvals(jacobian)).max(axis=-1))
-
-
-def steps_needed(chain: Chain, fastest: Array, hold: str, on: Sequence[Effect]) -> NDArray[np.int64]:
-    """Steps a sample, a power of two up to :data:`MOST`, for eigenvalues `fastest` (radians a sample).
-
-    Kinks of effects that are on ask for more, and so does a held command whose jumps act at once or between the
-    samples.
-    """
-    least = max((effect.steps for effect in on), default=1)
-    if hold == "zoh" and any(chain.reads(name) for name in (INPUT_RATE, "delay")):
-        least = max(least, 2)
-    ratio = np.maximum(fastest / FINE, least)
-    return np.asarray(np.minimum(2 ** np.ceil(np.log2(ratio)), MOST).astype(np.int64))
 
 
 def responses(

@@ -69,7 +69,7 @@ def apart(*added: Run) -> float:
     left = []
     for model, values in models:
         space = search_space(model, more, Settings(), excited_band(more.runs))
-        fitness = SimulatedFitness(model, more, more.runs, space, 500.0)
+        fitness = SimulatedFitness(model, more, more.runs, 500.0, space)
         start = space.point(values)
         _, here = levenberg_marquardt(fitness.exact, start, Way(converged=1e-6), accept=fitness.accept)
         left.append(

@@ -15,7 +15,8 @@ from ident.matrix import Actuator, Run, Specimen
 from ident.parameter import Parameter
 from ident.presets import PRESETS, Preset, preset
 from ident.simulation.recursion import discretise, respond
-from ident.simulation.simulate import responses, steps_needed
+from ident.simulation.simulate import responses
+from ident.simulation.steps import steps_needed
 from tests.reference import nonlinear_reference as reference
 from tests.reference import qian_reference as linear
 

@@ -70,7 +70,7 @@ def test_an_effect_defined_here_is_fitted(data):
     )  # fmt: skip
     model = PRESETS["qian2014"].with_effects((own,))
     space = search_space(model, data, Settings(), 500.0)
-    fitness = SimulatedFitness(model, data, data.of_use("fit"), space, 500.0)
+    fitness = SimulatedFitness(model, data, data.of_use("fit"), 500.0, space)
     start = space.point({p.in_equations: p.value for p in model.parameters} | {"overlap__width": 1e-4})
     point, here = levenberg_marquardt(fitness.exact, start, accept=fitness.accept)
     assert float(space.values(point[None])["overlap__width"][0]) == pytest.approx(2e-4, rel=0.01)

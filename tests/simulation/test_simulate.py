@@ -115,7 +115,7 @@ def test_the_error_of_runs_with_a_measured_force_does_not_hang_on_the_number_of_
     values = {p.in_equations: p.value for p in used.parameters}
 
     def errors(*chosen: Run) -> np.ndarray:
-        fitness = SimulatedFitness(used, Matrix(ACTUATOR, chosen), chosen, Space((), tuple(values), values, {}), 0.0)
+        fitness = SimulatedFitness(used, Matrix(ACTUATOR, chosen), chosen, 500.0, Space((), tuple(values), values, {}))
         batch = {name: np.full(2, value) for name, value in values.items()}
         return fitness._errors(batch | {"command_delay__delay": np.array([1e-3, 3e-3])}, 2, 4)
 

@@ -57,7 +57,7 @@ def records(refit: Refit, names: Sequence[str], instead_of: Sequence[str] = ()) 
     signs = np.where(point + STEP > 1.0, -1.0, 1.0)
     moved = fitness.space.values(np.concatenate([point[None], point + np.diag(STEP * signs)]))
     sensitivities = Sensitivities.of(fitness, moved, STEP * signs)
-    simulated = SimulatedRuns(fitness.preset, fitness.matrix, fitness.runs, starts=dict(fitness.starts))
+    simulated = SimulatedRuns(fitness.preset, fitness.matrix, fitness.runs, fitness.band, starts=dict(fitness.starts))
     inner = inside(simulated, {name: float(value[0]) for name, value in moved.items()}, names)
 
     kept = [i for i, name in enumerate(refit.space.names) if name not in instead_of]

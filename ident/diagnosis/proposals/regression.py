@@ -11,9 +11,9 @@ summed run by run; J is taken off by its Schur complement.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import scipy.linalg
@@ -29,6 +29,8 @@ Array = NDArray[np.float64]
 _ABSORBED = 1e-4  # of a term's power that the parameters leave: less, and they do what it does
 ALIKE = 0.999  # cosine of two terms that the data cannot tell apart
 WIDE = 1.3  # of the command's band is looked at
+_BLOCK = 128  # terms whose responses are worked out together
+_AT_ONCE = 8  # runs
 
 
 @dataclass(frozen=True)
@@ -49,13 +51,15 @@ class Regression:
     def classes(self) -> list[list[int]]:
         """Terms by what they explain, best first; those of one class cannot be told apart."""
         size, gains = np.sqrt(np.maximum(np.diag(self.products), 1e-300)), self.gains
-        rest = [int(i) for i in np.argsort(-gains, kind="stable") if gains[i] > 0]
+        rest = np.argsort(-gains, kind="stable")
+        rest = rest[gains[rest] > 0]
         found = []
-        while rest:
+        while len(rest):
             first = rest[0]
-            cosine = np.abs(self.products[first, rest]) / size[first] / size[rest]
-            found.append([i for i, c in zip(rest, cosine, strict=True) if c > ALIKE])
-            rest = [i for i, c in zip(rest, cosine, strict=True) if c <= ALIKE]
+            alike = np.abs(self.products[first, rest]) > ALIKE * size[first] * size[rest]
+            alike[0] = True
+            found.append([int(i) for i in rest[alike]])
+            rest = rest[~alike]
         return found
 
 
@@ -64,10 +68,11 @@ def regression(
 ) -> Regression:
     """The products of all terms over some runs; `paths` has, for each signal that is added to, each run's response."""
 
-    def of_run(i: int) -> Array:
-        return _products(terms, runs[i], {at: found[i] for at, found in paths.items()}, band)
-
-    total = sum(each(of_run, range(len(runs))), np.zeros(()))
+    total = np.zeros(())
+    for first in range(0, len(runs), _AT_ONCE):
+        some = slice(first, first + _AT_ONCE)
+        rows = _rows(terms, runs[some], {at: of[some] for at, of in paths.items()}, band)
+        total = total + np.hstack(each(partial(np.matmul, rows.T), np.array_split(rows, 2, axis=1)))
     m = len(terms)
     known = total[m:-1, m:-1] if len(total) > m + 1 else np.zeros((0, 0))
     scale = np.sqrt(np.maximum(np.diag(known), 1e-300))
@@ -82,27 +87,41 @@ def regression(
     return Regression(tuple(terms), products, with_residual, float(of[m, m]))
 
 
-def _products(terms: Sequence[Term], record: Record, paths: dict[str, Response], band: float) -> Array:
-    """[T * φ, J, r] of one run within the band, multiplied with itself; J has the run's own free states taken off."""
-    n = len(record.residual)
-    columns = np.empty((n, len(terms)))
-    for at, path in paths.items():
-        here = [i for i, term in enumerate(terms) if term.at == at]
-        samples = np.column_stack([terms[i].samples(record.signals, record.rate) for i in here])
-        columns[:, here] = path.to(samples)[:, :, 0]
-    rows = np.column_stack([columns, record.sensitivities, record.residual])
+def _rows(terms: Sequence[Term], runs: Sequence[Record], paths: Mapping[str, Sequence[Response]], band: float) -> Array:
+    """[T * φ, J, r] of some runs within the band, one below the other, over the size of each run's residual.
+
+    A block of columns after the other: the responses to all at once are large. What is free in a run is taken off.
+    """
+    by_place = [[i for i, term in enumerate(terms) if term.at == at] for at in paths]
+    blocks = [here[k : k + _BLOCK] for here in by_place for k in range(0, len(here), _BLOCK)]
+
+    def of_block(of: tuple[int, list[int]]) -> Array:
+        run, here = of
+        samples = np.column_stack([terms[i].samples(runs[run].signals, runs[run].rate) for i in here])
+        return _within(paths[terms[here[0]].at][run].to(samples)[:, :, 0], runs[run], band)
+
+    answers = iter(each(of_block, [(run, here) for run in range(len(runs)) for here in blocks]))
+    every = []
+    for record in runs:
+        known = _within(np.column_stack([record.sensitivities, record.residual]), record, band)
+        rows = np.empty((len(known), len(terms) + known.shape[1]))
+        rows[:, len(terms) :] = known
+        for here in blocks:
+            rows[:, here] = next(answers)
+        if record.free.shape[1]:
+            free = _within(record.free.copy(), record, band)
+            basis = scipy.linalg.orth(free / np.maximum(np.linalg.norm(free, axis=0), 1e-300), rcond=1e-9)
+            rows -= basis @ (basis.T @ rows)
+        every.append(rows / max(float(np.linalg.norm(rows[:, -1])), 1e-300))
+    return np.concatenate(every)
+
+
+def _within(rows: Array, record: Record, band: float) -> Array:
+    """Columns over time as what of them is seen: the lines of their spectra in the band, or the windows they begin."""
     rows[~np.isfinite(rows)] = 0.0
-    if record.free.shape[1]:
-        rows -= record.free @ np.linalg.lstsq(record.free, rows, rcond=1e-9)[0]
     if record.window:
-        return _multiplied(anchored(rows, record.window))
-    spectrum = np.fft.rfft(rows - rows.mean(axis=0), axis=0)
-    bins = np.fft.rfftfreq(n, 1.0 / record.rate) * 2 * np.pi
-    inside = spectrum[(bins > 0) & (bins <= WIDE * band)]
-    return _multiplied(np.concatenate([inside.real, inside.imag]))
-
-
-def _multiplied(rows: Array) -> Array:
-    """Products of columns, the last of size one."""
-    rows = rows / max(float(np.linalg.norm(rows[:, -1])), 1e-300)
-    return np.asarray(rows.T @ rows)
+        return anchored(rows, record.window)
+    spectrum = np.fft.rfft(rows, axis=0)
+    lines = np.fft.rfftfreq(len(rows), 1.0 / record.rate) * 2 * np.pi
+    inside = spectrum[(lines > 0) & (lines <= WIDE * band)]
+    return np.concatenate([inside.real, inside.imag])

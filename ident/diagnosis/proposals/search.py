@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.custom.definition import read_effect
-from ident.diagnosis.family import ModelFamily, Refit
+from ident.diagnosis.family import TRYING, ModelFamily, Refit
 from ident.diagnosis.proposals.candidate import Candidate
 from ident.diagnosis.proposals.evidence import evidence
 from ident.diagnosis.proposals.meanings import meaning
@@ -27,7 +27,7 @@ from ident.diagnosis.proposals.shown import shown_in
 from ident.diagnosis.proposals.sight import Sight, sight
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.standing import Contradiction, contradiction
-from ident.diagnosis.ties import first_least
+from ident.diagnosis.ties import first_least, in_order
 from ident.equations.mathml import mathml
 from ident.errors import TimeIsUp, Unusable
 from ident.matrix import Run, over_runs
@@ -39,6 +39,7 @@ MOST = 3  # terms
 Tried = tuple[Candidate, Refit, ModelFamily]
 _PREFIX = "proposed_"
 _EVIDENCE = 5.0  # nats beyond the logarithm of how many were looked at
+_CLOSE, _MOST_CLOSE = 1.1, 8  # times the least error of the rough refits, and how many: carried to their end
 _AS_GOOD = 1.02  # times the least error: a simpler one is taken
 _FEWEST = 3  # runs, of which one each searches, chooses and confirms
 
@@ -111,7 +112,7 @@ class Search:
         return True
 
     def _all_tried(self, searching: ModelFamily, base: Refit, name: str, seen: Sight) -> list[Tried]:
-        """The refits with every candidate.
+        """The refits with the candidates that come first after a rough one.
 
         What is strong moves the signals that terms are of: where the best leaves more than noise, what could be in its
         place is sought once more, with the signals of the model that has it.
@@ -124,12 +125,14 @@ class Search:
         if not tried:
             return tried
         best = first_least(tried, lambda one: one[1].error)
-        if searching.at_floor(best[1]):
-            return tried
-        again = sight(self.models, best[1], best[2].effects[name])
-        self.looked_at += again.looked_at
-        known = {(one.equation, *one.starts) for one in seen.candidates}
-        return tried + refits([one for one in again.candidates if (one.equation, *one.starts) not in known])
+        if not searching.at_floor(best[1]):
+            again = sight(self.models, best[1], best[2].effects[name])
+            self.looked_at += again.looked_at
+            known = {(one.equation, *one.starts) for one in seen.candidates}
+            tried += refits([one for one in again.candidates if (one.equation, *one.starts) not in known])
+        ranked = in_order(tried, lambda one: one[1].error)[:_MOST_CLOSE]
+        close = [one for one in ranked if one[1].error <= _CLOSE * ranked[0][1].error]
+        return [one for one in each(lambda one: _settled(*one), close) if one[1].finite]
 
     def _prune(self, latest: str) -> None:
         """Leave out what the model does as well without since the latest term."""
@@ -176,7 +179,7 @@ class Search:
         )
 
     def _tried(self, searching: ModelFamily, base: Refit, name: str, candidate: Candidate, seen: Sight) -> Tried | None:
-        """The refit with a candidate to the runs that search; None where it cannot be added."""
+        """A rough refit with a candidate to the runs that search; None where it cannot be added."""
         own = definition(name, candidate.terms, candidate.signs, candidate.strength, seen.typical, seen.units)
         try:
             effect = read_effect(own, model=self.models.preset.name)
@@ -192,8 +195,13 @@ class Search:
         family = replace(searching, effects={**searching.effects, name: effect}, given=given, _known={})
         start = {**base.values, family.strength(name): candidate.strength}
         start |= {p.in_equations: p.value for p in effect.added[1:]}
-        refit = family.refit((*base.effects, name), start)
+        refit = family.refit((*base.effects, name), start, way=TRYING)
         return (candidate, refit, family) if refit.finite else None
+
+
+def _settled(candidate: Candidate, refit: Refit, family: ModelFamily) -> Tried:
+    """A refit carried to its end."""
+    return candidate, family.refit(refit.effects, refit.values), family
 
 
 def _parts(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[Run, ...], tuple[Run, ...]]:
