@@ -51,6 +51,7 @@ class MatrixRow(Base):
 class JobRow(Base):
     """A job and where it is. `parent` is the fit that it starts from, if any.
 
+    It is to stop where it is told to `cancel`, and keeps what it found where it is told to `conclude`.
     `sequence` counts the changes of its state, for readers of its events.
     """
 
@@ -64,6 +65,7 @@ class JobRow(Base):
     progress: Mapped[dict[str, Any]] = mapped_column(default=dict)
     sequence: Mapped[int] = mapped_column(Integer, default=0)
     cancel: Mapped[bool] = mapped_column(Boolean, default=False)
+    conclude: Mapped[bool] = mapped_column(Boolean, default=False)
     problem: Mapped[dict[str, Any] | None]
     created_at: Mapped[str] = mapped_column(String(40), default=now, index=True)
     ended_at: Mapped[str | None] = mapped_column(String(40))

@@ -19,4 +19,4 @@ class Cancelled(Exception):
 
 
 class TimeIsUp(Exception):
-    """Raised by the course of a diagnosis when its time is over; what was found so far is the result."""
+    """Raised by the course of a diagnosis when its time is over, or by its caller's report; what was found is told."""

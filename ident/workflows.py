@@ -110,15 +110,15 @@ def figure(
 def diagnose(
     matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None, most: int = USUAL,
     custom: Sequence[Effect] = (), report: Report = silent, seconds: float | None = None,
-    found: Callable[[Diagnosis], None] | None = None, propose: bool = False,
+    found: Callable[[Diagnosis], None] | None = None, propose: bool | None = None,
 ) -> Diagnosis:  # fmt: skip
     """Rank what the fitted model lacks, add what helps beyond chance, and say what is left.
 
     Without a `fit` the model of `settings` is fitted first. `most` is the largest number of effects to add, `custom`
     are effects beside the catalogue's. Verify runs only report. After `seconds`, that of a fit included, nothing more
-    is tried; `found` is told of the diagnosis as it stands after each effect. With `propose`, where the catalogue ends
-    above the noise, terms that no list holds are searched for. Raises Unusable where matrix, fit or
-    settings do not go together.
+    is tried; `found` is told of the diagnosis as it stands after each effect. Terms that no list holds are searched for
+    where the catalogue leaves the error unexplained; with `propose` true also where nobody knows the noise, with false
+    never. Raises Unusable where matrix, fit or settings do not go together.
     """
     if not 0 <= most <= MOST:
         raise Unusable("bad-option", f"{most} effects", "max-effects", f"give 0 to {MOST}")

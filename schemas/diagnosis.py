@@ -11,7 +11,8 @@ class DiagnosisRequest(Chosen):
 
     The effects that `custom` defines or names are ranked beside those of the catalogue; with `own` all that the lab
     keeps and the model can take. After `time` seconds nothing more is tried: what was found by then is the diagnosis.
-    With `propose`, where the catalogue ends above the noise, terms that no list holds are searched for.
+    Terms that no list holds are searched for where the catalogue leaves the error unexplained; with `propose` true also
+    where nobody knows the noise, with false never.
     """
 
     fit: str | None = None
@@ -19,7 +20,7 @@ class DiagnosisRequest(Chosen):
     max_effects: int | None = Field(default=None, ge=0)
     time: float | None = Field(default=None, gt=0)
     own: bool = False
-    propose: bool = False
+    propose: bool | None = None
 
 
 class DiagnosisView(DiagnosisResult):

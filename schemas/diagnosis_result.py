@@ -176,6 +176,7 @@ class DiagnosisResult(BaseModel):
     ladder: list[RungView]
     verdict: VerdictView
     proposals: list[TermView] = Field(default_factory=list)
+    looked_at: int | None = None
     complete: bool = True
     next_experiment: ProposalView | Nothing
     settings: SettingsView

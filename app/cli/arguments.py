@@ -89,7 +89,7 @@ def _defined(file: Path) -> list[dict[str, Any]]:
         return [definition_of(file.read_bytes(), file.stem)]
     proposals = read_diagnosis(file).proposals
     if not proposals:
-        raise Unusable("not-an-effect", "the diagnosis proposes no term", str(file), "make it with --propose")
+        raise Unusable("not-an-effect", "the diagnosis proposes no term", str(file), "its notes say why")
     return [definition_of(proposal.effect) for proposal in proposals]
 
 

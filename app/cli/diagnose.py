@@ -44,8 +44,12 @@ Own = Annotated[
     bool, typer.Option("--own", help="Rank your own effects that are kept, too: those that the model can take.")
 ]
 Proposes = Annotated[
-    bool,
-    typer.Option("--propose", help="Where the catalogue ends above the noise, search for terms that no list holds."),
+    bool | None,
+    typer.Option(
+        "--propose/--no-propose",
+        help="Search for terms that no list holds; usual where the catalogue leaves the error unexplained.",
+        show_default=False,
+    ),
 ]
 Target = Annotated[
     Path | None,
@@ -68,7 +72,7 @@ def diagnose(
     load: Load = "none",
     option: Options = None,
     max_effects: Most = None,
-    propose: Proposes = False,
+    propose: Proposes = None,
     seed: Seed = 0,
     time: Limit = None,
     json: Target = None,

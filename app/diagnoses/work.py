@@ -16,7 +16,7 @@ from app.own_effects.kept import Kept, suited
 from app.tables import JobRow
 from ident.custom.definition import read_effect
 from ident.diagnosis.course import left
-from ident.errors import Unusable
+from ident.errors import Cancelled, TimeIsUp, Unusable
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.plain import read
@@ -38,7 +38,10 @@ class DiagnosisWork(Work):
         given = self._given()
         if given is None:
             settings = Settings.from_json({name: value for name, value in chosen.items() if name not in OWN})
-            fit = identify(matrix, settings, report)
+            try:
+                fit = identify(matrix, settings, report)
+            except TimeIsUp:  # nothing is found before there is a fit
+                raise Cancelled from None
         else:
             given = given.with_custom(chosen.get("custom", ()))
             fit = given if chosen["reseed"] is None else _reseeded(given, chosen["reseed"])
@@ -47,7 +50,7 @@ class DiagnosisWork(Work):
         seconds = left(chosen.get("time"), begun)
         found = diagnose(
             matrix, fit, most=chosen["max_effects"], custom=own, report=report, seconds=seconds,
-            propose=bool(chosen.get("propose")),
+            propose=chosen.get("propose", False),
         )  # fmt: skip
         return {"diagnosis": found.to_json(), "fit": None if given else made.to_json()}
 

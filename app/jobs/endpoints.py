@@ -40,6 +40,12 @@ def cancel(here: Here, job: str) -> JobView:
     return service.cancel(here, job)
 
 
+@router.post("/{job}/conclude")
+def conclude(here: Here, job: str) -> JobView:
+    """End a diagnosis with what it has found: at its next step of progress. 409 for a job of another kind."""
+    return service.conclude(here, job)
+
+
 @router.get("/{job}/events", response_class=StreamingResponse,
             responses={200: {"content": {"text/event-stream": {}}}})  # fmt: skip
 async def events(

@@ -8,7 +8,7 @@ from typing import Any
 from sqlalchemy.exc import IntegrityError
 
 from app.context import Context
-from app.errors import missing
+from app.errors import Failure, missing
 from app.jobs import repository
 from app.paging import cursor, keys_of
 from app.tables import JobRow, now
@@ -88,6 +88,17 @@ def cancel(context: Context, job_id: str) -> JobView:
             repository.change(session, job_id, state="cancelled", cancel=True, ended_at=now())
         else:
             repository.change(session, job_id, cancel=True)
+    return get(context, job_id)
+
+
+def conclude(context: Context, job_id: str) -> JobView:
+    """Ask a diagnosis to end with what it has found: at its next report. An ended job stays as it is."""
+    job = get(context, job_id)
+    if job.kind != "diagnosis":
+        raise Failure(409, "not-a-diagnosis", f"a {job.kind} that is stopped has found nothing yet", "job",
+                      "let it end, or cancel it")  # fmt: skip
+    with context.sessions.begin() as session:
+        repository.change(session, job_id, conclude=True)
     return get(context, job_id)
 
 

@@ -15,7 +15,7 @@ from app.jobs.work import Kind, Search, State, Task, Work
 from app.matrices.service import load_row
 from app.storage import Storage
 from app.tables import now
-from ident.errors import Cancelled, Unusable
+from ident.errors import Cancelled, TimeIsUp, Unusable
 from ident.progress import Progress, Report
 
 _EVERY = 0.2  # s between two reports to the database
@@ -110,24 +110,29 @@ class GuardedSteps:
         return Task(row.settings, row.parent, load_row(self.storage, matrix), self._reporter(job), self.sessions)
 
     def _reporter(self, job: str) -> Report:
-        """A report that is recorded for those who watch the job; it raises Cancelled when the job is to stop."""
+        """A report that is recorded for those who watch the job.
+
+        It raises Cancelled when the job is to stop, TimeIsUp when it is to keep what it found.
+        """
         last = 0.0
 
         def report(progress: Progress) -> None:
             nonlocal last
             if time.monotonic() - last >= _EVERY or progress.done == progress.total:
                 last = time.monotonic()
-                self._note(job, {"progress": asdict(progress)})
+                if self._note(job, {"progress": asdict(progress)}):
+                    raise TimeIsUp
 
         return report
 
-    def _note(self, job: str, values: dict[str, Any]) -> None:
-        """Write progress and look whether the job is to be cancelled. Raises Cancelled."""
+    def _note(self, job: str, values: dict[str, Any]) -> bool:
+        """Write progress; whether the job is to keep what it found and end. Raises Cancelled."""
         with self.sessions.begin() as session:
             alive = repository.change(session, job, **values) if values else True
             row = repository.find(session, job)
             if not alive or row is None or row.cancel:
                 raise Cancelled
+            return row.conclude
 
 
 def _failed(code: str, what: str, where: str, remedy: str) -> State:

@@ -24,8 +24,8 @@ class Course:
 
     At most `most` effects are added; nothing is tried any more `seconds` after it began (None: until nothing helps).
     `report` hears of every step of the work, `found` of the diagnosis as it stands after each effect: what was found
-    is not lost with what was still to come. `propose`: where the catalogue ends above the noise, terms that no list
-    holds are searched for.
+    is not lost with what was still to come. Terms that no list holds are searched for where the catalogue leaves the
+    error unexplained; with `propose` true also where nobody knows the noise, with false never.
     """
 
     most: int
@@ -33,11 +33,12 @@ class Course:
     report: Report = silent
     found: Callable[[Diagnosis], None] | None = None
     added: tuple[Expected, ...] = ()
-    propose: bool = False
+    propose: bool | None = None
 
     def __post_init__(self) -> None:
         self.begun = time.monotonic()
         self._sight: tuple[Expected, ...] = ()
+        self._concluded = False
 
     @property
     def taken(self) -> float:
@@ -47,13 +48,16 @@ class Course:
     def tell(self, progress: Progress) -> None:
         """Report; the first sight of the fitted model and what was added so far stay with all that follows.
 
-        Raises TimeIsUp once the time is over.
+        Raises TimeIsUp once the time is over, or the report has said so.
         """
         self._sight = self._sight or progress.expected
-        self.report(replace(progress, expected=self._sight, added=self.added))
+        try:
+            self.report(replace(progress, expected=self._sight, added=self.added))
+        except TimeIsUp:
+            self.seconds = None if self._concluded else 0.0
         if self.seconds is not None and self.taken > self.seconds:
             raise TimeIsUp
 
     def conclude(self) -> None:
         """From here on only what was found is told, which is not cut off."""
-        self.seconds = None
+        self.seconds, self._concluded = None, True

@@ -63,13 +63,19 @@ class Diagnoser:
         if doubted:
             selection = self._added(self.models.without(suspect.run for suspect in doubted))
             doubted = self._doubted(selection)
-        proposed = self._proposed(selection) if self.course.propose else Proposals()
+        proposed = self._proposed(selection) if self._is_proposing(selection) else Proposals()
         self.course.conclude()
         found = self._said(selection, doubted)
         return replace(
             found, proposals=proposed.found, complete=found.complete and proposed.complete,
-            notes=(*found.notes, *_refused(proposed, self.course.propose)),
+            looked_at=proposed.looked_at, notes=(*found.notes, *_refused(proposed, self.course.propose)),
         )  # fmt: skip
+
+    def _is_proposing(self, selection: StepwiseSelection) -> bool:
+        """Whether terms that no list holds are to be searched for."""
+        if self.course.propose is None:
+            return selection.complete and self._unexplained(selection)
+        return self.course.propose
 
     def _proposed(self, selection: StepwiseSelection) -> Proposals:
         """What no list holds: beside the fitted model as it was and, where that is not all, beside what was found.
@@ -196,9 +202,11 @@ class Diagnoser:
         return bool(np.median(memory) > _NOISE_LIKE)
 
 
-def _refused(proposed: Proposals, asked: bool) -> Iterator[str]:
-    """What is said of a search for terms that ended below its bar."""
-    if asked and proposed.refused is not None:
+def _refused(proposed: Proposals, asked: bool | None) -> Iterator[str]:
+    """What is said of a search for terms that was stopped, or ended below its bar."""
+    if not proposed.complete:
+        yield "The search for terms that no list holds was stopped before its end."
+    if proposed.refused is not None:
         best = proposed.refused
         yield (
             f"Of {proposed.looked_at} terms that were looked at the best that was refused is {best.equation}: "

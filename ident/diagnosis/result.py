@@ -128,8 +128,8 @@ class Diagnosis:
 
     `budget` is None where the model is unstable at every run, `next_experiment` where no run can be proposed. With a
     `horizon` (s) every error is that over windows of this length, as `window` of the fit says it. Not `complete`, it is
-    what had been found when the search was stopped, or goes on. `proposals` are terms that no list holds: they are no
-    part of the verdict; None where an earlier version did not tell.
+    what had been found when the search was stopped, or goes on. `proposals` are terms that no list holds, of as many
+    that were `looked_at`: they are no part of the verdict. None is what an earlier version did not tell.
     """
 
     model: str = "qian2014"
@@ -142,6 +142,7 @@ class Diagnosis:
     ladder: tuple[Rung, ...] = ()
     verdict: Verdict
     proposals: tuple[Proposal, ...] | None = None
+    looked_at: int | None = None
     complete: bool = True
     next_experiment: NextRun | None = None
     settings: Mapping[str, Any] = field(default_factory=dict)
@@ -158,6 +159,8 @@ class Diagnosis:
             del data["proposals"]
         if self.horizon is None:
             del data["horizon"]
+        if self.looked_at is None:
+            del data["looked_at"]
         if self.complete:
             del data["complete"]
         if self.verdict.standing is None:

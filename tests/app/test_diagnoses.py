@@ -228,3 +228,19 @@ def test_a_diagnosis_whose_time_is_over_is_what_was_found(service, linear):
     found = service.get(f"{API}/diagnoses/{job['diagnosis']}").json()
     assert (found["complete"], found["verdict"]["effects"], found["next_experiment"]) == (False, [], {})
     assert service.post(f"{API}/diagnoses", json={"fit": linear, "time": 0}).status_code == 422
+
+
+def test_a_running_diagnosis_is_stopped_and_keeps_what_it_found(service, linear):
+    """It says that it is not complete; a fit has nothing to keep."""
+    job = service.post(f"{API}/diagnoses", json={"fit": linear, "seed": 10}).json()["id"]
+    with service.stream("GET", f"{API}/jobs/{job}/events") as stream:
+        for line in stream.iter_lines():
+            if '"stage":"trying"' in line:
+                break
+    service.post(f"{API}/jobs/{job}/conclude")
+    assert '"state":"succeeded"' in service.get(f"{API}/jobs/{job}/events").text
+    found = service.get(f"{API}/diagnoses/{job}").json()
+    assert not found["complete"]
+    assert "The search was not over" in found["verdict"]["text"]
+    refused = service.post(f"{API}/jobs/{linear}/conclude")
+    assert (refused.status_code, refused.json()["code"]) == (409, "not-a-diagnosis")

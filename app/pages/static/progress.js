@@ -11,7 +11,6 @@ function follow(live) {
   const step = live.querySelector("[data-step]");
   const error = live.querySelector("[data-error]");
   const trace = live.querySelector(".trace polyline");
-  const cancel = live.querySelector("button");
   const sight = live.querySelector("[data-sight]");
   const soFar = live.querySelector("[data-so-far]");
   const seen = [];
@@ -51,12 +50,15 @@ function follow(live) {
 
   for (const name of ["message", "queued", "running", ...ENDED]) events.addEventListener(name, read);
 
-  cancel.addEventListener("click", () =>
-    guarded(cancel, live.querySelector("[role=alert]"), async () => {
-      await send("DELETE", live.dataset.job);
-      stage.textContent = "stopping at the next step";
-    }),
-  );
+  const stops = (button, ask) =>
+    button?.addEventListener("click", () =>
+      guarded(button, live.querySelector("[role=alert]"), async () => {
+        await ask();
+        stage.textContent = "stopping at the next step";
+      }),
+    );
+  stops(live.querySelector("[data-cancel]"), () => send("DELETE", live.dataset.job));
+  stops(live.querySelector("[data-conclude]"), () => send("POST", `${live.dataset.job}/conclude`));
 }
 
 function list(paragraph, effects) {
