@@ -79,8 +79,10 @@ def test_an_effect_that_was_named_is_added_to_the_fit_and_the_error_falls_to_the
     assert (again.effects, again.verdict.effects, again.verdict.unexplained) == ((called,), (), False)
 
 
-def test_an_effect_that_only_the_chain_knows_is_fitted_too():
+def test_an_effect_that_only_the_chain_knows_is_fitted_too(full):
     """A lag of the recorder stands where the second lag is hidden: the same to 3 %, by the chain's own simulation."""
+    if not full:
+        pytest.skip("ten seconds and more: run with --full")
     matrix = matrix_with("second_lag")
     few = replace(matrix, runs=tuple(run for i, run in enumerate(matrix.runs) if run.kind == "frequency" or i % 3 == 0))
     fit = fitted(few, "acquisition_lag")

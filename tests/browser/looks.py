@@ -15,10 +15,13 @@ DRAWING = ".plot[aria-busy=true]:visible"
 
 
 def everywhere(page: Page, folder: Path | None, name: str) -> None:
-    """Check the page as it is now, and leave screenshots of all of it in the folder, if there is one."""
-    for theme, rules in (("light", ()), ("dark", COLOURS)):
+    """Check the page as it is now, and leave screenshots of all of it in the folder, if there is one.
+
+    Without a folder one width a theme does: each draws every figure anew.
+    """
+    for theme, rules, width_of_it in zip(("light", "dark"), ((), COLOURS), WIDTHS, strict=True):
         page.emulate_media(color_scheme=theme)
-        for width in WIDTHS:
+        for width in WIDTHS if folder else (width_of_it,):
             page.set_viewport_size({"width": width, "height": 900})
             assert page.evaluate("document.documentElement.scrollWidth") <= width
             expect(page.locator(DRAWING)).to_have_count(0, timeout=120_000)

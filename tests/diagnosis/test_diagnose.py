@@ -53,6 +53,7 @@ def test_each_step_is_told_as_it_is_found(dead_zone):
     assert Diagnosis.from_json(first.to_json()) == first
     assert dead_zone.complete
     assert "complete" not in dead_zone.to_json()
+    assert dead_zone.looked_at == 0  # at the floor no term is searched for that no list holds
 
 
 def test_what_was_found_when_the_time_is_over_is_the_diagnosis(monkeypatch):

@@ -73,7 +73,9 @@ def test_a_diagnosis_finds_nothing_beside_a_disturbance_that_was_told(full):
     assert not found.verdict.unexplained
 
 
-def test_a_run_without_the_channel_was_not_disturbed():
+def test_a_run_without_the_channel_was_not_disturbed(full):
+    if not full:
+        pytest.skip("ten seconds: run with --full")
     matrix = axis(3)
     calm = axis(3, told=False).runs[2]
     fit = identify(replace(matrix, runs=(*matrix.runs[:2], calm)), Settings(model="motor"))

@@ -29,6 +29,7 @@ Array = NDArray[np.float64]
 _ABSORBED = 1e-4  # of a term's power that the parameters leave: less, and they do what it does
 ALIKE = 0.999  # cosine of two terms that the data cannot tell apart
 WIDE = 1.3  # of the command's band is looked at
+_DIGITS = 8  # of what a term explains: the rest is rounding
 _BLOCK = 128  # terms whose responses are worked out together
 _AT_ONCE = 8  # runs
 
@@ -49,8 +50,8 @@ class Regression:
         return np.asarray(np.where(power > 0, self.with_residual**2 / np.maximum(power, 1e-300), 0.0) / self.left)
 
     def classes(self) -> list[list[int]]:
-        """Terms by what they explain, best first; those of one class cannot be told apart."""
-        size, gains = np.sqrt(np.maximum(np.diag(self.products), 1e-300)), self.gains
+        """Terms by what they explain, best first; those of a class, in the list's order, cannot be told apart."""
+        size, gains = np.sqrt(np.maximum(np.diag(self.products), 1e-300)), np.round(self.gains, _DIGITS)
         rest = np.argsort(-gains, kind="stable")
         rest = rest[gains[rest] > 0]
         found = []
@@ -58,7 +59,7 @@ class Regression:
             first = rest[0]
             alike = np.abs(self.products[first, rest]) > ALIKE * size[first] * size[rest]
             alike[0] = True
-            found.append([int(i) for i in rest[alike]])
+            found.append(sorted(int(i) for i in rest[alike]))
             rest = rest[~alike]
         return found
 

@@ -11,7 +11,9 @@ import pytest
 
 from ident.custom.definition import read_effect
 from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.proposals import regression as regressions
 from ident.diagnosis.proposals.search import Search
+from ident.diagnosis.proposals.sight import sight
 from ident.diagnosis.result import Diagnosis
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.settings import Settings
@@ -234,3 +236,21 @@ def test_a_model_without_a_term_has_no_bounds_of_its_shapes():
     models = ModelFamily.of(machine(1), settings, (read_effect(own, model="qian2014"),))
     with_it, without = (models.fitness(effects).space.axes for effects in (("late",), ()))
     assert len(with_it) == len(without) + 2
+
+
+def test_the_regression_is_that_of_all_terms_and_runs_at_once(monkeypatch):
+    """However few columns and runs are worked out together."""
+    matrix, _ = with_a_leak()
+    models = ModelFamily.of(matrix, Settings(model="qian2014"))
+    base = models.refit((), {p.in_equations: p.value for p in models.preset.parameters})
+
+    def candidates():
+        seen = sight(models, base)
+        return [(one.equation, one.strength, one.share) for one in seen.candidates]
+
+    together = candidates()
+    monkeypatch.setattr(regressions, "_BLOCK", 7)
+    monkeypatch.setattr(regressions, "_AT_ONCE", 5)
+    for (text, strength, share), (other, same, left) in zip(together, candidates(), strict=True):
+        assert text == other
+        assert (strength, share) == pytest.approx((same, left), rel=1e-6)
