@@ -39,6 +39,8 @@ def show_diagnosis(found: Diagnosis) -> None:
                 console.print(one.contradicted.told(one.equation), markup=False)
         console.print(table(("proposed by search", "what it would mean", "strength", *uses, "nats (bar)", "or"),
                             proposal_rows(found), numbers=(*uses, "nats (bar)")))  # fmt: skip
+        console.print("each on top of those before; `servoident fit MATRIX --custom D.json` adds them, "
+                      "D.json what --json wrote", markup=False)  # fmt: skip
     for note in found.notes:
         console.print(f"note: {note}", markup=False)
     console.print(found.verdict.text, markup=False)

@@ -117,6 +117,7 @@ def test_a_proposed_term_goes_from_a_diagnosis_into_a_fit(servoident, tmp_path):
     (term,) = json.loads(found.read_text())["proposals"]
     assert term["equation"] == "w = w + s * (w * exp(-((x - xm) / d)**2))"
     assert "acts at one part of the way" in " ".join(done.stdout.split())
+    assert "--custom D.json" in done.stdout
     done = servoident("fit", matrix, "--custom", found, "--json", fitted)
     assert done.returncode == 0, done.stderr
     fit = json.loads(fitted.read_text())

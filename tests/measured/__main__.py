@@ -11,7 +11,16 @@ from pathlib import Path
 from tests.measured.judged import KNOWN, judged
 
 ROOT = Path(__file__).resolve().parents[2]
-HEADER = ("machine", "model", "linear, fitted / held back", "with what helps", "named", "standing", "s")
+HEADER = (
+    "machine",
+    "model",
+    "linear, fitted / held back",
+    "with what helps",
+    "named",
+    "standing",
+    "proposed beyond",
+    "s",
+)
 
 
 def line(cells: tuple[str, ...]) -> str:

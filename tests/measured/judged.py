@@ -36,13 +36,32 @@ class Judged:
 
     @property
     def row(self) -> tuple[str, ...]:
-        """Machine, model, error before and after on fitted and held-back runs, what was named, standing, seconds."""
+        """Machine, model, errors before and after on fitted and held-back runs, what was named, standing, terms, s."""
         over = "" if self.found.horizon is None else f" over {self.found.horizon:.2g} s"
         first, last = (rung.error for rung in (self.found.ladder[0], self.found.ladder[-1]))
         before, after = (f"{percent(error['fit'])} / {percent(error['verify'])}" for error in (first, last))
         named = ", ".join(self.found.verdict.effects) or "–"
         standing = str(self.found.verdict.standing).replace("_", "-")
-        return self.name, self.fit.model, before + over, after + over, named, standing, f"{self.seconds:.0f}"
+        return (
+            self.name,
+            self.fit.model,
+            before + over,
+            after + over,
+            named,
+            standing,
+            self._proposed,
+            f"{self.seconds:.0f}",
+        )
+
+    @property
+    def _proposed(self) -> str:
+        """What the search proposes beyond the catalogue, with its errors."""
+        terms = self.found.proposals or ()
+        if not terms:
+            return "none" if self.found.looked_at else "–"
+        last = terms[-1].error
+        errors = f"{percent(last['fit'])} / {percent(last['verify'])}"
+        return f"{', '.join(f'`{one.equation}`' for one in terms)}: {errors}"
 
 
 def judged(folder: Path) -> Judged:
