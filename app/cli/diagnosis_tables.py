@@ -44,6 +44,10 @@ def show_diagnosis(found: Diagnosis) -> None:
     for note in found.notes:
         console.print(f"note: {note}", markup=False)
     console.print(found.verdict.text, markup=False)
+    if found.proposals:
+        from ident.diagnosis.words import proposed_text
+
+        console.print(proposed_text(found.proposals), markup=False)
     console.print(f"seed {found.seed}: {found.seconds:.2f} s")
 
 

@@ -115,9 +115,8 @@ class Comparison:
 
 def modelled(preset: Preset, values: Mapping[str, float], matrix: Matrix) -> dict[str, Array]:
     """The output of a model with effects for every run of a matrix, by the run's id."""
-    return SimulatedRuns(preset, matrix, matrix.runs, excited_band(matrix.of_use("fit") or matrix.runs)).outputs_at(
-        values
-    )
+    band = excited_band(matrix.of_use("fit") or matrix.runs)
+    return SimulatedRuns(preset, matrix, matrix.runs, band).outputs_at(values)
 
 
 def compare(matrix: Matrix, fit: FitResult, simulator: Simulator = modelled) -> Comparison:

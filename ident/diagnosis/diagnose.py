@@ -19,7 +19,7 @@ from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.result import Baseline, Diagnosis, Ranked, Rung, Suspect, Verdict
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.standing import Contradiction, contradiction, standing
-from ident.diagnosis.stepwise import StepwiseSelection
+from ident.diagnosis.stepwise import USUAL, StepwiseSelection
 from ident.diagnosis.suspects import suspects
 from ident.diagnosis.words import verdict_text, why
 from ident.effects.effect import Effect
@@ -72,10 +72,14 @@ class Diagnoser:
         )  # fmt: skip
 
     def _is_proposing(self, selection: StepwiseSelection) -> bool:
-        """Whether terms that no list holds are to be searched for."""
-        if self.course.propose is None:
-            return selection.complete and self._unexplained(selection)
-        return self.course.propose
+        """Whether terms that no list holds are to be searched for.
+
+        Unasked they are not where no more effects were wanted than the few that were found.
+        """
+        if self.course.propose is not None:
+            return self.course.propose
+        exhausted = self.course.most >= USUAL or len(selection.added) < self.course.most
+        return selection.complete and exhausted and self._unexplained(selection)
 
     def _proposed(self, selection: StepwiseSelection) -> Proposals:
         """What no list holds: beside the fitted model as it was and, where that is not all, beside what was found.

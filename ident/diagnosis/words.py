@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
+from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.result import Suspect
 from ident.diagnosis.significance import Improvement
@@ -83,6 +84,17 @@ def verdict_text(
             parts.append("No command was measured twice: part of it may be noise in the command's band, "
                          "which a repeated run would tell.")  # fmt: skip
     return " ".join(parts)
+
+
+def proposed_text(terms: Sequence[Proposal]) -> str:
+    """What a search beyond the catalogue proposes, in a sentence: no part of the verdict."""
+    told = "; ".join(one.equation + (f" ({one.meaning})" if one.meaning else "") for one in terms)
+    errors = terms[-1].error
+    verify = f" ({percent(errors['verify'])} on verify runs)" if errors.get("verify") is not None else ""
+    doubt = ", a hypothesis" if any(one.hypothesis for one in terms) else ""
+    return (
+        f"Beyond the catalogue a search proposes{doubt}: {told}. With it the error is {percent(errors['fit'])}{verify}."
+    )
 
 
 def _told_once(spoken: Callable[[str], str]) -> Callable[[str], str]:

@@ -233,7 +233,7 @@ class SimulatedRuns:
 
     def steps(self, values: Mapping[str, Array], kinks: bool = True) -> NDArray[np.int64]:
         """Steps a sample for each vector."""
-        found, kinds = self.fastest(values), {(run.hold, self.band / run.sample_rate) for run in self.runs}
+        found, kinds = self.fastest(values), {(run.hold, self.band / run.sample_rate) for run in self.matrix.runs}
         on = [effect for effect in self.preset.effects if kinks and self._is_on(effect, values)]
         return np.asarray(np.max([steps_needed(self.chain, found, hold, on, band) for hold, band in kinds], axis=0))
 
@@ -250,8 +250,8 @@ class SimulatedRuns:
 
     @cached_property
     def _extreme(self) -> tuple[Run, ...]:
-        """The runs on which modes are fastest."""
-        return extreme(self.runs)
+        """The runs of the whole matrix on which modes are fastest: whatever part of it is simulated has their steps."""
+        return extreme(self.matrix.runs)
 
 
 def anchored(signal: Array, window: int) -> Array:

@@ -13,7 +13,7 @@ from ident.effects.effect import Effect
 
 Array = NDArray[np.float64]
 FINE = 0.4  # radians or time constants a step: the largest eigenvalue times the step, above which steps are divided
-_STIFF = 1.6  # the same for a mode so fast that it does nothing but follow; from 2.6 a step would go astray
+_STIFF = 1.0  # the same for a mode so fast that it does nothing but follow; from 2.6 a step would go astray
 _FOLLOWING = 4.0  # times the band of the commands: where such modes begin
 _KINKED = 0.3  # radians a sample of the band for which an effect says how many steps its kinks ask for
 MOST = 32  # steps a sample
@@ -33,7 +33,7 @@ def steps_needed(
     """Steps a sample, a power of two up to :data:`MOST`, for eigenvalues `fastest`, (v,).
 
     They and the `band` up to which the command excites the machine are in radians a sample. A mode that does nothing
-    but follow is given fewer: a Runge-Kutta step of 1.6 time constants is off in how fast it decays, and not at all in
+    but follow is given fewer: a Runge-Kutta step of one time constant is off by 2 % in how fast it decays, and not in
     where it tends to. Kinks of effects that are on ask for more, the fewer the slower the motion is for the samples,
     and so does a held command whose jumps act at once or between the samples.
     """

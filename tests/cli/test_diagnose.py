@@ -111,19 +111,20 @@ def test_a_fit_from_a_file_is_diagnosed_as_it_is(servoident, matrix, tmp_path):
 def test_a_proposed_term_goes_from_a_diagnosis_into_a_fit(servoident, tmp_path):
     matrix, found, fitted = hidden_bump.write(tmp_path / "bump"), tmp_path / "found.json", tmp_path / "fit.json"
     asked = ("diagnose", matrix, "--model", "qian2014", "--max-effects", 0, "--json", found)
-    done = servoident(*asked)  # the catalogue leaves the error unexplained: the search goes on by itself
+    done = servoident(*asked, "--propose")
     assert done.returncode == 0, done.stderr
     assert json.loads(found.read_text())["looked_at"] > 1000
     (term,) = json.loads(found.read_text())["proposals"]
     assert term["equation"] == "w = w + s * (w * exp(-((x - xm) / d)**2))"
     assert "acts at one part of the way" in " ".join(done.stdout.split())
     assert "--custom D.json" in done.stdout
+    assert "Beyond the catalogue a search proposes: w = w + s * (w * exp(" in " ".join(done.stdout.split())
     done = servoident("fit", matrix, "--custom", found, "--json", fitted)
     assert done.returncode == 0, done.stderr
     fit = json.loads(fitted.read_text())
     assert fit["effects"] == ["proposed_1"]
     assert fit["error"]["verify"] < 1.05 * hidden_bump.NOISE
-    done = servoident(*asked, "--no-propose")
+    done = servoident(*asked)
     assert done.returncode == 0, done.stderr
     assert json.loads(found.read_text())["looked_at"] == 0
     done = servoident("fit", matrix, "--custom", found)
