@@ -10,7 +10,7 @@ import altair as alt
 import vl_convert
 
 from ident.errors import Unusable
-from ident.figures.frame import Filled
+from ident.figures.frame import Filled, unchecked
 
 Panel = alt.Chart | alt.LayerChart | alt.FacetChart
 Chart = alt.LayerChart | alt.HConcatChart | alt.VConcatChart | alt.ConcatChart | Filled
@@ -51,7 +51,11 @@ def render(chart: Chart, format: str, *, live: bool = False) -> bytes:  # noqa: 
     """
     if format not in MEDIA:
         raise Unusable("unknown-format", f"no format {format!r}", "figure", f"use one of {', '.join(MEDIA)}")
-    text = chart.to_json(live=live) if isinstance(chart, Filled) else chart.to_json(indent=None, validate=False)
+    if isinstance(chart, Filled):
+        text = chart.to_json(live=live)
+    else:
+        with unchecked():  # Altair turns its checks off for each copy it makes, and then on again for all threads
+            text = chart.to_json(indent=None, validate=False)
     if format == "json":
         return text.encode()
     drawn = _CONVERT[format](text)

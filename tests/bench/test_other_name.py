@@ -28,7 +28,9 @@ def renamed(monkeypatch) -> str:
     return OTHER
 
 
-def test_under_another_name_the_model_is_fitted_compared_drawn_and_diagnosed_alike(renamed):
+def test_under_another_name_the_model_is_fitted_compared_drawn_and_diagnosed_alike(renamed, full):
+    if not full:
+        pytest.skip("ten seconds: run with --full")
     truth = reference.scattered(12)
     matrix = as_matrix(truth, reference.full_set(truth, 12))
     fits = [identify(matrix, Settings(model=name, method="gradient")) for name in ("kononykhin", renamed)]

@@ -133,7 +133,9 @@ def test_repeats_tell_that_what_is_left_is_noise_in_the_band():
     assert found.verdict.text.startswith("Nothing is missing")
 
 
-def test_two_hidden_effects_are_both_found():
+def test_two_hidden_effects_are_both_found(full):
+    if not full:  # as in the story of the first page
+        pytest.skip("ten seconds: run with --full")
     found = diagnose(measured(dead_zone=2.5e-4, quadratic_damping=6e3))
     assert set(found.verdict.effects) == {"dead_zone", "quadratic_damping"}
 

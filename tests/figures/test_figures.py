@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
+from altair.utils import schemapi
 
 import ident.figures.study
 from ident.comparison.compare import Comparison
@@ -233,3 +234,14 @@ def test_drawn_live_two_runs_differ_in_data_and_parameters_only(name, matrix, fi
     assert first.pop("params") != second.pop("params")
     assert first.pop("datasets") != second.pop("datasets")
     assert first == second
+
+
+def test_a_chart_that_is_written_does_not_turn_the_checks_on_for_one_that_is_drawn():
+    """Altair has one switch for all threads: a page that asked for two figures at once got an error for one of them."""
+
+    class Written:
+        def to_json(self, **_options):
+            return json.dumps({"checked": schemapi.DEBUG_MODE})
+
+    assert json.loads(render(Written(), "json")) == {"checked": False}
+    assert schemapi.DEBUG_MODE

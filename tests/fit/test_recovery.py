@@ -9,7 +9,7 @@ import pytest
 from ident.effects import EFFECTS, effect
 from tests.fit.recovery import NOISE, Recovery, recovery
 
-QUICK = {"coulomb_friction", "sensor_lag"}
+QUICK = {"coulomb_friction"}
 SEED = 1
 
 

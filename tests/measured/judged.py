@@ -61,7 +61,8 @@ class Judged:
             return "none" if self.found.looked_at else "–"
         last = terms[-1].error
         errors = f"{percent(last['fit'])} / {percent(last['verify'])}"
-        return f"{', '.join(f'`{one.equation}`' for one in terms)}: {errors}"
+        against = ", contradicted" if any(one.contradicted for one in terms) else ""
+        return f"{', '.join(f'`{one.equation}`' for one in terms)}: {errors}{against}"
 
 
 def judged(folder: Path) -> Judged:

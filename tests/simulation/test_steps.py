@@ -46,7 +46,7 @@ def test_a_valve_that_only_follows_needs_few_steps(run, effect, strength, radian
     few = int(steps_needed(model.chain, np.array([radians]), "linear", model.effects, BAND / RATE)[0])
     closely = int(steps_needed(model.chain, np.array([radians]), "linear", model.effects)[0])
     assert few <= closely
-    assert few <= max(2, radians / 1.5)
+    assert few <= max(2, 1.5 * radians)
     finest = output(run, effect, strength, tau, MOST)
     assert np.std(output(run, effect, strength, tau, few) - finest) < 5e-4 * np.std(finest)
 

@@ -40,6 +40,7 @@ Tried = tuple[Candidate, Refit, ModelFamily]
 _PREFIX = "proposed_"
 _EVIDENCE = 5.0  # nats beyond the logarithm of how many were looked at
 _CLOSE, _MOST_CLOSE = 1.1, 8  # times the least error of the rough refits, and how many: carried to their end
+_PLAIN = 4  # terms without shapes that are, too: held-out data may prefer them
 _AS_GOOD = 1.02  # times the least error: a simpler one is taken
 _FEWEST = 3  # runs, of which one each searches, chooses and confirms
 
@@ -130,8 +131,9 @@ class Search:
             self.looked_at += again.looked_at
             known = {(one.equation, *one.starts) for one in seen.candidates}
             tried += refits([one for one in again.candidates if (one.equation, *one.starts) not in known])
-        ranked = in_order(tried, lambda one: one[1].error)[:_MOST_CLOSE]
-        close = [one for one in ranked if one[1].error <= _CLOSE * ranked[0][1].error]
+        ranked = in_order(tried, lambda one: one[1].error)
+        plain = [one for one in ranked[_MOST_CLOSE:] if not one[0].starts][:_PLAIN]
+        close = [one for one in (*ranked[:_MOST_CLOSE], *plain) if one[1].error <= _CLOSE * ranked[0][1].error]
         return [one for one in each(lambda one: _settled(*one), close) if one[1].finite]
 
     def _prune(self, latest: str) -> None:
