@@ -8,8 +8,8 @@ down_revision = "0007"
 
 
 def upgrade() -> None:
-    with op.batch_alter_table("jobs") as batch:
-        batch.add_column(sa.Column("conclude", sa.Boolean(), nullable=False, server_default=sa.false()))
+    # Added in place: a table made anew and copied would leave a database of half-empty pages behind.
+    op.add_column("jobs", sa.Column("conclude", sa.Boolean(), nullable=False, server_default=sa.false()))
 
 
 def downgrade() -> None:
