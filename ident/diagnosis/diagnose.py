@@ -91,8 +91,9 @@ class Diagnoser:
         if not selection.added or not alone.complete or self.models.is_noise(alone.left(selection.base.error)):
             return alone
         beside = Search(selection.models, selection.found, self.course.tell, given).run()
-        with_both = beside.left(selection.found.error)
-        return alone if alone.left(selection.base.error) < min(with_both * _SIMPLER, selection.found.error) else beside
+        before, found = (refit.held_out.error for refit in (selection.base, selection.found))
+        with_both = beside.left(found, "held_out")
+        return alone if alone.left(before, "held_out") < min(with_both * _SIMPLER, found) else beside
 
     def _said(self, selection: StepwiseSelection, doubted: Sequence[Suspect]) -> Diagnosis:
         """What a search found so far."""

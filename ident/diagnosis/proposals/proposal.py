@@ -78,7 +78,7 @@ class Proposals:
     looked_at: int = 0
     complete: bool = True
 
-    def left(self, before: float) -> float:
-        """The error on the fitted runs with all of it, `before` without."""
-        error = self.found[-1].error.get("fit") if self.found else None
+    def left(self, before: float, what: str = "fit") -> float:
+        """The error with all of it on the fitted runs, or "held_out" from the fit in turn; `before` without."""
+        error = self.found[-1].error.get(what) if self.found else None
         return before if error is None else error
