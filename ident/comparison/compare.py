@@ -14,9 +14,8 @@ from ident.chain.chain import linear_model
 from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.fit.normal_matrices import output
-from ident.fit.reduction import excited_band
 from ident.fit.result import FitResult
-from ident.fit.simulated_runs import SimulatedRuns
+from ident.fit.simulated_runs import every_run
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Matrix, Run, over_runs
 from ident.parallel import each
@@ -115,8 +114,7 @@ class Comparison:
 
 def modelled(preset: Preset, values: Mapping[str, float], matrix: Matrix) -> dict[str, Array]:
     """The output of a model with effects for every run of a matrix, by the run's id."""
-    band = excited_band(matrix.of_use("fit") or matrix.runs)
-    return SimulatedRuns(preset, matrix, matrix.runs, band).outputs_at(values)
+    return every_run(preset, matrix).outputs_at(values)
 
 
 def compare(matrix: Matrix, fit: FitResult, simulator: Simulator = modelled) -> Comparison:

@@ -20,7 +20,6 @@ from ident.diagnosis.beginnings import beginnings
 from ident.diagnosis.cross_validation import scored, weight_of_offsets
 from ident.diagnosis.family import ModelFamily, Refit
 from ident.fit.bounded_step import bounded_step
-from ident.fit.fitness import STEP
 from ident.fit.responses import Responses, Sensitivities
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import Space
@@ -135,9 +134,7 @@ class _Sensitivities:
     def of(cls, models: ModelFamily, base: Refit) -> _Sensitivities:
         """Simulate the model with each parameter moved."""
         fitness = models.fitness(base.effects, SAMPLES)
-        signs = np.where(base.point + STEP > 1.0, -1.0, 1.0)
-        moved = base.space.values(np.concatenate([base.point[None], base.point + np.diag(STEP * signs)]))
-        found = Sensitivities.of(fitness, moved, STEP * signs)
+        found = Sensitivities.of(fitness, base.point)
         totals = np.array([np.sum((r.measured - r.measured.mean()) ** 2) for r in fitness.runs])
         records = _Records(totals, np.array([r.length for r in fitness.runs]))
         return cls(models, base.point, found, *found.products(), records)

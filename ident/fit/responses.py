@@ -13,6 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ident.fit.fitness import STEP
 from ident.fit.products import CHUNK, removal, shares_of, without
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.matrix import Run
@@ -56,8 +57,10 @@ class Sensitivities:
     columns: Mapping[str, _Columns]
 
     @classmethod
-    def of(cls, fitness: SimulatedFitness, values: Mapping[str, Array], strides: Array) -> Sensitivities:
-        """Simulate the model and its neighbours, `values` (p+1,), each with one parameter moved by a stride (p,)."""
+    def of(cls, fitness: SimulatedFitness, point: Array) -> Sensitivities:
+        """Simulate the model at a point (p,) of the search space and its neighbours, each with one parameter moved."""
+        strides = np.where(point + STEP > 1.0, -STEP, STEP)  # inwards at a bound
+        values = fitness.space.values(np.concatenate([point[None], point + np.diag(strides)]))
         steps = int(fitness.steps(values, kinks=False).max())
         fitness.begin({name: float(value[0]) for name, value in values.items()})
 

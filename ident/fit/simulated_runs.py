@@ -20,6 +20,7 @@ from ident.effects.effect import Effect
 from ident.fit.modes import extreme, fastest
 from ident.fit.normal_matrices import NormalMatrices, first_state, normal_matrices_of
 from ident.fit.products import add_products, completed
+from ident.fit.reduction import excited_band
 from ident.matrix import Matrix, Run
 from ident.parallel import cores, each
 from ident.presets import Preset
@@ -252,6 +253,11 @@ class SimulatedRuns:
     def _extreme(self) -> tuple[Run, ...]:
         """The runs of the whole matrix on which modes are fastest: whatever part of it is simulated has their steps."""
         return extreme(self.matrix.runs)
+
+
+def every_run(preset: Preset, matrix: Matrix) -> SimulatedRuns:
+    """All runs of a matrix; those that fit it, where there are some, say what its commands excite."""
+    return SimulatedRuns(preset, matrix, matrix.runs, excited_band(matrix.of_use("fit") or matrix.runs))
 
 
 def anchored(signal: Array, window: int) -> Array:

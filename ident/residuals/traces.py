@@ -14,8 +14,7 @@ from ident.chain.conditions import conditions
 from ident.comparison.compare import Comparison, fitted
 from ident.errors import Unusable
 from ident.fit.normal_matrices import first_state
-from ident.fit.reduction import excited_band
-from ident.fit.simulated_runs import SimulatedRuns
+from ident.fit.simulated_runs import SimulatedRuns, every_run
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Run
 from ident.parallel import each
@@ -185,9 +184,9 @@ def _simulated(
     comparison: Comparison, preset: Preset, signals: tuple[str, ...], runs: Sequence[Run]
 ) -> dict[str, dict[str, Array]]:
     """The internal signals of a model with effects, from its compiled kernel: name, then run."""
-    _, matrix, values = fitted(comparison.fit, replace(comparison.matrix, runs=tuple(runs)))
-    band = excited_band(comparison.matrix.of_use("fit") or matrix.runs)
-    return inside(SimulatedRuns(preset, matrix, matrix.runs, band), values, signals)
+    _, matrix, values = fitted(comparison.fit, comparison.matrix)
+    simulated, wanted = every_run(preset, matrix), {run.id for run in runs}
+    return inside(replace(simulated, runs=tuple(run for run in matrix.runs if run.id in wanted)), values, signals)
 
 
 def inside(

@@ -105,3 +105,9 @@ def fitted(service: TestClient, matrix: str) -> str:
     events = service.get(f"/api/v1/jobs/{job['id']}/events").text
     assert '"state":"succeeded"' in events, events[-2000:]
     return str(job["id"])
+
+
+def reached(service: TestClient, job: str, text: str) -> None:
+    """Wait until a job's events say so."""
+    with service.stream("GET", f"/api/v1/jobs/{job}/events") as stream:
+        assert any(text in line for line in stream.iter_lines())

@@ -14,6 +14,7 @@ from fastapi.testclient import TestClient
 from app.diagnoses.work import DIAGNOSIS
 from app.jobs import repository
 from app.jobs.steps import GuardedSteps
+from tests.app.conftest import reached
 from tests.hidden_dead_zone import HALF_WIDTH, zipped
 
 API = "/api/v1"
@@ -173,10 +174,7 @@ def test_a_diagnosis_that_cannot_be_is_refused(service, linear, matrix, body, st
 
 def test_a_running_diagnosis_is_cancelled_and_leaves_nothing(service, linear):
     job = service.post(f"{API}/diagnoses", json={"fit": linear, "seed": 9}).json()["id"]
-    with service.stream("GET", f"{API}/jobs/{job}/events") as stream:
-        for line in stream.iter_lines():
-            if '"stage":"predicting"' in line:
-                break
+    reached(service, job, '"stage":"predicting"')
     service.delete(f"{API}/jobs/{job}")
     assert '"state":"cancelled"' in service.get(f"{API}/jobs/{job}/events").text
     assert service.get(f"{API}/diagnoses/{job}").status_code == 404
@@ -233,10 +231,7 @@ def test_a_diagnosis_whose_time_is_over_is_what_was_found(service, linear):
 def test_a_running_diagnosis_is_stopped_and_keeps_what_it_found(service, linear):
     """It says that it is not complete; a fit has nothing to keep."""
     job = service.post(f"{API}/diagnoses", json={"fit": linear, "seed": 10}).json()["id"]
-    with service.stream("GET", f"{API}/jobs/{job}/events") as stream:
-        for line in stream.iter_lines():
-            if '"stage":"trying"' in line:
-                break
+    reached(service, job, '"stage":"trying"')
     service.post(f"{API}/jobs/{job}/conclude")
     assert '"state":"succeeded"' in service.get(f"{API}/jobs/{job}/events").text
     found = service.get(f"{API}/diagnoses/{job}").json()

@@ -10,7 +10,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from ident.synthesis.matrix import simulate_matrix
-from tests.app.conftest import files, zipped
+from tests.app.conftest import files, reached, zipped
 
 
 def test_the_same_bytes_again_are_the_same_matrix(service: TestClient, matrix: str) -> None:
@@ -143,10 +143,7 @@ def test_the_page_of_a_whole_matrix_is_small(service: TestClient, tmp_path: Path
 def test_a_running_job_is_cancelled_and_leaves_no_fit(service: TestClient, matrix: str) -> None:
     body = {"matrix": matrix, "options": {"generations": 5000}}
     job = service.post("/api/v1/fits", json=body).json()["id"]
-    with service.stream("GET", f"/api/v1/jobs/{job}/events") as stream:
-        for line in stream.iter_lines():
-            if '"running"' in line:
-                break
+    reached(service, job, '"running"')
     service.delete(f"/api/v1/jobs/{job}")
     assert '"state":"cancelled"' in service.get(f"/api/v1/jobs/{job}/events").text
     assert service.get(f"/api/v1/fits/{job}").status_code == 404

@@ -11,9 +11,7 @@ from numpy.typing import NDArray
 from ident.chain.chain import linear_model
 from ident.chain.conditions import conditions
 from ident.diagnosis.family import Refit
-from ident.fit.fitness import STEP
 from ident.fit.responses import Sensitivities
-from ident.fit.simulated_runs import SimulatedRuns
 from ident.matrix import Actuator, Run
 from ident.parallel import each
 from ident.presets import Preset
@@ -54,11 +52,9 @@ def records(refit: Refit, names: Sequence[str], instead_of: Sequence[str] = ()) 
     windows = [fitness.window(run) for run in fitness.runs]
     count = next(n for n in range(stride(fitness.runs), 0, -1) if all(window % n == 0 for window in windows))
     most = max(256, _MOST // len(fitness.runs))
-    signs = np.where(point + STEP > 1.0, -1.0, 1.0)
-    moved = fitness.space.values(np.concatenate([point[None], point + np.diag(STEP * signs)]))
-    sensitivities = Sensitivities.of(fitness, moved, STEP * signs)
-    simulated = SimulatedRuns(fitness.preset, fitness.matrix, fitness.runs, fitness.band, starts=dict(fitness.starts))
-    inner = inside(simulated, {name: float(value[0]) for name, value in moved.items()}, names)
+    sensitivities = Sensitivities.of(fitness, point)
+    values = {name: float(value[0]) for name, value in fitness.space.values(point[None]).items()}
+    inner = inside(fitness.whole(), values, names)
 
     kept = [i for i, name in enumerate(refit.space.names) if name not in instead_of]
     put_back = point - refit.space.point({**refit.values, **dict.fromkeys(instead_of[:1], 0.0)})
