@@ -29,9 +29,13 @@ def extreme(runs: Iterable[Run]) -> tuple[Run, ...]:
 
 def fastest(chain: Chain, runs: Iterable[Run], actuator: Actuator, values: Mapping[str, Array]) -> Array:
     """Radians a sample of each vector's fastest mode at small signals on any of the runs, (v,)."""
-    vectors = len(next(iter(values.values())))
-    found = np.zeros(vectors)
+    by_output: dict[str, list[Run]] = {}
     for run in runs:
-        known = {name: np.full(vectors, value) for name, value in conditions(run, actuator).items()}
-        found = np.maximum(found, rates(chain, known | dict(values), run.output) / run.sample_rate)
+        by_output.setdefault(run.output, []).append(run)
+    found = np.zeros(len(next(iter(values.values()))))
+    for output, alike in by_output.items():
+        known = [conditions(run, actuator) for run in alike]
+        stacked = {name: np.array([entry[name] for entry in known])[:, None] for name in known[0]}
+        modes = rates(chain, stacked | {name: value[None] for name, value in values.items()}, output)
+        found = np.maximum(found, np.max(modes / np.array([[run.sample_rate] for run in alike]), axis=0))
     return found
