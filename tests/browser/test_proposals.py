@@ -13,18 +13,23 @@ from tests.hidden_bump import NOISE, zipped
 
 
 def test_a_term_is_proposed_added_and_the_error_is_the_noise_s(page, site, screenshots, full):
-    """In the short form as far as it is added; with --full another actuator has it in the list, where it is deleted."""
+    """In the short form the search that the button began is cancelled for one without the catalogue, which is slow.
+
+    With --full it goes on, and what is kept is in the list of another actuator, where it is deleted.
+    """
     stored = site.client.post("/matrices", files={"files": ("matrix.zip", zipped())}).json()
     fit = site.fit(stored["id"])
     assert site.ended(fit)["state"] == "succeeded"
-    # By the catalogue alone something is left; a search that was stopped there goes on where it ended.
-    made = site.client.post("/diagnoses", json={"fit": fit, "max_effects": 0, "propose": False})
-    found = site.ended(made.headers["Location"].rpartition("/")[2])
-    assert found["state"] == "succeeded"
+    diagnosed(site, fit, propose=False)
     page.goto(f"{site.address}/?token={site.token}")
     page.goto(f"{site.address}/fits/{fit}#missing")
     expect(page.locator("#left")).to_contain_text("Something is left")
     page.get_by_role("button", name="Search for what no list holds").click()
+    if not full:
+        page.locator("#missing").get_by_role("button", name="Cancel").click(timeout=story.LONG)
+        expect(page.locator("#missing")).to_contain_text("The last search was cancelled", timeout=story.LONG)
+        diagnosed(site, fit, propose=True)
+        page.reload()
     card = page.locator(".card").filter(has_text="proposed by search")
     expect(card).to_be_visible(timeout=story.LONG)
     expect(card).to_contain_text("Acts at one part of the way")
@@ -44,6 +49,12 @@ def test_a_term_is_proposed_added_and_the_error_is_the_noise_s(page, site, scree
     another_actuator_has_it_in_the_list(page, site, screenshots)
     a_written_one_is_kept_too(page, site)
     it_is_deleted_from_the_list(page, site, screenshots)
+
+
+def diagnosed(site, fit, *, propose):
+    """Nothing of the catalogue is added."""
+    made = site.client.post("/diagnoses", json={"fit": fit, "max_effects": 0, "propose": propose})
+    assert site.ended(made.headers["Location"].rpartition("/")[2])["state"] == "succeeded"
 
 
 def the_term_is_kept(page, card, screenshots):

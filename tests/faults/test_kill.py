@@ -23,7 +23,7 @@ def outcome(service: Service, job: str) -> dict[str, Any]:
 
 @pytest.fixture(scope="module")
 def kills(full: bool) -> int:
-    return 20 if full else 2
+    return 20 if full else 1
 
 
 def test_a_killed_fit_ends_bit_identical_and_once(tmp_path: Path, kills: int) -> None:
