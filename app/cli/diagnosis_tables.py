@@ -34,9 +34,6 @@ def show_diagnosis(found: Diagnosis) -> None:
         rows = [(suspect.run, suspect.what, suspect.evidence) for suspect in found.verdict.suspects]
         console.print(table(("suspect run", "label", "evidence"), rows, numbers=()))
     if found.proposals:
-        for one in found.proposals:
-            if one.contradicted:
-                console.print(one.contradicted.told(one.equation), markup=False)
         console.print(table(("proposed by search", "what it would mean", "strength", *uses, "nats (bar)", "or"),
                             proposal_rows(found), numbers=(*uses, "nats (bar)")))  # fmt: skip
         console.print("each on top of those before; `servoident fit MATRIX --custom D.json` adds them, "

@@ -29,6 +29,7 @@ class ProposedCard:
     evidence: str
     alike: tuple[str, ...]
     beside: str
+    instead_of: str
     shapes: str
     hypothesis: bool
     effects: tuple[str, ...]
@@ -59,6 +60,7 @@ def proposed(stored: Stored, run: str) -> Iterator[ProposedCard]:
             evidence=f"{plain(one.nats, 3)} nats, {plain(one.bar, 3)} asked for",
             alike=one.alike,
             beside=", ".join(map(title, one.beside)),
+            instead_of=", ".join(map(title, one.instead_of)),
             shapes="; ".join(shapes),
             hypothesis=one.hypothesis,
             effects=(*one.beside, *names),

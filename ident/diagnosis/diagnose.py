@@ -88,7 +88,10 @@ class Diagnoser:
         """
         given = selection.base.effects
         alone = Search(selection.models, selection.base, self.course.tell, given).run()
-        if not selection.added or not alone.complete or self.models.is_noise(alone.left(selection.base.error)):
+        if not selection.added:
+            return alone
+        alone = alone.instead(selection.found, selection.added, self.models.matrix.of_use("verify"))
+        if not alone.complete or self.models.is_noise(alone.left(selection.base.error)):
             return alone
         beside = Search(selection.models, selection.found, self.course.tell, given).run()
         before, found = (refit.held_out.error for refit in (selection.base, selection.found))

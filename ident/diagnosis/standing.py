@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ident.matrix import Run, over_runs
 from ident.noise.effective_sample_size import independent_samples
 from ident.words.percent import percent
+from ident.words.titles import title
 
 Array = NDArray[np.float64]
 Standing = Literal["found", "stand_in", "contradicted", "nothing"]
@@ -28,18 +29,23 @@ _RESAMPLED = 400
 
 @dataclass(frozen=True)
 class Contradiction:
-    """An effect with which the verify error rises, from and to which, and by how many of its standard errors."""
+    """An effect with which the verify error rises, from and to which, and by how many of its standard errors.
+
+    `instead_of` are the effects that the model has which it rises from, where that has others.
+    """
 
     effect: str
     before: float
     after: float
     deviations: float
+    instead_of: tuple[str, ...] = ()
 
     def told(self, named: str) -> str:
         """In a sentence on what is `named`."""
+        others = f" in place of {', '.join(map(title, self.instead_of))}" if self.instead_of else ""
         return (
-            f"With {named} the error on verify runs rises from {percent(self.before)} to {percent(self.after)}, "
-            f"{self.deviations:.1f} standard errors: it may stand for something else."
+            f"With {named}{others} the error on verify runs rises from {percent(self.before)} to "
+            f"{percent(self.after)}, {self.deviations:.1f} standard errors: it may stand for something else."
         )
 
 

@@ -89,12 +89,17 @@ def verdict_text(
 def proposed_text(terms: Sequence[Proposal]) -> str:
     """What a search beyond the catalogue proposes, in a sentence: no part of the verdict."""
     told = "; ".join(one.equation + (f" ({one.meaning})" if one.meaning else "") for one in terms)
-    errors = terms[-1].error
-    verify = f" ({percent(errors['verify'])} on verify runs)" if errors.get("verify") is not None else ""
+    last = terms[-1]
+    verify = f" ({percent(last.error['verify'])} on verify runs)" if last.error.get("verify") is not None else ""
     doubt = ", a hypothesis" if any(one.hypothesis for one in terms) else ""
-    return (
-        f"Beyond the catalogue a search proposes{doubt}: {told}. With it the error is {percent(errors['fit'])}{verify}."
-    )
+    instead = f" in place of {', '.join(map(title, last.instead_of))}" if last.instead_of else ""
+    it = "it" if len(terms) == 1 else "them"
+    against = [one.contradicted.told(one.equation) for one in terms if one.contradicted]
+    return " ".join([
+        *against,
+        f"Beyond the catalogue a search proposes{doubt}{instead}: {told}.",
+        f"With {it} the error is {percent(last.error['fit'])}{verify}.",
+    ])  # fmt: skip
 
 
 def _told_once(spoken: Callable[[str], str]) -> Callable[[str], str]:

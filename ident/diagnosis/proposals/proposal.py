@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ident.diagnosis.estimate import Found
-from ident.diagnosis.standing import Contradiction
+from ident.diagnosis.family import Refit
+from ident.diagnosis.standing import Contradiction, contradiction
+from ident.matrix import Run
 from ident.plain import written
 
 Errors = Mapping[str, float | None]
@@ -19,12 +21,13 @@ class Proposal:
 
     `terms` counts the terms that were added up to this one, `shapes` the numbers within it that were fitted. `nats` are
     those of runs that neither the search nor the choice saw, `bar` what they had to exceed. `alike`, in the JSON
-    ``class``, are the forms that the data cannot tell from it; `beside` the effects of the model that it was added to.
+    ``class``, are the forms that the data cannot tell from it; `beside` the effects of the model that it was added to,
+    `instead_of` those that the catalogue had named and that are not in it.
     `parameters` are those of the model with it, by name, and `view` is where its characteristic shows (see
     :func:`ident.residuals.views.view_called`); "" where that is no function of one signal.
 
     Of a `hypothesis` there were too few runs to confirm it on others. `contradicted`: the error on runs to verify rises
-    with it.
+    with it, or is above that of what it stands instead of.
     """
 
     place: tuple[str, ...]
@@ -42,6 +45,7 @@ class Proposal:
     bar: float = 0.0
     alike: tuple[str, ...] = ()
     beside: tuple[str, ...] = ()
+    instead_of: tuple[str, ...] = ()
     meaning: str = ""
     formula: str = ""
     hypothesis: bool = False
@@ -70,10 +74,11 @@ class Refused:
 class Proposals:
     """What was found, one term on top of the other, the best that was refused, and how many were looked at.
 
-    Not `complete`, the time was over.
+    `refit` is the model with all of it. Not `complete`, the time was over.
     """
 
     found: tuple[Proposal, ...] = ()
+    refit: Refit | None = None
     refused: Refused | None = None
     looked_at: int = 0
     complete: bool = True
@@ -82,3 +87,14 @@ class Proposals:
         """The error with all of it on the fitted runs, or "held_out" from the fit in turn; `before` without."""
         error = self.found[-1].error.get(what) if self.found else None
         return before if error is None else error
+
+    def instead(self, other: Refit, named: Sequence[str], runs: Sequence[Run]) -> Proposals:
+        """The same, said to stand instead of what is `named`; where runs to verify speak for that `other`, so it is."""
+        if not self.found or self.refit is None:
+            return self
+        *terms, last = (replace(one, instead_of=tuple(named)) for one in self.found)
+        name = str(last.effect["name"])
+        against = contradiction(name, runs, other.left(runs), self.refit.left(runs)) if runs else None
+        if against is not None:
+            last = replace(last, contradicted=replace(against, instead_of=tuple(named)))
+        return replace(self, found=(*terms, last))

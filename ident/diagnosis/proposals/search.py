@@ -72,8 +72,9 @@ class Search:
                 pass
             self.complete = True
         return Proposals(
-            found=tuple(self.found), refused=self.refused, looked_at=self.looked_at, complete=self.complete
-        )
+            found=tuple(self.found), refit=self.base, refused=self.refused, looked_at=self.looked_at,
+            complete=self.complete,
+        )  # fmt: skip
 
     def _added(self) -> bool:
         """Look for one more term; True where one passed the bar."""

@@ -1,0 +1,65 @@
+"""Terms that stand in place of what the catalogue named: where runs to verify speak for the catalogue, that is said."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+import pytest
+
+from ident.diagnosis.family import Refit
+from ident.diagnosis.proposals.proposal import Proposal, Proposals
+from ident.diagnosis.words import proposed_text
+from ident.matrix import Run
+
+TIMES = np.arange(2000) / 1000.0
+
+
+@dataclass
+class Leaving:
+    """A model that leaves noise of so large a share of the displacement."""
+
+    share: float
+
+    def left(self, runs: tuple[Run, ...]) -> list[np.ndarray]:
+        random = np.random.default_rng(1)
+        return [self.share * np.std(run.measured) * random.standard_normal(len(run.measured)) for run in runs]
+
+
+def verify() -> tuple[Run, ...]:
+    wave = 1e-3 * np.sin(2 * np.pi * 5 * TIMES)
+    return tuple(Run(f"v{n}", "", 1000.0, {"command": wave, "displacement": wave}, use="verify") for n in range(2))
+
+
+def found(share: float) -> Proposals:
+    last = Proposal(
+        place=("force",),
+        equation="R = R + s * (v**3)",
+        effect={"name": "proposed_1"},
+        error={"fit": 0.05, "verify": share},
+    )
+    return Proposals(found=(last,), refit=cast(Refit, Leaving(share)))
+
+
+def test_a_verify_error_above_the_catalogues_is_said_first_with_both() -> None:
+    told = found(0.26).instead(cast(Refit, Leaving(0.16)), ("play", "dead_zone"), verify())
+    against = told.found[-1].contradicted
+    assert against is not None
+    assert against.instead_of == ("play", "dead_zone")
+    assert (against.before, against.after) == pytest.approx((0.16, 0.26), rel=0.05)
+    text = proposed_text(told.found)
+    assert text.startswith("With R = R + s * (v**3) in place of play, dead zone the error on verify runs rises from 16")
+    assert "Beyond the catalogue a search proposes in place of play, dead zone: R = R + s * (v**3)." in text
+
+
+@pytest.mark.parametrize("share", [0.155, 0.10])
+def test_one_that_is_no_worse_only_says_what_it_stands_instead_of(share: float) -> None:
+    told = found(share).instead(cast(Refit, Leaving(0.16)), ("play",), verify())
+    assert told.found[-1].contradicted is None
+    assert told.found[-1].instead_of == ("play",)
+    assert proposed_text(told.found).startswith("Beyond the catalogue a search proposes in place of play: ")
+
+
+def test_without_runs_to_verify_nothing_is_known() -> None:
+    assert found(0.26).instead(cast(Refit, Leaving(0.16)), ("play",), ()).found[-1].contradicted is None
