@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import groupby
 
 from ident.checks.finding import Finding
 from ident.matrix import Matrix, Run
+from ident.noise.floor import repeated
 
 
 def repeats(matrix: Matrix) -> Iterator[Finding]:
@@ -18,6 +19,13 @@ def repeats(matrix: Matrix) -> Iterator[Finding]:
         text = f"runs {names(runs)} hold the same samples: {told}; keep one of them or correct file, rows or columns"
         for run in runs[1:]:
             yield Finding(run.id, "fault" if len(uses) > 1 else "doubt", "duplicate-run", text)
+    bare = [run for run in matrix.runs if conditions_of(run) is None]
+    for runs in together(repeated(bare)):
+        text = (
+            f"runs {names(runs)} have one command, and nothing stated tells them apart: what differs between them "
+            "counts as noise; where something was changed, state it: specimen, gain, a channel"
+        )
+        yield Finding(None, "note", "repeat", text)
     for runs in alike(matrix, conditions_of):
         if len({samples_of(run) for run in runs}) == len(runs):
             text = (
@@ -33,6 +41,17 @@ def alike(matrix: Matrix, key: Callable[[Run], object]) -> Iterator[list[Run]]:
         runs = [run for _, run in group]
         if len(runs) > 1:
             yield runs
+
+
+def together(pairs: Iterable[tuple[Run, Run]]) -> Iterator[list[Run]]:
+    """The pairs as groups: each run in one, in the order in which they come."""
+    groups: list[dict[str, Run]] = []
+    for pair in pairs:
+        group = next((group for group in groups if any(run.id in group for run in pair)), None)
+        if group is None:
+            groups.append(group := {})
+        group |= {run.id: run for run in pair}
+    yield from (list(group.values()) for group in groups)
 
 
 def samples_of(run: Run) -> str:

@@ -7,12 +7,21 @@ from collections.abc import Iterator
 from ident.checks.finding import Finding
 from ident.matrix import BENCH, Matrix, Run
 
+_TURNING = ("rad", "rad/s", "N*m")  # units of an output
+
 
 def statements(matrix: Matrix) -> Iterator[Finding]:
     """Uses, and everything optional that a fit of the hydraulic chain would want."""
     yield from uses(matrix)
     known = [run for run in matrix.runs if run.kind not in BENCH]  # a bench has neither gain nor specimen
-    runs = [run for run in known if run.units.get("command") != "1"]  # there no physical unit is to be had
+    # Without physical units nothing is to be had; what turns is no cylinder, and what is moved is the specimen itself.
+    runs = [
+        run
+        for run in known
+        if {"command", "drive_force"} & run.channels.keys()
+        and run.units.get("command") != "1"
+        and run.units.get(run.output) not in _TURNING
+    ]
     hydraulic = [run for run in runs if "drive_force" not in run.channels]
     if hydraulic and matrix.actuator.piston_area is None:
         yield note(

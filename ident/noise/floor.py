@@ -118,12 +118,12 @@ def repeated(runs: Sequence[Run]) -> list[tuple[Run, Run]]:
     """Pairs of runs of one use, specimen, gain and command: not the same record under two names.
 
     A run to verify is not taken for a repeat of one to fit: something was changed on purpose, such as an added load.
-    Neither are runs of which nothing is stated: what changed between them is not known.
+    Of runs of which nothing is stated something may have been changed, too; but what no channel and no label tells no
+    model can follow, and the checks say that they count as repeats.
     """
     groups: dict[object, list[Run]] = {}
     for run in runs:
-        if run.specimen is not None or run.gain is not None:
-            groups.setdefault((run.use, run.specimen, run.gain, run.sample_rate), []).append(run)
+        groups.setdefault((run.use, run.specimen, run.gain, run.sample_rate), []).append(run)
     return [pair for members in groups.values() for pair in combinations(members, 2) if _same(*pair)]
 
 

@@ -102,5 +102,6 @@ def _rank(model: Preset, runs: Sequence[Described]) -> int:
 
 def _comparable(run: Described, channel: str) -> bool:
     """Whether a controller could compare the command with a channel."""
-    units = {"displacement": "m", "velocity": "m/s", "force": "N"}
-    return run.units.get("command") == run.units.get(channel) == units[channel]
+    units = {"displacement": ("m", "rad"), "velocity": ("m/s", "rad/s"), "force": ("N", "N*m")}
+    unit = run.units.get("command")
+    return unit in units[channel] and unit == run.units.get(channel)

@@ -11,13 +11,13 @@ from ident.matrix import CHANNELS, DISTURBANCES
 from ident.readers.fields import Fields
 from ident.units.quantity import DIMENSIONS, Scale, parameter_value, shown, split, unit_scale
 
-PRESSURE = ("pressure",)
+PRESSURE, WAY, SPEED, FORCE = ("pressure",), ("length", "angle"), ("velocity", "angular velocity"), ("force", "torque")
 KINDS_OF_UNIT: dict[str, Sequence[str]] = {
-    "command": ("length", "current", "voltage", "force", "pressure"),
-    "displacement": ("length",), "velocity": ("velocity", "angular velocity"),
-    "force": ("force",), "drive_force": ("force",), "load_pressure": PRESSURE,
+    "command": tuple(name for name in DIMENSIONS if name not in ("dimensionless", "per sample")),
+    "displacement": WAY, "velocity": SPEED,
+    "force": FORCE, "drive_force": FORCE, "load_pressure": PRESSURE,
     "pressure_a": PRESSURE, "pressure_b": PRESSURE, "supply_pressure": PRESSURE,
-    "flow_disturbance": ("flow",), "load_disturbance": ("force",), "sensor_disturbance": ("length",),
+    "flow_disturbance": ("flow",), "load_disturbance": FORCE, "sensor_disturbance": WAY,
     "spool": ("length", "voltage", "current"), "current": ("current", "voltage"), "temperature": ("temperature",),
 }  # fmt: skip
 """What each channel may be measured in; ``1`` is allowed everywhere, for records in unknown units."""

@@ -23,6 +23,7 @@ DIMENSIONS = {
     "angular velocity": "rad/s",
        "acceleration": "m/s^2", "force": "N", "pressure": "Pa", "stiffness": "N/m", "damping": "N*s/m", "current": "A",
     "voltage": "V", "temperature": "K", "flow": "m^3/s", "dimensionless": "1", "per sample": "1/sample",
+    "angle": "rad", "torque": "N*m",
 }  # fmt: skip
 """Dimension by name to its SI unit; an SI unit (``m^4/s``) may stand wherever a dimension's name may."""
 
@@ -115,7 +116,9 @@ def unit_scale(unit: str, dimension: str, where: str) -> Scale:
     if dimension == "acceleration" and unit in ("g", "G"):
         unit = "g_n"  # gram has no business here
     powers = known_powers(unit, where)
-    turns = target in ("1/s", "rad/s") and bool(ANGLES & set(powers)) != (target == "rad/s")  # pint calls both 1/s
+    # pint calls an angle a plain number; so may a user who writes a phase, but no channel does
+    apart = target in ("1/s", "rad/s", "rad") or dimension == "dimensionless"
+    turns = apart and bool(ANGLES & set(powers)) != target.startswith("rad")
     if turns or shape(powers, where) != shape(known_powers(target, where), where):
         what = f"{unit!r} is not a unit of {described(dimension)}"
         raise Unusable("wrong-dimension", what, where, remedy(unit, target))

@@ -183,6 +183,37 @@ def test_the_same_conditions_twice_are_a_repeat_and_no_doubt(faulty):
     assert "run-0 and run-1" in again.text("repeat")
 
 
+def test_one_command_twice_with_nothing_stated_counts_as_a_repeat_and_says_what_to_state(faulty):
+    bare = faulty.all_runs(gain=None, specimen=None, amplitude=None)
+    assert (None, "repeat") not in bare.found()  # every run has its own command
+    same = {"command": faulty.matrix.runs[0].channels["command"], "displacement": 1.1 * bare.matrix.runs[1].measured}
+    twice = bare.run(1, channels=same)
+    assert twice.found()[None, "repeat"] == "note"
+    assert "runs run-0 and run-1 have one command, and nothing stated tells them apart" in twice.text("repeat")
+    assert "state it: specimen, gain" in twice.text("repeat")
+
+
+def test_a_machine_that_turns_is_asked_for_nothing_of_a_cylinder(faulty):
+    """Neither a piston area nor a loop gain nor a specimen is missed of a motor, nor of a damper that is moved."""
+    runs = [
+        replace(
+            run,
+            gain=None,
+            specimen=None,
+            output="velocity",
+            units={"command": "N*m", "velocity": "rad/s"},
+            channels={"command": run.command, "velocity": run.measured},
+        )
+        for run in faulty.matrix.runs
+    ]
+    moved = [replace(run, output="force", units={"velocity": "m/s", "force": "N"},
+                     channels={"velocity": run.command, "force": run.measured}) for run in runs]  # fmt: skip
+    for of in (runs, moved):
+        bare = replace(faulty.matrix, runs=tuple(of), actuator=replace(faulty.matrix.actuator, piston_area=None))
+        codes = {finding.code for finding in check(bare)}
+        assert not codes & {"no-piston-area", "no-gain", "no-specimen", "one-condition"}, codes
+
+
 def test_missing_runs_to_verify_and_to_fit_are_found(faulty):
     assert faulty.all_runs(use="fit").found() == {(None, "no-verify-runs"): "doubt"}
     assert faulty.all_runs(use="verify").found() == {(None, "no-fit-runs"): "fault"}

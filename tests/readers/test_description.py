@@ -7,6 +7,7 @@ import pytest
 from ident.errors import Unusable
 from ident.matrix import Controller
 from ident.readers import read_matrix
+from ident.readers.channel_description import describe_channel, describe_channels
 from ident.readers.description import describe
 from ident.readers.limits import LIMITS, Limits
 
@@ -147,3 +148,27 @@ def test_samples_per_second_are_hertz(matrix):
     for rate in ("1000 sample/s", "1 kHz", "1000 Sa/s", "60000 1/min"):
         text = matrix.text.replace("1000 Hz", rate)
         assert describe(text.encode(), LIMITS).runs[0].labels.sample_rate == pytest.approx(1000, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("command", "output", "wanted"),
+    [
+        ("N*m", ("velocity", "rpm"), {"command": "N*m", "velocity": "rad/s"}),
+        ("Nm", ("displacement", "deg"), {"command": "N*m", "displacement": "rad"}),
+        ("deg", ("displacement", "deg"), {"command": "rad", "displacement": "rad"}),
+        ("%", ("displacement", "mm"), {"command": "1", "displacement": "m"}),
+        ("L/min", ("displacement", "mm"), {"command": "m^3/s", "displacement": "m"}),
+        ("V", ("force", "N*m"), {"command": "V", "force": "N*m"}),
+    ],
+)
+def test_a_command_has_any_unit_and_what_turns_is_measured_as_an_angle(command, output, wanted):
+    name, unit = output
+    found = describe_channels({"command": {"column": 0, "unit": command}, name: {"column": 1, "unit": unit}}, "run a")
+    assert {channel: one.scale.unit for channel, one in found.items()} == wanted
+
+
+def test_a_bare_number_is_no_angle_and_an_angle_no_length():
+    assert describe_channel({"column": 0, "unit": "1"}, "displacement", "x").scale.unit == "1"
+    assert describe_channel({"column": 0, "unit": "deg"}, "displacement", "x").scale.factor == pytest.approx(0.0174533)
+    with pytest.raises(Unusable, match="does not measure velocity or angular velocity"):
+        describe_channel({"column": 0, "unit": "deg"}, "velocity", "x")
