@@ -12,7 +12,7 @@ from scipy.stats.qmc import Sobol
 
 from ident.diagnosis.cross_validation import CrossValidation, cross_validated
 from ident.diagnosis.estimate import Found
-from ident.diagnosis.ties import first_least
+from ident.diagnosis.ties import first_least, in_order
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect, off_values
 from ident.errors import Unusable
@@ -26,6 +26,7 @@ from ident.fit.uncertainty import Covariance, covariance
 from ident.matrix import MOTIONS, Matrix, Run, over_runs
 from ident.noise.effective_sample_size import independent_samples
 from ident.noise.floor import Floors, noise_floors
+from ident.parallel import each
 from ident.presets import Preset
 from ident.presets import preset as preset_named
 from ident.words.titles import title
@@ -35,6 +36,7 @@ _TRIAL = 131_072  # samples of a first refit; the finalists take every sample
 _FITTING, TRYING = Way(1e-7, 20), Way(1e-5, 10)  # of a refit, a first one
 _SETTING_OUT, _SEARCHING = Way(1e-5, 10), Way(1e-5, 20)  # of one far off, and where it is ahead of others
 _SCATTERED, _LEADING = 128, 4  # points of a whole search space, and those of them from which a refit begins
+_FIRST_STEPS, _AHEAD = Way(1e-5, 3), 8  # of it, and how many go on
 _SIGHT = 32_768  # samples that they are judged by
 _SIDE_BY_SIDE = 8  # effects of a chain of which each lane carries one
 _OFF = 0.01  # of the largest strength
@@ -268,8 +270,8 @@ class ModelFamily:
         ahead = first_least(tried, lambda one: one.here.error)
         return self.refit(refit.effects, ahead.values, _TRIAL, _SEARCHING) if ahead.finite else ahead
 
-    def scattered(self, effects: tuple[str, ...]) -> Refit:
-        """The best first refit of a model from anywhere in its search space, on the beginnings of the records.
+    def scattered(self, effects: tuple[str, ...]) -> list[Refit]:
+        """First steps of a model from where in its whole search space the error is least, on the records' beginnings.
 
         Where the fitted model went far astray for want of the effect, no start near it leads back.
         """
@@ -277,7 +279,12 @@ class ModelFamily:
         points = Sobol(len(fitness.space.axes), rng=0).random(_SCATTERED)
         best = points[np.argsort(fitness.errors(points), kind="stable")[:_LEADING]]
         starts = [{name: float(v[0]) for name, v in fitness.space.values(point[None]).items()} for point in best]
-        return first_least([self.refit(effects, start, _TRIAL) for start in starts], lambda refit: refit.here.error)
+        return [self.refit(effects, start, _TRIAL, _FIRST_STEPS) for start in starts]
+
+    def ahead(self, refits: Iterable[Refit]) -> list[Refit]:
+        """Those of first steps that left least, as first refits: the others cannot win."""
+        leading = in_order([one for one in refits if one.finite], lambda one: one.here.error)[:_AHEAD]
+        return each(lambda one: self.refit(one.effects, one.values, _TRIAL), leading)
 
     def refit(
         self,

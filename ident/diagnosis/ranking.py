@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import groupby
+from typing import TypeVar
 
 from ident.diagnosis.family import ModelFamily, Refit
 from ident.diagnosis.screening import Prediction, predict
@@ -14,8 +15,9 @@ from ident.diagnosis.ties import first_least, in_order
 from ident.parallel import each
 from ident.progress import Expected, Progress, Report
 
+Item = TypeVar("Item")
 _CONTENDERS, _FEW = 12, 10  # refitted; fewer, the more effects there are already
-_QUICK = 200_000  # samples of a matrix so small that every promise can be tried
+_QUICK = 200_000  # steps of a matrix so small that every promise can be tried
 _NEAR = 1.3  # times the best predicted error: the contenders for a further effect
 _FINALISTS = 5
 _CLOSE = 1.05  # times the best trial's error: also a finalist, where it promises anything
@@ -62,58 +64,93 @@ class Candidate:
         return replace(self, refit=refit, gain=improvement(base.held_out, refit.held_out))
 
 
+Base = tuple[Refit, Sequence[str]]
+"""A model, and the effects that could be added to it."""
+
+
 def rank(
-    models: ModelFamily, base: Refit, names: Iterable[str], report: Report, thorough: bool = True, strong: bool = False
+    models: ModelFamily, base: Refit, names: Sequence[str], report: Report, thorough: bool = True, strong: bool = False
 ) -> list[Candidate]:
     """The candidates, best first.
 
     `thorough`: more are refitted, and also where nothing promises to help. `strong`: from strong effects, too, which a
     promise made with the fitted parameters does not see where these have gone far astray for want of the effect.
     """
-    report(Progress("predicting", 0, 1))
-    listed = sorted(names, key=models.simplicity)
-    predictions = in_order(predict(models, base, listed), lambda p: p.after.score)
-    first = tuple(Expected(p.effect, base.error * p.share) for p in predictions[:_SIGHT])
-    report(Progress("predicting", 1, 1, base.error, first))
-    contenders = predictions[:_CONTENDERS] if thorough else _near(models, base, predictions)
-    done = 0
+    return rank_each(models, [(base, names)], report, thorough, strong)[0]
 
-    def trial(prediction: Prediction) -> Candidate:
+
+def rank_each(
+    models: ModelFamily, bases: Sequence[Base], report: Report, thorough: bool = True, strong: bool = False
+) -> list[list[Candidate]]:
+    """The same for several models, with what is refitted for all of them side by side."""
+    promised = [_promised(models, base, names, report) for base, names in bases]
+    models_of = [base for base, _ in bases]
+    contenders = [
+        of[:_CONTENDERS] if thorough else _near(models, base, of) for base, of in zip(models_of, promised, strict=True)
+    ]
+    sure, done = _FINALISTS if thorough else 2, 0
+
+    def trial(base: Refit, prediction: Prediction) -> Candidate:
         nonlocal done
         refit = models.trial((*base.effects, prediction.effect), prediction.starts)
         if strong:
             refit = first_least([refit, models.searched(refit, _strong(models, base, refit))], lambda r: r.here.error)
         done += 1
-        report(Progress("trying", done, len(contenders) + _FINALISTS))
+        report(Progress("trying", done, sum(map(len, contenders)) + sure * len(bases)))
         return Candidate(prediction, refit if refit.finite else None)
 
-    tried = ranked(models, each(trial, contenders))
-    best = tried[0].score if tried else 0.0
-    sure = _FINALISTS if thorough else 2
-    good = min(_CLOSE * best, (1.0 - _PROMISING) * models.tried(base))
-    finalists = [c for i, c in enumerate(tried) if c.trial and (i < sure or c.score < good)]
+    tried = [ranked(models, ones) for ones in _side_by_side(trial, models_of, contenders)]
+    finalists = [_finalists(models, base, ones, sure) for base, ones in zip(models_of, tried, strict=True)]
 
-    def final(candidate: Candidate) -> Candidate:
+    def final(base: Refit, candidate: Candidate) -> Candidate:
         nonlocal done
         assert candidate.trial is not None
         refit = models.refit((*base.effects, candidate.effect), candidate.trial.values)
         done += 1
-        report(Progress("confirming", done, len(contenders) + len(finalists)))
+        report(Progress("confirming", done, sum(map(len, contenders)) + sum(map(len, finalists))))
         return candidate.refitted(base, refit) if refit.finite else replace(candidate, trial=None)
 
-    found = ranked(models, each(final, finalists))
+    found = [ranked(models, ones) for ones in _side_by_side(final, models_of, finalists)]
     report(Progress("confirming", done, done + 1))
     deeper = _DEEPER if thorough else 1
-    found = [*each(partial(_elsewhere, models, base), found[:deeper]), *found[deeper:]]
-    confirmed = {candidate.effect: candidate for candidate in (*tried, *found)}
-    rest = [confirmed.get(p.effect, Candidate(p)) for p in predictions]
-    return ranked(models, rest)
+    farther = _side_by_side(partial(_elsewhere, models), models_of, [ones[:deeper] for ones in found])
+    rankings = []
+    for of, first, then, last in zip(promised, tried, found, farther, strict=True):
+        confirmed = {candidate.effect: candidate for candidate in (*first, *then, *last)}
+        rankings.append(ranked(models, [confirmed.get(one.effect, Candidate(one)) for one in of]))
+    return rankings
+
+
+def _side_by_side(
+    function: Callable[[Refit, Item], Candidate], bases: Sequence[Refit], items: Sequence[Sequence[Item]]
+) -> list[list[Candidate]]:
+    """`function` of each base and each of its items, all of them at once."""
+    todo = [(number, base, item) for number, base in enumerate(bases) for item in items[number]]
+    done = each(lambda one: function(one[1], one[2]), todo)
+    return [[made for (of, _, _), made in zip(todo, done, strict=True) if of == number] for number in range(len(bases))]
+
+
+def _promised(models: ModelFamily, base: Refit, names: Sequence[str], report: Report) -> list[Prediction]:
+    """What every effect promises, the best first."""
+    report(Progress("predicting", 0, 1))
+    found = in_order(predict(models, base, sorted(names, key=models.simplicity)), lambda one: one.after.score)
+    first = tuple(Expected(one.effect, base.error * one.share) for one in found[:_SIGHT])
+    report(Progress("predicting", 1, 1, base.error, first))
+    return found
+
+
+def _finalists(models: ModelFamily, base: Refit, tried: Sequence[Candidate], sure: int) -> list[Candidate]:
+    """Those of the trials that are refitted to every sample: the first, and what is as good and promises anything."""
+    best = tried[0].score if tried else 0.0
+    good = min(_CLOSE * best, (1.0 - _PROMISING) * models.tried(base))
+    return [one for i, one in enumerate(tried) if one.trial and (i < sure or one.score < good)]
 
 
 def _near(models: ModelFamily, base: Refit, predictions: Sequence[Prediction]) -> list[Prediction]:
     """The contenders for a further effect: those that promise anything near what the best promises."""
     near = _NEAR * predictions[0].after.error
-    quick = sum(run.length for run in models.runs) < _QUICK
+    steps = int(base.fitness.steps(base.fitness.space.values(base.point[None])).max())
+    quick = steps * sum(run.length for run in models.runs) < _QUICK
     few = _CONTENDERS if quick else max(_FEW - 2 * len(base.effects), _FINALISTS)
     return [p for p in predictions if _promises(p) and p.after.error < near][:few]
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from itertools import combinations
 
 from ident.diagnosis.family import ModelFamily, Refit
-from ident.diagnosis.ranking import Candidate, rank, ranked
+from ident.diagnosis.ranking import Candidate, rank, rank_each, ranked
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.ties import first_least
 from ident.errors import TimeIsUp
@@ -121,8 +121,10 @@ class StepwiseSelection:
         return rungs
 
     def _rank(self, base: Refit, thorough: bool, strong: bool = False) -> list[Candidate]:
-        names = [n for n in self.models.effects if n not in base.effects]
-        return rank(self.models, base, names, self.report, thorough, strong)
+        return rank(self.models, base, self._others(base), self.report, thorough, strong)
+
+    def _others(self, base: Refit) -> list[str]:
+        return [name for name in self.models.effects if name not in base.effects]
 
     def _forward(self) -> None:
         while len(self.added) < self.most:
@@ -169,14 +171,14 @@ class StepwiseSelection:
         names = [candidate.effect for candidate in self.ranking[:_SCATTERED]]
         done = 0
 
-        def scattered(name: str) -> Refit:
+        def scattered(name: str) -> list[Refit]:
             nonlocal done
-            refit = self.models.scattered((*self.base.effects, name))
+            refits = self.models.scattered((*self.base.effects, name))
             done += 1
             self.report(Progress("looking farther", done, len(names)))
-            return refit
+            return refits
 
-        self._better(each(scattered, names))
+        self._better(self.models.ahead(refit for found in each(scattered, names) for refit in found))
 
     def _better(self, tried: Sequence[Refit]) -> bool:
         """Go on with the best of first refits, where it is better beyond chance on all records."""
@@ -232,26 +234,32 @@ class StepwiseSelection:
 
         What enters and leaves in a circle is of use in one company and of none in another: the best of it stays.
         """
-        for name in self.added:
-            if name == latest:
-                continue
-            here = self.found
-            effects = tuple(e for e in here.effects if e != name)
-            less = self.models.refit(effects, _without(here.values, name))
-            if less.finite and not improvement(less.held_out, here.held_out).beyond_chance:
-                known = [i for i, step in enumerate(self.steps) if set(step.effects) == set(effects)]
-                self._step(less)
-                if known:
-                    self._step(first_least(self.steps[known[0] :], lambda step: step.held_out.score))
-                    return True
+        doubted = [name for name in self.added if name != latest]
+        while doubted:
+            here, tried = self.found, each(self._less, doubted)
+            needless = (i for i, less in enumerate(tried) if less.finite and not _helps(less, here))
+            first = next(needless, None)
+            if first is None:
+                break
+            less, doubted = tried[first], doubted[first + 1 :]
+            known = [i for i, step in enumerate(self.steps) if set(step.effects) == set(less.effects)]
+            self._step(less)
+            if known:
+                self._step(first_least(self.steps[known[0] :], lambda step: step.held_out.score))
+                return True
         return False
+
+    def _less(self, name: str) -> Refit:
+        """The last step without one of its effects, judged."""
+        effects = tuple(effect for effect in self.found.effects if effect != name)
+        less = self.models.refit(effects, _without(self.found.values, name))
+        _ = less.finite and less.held_out
+        return less
 
     def _replaced(self) -> bool:
         """Weigh each added effect against what could stand in its place; True where one was replaced."""
-        self.groups = {}
-        for name in self.added:
-            here = self.found
-            ranking = self._in_place_of(name)
+        self.groups, here = {}, self.found
+        for name, ranking in zip(self.added, self._in_place_of_each(self.added), strict=True):
             best = next((c for c in ranking if c.refit is not None), None)
             if best is None or best.refit is None:
                 continue
@@ -262,13 +270,17 @@ class StepwiseSelection:
             self.groups[name] = _group(name, here, ranking)
         return False
 
-    def _in_place_of(self, name: str) -> list[Candidate]:
-        """What could stand in the place of an added effect, ranked: what it was chosen from, where it came first."""
-        here = self.found
-        if self.ranking[0].refit is here:
-            return self.ranking
-        effects = tuple(e for e in here.effects if e != name)
-        return self._rank(self.models.refit(effects, _without(here.values, name)), thorough=False)
+    def _in_place_of_each(self, added: Sequence[str]) -> list[list[Candidate]]:
+        """What could stand in the place of added effects, ranked: what one was chosen from, where it came first."""
+        if added and self.ranking[0].refit is self.found:
+            return [self.ranking for _ in added]
+        bases = each(self._less, added)
+        return rank_each(self.models, [(base, self._others(base)) for base in bases], self.report, thorough=False)
+
+
+def _helps(less: Refit, more: Refit) -> bool:
+    """Whether a model does better than another beyond chance."""
+    return improvement(less.held_out, more.held_out).beyond_chance
 
 
 def _without(values: Mapping[str, float], effect: str) -> dict[str, float]:

@@ -20,7 +20,7 @@ from functools import cached_property, lru_cache
 from types import CodeType
 from typing import Any
 
-from ident.equations.grammar import FUNCTIONS, parsed, refused, tree_of
+from ident.equations.grammar import FUNCTIONS, parsed, reads, refused, tree_of
 
 
 @dataclass(frozen=True)
@@ -67,8 +67,7 @@ class Equation:
     @cached_property
     def names(self) -> frozenset[str]:
         """The quantities on the right, functions left out."""
-        called = {node.func.id for node in ast.walk(self.tree) if isinstance(node, ast.Call)}  # type: ignore[attr-defined]
-        return frozenset(node.id for node in ast.walk(self.tree) if isinstance(node, ast.Name)) - called
+        return reads(self.tree)[0]
 
     def renamed(self, names: Mapping[str, str], target: str) -> Equation:
         """The same equation with other names for what it reads, and another target."""

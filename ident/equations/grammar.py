@@ -15,7 +15,7 @@ import math
 import re
 import threading
 from collections.abc import Callable, Mapping
-from functools import reduce
+from functools import lru_cache, reduce
 from typing import Any
 
 import numpy as np
@@ -79,6 +79,22 @@ def tree_of(text: str) -> ast.expr:
     """The syntax of an expression; raises SyntaxError. One thread at a time: Python 3.11 counts the depth of all."""
     with _PARSING:
         return ast.parse(text, mode="eval").body
+
+
+@lru_cache(maxsize=65_536)
+def reads(node: ast.AST) -> tuple[frozenset[str], frozenset[str]]:
+    """The quantities and the functions that an expression names; of a syntax tree that nobody changes any more."""
+    if isinstance(node, ast.Name):
+        return frozenset({node.id}), frozenset()
+    names, called = set[str](), set[str]()
+    for child in ast.iter_child_nodes(node):
+        if isinstance(node, ast.Call) and child is node.func and isinstance(child, ast.Name):
+            called.add(child.id)
+            continue
+        inside = reads(child)
+        names |= inside[0]
+        called |= inside[1]
+    return frozenset(names), frozenset(called)
 
 
 def parsed(text: str, first: int = 0, strict: bool = False) -> ast.expr:

@@ -209,21 +209,24 @@ def _fine(run: Run, channel: str, steps: int, before: int) -> Array:
     samples = _record(run, channel)
     past = samples[:0] if run.past is None or channel != INPUT else run.past[-(before // steps + 1) :]
     samples = np.concatenate([past, samples])
-    if steps > 1 and run.hold == "zoh" and channel == INPUT:
-        fine = np.repeat(samples, steps)
-    elif steps > 1:
-        between = samples[:-1, None] + np.arange(steps) / steps * np.diff(samples)[:, None]
-        fine = np.append(between.ravel(), samples[-1])
+    held, first = run.hold == "zoh" and channel == INPUT, len(past) * steps
+    count = len(samples) * steps if held else (len(samples) - 1) * steps + 1
+    lead = max(before - first, 0)  # of the steps in front, those from before anything is known
+    whole = np.empty(lead + count + steps + 2)
+    whole[:lead], whole[lead + count :] = samples[0], samples[-1]
+    fine = whole[lead : lead + count]
+    if held:
+        fine.reshape(-1, steps)[:] = samples[:, None]
     else:
-        fine = samples
-    first = len(past) * steps
-    front = np.full(before, 0.0 if channel == INPUT and run.begins == "at rest" else fine[0])
-    if first:
-        front = np.concatenate([np.full(max(before - first, 0), fine[0]), fine[max(first - before, 0) : first]])
-        fine = fine[first:]
-    elif run.hold == "linear":
-        front[-1] -= _jump_share(np.array(2.0)) * (fine[0] - front[-1])
-    return np.concatenate([front, fine, np.full(steps + 2, fine[-1])])
+        between, slopes = fine[:-1].reshape(-1, steps), np.diff(samples) / steps
+        for step in range(steps):
+            between[:, step] = samples[:-1] + step * slopes
+        fine[-1] = samples[-1]
+    if not first and channel == INPUT and run.begins == "at rest":
+        whole[:lead] = 0.0
+    if not first and run.hold == "linear":
+        whole[lead - 1] -= _jump_share(np.array(2.0)) * (fine[0] - whole[lead - 1])
+    return whole[max(first - before, 0) :]
 
 
 def _begun_late(command: _Input, held: Array) -> Array:

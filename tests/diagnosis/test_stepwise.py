@@ -66,7 +66,11 @@ class Judged:
 
     def scattered(self, effects):
         """An effect that no start near the fit leads to is found from anywhere."""
-        return self.refit(effects, {})
+        return [self.refit(effects, {})]
+
+    def ahead(self, refits):
+        """All of them go on."""
+        return list(refits)
 
     def doubtful(self, _refit, effect):
         """Whether an effect that is off led to where it is not needed."""
@@ -92,6 +96,10 @@ class Judged:
 
         return stepwise.ranked(self, map(judged, names))
 
+    def rank_each(self, models, bases, report, thorough):
+        """Each for itself."""
+        return [self.rank(models, base, names, report, thorough, strong=False) for base, names in bases]
+
     def improvement(self, less, more):
         """Whether an effect that only one of them has was needed, or the other does better by far."""
         needed = bool((more.effects - less.effects) & self.needed) or more.score < 0.3 * less.score
@@ -107,6 +115,7 @@ def searched(monkeypatch):
     ) -> StepwiseSelection:
         judged = Judged(scores, needed, far, late, off)
         monkeypatch.setattr(stepwise, "rank", judged.rank)
+        monkeypatch.setattr(stepwise, "rank_each", judged.rank_each)
         monkeypatch.setattr(stepwise, "improvement", judged.improvement)
         return StepwiseSelection(judged, judged.refit((), {}), 2, lambda *_: None).run()  # type: ignore[arg-type]
 

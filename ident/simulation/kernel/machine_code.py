@@ -77,8 +77,7 @@ class _Writer:
 
     def line(self, text: str) -> None:
         """Carry out a line."""
-        (statement,) = ast.parse(text).body
-        match statement:
+        match _statement(text):
             case ast.Assign(targets=[ast.Name(id=name)], value=value):
                 self.names[name] = self._value(value)
             case ast.Assign(targets=[ast.Subscript() as place], value=value):
@@ -139,6 +138,13 @@ class _Writer:
                 given = ", ".join(f"{_VECTOR} {self._value(argument)}" for argument in arguments)
                 return self._once(f"call {_FAST} {_VECTOR} @llvm.{name}.v{_WIDE}f64({given})")
         raise TypeError(f"{ast.unparse(node)!r} is nothing that a kernel can do")
+
+
+@lru_cache(maxsize=65_536)
+def _statement(text: str) -> ast.stmt:
+    """A line's syntax: kernels of one machine with other effects have most of their lines in common."""
+    (statement,) = ast.parse(text).body
+    return statement
 
 
 def _offset(node: ast.Subscript) -> int:

@@ -14,7 +14,7 @@ from types import CodeType
 from typing import Any
 
 from ident.chain.chain import INPUT, INPUT_RATE, MEASURED, STEP, Chain
-from ident.equations.grammar import DYNAMIC, FUNCTIONS, TABLES, TIME, tree_of
+from ident.equations.grammar import DYNAMIC, FUNCTIONS, TABLES, TIME, reads, tree_of
 from ident.equations.interpolation import coefficient
 from ident.errors import Unusable
 
@@ -101,9 +101,8 @@ class Source:
         raise TypeError(f"{ast.dump(node)} passed the grammar but cannot be compiled")
 
     def _is_constant(self, node: ast.expr) -> bool:
-        calls = {n.func.id for n in ast.walk(node) if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)}
-        names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)} - calls
-        return bool(names) and names <= self._symbols and not calls & set(DYNAMIC)
+        names, called = reads(node)
+        return bool(names) and names <= self._symbols and called.isdisjoint(DYNAMIC)
 
     def _condition(self, node: ast.expr, stage: str) -> str:
         if isinstance(node, ast.Compare):
@@ -162,7 +161,7 @@ class Source:
 
     def _stays(self, node: ast.expr) -> bool:
         """Whether an expression is one of numbers and symbols only."""
-        return self._is_constant(node) or not any(isinstance(n, ast.Name) for n in ast.walk(node))
+        return self._is_constant(node) or not reads(node)[0]
 
     def _known(self, node: ast.expr) -> str:
         """A number or an expression of symbols, as it stands in the loop."""
