@@ -142,11 +142,20 @@ class Search:
         for name in self.base.effects:
             if name in (latest, *self.given):
                 continue
-            less = self.models.refit(tuple(e for e in self.base.effects if e != name), self.base.values)
+            values = self._joined(latest, name)
+            less = self.models.refit(tuple(e for e in self.base.effects if e != name), values)
             if less.finite and not improvement(less.held_out, self.base.held_out).beyond_chance:
                 self.base = less
         self.beside = tuple(name for name in self.beside if name in self.base.effects)
         self.found = [one for one in self.found if one.effect["name"] in self.base.effects]
+
+    def _joined(self, latest: str, name: str) -> dict[str, float]:
+        """The values with the strength of a term given to the latest, where both are one equation."""
+        values = dict(self.base.values)
+        equations = {one["name"]: one["equation"] for one in self.models.given.custom}
+        if name in equations and equations[name] == equations[latest]:
+            values[self.models.strength(latest)] += values[self.models.strength(name)]
+        return values
 
     def _contradiction(self, name: str, before: Refit) -> Contradiction | None:
         """Whether runs to verify speak against the latest term."""
