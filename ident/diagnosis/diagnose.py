@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ident.diagnosis.advice import error_budget, next_run
 from ident.diagnosis.course import Course
 from ident.diagnosis.family import ModelFamily, Refit
-from ident.diagnosis.proposals.proposal import Proposals
+from ident.diagnosis.proposals.outcome import Proposals
 from ident.diagnosis.proposals.search import Search
 from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.result import Baseline, Diagnosis, Ranked, Rung, Suspect, Verdict

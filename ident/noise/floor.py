@@ -13,7 +13,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.matrix import USES, Matrix, Run, over_runs
+from ident.matrix import BENCH, MOTIONS, USES, Matrix, Run, over_runs
 from ident.noise.effective_sample_size import independent_samples
 from ident.noise.power_density import power_density
 from ident.parallel import each
@@ -25,6 +25,7 @@ _UPPER_HALF = 0.5  # of the spectrum shows the noise
 _SAME = 1e-3  # relative difference of two commands that are one
 _GLANCE = 64  # samples that show most commands to be different
 _SETTLED = 0.1  # of a record, in which the states that it begins with die away
+_DRIVES = ("command", "drive_force", *MOTIONS)
 _FEW, _OF_ONE_SIZE = 3, 0.02  # records, and their spread in logarithms, from which nothing is told of the noise's size
 
 
@@ -123,6 +124,8 @@ def repeated(runs: Sequence[Run]) -> list[tuple[Run, Run]]:
     """
     groups: dict[object, list[Run]] = {}
     for run in runs:
+        if run.kind in BENCH:  # these differ in what else was set
+            continue
         groups.setdefault((run.use, run.specimen, run.gain, run.sample_rate), []).append(run)
     return [pair for members in groups.values() for pair in combinations(members, 2) if _same(*pair)]
 
@@ -141,12 +144,17 @@ def like_transducer(sizes: Array, floors: Sequence[float | None]) -> bool | None
 def _same(a: Run, b: Run) -> bool:
     if abs(a.length - b.length) > 0.1 * a.length:
         return False
-    u, v = _settled(a.command, b), _settled(b.command, a)
+    u, v = _settled(_driven(a), b), _settled(_driven(b), a)
     thin = slice(None, None, 1 + len(u) // _GLANCE)
     if np.std(u[thin] - v[thin]) > 3.0 * _SAME * np.std(u[thin]):  # most pairs differ at a glance
         return False
     different = not np.array_equal(_settled(a.measured, b), _settled(b.measured, a))
     return different and bool(np.std(u - v) < _SAME * np.std(u))
+
+
+def _driven(run: Run) -> Array:
+    """What drives a run: its command, else the force on the load, else the motion."""
+    return next(run.channels[name] for name in _DRIVES if name in run.channels and name != run.output)
 
 
 def _settled(samples: Array, other: Run) -> Array:

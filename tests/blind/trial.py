@@ -167,7 +167,8 @@ def judged(matrix: Matrix, hidden: dict[str, float] | Any, custom: tuple[Effect,
         "first": [c.effect for c in found.candidates[:3]], "first_group": list(found.candidates[0].group),
         "strengths": {name: _strength(found, name) for name in found.verdict.effects},
         "after": last.error["fit"], "verify": (last.error["verify"] or 0) / (floor["verify"] or 1),
-        "unexplained": found.verdict.unexplained, "suspects": [[s.run, s.what] for s in found.verdict.suspects],
+        "unexplained": found.verdict.unexplained, "proposed": [one.equation for one in found.proposals or ()],
+        "suspects": [[s.run, s.what] for s in found.verdict.suspects],
         "named": named(found, set(hidden)), "seconds": round(time.perf_counter() - begun, 1),
     }  # fmt: skip
 

@@ -208,10 +208,12 @@ def test_a_machine_that_turns_is_asked_for_nothing_of_a_cylinder(faulty):
     ]
     moved = [replace(run, output="force", units={"velocity": "m/s", "force": "N"},
                      channels={"velocity": run.command, "force": run.measured}) for run in runs]  # fmt: skip
+    moved[1] = replace(moved[1], channels={**moved[1].channels, "velocity": moved[0].channels["velocity"]})
     for of in (runs, moved):
         bare = replace(faulty.matrix, runs=tuple(of), actuator=replace(faulty.matrix.actuator, piston_area=None))
         codes = {finding.code for finding in check(bare)}
         assert not codes & {"no-piston-area", "no-gain", "no-specimen", "one-condition"}, codes
+        assert ("repeat" in codes) is (of is moved)
 
 
 def test_missing_runs_to_verify_and_to_fit_are_found(faulty):

@@ -21,8 +21,9 @@ from ident.diagnosis.family import TRYING, ModelFamily, Refit
 from ident.diagnosis.proposals.candidate import Candidate
 from ident.diagnosis.proposals.evidence import evidence
 from ident.diagnosis.proposals.meanings import meaning
+from ident.diagnosis.proposals.outcome import Proposals, Refused
 from ident.diagnosis.proposals.own import definition
-from ident.diagnosis.proposals.proposal import Proposal, Proposals, Refused
+from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.proposals.shown import shown_in
 from ident.diagnosis.proposals.sight import Sight, sight
 from ident.diagnosis.significance import improvement
