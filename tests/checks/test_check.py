@@ -200,6 +200,7 @@ def test_a_machine_that_turns_is_asked_for_nothing_of_a_cylinder(faulty):
             run,
             gain=None,
             specimen=None,
+            amplitude=None,
             output="velocity",
             units={"command": "N*m", "velocity": "rad/s"},
             channels={"command": run.command, "velocity": run.measured},
