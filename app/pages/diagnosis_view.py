@@ -18,6 +18,7 @@ from ident.words.number import plain
 from ident.words.percent import percent_in_print
 from ident.words.titles import title
 from schemas.fit import JobView
+from schemas.matrix import RunView
 
 _LABELS = {"mass": "kg", "stiffness": "N/m", "gain": ""}
 """Labels that a revision can mend, with the unit that it writes."""
@@ -95,7 +96,7 @@ class MissingView:
     refused: tuple[str, ...] = ()
 
 
-def missing(stored: Stored | None, job: JobView | None, run: str = "") -> MissingView:
+def missing(stored: Stored | None, job: JobView | None, run: RunView | None = None) -> MissingView:
     """The section for the newest diagnosis of a fit and the newest job that was to make one.
 
     `run` is the one that shows what no curve does.
@@ -127,7 +128,7 @@ def _would_add(cards: tuple[Card, ...], names: tuple[str, ...]) -> tuple[Member,
     return tuple(members[name] for name in names if name in members)
 
 
-def _cards(stored: Stored, run: str) -> Iterator[Card]:
+def _cards(stored: Stored, run: RunView | None) -> Iterator[Card]:
     """A card for each candidate; those of a group share the card of the best."""
     candidates = stored.found.candidates
     by_name = {candidate.effect: candidate for candidate in candidates}
@@ -143,7 +144,7 @@ def _cards(stored: Stored, run: str) -> Iterator[Card]:
         yield _card(rank, together, stored, run)
 
 
-def _card(rank: int, together: list[Ranked], stored: Stored, run: str) -> Card:
+def _card(rank: int, together: list[Ranked], stored: Stored, run: RunView | None) -> Card:
     found, best = stored.found, together[0]
     own = {str(definition["name"]): definition for definition in found.settings.get("custom", ())}
     looks = str(best.evidence.get("looks", ""))

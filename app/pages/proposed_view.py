@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from markupsafe import Markup
 
 from app.diagnoses.service import Stored
 from app.pages.evidence_view import proposal_evidence
+from ident.diagnosis.proposals.proposal import Proposal
+from ident.diagnosis.result import Rung
 from ident.equations.mathml import mathml
 from ident.words.number import plain
+from ident.words.percent import percent_in_print
 from ident.words.plus_minus import plus_minus
 from ident.words.titles import title
+from schemas.matrix import RunView
 
 
 @dataclass(frozen=True)
@@ -37,7 +41,7 @@ class ProposedCard:
     evidence_of: tuple[str, str] | None
 
 
-def proposed(stored: Stored, run: str) -> Iterator[ProposedCard]:
+def proposed(stored: Stored, run: RunView | None) -> Iterator[ProposedCard]:
     """A card for each term; where no curve shows it, the Bode plot of `run` does."""
     found = stored.found
     names: list[str] = []
@@ -60,10 +64,19 @@ def proposed(stored: Stored, run: str) -> Iterator[ProposedCard]:
             evidence=f"{plain(one.nats, 3)} nats, {plain(one.bar, 3)} asked for",
             alike=one.alike,
             beside=", ".join(map(title, one.beside)),
-            instead_of=", ".join(map(title, one.instead_of)),
+            instead_of=_instead_of(one, found.ladder),
             shapes="; ".join(shapes),
             hypothesis=one.hypothesis,
             effects=(*one.beside, *names),
             definitions=tuple(definitions),
             evidence_of=proposal_evidence(one, stored, run),
         )
+
+
+def _instead_of(one: Proposal, ladder: Sequence[Rung]) -> str:
+    """What the catalogue named in its place, and what that leaves on runs to verify."""
+    names = ", ".join(map(title, one.instead_of))
+    left = ladder[-1].error.get("verify") if ladder else None
+    if not names or left is None:
+        return names
+    return f"{names}, which {'leave' if len(one.instead_of) > 1 else 'leaves'} {percent_in_print(left)} on verify runs"
