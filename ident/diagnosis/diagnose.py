@@ -133,7 +133,7 @@ class Diagnoser:
         preset = models.model(self.fit.effects)
         start = {preset.parameter(name).in_equations: value for name, value in self.fit.values.items()}
         base = models.refit(tuple(self.fit.effects), start)
-        if not base.finite:
+        if not base.stable:
             raise Unusable("bad-fit", "the fitted model is unstable on a run", "fit", "fit the model to this matrix")
         return StepwiseSelection(models, base, self.course.most, self.course.tell, self._heard).run()
 

@@ -43,6 +43,7 @@ _OFF = 0.01  # of the largest strength
 _BETTER = 0.99  # times the error: a new optimum, not the same one
 _AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be noise, beside
 _CHANCE = 3.0  # standard deviations
+_FOLLOWED = 1.2  # times the promised error that a simulation may leave
 _KNOWN = 1e3  # times its value: the standard error beyond which nothing is known of a parameter
 
 
@@ -65,9 +66,24 @@ class Refit:
         return cross_validated(self.point, self.here, self.fitness.exact, independent)
 
     @property
-    def finite(self) -> bool:
+    def stable(self) -> bool:
         """Whether the model is stable on every run."""
         return bool(np.isfinite(self.here.error))
+
+    @property
+    def finite(self) -> bool:
+        """Whether the model is stable on every run, and leaves there what it promises."""
+        return self.stable and self._followed
+
+    @cached_property
+    def _followed(self) -> bool:
+        """Whether a simulation from the first states that were found leaves what their linear correction promises.
+
+        A model that is not linear in them may look good where no first state at all leads.
+        """
+        if all(run.begins != "moving" for run in self.fitness.runs):
+            return True
+        return _error_of(self.fitness, self.point, self.fitness.runs) < _FOLLOWED * self.error
 
     @property
     def error(self) -> float:
@@ -76,13 +92,16 @@ class Refit:
 
     @cached_property
     def on_verify(self) -> float | None:
-        """Eq. (17) averaged over the runs to verify; None where there are none, or the model is unstable on one."""
+        """Eq. (17) averaged over the runs to verify; None where there are none, or the model is unstable on one.
+
+        Of what it leaves there once their first states are found, as a comparison shows it: what is linear in these
+        would flatter a model that is not.
+        """
         runs = self.fitness.matrix.of_use("verify")
         if not runs:
             return None
-        here = self.fitness.fresh(runs).exact(self.point, sensitivities=False)
-        mean = over_runs([run.error for run in here.runs], runs)
-        return float(mean) if np.isfinite(mean) else None
+        found = _error_of(self.fitness.fresh(runs), self.point, runs)
+        return found if np.isfinite(found) else None
 
     @property
     def errors(self) -> dict[str, float | None]:
@@ -118,6 +137,15 @@ class Refit:
     def offset(self) -> float:
         """The mean of the runs' offsets."""
         return float(over_runs([run.offset for run in self.here.runs], self.here.runs))
+
+
+def _error_of(fitness: SimulatedFitness, point: Array, runs: Sequence[Run]) -> float:
+    """Eq. (17), averaged over runs, of what a simulation leaves of each."""
+    outputs = fitness.outputs(point)
+    left = [fitness.left(run, outputs[run.id]) for run in runs]
+    return float(
+        over_runs([np.sqrt(np.mean(r**2)) / np.std(run.measured) for r, run in zip(left, runs, strict=True)], runs)
+    )
 
 
 @dataclass
