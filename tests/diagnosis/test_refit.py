@@ -7,7 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ident.diagnosis.family import Refit
+from ident.diagnosis.family import ModelFamily, Refit
+from ident.diagnosis.proposals.search import Search
 
 MEASURED = np.sin(np.arange(1000) / 50.0)
 
@@ -40,3 +41,26 @@ def test_what_no_first_state_leads_to_is_no_refit(begins, left, finite):
 
 def test_the_error_on_runs_to_verify_is_what_a_simulation_leaves_there():
     assert refit("moving", 0.3).on_verify == pytest.approx(0.3, rel=1e-6)
+
+
+def test_of_first_steps_the_eight_that_leave_least_go_on():
+    """From where they are; what is unstable does not."""
+    errors = [0.9, np.inf, 0.5, 0.1, 0.8, 0.2, 0.7, 0.3, 0.6, 0.4, 1.0]
+    steps = [SimpleNamespace(effects=("e",), values={"s": error}, here=SimpleNamespace(error=error),
+                             finite=np.isfinite(error)) for error in errors]  # fmt: skip
+    family = SimpleNamespace(refit=lambda _effects, values, _samples: values["s"])
+    assert ModelFamily.ahead(family, steps) == sorted(errors)[:8]
+
+
+@pytest.mark.parametrize(("equation", "joined"), [("R = R + s * (v**3)", 3.0), ("R = R + s * (v**2)", 2.0)])
+def test_a_term_that_is_added_twice_is_tried_as_one_with_both_strengths(equation, joined):
+    custom = [
+        {"name": "proposed_1", "equation": [equation]},
+        {"name": "proposed_2", "equation": ["R = R + s * (v**3)"]},
+    ]
+    search = SimpleNamespace(
+        base=SimpleNamespace(values={"proposed_1__s": 1.0, "proposed_2__s": 2.0}),
+        models=SimpleNamespace(given=SimpleNamespace(custom=custom), strength=lambda name: f"{name}__s"),
+    )
+    assert Search._joined(search, "proposed_2", "proposed_1")["proposed_2__s"] == joined
+    assert search.base.values["proposed_2__s"] == 2.0

@@ -8,6 +8,8 @@ import pytest
 from ident.fit.identification import Identification
 from ident.fit.modes import FOLLOWED, extreme, fastest
 from ident.fit.settings import Settings
+from ident.matrix import Actuator, Run, Specimen
+from ident.presets import preset
 from ident.workflows import diagnose, identify
 from tests.blind.any_machine import Lab
 
@@ -34,3 +36,23 @@ def test_a_mode_that_nothing_follows_is_looked_for_only_where_the_user_says_so()
     assert not np.isfinite(free.approximate(points[lost][0]).error)
     held = Identification(matrix, Settings(model="qian2014", fixed={"tau": 1e-9})).objective
     assert not held.space.followed
+
+
+def test_modes_of_runs_are_those_of_the_fastest_of_them_by_its_own_sample_rate():
+    """Of a loop with other masses, gains, outputs and clocks beside each other, each alone by its eigenvalues."""
+    chain = preset("qian2014").chain
+    cells = [(0.5, 3.0, "displacement", 4096.0), (20.0, 9.0, "displacement", 4096.0), (2.0, 6.0, "load_pressure", 1e3)]
+    quiet = {"command": np.zeros(4), "displacement": np.zeros(4), "load_pressure": np.zeros(4)}
+    runs = [Run(f"r{i}", "", rate, quiet, specimen=Specimen(mass=m), gain=gain, output=output)
+            for i, (m, gain, output, rate) in enumerate(cells)]  # fmt: skip
+    actuator = Actuator("A", piston_area=5e-4)
+    Z0, tau, Cl, c0, m0, Ka = 2.6e-6, np.array([3.6e-3, 1.2e-3]), 1e-11, 3200.0, 4.25, 1.4e-13
+    values = {name: np.broadcast_to(value, 2) for name, value in
+              {"Z0": Z0, "tau": tau, "Cl": Cl, "c0": c0, "m0": m0, "Ka": Ka}.items()}  # fmt: skip
+    alone = []
+    for m, gain, _, rate in cells:
+        jacobians = [[[-1 / t, 0, 0, -gain / t], [Z0 / 5e-4 / Ka, -Cl / Ka, -5e-4 / Ka, 0],
+                      [0, 5e-4 / (m0 + m), -c0 / (m0 + m), 0], [0, 0, 1, 0]] for t in tau]  # fmt: skip
+        alone.append(np.abs(np.linalg.eigvals(np.array(jacobians))).max(axis=1) / rate)
+    assert fastest(chain, runs, actuator, values) == pytest.approx(np.max(alone, axis=0), rel=1e-6)
+    assert fastest(chain, runs[:2], actuator, values) == pytest.approx(np.max(alone[:2], axis=0), rel=1e-6)
