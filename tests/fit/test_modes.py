@@ -41,7 +41,7 @@ def test_a_mode_that_nothing_follows_is_looked_for_only_where_the_user_says_so()
 def test_modes_of_runs_are_those_of_the_fastest_of_them_by_its_own_sample_rate():
     """Of a loop with other masses, gains, outputs and clocks beside each other, each alone by its eigenvalues."""
     chain = preset("qian2014").chain
-    cells = [(0.5, 3.0, "displacement", 4096.0), (20.0, 9.0, "displacement", 4096.0), (2.0, 6.0, "load_pressure", 1e3)]
+    cells = [(0.5, 3.0, "displacement", 4096.0), (20.0, 9.0, "displacement", 1024.0), (2.0, 6.0, "load_pressure", 1e3)]
     quiet = {"command": np.zeros(4), "displacement": np.zeros(4), "load_pressure": np.zeros(4)}
     runs = [Run(f"r{i}", "", rate, quiet, specimen=Specimen(mass=m), gain=gain, output=output)
             for i, (m, gain, output, rate) in enumerate(cells)]  # fmt: skip
