@@ -21,6 +21,7 @@ KINDS_OF_UNIT: dict[str, Sequence[str]] = {
     "spool": ("length", "voltage", "current"), "current": ("current", "voltage"), "temperature": ("temperature",),
 }  # fmt: skip
 """What each channel may be measured in; ``1`` is allowed everywhere, for records in unknown units."""
+_LISTED = 4  # kinds of unit that a message names
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,8 @@ def channel_scale(unit: str, name: str, where: str) -> Scale:
         except Unusable as refused:
             if refused.code != "wrong-dimension":
                 raise
-    wanted = " or ".join(KINDS_OF_UNIT[name])
+    kinds = KINDS_OF_UNIT[name]
+    wanted = " or ".join(kinds) if len(kinds) <= _LISTED else "a quantity that is known here"
     remedy = f"give a unit of {wanted}, or 1 where it is unknown"
     raise Unusable("wrong-dimension", f"{shown(unit)!r} does not measure {wanted}", where, remedy)
 

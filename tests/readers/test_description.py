@@ -172,3 +172,5 @@ def test_a_bare_number_is_no_angle_and_an_angle_no_length():
     assert describe_channel({"column": 0, "unit": "deg"}, "displacement", "x").scale.factor == pytest.approx(0.0174533)
     with pytest.raises(Unusable, match="does not measure velocity or angular velocity"):
         describe_channel({"column": 0, "unit": "deg"}, "velocity", "x")
+    with pytest.raises(Unusable, match="does not measure a quantity that is known here"):
+        describe_channel({"column": 0, "unit": "m^4/s"}, "command", "x")
