@@ -75,7 +75,7 @@ def test_what_a_benchmark_or_a_picture_imports_is_there(file):
 ROOMS = (
     "errors", "plain", "progress", "parallel", "matrix", "parameter", "linear", "equations", "units", "words", "stages",
     "effects", "chain", "presets", "readers", "custom", "noise", "checks", "simulation", "fit", "comparison",
-    "residuals", "design", "diagnosis", "bench", "figures", "synthesis", "workflows",
+    "residuals", "design", "diagnosis", "bench", "hybrid", "figures", "synthesis", "workflows",
 )  # fmt: skip
 """The files and folders of `ident`; each may use those before it."""
 

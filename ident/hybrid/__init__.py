@@ -1,0 +1,1 @@
+"""What an identified actuator is good for: tracking, control, hybrid simulation, and what a change would do."""

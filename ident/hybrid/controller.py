@@ -1,0 +1,65 @@
+"""A sampled linear controller of an actuator: what loop shaping designs, a rig runs and a file keeps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.errors import Unusable
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SampledController:
+    """x(k+1) = A x(k) + B [d(k), y(k)],  u(k) = C x(k) + D [d(k), y(k)].
+
+    d is the displacement that is wanted and y the one that is measured, both m; u is the command of the actuator, m.
+    A is (n, n), B (n, 2), C (1, n), D (1, 2); one step is made every 1/`sample_rate` (Hz) seconds. `name` says what it
+    is, in words. Raises Unusable where the shapes do not go together or a number is not finite.
+    """
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+    sample_rate: float
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        n = len(self.A)
+        expected = {"A": (n, n), "B": (n, 2), "C": (1, n), "D": (1, 2)}
+        got = {name: np.shape(getattr(self, name)) for name in expected}
+        if wrong := [name for name in expected if got[name] != expected[name]]:
+            first = wrong[0]
+            raise Unusable("bad-controller", f"{first} is {got[first]}, not {expected[first]}", "controller",
+                           "give A (n, n), B (n, 2), C (1, n), D (1, 2)")  # fmt: skip
+        if not all(np.isfinite(getattr(self, name)).all() for name in expected) or not self.sample_rate > 0:
+            raise Unusable("bad-controller", "a number is not finite, or the sample rate not positive", "controller",
+                           "design it anew")  # fmt: skip
+
+    @property
+    def order(self) -> int:
+        """The number of its states."""
+        return len(self.A)
+
+    def to_json(self) -> dict[str, Any]:
+        """As plain JSON data."""
+        matrices = {name: getattr(self, name).tolist() for name in ("A", "B", "C", "D")}
+        return {"name": self.name, "sample_rate": self.sample_rate, **matrices}
+
+    @classmethod
+    def from_json(cls, data: object) -> SampledController:
+        """The inverse of :meth:`to_json`. Raises Unusable where it is no controller."""
+        try:
+            given: Any = data
+            n = len(given["A"])
+            shapes = {"A": (n, n), "B": (n, 2), "C": (1, n), "D": (1, 2)}
+            matrices = {name: np.array(given[name], dtype=float).reshape(shapes[name]) for name in shapes}
+            return cls(**matrices, sample_rate=float(given["sample_rate"]), name=str(given.get("name", "")))
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
+            raise Unusable("bad-controller", f"not the JSON of a controller: {error}", "controller",
+                           "give the controller.json that `servoident control` wrote") from None  # fmt: skip
