@@ -216,10 +216,11 @@ class ModelFamily:
         found = [[name] for name in apart]
         for first in range(0, len(rest), _SIDE_BY_SIDE):
             group = rest[first : first + _SIDE_BY_SIDE]
-            found += [group] if self._fit_together((*base, *group)) else [[name] for name in group]
+            found += [group] if self.fit_together((*base, *group)) else [[name] for name in group]
         return found
 
-    def _fit_together(self, effects: Iterable[str]) -> bool:
+    def fit_together(self, effects: Iterable[str]) -> bool:
+        """Whether one chain can hold these effects: some close a circle of signals together."""
         try:
             _ = self.model(effects).chain.signals
         except Unusable:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ident.diagnosis.proposals.meanings import meaning
-from ident.diagnosis.proposals.own import added
+from ident.diagnosis.proposals.own import added, sticks
 from ident.diagnosis.proposals.regression import ALIKE, Regression
 from ident.diagnosis.proposals.terms import Term, ratio
 from ident.stages import PLACES
@@ -34,7 +34,8 @@ class Candidate:
     @property
     def equation(self) -> str:
         """What is added where."""
-        return "; ".join(map(added, self.terms, self.signs))
+        brakes = sticks(self.terms, self.strength)
+        return "; ".join(added(term, sign, brakes) for term, sign in zip(self.terms, self.signs, strict=True))
 
     @property
     def starts(self) -> tuple[float, ...]:

@@ -206,6 +206,8 @@ class Search:
             searching.given, custom=(*searching.given.custom, own), bounds={**searching.given.bounds, **free}
         )
         family = replace(searching, effects={**searching.effects, name: effect}, given=given, _known={})
+        if not family.fit_together((*base.effects, name)):
+            return None  # it closes a circle of signals with what was found before
         start = {**base.values, family.strength(name): candidate.strength}
         start |= {p.in_equations: p.value for p in effect.added[1:]}
         refit = family.refit((*base.effects, name), start, way=TRYING)

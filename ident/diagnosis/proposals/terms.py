@@ -8,7 +8,7 @@ strength s has the unit of the signal that it acts on over that of the term.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
@@ -26,6 +26,8 @@ _LAGS = (0.02, 0.06, 0.2, 0.6)  # of a period at the end of the band, times 2π
 _PLAYS = (0.1, 0.3, 0.6)  # of the deviation of a signal
 _RESONANCES, _DAMPED = (0.15, 0.2, 0.27, 0.36, 0.48, 0.65, 0.9), 0.1  # of the end of the band; of critical damping
 _FADING = (0.15, 0.5)  # of the shortest run
+LIMIT = "Ff"
+"""The signal that says what dry friction takes at most, of machines whose load sticks."""
 _REMEMBERED = {("controller", "x"), ("flow", "P"), ("load", "v"), ("load", "x")}  # places of another signal's memory
 
 
@@ -56,7 +58,8 @@ class Term:
     """A term at a place: `at` is the signal that it adds to, `text` its equation, `unit` that of the term.
 
     `kind` names its form and `of` the signals that it is of; `memory` are equations of its own that go before.
-    `worked_out` gives its samples where the equation alone does not.
+    `worked_out` gives its samples where the equation alone does not. Of dry friction of the moving mass `limit` is what
+    it takes at most: such a term sticks.
     """
 
     place: str
@@ -68,6 +71,7 @@ class Term:
     shapes: tuple[Shape, ...] = ()
     memory: tuple[str, ...] = ()
     worked_out: Callable[[Signals, float], Array] | None = field(default=None, compare=False, repr=False)
+    limit: str = ""
 
     def samples(self, signals: Signals, rate: float) -> Array:
         """The term on the signals of a run, (n,)."""
@@ -118,7 +122,8 @@ class Library:
             ("{a} * abs({a})", "square", 2), ("abs({a})", "size", 1), ("sgn({a})", "sign", 0), ("{a}**3", "cube", 3),
             ("{a}**2", "even square", 2),
         ):  # fmt: skip
-            yield Term(place, at, text.format(a=a), kind, (a,), self._unit((a, power)))
+            plain = Term(place, at, text.format(a=a), kind, (a,), self._unit((a, power)))
+            yield self._dragging(plain, a, "1" if kind == "sign" else "")
         scale = Shape("a0", float(np.std(self.typical[a])), self.units[a], free=False)
         yield Term(place, at, f"sgn({a}) * sqrt(abs({a}) / a0)", "root", (a,), {}, (scale,))
         for share in _QUANTILES:
@@ -203,7 +208,8 @@ class Library:
         ):  # fmt: skip
             if not symmetric or a < b:
                 unit = self._unit((a, powers[0]), (b, powers[1]))
-                yield Term(place, at, text.format(a=a, b=b), kind, (a, b), unit)
+                taken = text.removesuffix(" * sgn({b})").format(a=a) if kind in ("size along", "square along") else ""
+                yield self._dragging(Term(place, at, text.format(a=a, b=b), kind, (a, b), unit), b, taken)
 
     def _of_position(self, place: str, at: str) -> Iterator[Term]:
         if "x" not in self.typical:
@@ -221,7 +227,8 @@ class Library:
                 if b in (at, "v") and b != "x":
                     yield Term(place, at, f"{b} * {hill}", "hill of", (b, "x"), self._unit((b, 1)), shapes)
             if "v" in self.signals[place]:
-                yield Term(place, at, f"sgn(v) * {hill}", "friction at", ("v", "x"), {}, shapes)
+                rubbing = Term(place, at, f"sgn(v) * {hill}", "friction at", ("v", "x"), {}, shapes)
+                yield self._dragging(rubbing, "v", hill)
 
     def _with_conditions(self, place: str, at: str) -> Iterator[Term]:
         """Terms that grow with a condition of the run, where it differs, or with time."""
@@ -232,7 +239,8 @@ class Library:
                 yield Term(place, at, f"{name} * {a}", "condition", (name, a), powers)
                 if a == "v":
                     powers = dict(powers_of(unit) or {})
-                    yield Term(place, at, f"{name} * sgn({a})", "friction with", (name, a), powers)
+                    rubbing = Term(place, at, f"{name} * sgn({a})", "friction with", (name, a), powers)
+                    yield self._dragging(rubbing, a, name)
         if "t" not in self.varied:
             yield Term(place, at, "t", "drift", ("t",), {"s": 1.0})
         for share in _FADING:
@@ -241,7 +249,14 @@ class Library:
                 if a in (at, "v"):
                     yield Term(place, at, f"{a} * (1 - exp(-t / T))", "fading", ("t", a), self._unit((a, 1)), (T,))
                 if (place, a) == ("load", "v"):
-                    yield Term(place, at, f"sgn({a}) * exp(-t / T)", "fading friction", ("t", a), {}, (T,))
+                    rubbing = Term(place, at, f"sgn({a}) * exp(-t / T)", "fading friction", ("t", a), {}, (T,))
+                    yield self._dragging(rubbing, a, "exp(-t / T)")
+
+    def _dragging(self, term: Term, along: str, limit: str) -> Term:
+        """A term that turns with the sign of `along`: dry friction where that is the speed of the moving mass."""
+        if limit and (term.place, along) == ("load", "v") and LIMIT in self.units:
+            return replace(term, limit=limit)
+        return term
 
     def _periodic(self, place: str, at: str) -> Iterator[Term]:
         """What comes and goes with time, each frequency of the band that the shortest run resolves.

@@ -12,8 +12,10 @@ import pytest
 from ident.custom.definition import read_effect
 from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.proposals import regression as regressions
+from ident.diagnosis.proposals.candidate import Candidate
 from ident.diagnosis.proposals.search import Search
 from ident.diagnosis.proposals.sight import sight
+from ident.diagnosis.proposals.terms import Term
 from ident.diagnosis.result import Diagnosis
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.settings import Settings
@@ -52,7 +54,7 @@ TRUTHS = {
     "unequal_areas": (0.06, "Q = Q + s * (abs(v)); R = R + s * (P * sgn(v))", -0.06 * PLANT.A),
     "pressure_gain": (0.08, "w = w + s * (w * abs(P))", 0.08 / 1e6),
     "gain_drift": (0.3, "w = w + s * (t * w)", 0.3),
-    "position_friction": (150.0, "R = R + s * (x**2 * sgn(v))", 150.0 / 2e-3**2),
+    "position_friction": (150.0, "Ff = Ff + s * (x**2)", 150.0 / 2e-3**2),
     "sensor_curve": (0.06, "y = y + s * (x**3)", 0.06 / 2e-3**2),
     "flow_force": (0.05, "e = e + s * (w * abs(P))", -0.05 / 1e6),
     "pump_ripple": (0.05, "Q = Q + s * (Q * sin(2 * pi * (fp * t + g)))", 0.05),
@@ -254,3 +256,20 @@ def test_the_regression_is_that_of_all_terms_and_runs_at_once(monkeypatch):
     for (text, strength, share), (other, same, left) in zip(together, candidates(), strict=True):
         assert text == other
         assert (strength, share) == pytest.approx((same, left), rel=1e-6)
+
+
+def test_a_term_that_closes_a_circle_with_those_before_is_not_tried():
+    """The resistance hangs on the flow; a spool that moved with the load's force would have no state in between."""
+    given = {
+        "name": "before", "place": "load", "equation": "R = R + s * Q",
+        "strength": {"symbol": "s", "unit": "N*s/m^3", "lower": -1e9, "upper": 1e9},
+    }  # fmt: skip
+    models = ModelFamily.of(
+        machine(1), Settings(model="qian2014", custom=(given,)), (read_effect(given, model="qian2014"),)
+    )
+    base = models.refit(("before",), {p.in_equations: p.value for p in models.preset.parameters})
+    search, seen = Search(models, base, report=lambda _: None, given=()), sight(models, base)
+    force = Candidate((Term("spool", "w", "F", "share", ("F",), {}),), (1.0,), 1e-9, 0.5)
+    assert search._tried(models, base, "proposed_1", force, seen) is None
+    speed = Candidate((Term("spool", "w", "x", "share", ("x",), {}),), (1.0,), 1e-9, 0.5)
+    assert search._tried(models, base, "proposed_1", speed, seen) is not None

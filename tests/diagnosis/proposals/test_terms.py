@@ -30,13 +30,18 @@ def signals() -> dict[str, np.ndarray]:
     }
 
 
-def terms() -> dict[tuple[str, str], Term]:
-    """The first of each form at each place."""
+def every() -> list[Term]:
+    """The whole library."""
     there = {
         place: [name for name in _SIGNALS if _known_there(MODEL, place, at, name)] for place, at in _PLACES.items()
     }
     library = Library(_PLACES, there, signals(), UNITS, BAND, SECONDS, ("Kp", "mL", "k"))
-    listed = list(library.terms())
+    return list(library.terms())
+
+
+def terms() -> dict[tuple[str, str], Term]:
+    """The first of each form at each place."""
+    listed = every()
     assert len({(term.at, term.text, *(shape.value for shape in term.shapes)) for term in listed}) == len(listed)
     return {(term.place, term.kind): term for term in reversed(listed)}
 
@@ -53,7 +58,8 @@ def test_a_term_is_worked_out_and_is_an_effect(form):
     assert np.std(samples) > 0 or term.kind == "hill"
     own = definition("proposed_1", (term,), (1.0,), 1e-3, known, UNITS)
     effect = read_effect(own, model="qian2014")
-    assert effect.strength.lower < 0 < effect.strength.upper
+    assert effect.strength.lower < 0 or term.limit
+    assert effect.strength.upper > 0
     for parameter in effect.parameters[1:]:
         assert parameter.lower < parameter.upper
         assert parameter.lower <= parameter.value <= parameter.upper
@@ -86,3 +92,20 @@ def test_a_signal_that_follows_at_once_is_none_of_a_place():
     assert _known_there(MODEL, "controller", "e", "w")
     assert not _known_there(MODEL, "spool", "w", "Q")
     assert not _known_there(MODEL, "load", "R", "F")
+
+
+def test_friction_sticks_and_what_drives_does_not():
+    """What turns with the sign of the mass's speed adds to dry friction, where it brakes: no sign chatters at rest."""
+    for form, limit in (
+        (("load", "size along"), None), (("load", "friction with"), "Kp"), (("load", "fading friction"), "exp(-t / T)"),
+        (("load", "friction at"), "exp(-((x - xm) / d)**2)"),
+    ):  # fmt: skip
+        term = next(one for one in every() if (one.place, one.kind) == form and one.limit)
+        assert limit in (None, term.limit)
+        assert term.text in (f"{term.limit} * sgn(v)", f"sgn(v) * {term.limit}")
+        braking = definition("proposed_1", (term,), (1.0,), 1e-3, signals(), UNITS)
+        assert braking["equation"] == [f"Ff = Ff + s * ({term.limit})"]
+        assert braking["strength"]["lower"] == 0.0
+        driving = definition("proposed_1", (term,), (1.0,), -1e-3, signals(), UNITS)
+        assert driving["equation"] == [f"R = R + s * ({term.text})"]
+    assert all(one.place == "load" and "sgn(v)" in one.text for one in every() if one.limit)
