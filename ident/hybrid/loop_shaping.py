@@ -72,7 +72,9 @@ def design(
     Unusable where the plant is not stable, and where the sampled loop would not be.
     """
     if structure not in STRUCTURES:
-        raise Unusable("unknown-structure", f"no structure {structure!r}", "structure", f"use {' or '.join(STRUCTURES)}")
+        raise Unusable(
+            "unknown-structure", f"no structure {structure!r}", "structure", f"use {' or '.join(STRUCTURES)}"
+        )
     outer, through = factored(Rational.of_model(plant))
     rolled = target.rational.times(_roll_off(target, outer))
     stabilised = robust_stabilisation(rolled.times(through).realised(), FACTOR)

@@ -30,9 +30,9 @@ class StateSpace:
 
     def response(self, at: Complex) -> Complex:
         """C (λI − A)⁻¹ B + D at the points λ (f,), s or z, shape (f, p, m)."""
-        resolvent = at[:, None, None] * np.eye(self.order) - self.A
+        resolvent: Complex = at[:, None, None] * np.eye(self.order) - self.A
         inside = np.linalg.solve(resolvent, np.broadcast_to(self.B, (len(at), *self.B.shape)))
-        found: Complex = self.C @ inside + self.D
+        found: Complex = self.C.astype(complex) @ inside + self.D
         return found
 
     def before(self, other: StateSpace) -> StateSpace:

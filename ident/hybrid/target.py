@@ -28,7 +28,7 @@ class Target:
 
     numerator: tuple[float, ...]
     denominator: tuple[float, ...]
-    roll_off: float = 3000.0
+    roll_off: float = 2000.0
     name: str = "own target"
 
     def __post_init__(self) -> None:
@@ -68,7 +68,7 @@ def read_target(text: bytes, where: str) -> Target:
 
         numerator: [1.2e6]
         denominator: [0.008, 20, 65, 1200]
-        roll_off: 3000 rad/s                      (optional)
+        roll_off: 2000 rad/s                      (optional)
 
     Raises Unusable where it is no target.
     """
