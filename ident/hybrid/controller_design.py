@@ -53,6 +53,38 @@ class ControllerDesign:
             found["robustness"] = {**counts, "held": list(self.robustness.held)}
         return {**made.controller.to_json(), "design": found}
 
+    @property
+    def rows(self) -> list[tuple[str, str, str]]:
+        """What a reader wants to know: quantity, value, unit."""
+        made, found, judged = self.design, self.margins, self.robustness
+        rows = [
+            ("structure", made.structure, ""),
+            ("γmin of the target", f"{made.gamma_target:.3f}", ""),
+            ("γmin with its roll-off", f"{made.stabilised.gamma_min:.3f}", ""),
+            ("states, and before the reduction", f"{made.controller.order}, {made.full.order}", ""),
+            ("gain margin", _or_none(found.gain, 1.0), "dB"),
+            ("phase margin", _or_none(found.phase, 1.0), "°"),
+            ("delay margin", _or_none(found.delay, 1e3), "ms"),
+            ("sensitivity peak", f"{found.sensitivity_peak:.2f}", ""),
+            ("magnitude to 5 Hz, within", f"{found.magnitude_5:.2g}", "dB"),
+            ("magnitude to 25 Hz, within", f"{found.magnitude_25:.2g}", "dB"),
+            ("phase to 10 Hz, within", f"{found.phase_10:.2g}", "°"),
+            ("phase to 25 Hz, within", f"{found.phase_25:.2g}", "°"),
+            ("largest gain", f"{found.peak:.1f}", "dB"),
+            ("command by sensor noise", f"{found.noise_gain:.0f}", "m/m RMS"),
+        ]
+        if judged is not None:
+            rows += [
+                ("drawn actuators that stay stable", f"{judged.stable} of {judged.draws}", ""),
+                (f"and within ± 1 dB, ± 10° to 25 Hz of {'nominal' if made.structure == 'feedback' else 'wanted'}",
+                 f"{judged.within} of {judged.draws}", ""),
+            ]  # fmt: skip
+        return rows
+
+
+def _or_none(value: float | None, factor: float) -> str:
+    return "no limit" if value is None else f"{factor * value:.3g}"
+
 
 def design_controller(
     fit: FitResult, specimen: Specimen, *, sample_rate: float, gain: float | None = None,

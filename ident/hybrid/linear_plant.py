@@ -15,6 +15,7 @@ from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.linear import LinearModel
 from ident.matrix import Specimen
+from ident.presets import Preset
 
 Array = NDArray[np.float64]
 OUTPUT = "displacement"
@@ -57,8 +58,8 @@ def linear_plant(
     """The linear part of a fit with this specimen, gain Kp and piston area (m²).
 
     Effects that are linear stay; of the others nothing is known to a linear design, and they are named in `left_out`.
-    Without an area A = 1 m², as where a fit was made without one. Raises Unusable where the model has no displacement
-    that a command drives.
+    A fit made without an area has ratios to it as parameters, and needs none. Raises Unusable where the model has no
+    displacement that a command drives, and where the fit needs an area that is not given.
     """
     preset = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
     if preset.kind != "chain" or preset.driven_by != "command" or OUTPUT not in preset.chain.outputs:
@@ -74,12 +75,23 @@ def linear_plant(
     known = {
         "Kp": preset.gains.get("Kp", 1.0) if gain is None else gain,
         "mL": specimen.mass, "k": specimen.stiffness, "cL": specimen.damping,
-        "A": piston_area or 1.0, "Ir": 1.0, "Ps": supply_pressure or NEVER,
+        "A": _area(preset, fit, piston_area), "Ir": 1.0, "Ps": supply_pressure or NEVER,
     }  # fmt: skip
     if missing := sorted(set(chain.symbols) - values.keys() - known.keys()):
         raise Unusable("bad-fit", f"no value of {', '.join(missing)}", "fit", f"give a fit of model {fit.model}")
     left_out = tuple(effect.name for effect in preset.effects if effect not in kept)
     return LinearPlant(chain, values, known, names, left_out)
+
+
+def _area(preset: Preset, fit: FitResult, stated: float | None) -> float:
+    """The piston area that belongs to the values of a fit, m²: 1 where these are ratios to it."""
+    ratios = preset.without_area or {}
+    if not any(name in fit.parameters for name in ratios):
+        return 1.0
+    if stated is None:
+        raise Unusable("missing-area", "the fit was made with a piston area, which the case does not state",
+                       "case piston_area", "state it, for example piston_area: 497 mm^2")  # fmt: skip
+    return stated
 
 
 def _strength(effect: str, names: Mapping[str, str]) -> str:
