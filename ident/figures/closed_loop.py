@@ -57,8 +57,10 @@ def _curves(made: ControllerDesign) -> dict[str, Complex]:
     z = design.loop.points(frequency)
     found = {CONTROLLED: design.loop.response(frequency), UNCONTROLLED: design.loop.sampled.response(z)[:, 0, 0]}
     if design.structure == "feedback":
+        closed = np.roots(np.polyadd(design.target.denominator, design.target.numerator))
+        label = TARGET if closed.real.max() < 0 else f"{TARGET}, unstable by itself"
         target = design.target.rational.response(np.asarray(2j * np.pi * frequency, dtype=complex))
-        found[TARGET] = target / (1 + target)
+        found[label] = target / (1 + target)
     return found
 
 

@@ -13,6 +13,7 @@ from ident.chain.conditions import NEVER
 from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.fit.result import FitResult
+from ident.hybrid.lags_as_states import with_states
 from ident.linear import LinearModel
 from ident.matrix import Specimen
 from ident.presets import Preset
@@ -57,7 +58,8 @@ def linear_plant(
 ) -> LinearPlant:  # fmt: skip
     """The linear part of a fit with this specimen, gain Kp and piston area (m²).
 
-    Effects that are linear stay; of the others nothing is known to a linear design, and they are named in `left_out`.
+    Effects that are linear stay, their lags and delays as states; of the others nothing is known to a linear design, and
+    they are named in `left_out`.
     A fit made without an area has ratios to it as parameters, and needs none. Raises Unusable where the model has no
     displacement that a command drives, and where the fit needs an area that is not given.
     """
@@ -67,9 +69,10 @@ def linear_plant(
                        "give the fit of an actuator")  # fmt: skip
     names = {name: preset.parameter(name).in_equations for name in fit.parameters}
     values = {names[name]: value for name, value in fit.values.items()}
+    written = {effect.name: with_states(effect) for effect in preset.effects}
     kept = tuple(
-        effect for effect in preset.effects
-        if preset.core.with_effects((effect,)).is_linear and values.get(_strength(effect.name, names), 1.0)
+        effect for name, effect in written.items()
+        if preset.core.with_effects((effect,)).is_linear and values.get(_strength(name, names), 1.0)
     )  # fmt: skip
     chain = preset.core.with_effects(kept)
     known = {
@@ -79,7 +82,7 @@ def linear_plant(
     }  # fmt: skip
     if missing := sorted(set(chain.symbols) - values.keys() - known.keys()):
         raise Unusable("bad-fit", f"no value of {', '.join(missing)}", "fit", f"give a fit of model {fit.model}")
-    left_out = tuple(effect.name for effect in preset.effects if effect not in kept)
+    left_out = tuple(name for name, effect in written.items() if effect not in kept)
     return LinearPlant(chain, values, known, names, left_out)
 
 
