@@ -12,6 +12,7 @@ from app.cli.approve import approve
 from app.cli.bench import bench
 from app.cli.check import check
 from app.cli.compare import compare
+from app.cli.control import control
 from app.cli.demo import demo
 from app.cli.diagnose import diagnose
 from app.cli.drop import drop
@@ -32,7 +33,7 @@ from app.cli.token import token
 from app.cli.upload import upload
 from app.cli.worker import worker
 
-LOCAL = (simulate, check, fit, compare, diagnose, next_, bench, write_report)
+LOCAL = (simulate, check, fit, compare, diagnose, next_, bench, write_report, control)
 SERVICE = (serve, worker, demo, token, migrate, regress)
 CLIENT = (upload, approve, query, revise)
 
