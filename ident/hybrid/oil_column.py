@@ -1,6 +1,6 @@
 """What would have to change for the response to have a peak at a frequency: one parameter, or all of them together.
 
-The size of a change is √Σ (ln factor)², whatever the parameters' units are. The smallest is sought from many random
+The size of a change is √Σ (ln factor)², whatever the parameters' units are. The smallest is sought from random
 starts by sequential quadratic programming (scipy's SLSQP); it is one of many, so the range of each parameter over
 all changes up to a tenth larger is sought as well.
 """
@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
+from ident.fit.result import Starts
 from ident.hybrid.changed_machine import ChangedMachine
 from ident.hybrid.peak_problem import PeakProblem, PeakTarget, free_parameters
 from ident.hybrid.peaks import Peak
@@ -27,9 +28,10 @@ WIDEST = float(np.log(100.0))
 """Of a change: a parameter becomes at most 100 times as large or as small."""
 AS_GOOD = 1.1
 """A change that is at most this many times as large as the smallest does as well."""
-STARTS = 24
+STARTS = 12
 _SCANNED = 401  # factors of one parameter, evenly in their logarithm
 _COARSE = 160  # frequencies at which these are judged
+_AGREE = 1.001  # times the smallest: the same
 _FAR = 0.7  # of ln factor: the spread of the starts
 
 
@@ -65,7 +67,7 @@ class PeakSearch:
     singles: Mapping[str, float | None]
     smallest: JointChange | None
     others: Mapping[str, FactorRange]
-    starts: int
+    starts: Starts | None
     seed: int
     text: tuple[str, ...]
 
@@ -90,8 +92,10 @@ def find_peak(
     if smallest is not None and others:
         ends = [end for r in others.values() for end in (r.at_lower, r.at_upper)]
         smallest = min([smallest, *ends], key=lambda change: change.size)
-    text = tuple(_words(target, already, singles, smallest, others))
-    return PeakSearch(target, already, singles, smallest, others, starts, seed, text)
+    agree = sum(_size(problem, x) <= _AGREE * _size(problem, found[0]) for x in found)
+    tried = None if already else Starts(starts, agree)
+    text = tuple(_words(target, already, singles, smallest, others, tried))
+    return PeakSearch(target, already, singles, smallest, others, tried, seed, text)
 
 
 def _alone(problem: PeakProblem, i: int) -> float | None:
@@ -132,7 +136,7 @@ def _solved(problem: PeakProblem, x: Array, cost: Any, further: Sequence[Mapping
     ]
     with np.errstate(all="ignore"):
         ended = minimize(cost, x, jac=True, method="SLSQP", bounds=problem.bounds(WIDEST), constraints=conditions,
-                         options={"maxiter": 150, "ftol": 1e-9})  # fmt: skip
+                         options={"maxiter": 120, "ftol": 1e-8})  # fmt: skip
     x = np.asarray(ended.x)
     if not np.all(np.isfinite(x)) or problem.judged(x[: len(problem.names)]) is None:
         return None
@@ -170,6 +174,11 @@ def _apart(near: Sequence[Array], n: int) -> list[Array]:
     return kept
 
 
+def _size(problem: PeakProblem, x: Array) -> float:
+    """√Σ (ln factor)²."""
+    return float(np.linalg.norm(x[: len(problem.names)]))
+
+
 def _named(problem: PeakProblem, x: Array) -> JointChange:
     z = x[: len(problem.names)]
     found = problem.judged(z) or ()
@@ -179,7 +188,7 @@ def _named(problem: PeakProblem, x: Array) -> JointChange:
 
 def _words(
     target: PeakTarget, already: bool, singles: Mapping[str, float | None], smallest: JointChange | None,
-    others: Mapping[str, FactorRange],
+    others: Mapping[str, FactorRange], starts: Starts | None,
 ) -> Iterator[str]:  # fmt: skip
     """What was found, in sentences."""
     where = f"a peak at {trimmed(target.frequency)} ± {trimmed(target.tolerance)} Hz"
@@ -198,7 +207,7 @@ def _words(
         yield f"No joint change was found that puts {where}; that none exists is not shown."
         return
     told = ", ".join(f"{name} × {factor:.3g}" for name, factor in smallest.factors.items())
-    yield f"The smallest joint change found that puts {where}: {told}; √Σ (ln factor)² = {smallest.size:.3g}."
+    yield f"The smallest joint change found that puts {where}: {told}; √Σ (ln factor)² = {smallest.size:.3g}; {starts}."
     if others:
         spans = ", ".join(f"{name} × {r.lower:.3g} to {r.upper:.3g}" for name, r in others.items())
         yield (

@@ -25,6 +25,7 @@ from ident.hybrid.peaks import PROMINENCE, Peak, peaks
 Array = NDArray[np.float64]
 _STEP, _SPAN = 1e-6, 0.01  # of ln factor and of ln f: the steps of slopes
 _MARGIN = 1e-4  # by which a solution keeps its conditions
+_WITHIN = 2e-3  # of the tolerance, by which a peak keeps from its edge
 _SETTLING = 1e-3  # of the frequency of the peak: the least share at which every pole settles
 _ON_AXES = 60  # frequencies at which the axes are kept
 _FINE = 900  # frequencies at which a solution is judged
@@ -44,21 +45,21 @@ class Axes:
 class PeakTarget:
     """A peak at `frequency` ± `tolerance` (Hz) at each of the gains, inside `axes` from 0 to `up_to` (Hz).
 
-    Raises Unusable for numbers that are no such thing.
+    Without `up_to` the axes end where the tolerance does; without gains they are those of who asks. Raises Unusable for numbers that are no such thing.
     """
 
     frequency: float
     tolerance: float
-    gains: tuple[float, ...]
+    gains: tuple[float, ...] = ()
     axes: tuple[Axes, ...] = ()
     up_to: float = 0.0
 
     def __post_init__(self) -> None:
-        if not (0 < self.tolerance < self.frequency < np.inf and self.gains and min(self.gains) > 0):
+        if not (0 < self.tolerance < self.frequency < np.inf and min(self.gains, default=1.0) > 0):
             raise Unusable("bad-peak", f"no peak at {self.frequency:g} ± {self.tolerance:g} Hz", "peak",
                            "give a frequency and a smaller tolerance above 0")  # fmt: skip
         for axes in self.axes:
-            if axes.gain not in self.gains or not 0 < axes.lower < axes.upper:
+            if (self.gains and axes.gain not in self.gains) or not 0 < axes.lower < axes.upper:
                 raise Unusable("bad-axes", f"{axes.lower:g} to {axes.upper:g} at Kp = {axes.gain:g}", "axes",
                                "give a range above 0 at one of the gains")  # fmt: skip
         if not self.up_to:
@@ -109,7 +110,7 @@ class PeakProblem:
 
     def bounds(self, widest: float) -> list[tuple[float, float]]:
         """Of x; `widest` is the largest |ln factor|."""
-        f0, d, g = self.target.frequency, self.target.tolerance * (1 - _MARGIN), len(self.gains)
+        f0, d, g = self.target.frequency, self.target.tolerance * (1 - _WITHIN), len(self.gains)
         near = (float(np.log(f0 - d)), float(np.log(f0 + d)))
         return [(-widest, widest)] * len(self.names) + [near] * g + [(near[0] - 4, near[1])] * g
 
@@ -156,7 +157,7 @@ class PeakProblem:
 
     def _inside(self, curve: Array, top: Array, slope: Array) -> list[tuple[Array, list[Array]]]:
         """The conditions of the axes, at their frequencies and at the peak."""
-        rows, (v, g, f) = [], curve.shape
+        rows, (g, f) = [], curve.shape[1:]
         for i, (lower, upper) in enumerate(zip(*self._axes, strict=True)):
             for sign, end in ((1.0, lower), (-1.0, upper)):
                 if np.isfinite(end):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,9 +14,13 @@ from ident.errors import Unusable
 from ident.fit.bulk_modulus import BulkModulus, bulk_modulus
 from ident.fit.result import Estimate, FitResult
 from ident.hybrid.changed_machine import Carried, Change, ChangedMachine, changed_machine
+from ident.hybrid.fig_19 import said_of_fig_19
+from ident.hybrid.oil_column import PeakSearch, find_peak
+from ident.hybrid.peak_problem import PeakTarget
 from ident.hybrid.peaks import Peak, peaks
 from ident.matrix import Actuator, Specimen
 from ident.plain import written
+from ident.progress import Report, silent
 from ident.words.number import trimmed
 
 Array = NDArray[np.float64]
@@ -62,7 +67,8 @@ class RootLocus:
 class WhatIf:
     """An identified machine after a change. `critical_gain` is the smallest Kp above which it is no longer stable.
 
-    It is None where the machine is stable, or unstable, at all gains that were looked at.
+    It is None where the machine is stable, or unstable, at all gains that were looked at. `peak` is what was found for
+    a peak that was asked for, `with_peak` the responses after the smallest change that puts it there.
     """
 
     model: str
@@ -75,6 +81,8 @@ class WhatIf:
     critical_gain: float | None
     bulk_modulus: BulkModulus | None
     notes: tuple[str, ...]
+    peak: PeakSearch | None = None
+    with_peak: tuple[Response, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data."""
@@ -82,8 +90,11 @@ class WhatIf:
         return data
 
 
-def what_if(fit: FitResult, change: Change, gains: tuple[float, float] | None = None) -> WhatIf:
-    """The machine of a fit after a change, at the two ends of a range of gains Kp.
+def what_if(
+    fit: FitResult, change: Change, gains: tuple[float, float] | None = None, peak: PeakTarget | None = None,
+    seed: int = 0, report: Report = silent,
+) -> WhatIf:  # fmt: skip
+    """The machine of a fit after a change, at the two ends of a range of gains Kp; what would put a `peak` there.
 
     Responses are the linearisation of the fitted chain (:meth:`ident.chain.chain.Chain.linearise`). Raises Unusable
     as :func:`ident.hybrid.changed_machine.changed_machine` does, and for gains that are no range above 0.
@@ -92,12 +103,15 @@ def what_if(fit: FitResult, change: Change, gains: tuple[float, float] | None = 
     ends = _gains(machine, gains)
     band = _band(machine, ends)
     responses = tuple(response(machine, gain, band) for gain in ends)
-    oil = _oil(fit, machine)
+    oil, found, with_peak = _oil(fit, machine), None, ()
+    if peak is not None:
+        found = find_peak(machine, replace(peak, gains=tuple(gain or 1.0 for gain in ends)), seed, report=report)
+        with_peak = _with_peak(machine, found, ends, band)
     return WhatIf(
         model=fit.model, output=machine.output, actuator=machine.actuator, specimen=machine.specimen,
         parameters=dict(machine.parameters), responses=responses, locus=_locus(machine, ends),
         critical_gain=_critical_gain(machine, ends), bulk_modulus=oil,
-        notes=tuple(_notes(machine, responses, band, oil)),
+        peak=found, with_peak=with_peak, notes=(*_notes(machine, responses, oil), *(found.text if found else ())),
     )  # fmt: skip
 
 
@@ -112,6 +126,17 @@ def _gains(machine: ChangedMachine, gains: tuple[float, float] | None) -> tuple[
     if not (0 < lower <= upper < np.inf):
         raise Unusable("bad-gain", f"{lower:g} to {upper:g} is no range of gains above 0", "gain", "write it as 2:3")
     return (lower,) if lower == upper else (lower, upper)
+
+
+def _with_peak(
+    machine: ChangedMachine, found: PeakSearch, gains: tuple[float | None, ...], frequency: Array
+) -> tuple[Response, ...]:
+    """The responses after the smallest change."""
+    if found.smallest is None:
+        return ()
+    factors = found.smallest.factors
+    parameters = {n: replace(p, after=p.after * factors.get(n, 1.0)) for n, p in machine.parameters.items()}
+    return tuple(response(replace(machine, parameters=parameters), gain, frequency) for gain in gains)
 
 
 def response(machine: ChangedMachine, gain: float | None, frequency: Array) -> Response:
@@ -187,19 +212,25 @@ def _error(old: Estimate, new: Carried) -> float | None:
     return old.std_error * new.after / new.before if known and old.std_error is not None else None
 
 
-def _notes(machine: ChangedMachine, responses: tuple[Response, ...], band: Array, oil: BulkModulus | None) -> list[str]:
+def _notes(machine: ChangedMachine, responses: tuple[Response, ...], oil: BulkModulus | None) -> Iterator[str]:
     """What a reader has to know of the responses."""
-    notes = [oil.note] if oil else []
     if machine.left_out:
-        notes.append(
-            f"Left out of the response: {', '.join(machine.left_out)}. Its answer hangs on the amplitude, and a linear "
-            "response knows none."
+        yield (
+            f"Left out of the response: {', '.join(machine.left_out)}. What an effect does hangs on the amplitude, and "
+            "a linear response knows none."
         )
-    for each in responses:
-        where = "" if each.gain is None else f" at Kp = {trimmed(each.gain)}"
-        if not each.stable:
-            notes.append(f"Unstable{where}: the response there is that of no steady motion.")
-        below = [peak for peak in each.peaks if peak.frequency < HIGHEST]
-        if not below:
-            notes.append(f"No peak below {trimmed(HIGHEST)} Hz{where}.")
-    return notes
+    unstable = [each.gain for each in responses if not each.stable]
+    if unstable:
+        yield f"Unstable{_at_gains(unstable)}: no steady motion has that response."
+    flat = [each.gain for each in responses if not any(peak.frequency < HIGHEST for peak in each.peaks)]
+    if flat:
+        yield f"No peak below {trimmed(HIGHEST)} Hz{_at_gains(flat)}."
+    told = said_of_fig_19(machine, tuple(peak for each in responses for peak in each.peaks))
+    if told:
+        yield told
+    if oil:
+        yield oil.note
+
+
+def _at_gains(gains: Sequence[float | None]) -> str:
+    return "" if gains[0] is None else f" at Kp = {' and '.join(trimmed(gain) for gain in gains if gain is not None)}"
