@@ -1,7 +1,8 @@
 """An identified machine of another size, or with another specimen: what scales with what, and its linear model.
 
 The flow gain Z0 is the gain of the valve times the piston area, so Z0 ∝ A; the compressibility Ka = Vt/(4 βe) goes
-with the oil volume, so Ka ∝ A × stroke where no volume is named (Qian et al. 2014, eqs. 4, 8). All else is carried over.
+with the oil volume, so Ka ∝ A × stroke where no volume is named (Qian et al. 2014, eqs. 4, 8). All else is
+carried over.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ class Change:
 
     sizes: Mapping[str, float] = field(default_factory=dict)
     values: Mapping[str, float] = field(default_factory=dict)
-    specimen: Specimen = Specimen()
+    specimen: Specimen = field(default_factory=Specimen)
     known: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -132,7 +133,16 @@ def _known(fit: FitResult, stated: Mapping[str, float]) -> Actuator:
     if "area" in stated and any("A^" in name for name in fit.parameters):
         raise Unusable("missing-area", "the fit knows only ratios to the piston area", "fitted area",
                        "state piston_area in matrix.yaml and fit again")  # fmt: skip
-    return replace(actuator, **{_FIELDS[name]: value for name, value in stated.items()})
+    return _with_sizes(actuator, stated)
+
+
+def _with_sizes(actuator: Actuator, sizes: Mapping[str, float]) -> Actuator:
+    return replace(
+        actuator,
+        piston_area=sizes.get("area", actuator.piston_area),
+        stroke=sizes.get("stroke", actuator.stroke),
+        volume=sizes.get("volume", actuator.volume),
+    )
 
 
 def _resized(before: Actuator, sizes: Mapping[str, float]) -> Actuator:
@@ -140,7 +150,7 @@ def _resized(before: Actuator, sizes: Mapping[str, float]) -> Actuator:
     for name, value in sizes.items():
         if not (np.isfinite(value) and value > 0):
             raise Unusable("bad-size", f"{name} is {value:g}", f"set {name}", "give a size above 0")
-    after = replace(before, **{_FIELDS[name]: value for name, value in sizes.items()})
+    after = _with_sizes(before, sizes)
     if "volume" not in sizes and before.volume is not None and sizes:
         after = replace(after, volume=before.volume * _ratio(before, after, ("area", "stroke"), sizes))
     return after

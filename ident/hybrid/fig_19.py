@@ -29,8 +29,8 @@ def said_of_fig_19(machine: ChangedMachine, peaks: tuple[Peak, ...]) -> str | No
     )
     source = "Table 4" if printed else "these values"
     return (
-        f"Fig. 19 of Qian et al. (2014) shows a peak near 45 Hz for this actuator and specimen. It does not follow from "
-        f"{source}: as scaled there is no such peak."
+        f"Fig. 19 of Qian et al. (2014) shows a peak near 45 Hz for this actuator and specimen. It does "
+        f"not follow from {source}: as scaled there is no such peak."
     )
 
 

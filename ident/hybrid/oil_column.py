@@ -7,7 +7,7 @@ all changes up to a tenth larger is sought as well.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -120,7 +120,7 @@ def _smallest(problem: PeakProblem, seed: int, starts: int, report: Report) -> l
         report(Progress("peak", start, starts))
         spread = _FAR * (0.3 + 1.2 * start / starts)
         x = np.concatenate([spread * rng.standard_normal(n), np.full(g, f0), np.full(g, f0 - 0.4)])
-        solved = _solved(problem, x, lambda x: (float(x[:n] @ x[:n]), 2 * x * (np.arange(len(x)) < n)))
+        solved = _solved(problem, x, _squares(n))
         if solved is not None:
             found.append(solved)
     report(Progress("peak", starts, starts))
@@ -143,6 +143,16 @@ def _solved(problem: PeakProblem, x: Array, cost: Any, further: Sequence[Mapping
     return x
 
 
+def _squares(n: int) -> Callable[[Array], tuple[float, Array]]:
+    """Σ z², and its slope."""
+    return lambda x: (float(x[:n] @ x[:n]), 2 * x * (np.arange(len(x)) < n))
+
+
+def _straight(along: Array) -> Callable[[Array], tuple[float, Array]]:
+    """What is furthest along a direction, and its slope."""
+    return lambda x: (float(along @ x), along)
+
+
 def _ranges(problem: PeakProblem, found: Sequence[Array], report: Report) -> Iterator[tuple[str, FactorRange]]:
     """Of each parameter the least and the largest factor, among what was found and by a search from there."""
     n = len(problem.names)
@@ -154,11 +164,10 @@ def _ranges(problem: PeakProblem, found: Sequence[Array], report: Report) -> Ite
         report(Progress("other changes", i, n))
         ends = []
         for sign in (1.0, -1.0):
-            slope = np.zeros(len(found[0]))
-            slope[i] = sign
-            tried = [_solved(problem, x, lambda x, s=slope: (float(s @ x), s), [room]) for x in _apart(near, n)]
+            along = sign * np.eye(len(found[0]))[i]
+            tried = [_solved(problem, x, _straight(along), [room]) for x in _apart(near, n)]
             allowed = [x for x in (*tried, *near) if x is not None and np.linalg.norm(x[:n]) <= most * (1 + 1e-6)]
-            ends.append(min(allowed, key=lambda x, s=slope: float(s @ x)))
+            ends.append(min(allowed, key=along.dot))
         low, high = (_named(problem, x) for x in ends)
         name = problem.names[i]
         yield name, FactorRange(low.factors[name], high.factors[name], low, high)

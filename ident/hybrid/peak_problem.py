@@ -3,7 +3,7 @@
 The unknowns are x = (z, p, t): z the natural logarithms of the factors of n parameters, and for each of g gains the
 logarithms of the frequency p of the peak and of a trough t below it. With L = ln|G| over ln f the conditions are
 
-    L'(p) = 0,  L''(p) ≤ 0,  L(p) − L(t) ≥ ln 1.01,  t < p,  |p − ln f0| ≤ tolerance,
+    L'(p) = 0,  L''(p) < 0,  L(p) ≥ L within 10 % of p,  L(p) − L(t) ≥ ln 1.01,  t < p,  f0 ± tolerance holds exp p,
 
 poles that settle, and |G| inside its axes over their frequencies. Slopes are differences of the one linearised chain.
 """
@@ -27,9 +27,11 @@ _STEP, _SPAN = 1e-6, 0.01  # of ln factor and of ln f: the steps of slopes
 _MARGIN = 1e-4  # by which a solution keeps its conditions
 _WITHIN = 2e-3  # of the tolerance, by which a peak keeps from its edge
 _SETTLING = 1e-3  # of the frequency of the peak: the least share at which every pole settles
-_ON_AXES = 60  # frequencies at which the axes are kept
+_ON_AXES = 50  # frequencies at which the axes are kept
 _FINE = 900  # frequencies at which a solution is judged
-_STENCIL = np.array([-2.0, -1.0, 0.0, 1.0, 2.0]) * _SPAN
+_STENCIL, _OUTER = np.array([-1.0, 0.0, 1.0]) * _SPAN, np.array([-2.0, 2.0]) * _SPAN
+_AROUND = np.array([0.0, -0.1, -0.06, -0.03, 0.03, 0.06, 0.1])  # of ln f: where the peak is higher than the curve
+_ROUND = 0.05  # the least −L'' of a peak: a broad one that stands 1 % above its trough has 0.08
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,8 @@ class Axes:
 class PeakTarget:
     """A peak at `frequency` ± `tolerance` (Hz) at each of the gains, inside `axes` from 0 to `up_to` (Hz).
 
-    Without `up_to` the axes end where the tolerance does; without gains they are those of who asks. Raises Unusable for numbers that are no such thing.
+    Without `up_to` the axes end where the tolerance does; without gains they are those of who asks. Raises Unusable for
+    numbers that are no such thing.
     """
 
     frequency: float
@@ -133,25 +136,32 @@ class PeakProblem:
         """Both kinds of conditions, each with its slope."""
         n, g = len(self.names), len(self.gains)
         z, p, t = x[:n], x[n : n + g], x[n + g :]
-        near = np.exp(np.concatenate([*(at + _STENCIL for at in p), *(at + _STENCIL[1:4] for at in t)]))
+        around = (p[:, None] + _AROUND).ravel()
+        centres = np.concatenate([around, t])[:, None] + _STENCIL
+        near = np.exp(np.concatenate([centres.ravel(), (p[:, None] + _OUTER).ravel()]))
         moved = np.concatenate([z[None], z + _STEP * np.eye(n)])
         L, growth = self.levels(moved, np.concatenate([near, self.grid]))
-        own = np.arange(g)
-        top = L[:, :, : 5 * g].reshape(n + 1, g, g, 5)[:, own, own]  # (v, g, 5), each gain at its own peak
-        low = L[:, :, 5 * g : 8 * g].reshape(n + 1, g, g, 3)[:, own, own]
-        slope, bend = _slope(top[..., 1:4]), _bend(top[..., 1:4])
-        equal = (slope[0], np.concatenate([_by_z(slope), np.diag(bend[0]), np.zeros((g, g))], axis=1))
-        third = (top[0, :, 4] - 2 * top[0, :, 3] + 2 * top[0, :, 1] - top[0, :, 0]) / (2 * _SPAN**3)
-        step = top[..., 2] - low[..., 1] - np.log(PROMINENCE) - _MARGIN
+        own, m = np.arange(g), 3 * g * len(_AROUND)
+        by = L[:, :, :m].reshape(n + 1, g, g, len(_AROUND), 3)[:, own, own]  # each gain at its own peak
+        low = L[:, :, m : m + 3 * g].reshape(n + 1, g, g, 3)[:, own, own]
+        outer = L[0, :, m + 3 * g : m + 5 * g].reshape(g, g, 2)[own, own]
+        top = by[:, :, 0]
+        slope, bend = _slope(by), _bend(top)
+        equal = (slope[0, :, 0], np.concatenate([_by_z(slope[..., 0]), np.diag(bend[0]), np.zeros((g, g))], axis=1))
+        third = (outer[:, 1] - 2 * top[0, :, 2] + 2 * top[0, :, 0] - outer[:, 0]) / (2 * _SPAN**3)
+        step = top[..., 1] - low[..., 1] - np.log(PROMINENCE) - _MARGIN
         limit = -growth / self.target.frequency - _SETTLING
         I, O = np.eye(g), np.zeros((g, g))  # noqa: E741 - as in print
         rows = [
-            (-bend[0], [_by_z(-bend), -np.diag(third), O]),
-            (step[0], [_by_z(step), np.diag(slope[0]), -np.diag(_slope(low[0]))]),
+            (-bend[0] - _ROUND, [_by_z(-bend), -np.diag(third), O]),
+            (step[0], [_by_z(step), np.diag(slope[0, :, 0]), -np.diag(_slope(low[0]))]),
             (p - t - 3 * _SPAN, [np.zeros((g, n)), I, -I]),
             (limit[0], [_by_z(limit), O, O]),
         ]
-        rows += self._inside(L[:, :, 8 * g :], top[..., 2], slope[0])
+        for j in range(1, len(_AROUND)):
+            above = top[..., 1] - by[:, :, j, 1]
+            rows.append((above[0], [_by_z(above), np.diag(slope[0, :, 0] - slope[0, :, j]), O]))
+        rows += self._inside(L[:, :, m + 5 * g :], top[..., 1], slope[0, :, 0])
         least = np.concatenate([value for value, _ in rows])
         return equal, (least, np.concatenate([np.concatenate(parts, axis=1) for _, parts in rows]))
 

@@ -103,7 +103,8 @@ def what_if(
     ends = _gains(machine, gains)
     band = _band(machine, ends)
     responses = tuple(response(machine, gain, band) for gain in ends)
-    oil, found, with_peak = _oil(fit, machine), None, ()
+    oil, found = _oil(fit, machine), None
+    with_peak: tuple[Response, ...] = ()
     if peak is not None:
         found = find_peak(machine, replace(peak, gains=tuple(gain or 1.0 for gain in ends)), seed, report=report)
         with_peak = _with_peak(machine, found, ends, band)
@@ -143,7 +144,7 @@ def response(machine: ChangedMachine, gain: float | None, frequency: Array) -> R
     """The response at one gain over `frequency` (f,) in Hz."""
     model = machine.linear(np.array([1.0 if gain is None else gain]))
     G = model.frequency_response(frequency)[0]
-    roots = np.linalg.eigvals(model.A[0]) / (2 * np.pi)
+    roots = np.linalg.eigvals(model.A[0]).astype(complex) / (2 * np.pi)
     magnitude = np.abs(G)
     return Response(
         gain, bool(roots.real.max(initial=-np.inf) < 0), _poles(roots), peaks(frequency, magnitude),
@@ -179,7 +180,7 @@ def _locus(machine: ChangedMachine, ends: tuple[float | None, ...]) -> RootLocus
         return None
     lower, upper = (ends[0], ends[-1]) if len(ends) > 1 else (ends[0] / 3, ends[0] * 3)
     gain = np.geomspace(lower, upper, _LOCUS)
-    roots = np.linalg.eigvals(machine.linear(gain).A) / (2 * np.pi)
+    roots = np.linalg.eigvals(machine.linear(gain).A).astype(complex) / (2 * np.pi)
     return RootLocus(tuple(gain.tolist()), tuple(map(_poles, roots)))
 
 
