@@ -23,14 +23,15 @@ from ident.hybrid.changed_machine import ChangedMachine
 from ident.hybrid.peaks import PROMINENCE, Peak, peaks
 
 Array = NDArray[np.float64]
-_STEP, _SPAN = 1e-6, 0.01  # of ln factor and of ln f: the steps of slopes
-_MARGIN = 1e-4  # by which a solution keeps its conditions
-_WITHIN = 2e-3  # of the tolerance, by which a peak keeps from its edge
+_STEP, _SPAN = 1e-6, 2e-3  # of ln factor and of ln f: the steps of slopes
+_MARGIN = 5e-4  # by which a solution keeps its conditions
+_WITHIN = 5e-3  # of the tolerance, by which a peak keeps from its edge
 _SETTLING = 1e-3  # of the frequency of the peak: the least share at which every pole settles
 _ON_AXES = 50  # frequencies at which the axes are kept
 _FINE = 900  # frequencies at which a solution is judged
 _STENCIL, _OUTER = np.array([-1.0, 0.0, 1.0]) * _SPAN, np.array([-2.0, 2.0]) * _SPAN
 _AROUND = np.array([0.0, -0.1, -0.06, -0.03, 0.03, 0.06, 0.1])  # of ln f: where the peak is higher than the curve
+_BELOW = 0.03  # of ln f: the least distance of the trough
 _ROUND = 0.05  # the least −L'' of a peak: a broad one that stands 1 % above its trough has 0.08
 
 
@@ -155,7 +156,7 @@ class PeakProblem:
         rows = [
             (-bend[0] - _ROUND, [_by_z(-bend), -np.diag(third), O]),
             (step[0], [_by_z(step), np.diag(slope[0, :, 0]), -np.diag(_slope(low[0]))]),
-            (p - t - 3 * _SPAN, [np.zeros((g, n)), I, -I]),
+            (p - t - _BELOW, [np.zeros((g, n)), I, -I]),
             (limit[0], [_by_z(limit), O, O]),
         ]
         for j in range(1, len(_AROUND)):

@@ -152,7 +152,7 @@ def response(machine: ChangedMachine, gain: float | None, frequency: Array) -> R
     )  # fmt: skip
 
 
-def _poles(roots: NDArray[np.complex128]) -> tuple[Pole, ...]:
+def _poles(roots: NDArray[Any]) -> tuple[Pole, ...]:
     """Those furthest from the imaginary axis first."""
     return tuple(Pole(float(root.real), float(root.imag)) for root in sorted(roots, key=lambda r: (r.real, -r.imag)))
 
@@ -217,8 +217,8 @@ def _notes(machine: ChangedMachine, responses: tuple[Response, ...], oil: BulkMo
     """What a reader has to know of the responses."""
     if machine.left_out:
         yield (
-            f"Left out of the response: {', '.join(machine.left_out)}. What an effect does hangs on the amplitude, and "
-            "a linear response knows none."
+            f"Left out of the response: {', '.join(machine.left_out)}. The linearised equations know nothing of what "
+            "hangs on the amplitude, nor of the lags and delays of effects."
         )
     unstable = [each.gain for each in responses if not each.stable]
     if unstable:
