@@ -24,47 +24,50 @@ _OF_SPECIMEN = {"mass": "mass", "stiffness": "stiffness", "damping": "damping"}
 _NEAR = 2 / 45  # of the frequency: the usual tolerance, 2 Hz at 45 Hz
 
 
+FitPath = Annotated[Path, typer.Argument(metavar="FIT.json", help="What `servoident fit --json` wrote.")]
+Changed = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="Change area, stroke, volume (with unit) or a parameter; Z0 goes with the area, Ka with area × stroke or "
+        "with the volume. May be repeated.",
+    ),
+]
+Fitted = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME=VALUE", help="Area, stroke or volume of the machine that was fitted, where its fit lacks it."
+    ),
+]
+OfSpecimen = Annotated[
+    str | None,
+    typer.Option(metavar="mass=…,stiffness=…,damping=…", help="What it moves, with units; nothing without it."),
+]
+Gains = Annotated[
+    str | None, typer.Option(metavar="LO:HI", help="Gains Kp of the responses and the root locus; 1:10 without it.")
+]
+AtPeak = Annotated[
+    str | None, typer.Option(metavar="HZ", help="Find the smallest change that puts a peak there, as in 45 Hz.")
+]
+Near = Annotated[
+    str | None, typer.Option(metavar="HZ", help="How near the peak has to be; 2 Hz at 45 Hz and in proportion.")
+]
+InAxes = Annotated[
+    list[str] | None,
+    typer.Option(metavar="KP=LO:HI", help="Range of |G| to keep at a gain with the peak; may be repeated."),
+]
+UpTo = Annotated[str | None, typer.Option(metavar="HZ", help="Where the axes end; at the peak's tolerance without it.")]
+Seed = Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Seed of the search for a peak.")]
+Json = Annotated[Path | None, typer.Option(metavar="FILE", help="Write the result as JSON; - is stdout.")]
+Out = Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures: svg, png, pdf, json.")]
+
+
 def whatif(
-    fit: Annotated[Path, typer.Argument(metavar="FIT.json", help="What `servoident fit --json` wrote.")],
-    set_: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="NAME=VALUE",
-            help="Change area, stroke, volume (with unit) or a parameter; Z0 goes with the area, Ka with area × "
-            "stroke or with the volume. May be repeated.",
-        ),
-    ] = None,
-    fitted: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME=VALUE", help="Area, stroke or volume of the machine that was fitted, where its fit lacks it."
-        ),
-    ] = None,
-    specimen: Annotated[
-        str | None,
-        typer.Option(metavar="mass=…,stiffness=…,damping=…", help="What it moves, with units; nothing without it."),
-    ] = None,
-    gain: Annotated[
-        str | None, typer.Option(metavar="LO:HI", help="Gains Kp of the responses and the root locus; 1:10 without it.")
-    ] = None,
-    peak: Annotated[
-        str | None, typer.Option(metavar="HZ", help="Find the smallest change that puts a peak there, as in 45 Hz.")
-    ] = None,
-    tolerance: Annotated[
-        str | None, typer.Option(metavar="HZ", help="How near the peak has to be; 2 Hz at 45 Hz and in proportion.")
-    ] = None,
-    axes: Annotated[
-        list[str] | None,
-        typer.Option(metavar="KP=LO:HI", help="Range of |G| to keep at a gain with the peak; may be repeated."),
-    ] = None,
-    up_to: Annotated[
-        str | None, typer.Option(metavar="HZ", help="Where the axes end; at the peak's tolerance without it.")
-    ] = None,
-    seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Seed of the search for a peak.")] = 0,
-    json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the result as JSON; - is stdout.")] = None,
-    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures: svg, png, pdf, json.")] = None,
-) -> None:
+    fit: FitPath, set_: Changed = None, fitted: Fitted = None, specimen: OfSpecimen = None, gain: Gains = None,
+    peak: AtPeak = None, tolerance: Near = None, axes: InAxes = None, up_to: UpTo = None, seed: Seed = 0,
+    json: Json = None, out: Out = None,
+) -> None:  # fmt: skip
     """Change area, stroke, volume, specimen or parameters of an identified machine: response, peaks, root locus."""
     from ident.hybrid.what_if import what_if
 
