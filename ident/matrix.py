@@ -31,7 +31,10 @@ DISTURBANCES = {"flow_disturbance": "flow", "load_disturbance": "load", "sensor_
 
 @dataclass(frozen=True)
 class Actuator:
-    """The machine under test; lengths in m, areas in m², pressures in Pa. What is not stated is None."""
+    """The machine under test; lengths in m, areas in m², pressures in Pa. What is not stated is None.
+
+    `volume` is the oil between valve and piston on both sides, Vt, in m³.
+    """
 
     serial: str
     name: str = ""
@@ -41,6 +44,7 @@ class Actuator:
     supply_pressure: float | None = None
     servo_valve: str = ""
     notes: str = ""
+    volume: float | None = None
 
 
 @dataclass(frozen=True)

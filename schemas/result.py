@@ -147,6 +147,20 @@ class WindowView(BaseModel):
     free_run: dict[str, list[float]] = Field(default_factory=dict)
 
 
+class ActuatorStated(BaseModel):
+    """What was stated of the machine that was fitted, SI; null is not stated."""
+
+    serial: str
+    name: str = ""
+    batch: str = ""
+    piston_area: float | None = None
+    stroke: float | None = None
+    supply_pressure: float | None = None
+    servo_valve: str = ""
+    notes: str = ""
+    volume: float | None = None
+
+
 class FitResultView(BaseModel):
     """The contract's fit JSON; `evolution` belongs to the parameters `searched`, in that order.
 
@@ -178,3 +192,4 @@ class FitResultView(BaseModel):
     starts: StartsView | None = None
     machine: MachineView | None = None
     structures: list[StructureView] = Field(default_factory=list)
+    actuator: ActuatorStated | None = None

@@ -31,9 +31,10 @@ from app.cli.serve import serve
 from app.cli.simulate import simulate
 from app.cli.token import token
 from app.cli.upload import upload
+from app.cli.whatif import whatif
 from app.cli.worker import worker
 
-LOCAL = (simulate, check, fit, compare, diagnose, next_, bench, write_report, control)
+LOCAL = (simulate, check, fit, compare, diagnose, next_, bench, write_report, control, whatif)
 SERVICE = (serve, worker, demo, token, migrate, regress)
 CLIENT = (upload, approve, query, revise)
 

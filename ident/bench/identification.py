@@ -181,7 +181,7 @@ class BenchIdentification:
             version=version("servoident"), data_hash=self.matrix.data_hash,
             notes=(*self.matrix.notices, *self._doubts, *notes, *_compared(self.analysis, solution)),
             settings=self.settings.to_json(), searched=tuple(called[n] for n in self.space.names),
-            evolution=evolution(self.space, state),
+            evolution=evolution(self.space, state), actuator=self.matrix.actuator,
         )  # fmt: skip
 
     @property

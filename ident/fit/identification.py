@@ -14,6 +14,7 @@ from ident.chain.chain import integrates
 from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.fit import genetic
+from ident.fit.bulk_modulus import with_bulk_modulus
 from ident.fit.ends import distinct
 from ident.fit.fitness import UNSTABLE, Fitness
 from ident.fit.linear_fitness import LinearFitness
@@ -154,7 +155,7 @@ class Identification:
                 found = in_windows(found, self.report)
         self.report(Progress("uncertainty", 0, 1, found.here.error))
         seconds = time.monotonic() - self._started
-        result = summarise(self.settings, found, state, self.floors, seconds)
+        result = with_bulk_modulus(summarise(self.settings, found, state, self.floors, seconds))
         self.report(Progress("uncertainty", 1, 1, found.here.error))
         return result
 

@@ -8,10 +8,11 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ident.errors import Unusable
+from ident.matrix import Actuator
 from ident.plain import Misfit, read, written
 from ident.presets.description import description
 
-_WHERE_KNOWN = ("structures", "window", "anchored_error", "starts", "machine")
+_WHERE_KNOWN = ("structures", "window", "anchored_error", "starts", "machine", "actuator")
 
 
 @dataclass(frozen=True)
@@ -108,7 +109,8 @@ class FitResult:
     """A finished fit. Errors are eq. (17) averaged over the runs of a use, from the time domain; fractions, not %.
 
     `anchored_error` is RMS(x − x_m)/std(x_m), which sees the means that eq. (17) does not; `window` is there where the
-    fit was made over windows. `evolution` belongs to the parameters `searched`, in that order.
+    fit was made over windows. `evolution` belongs to the parameters `searched`, in that order. `actuator` is what was
+    stated of the machine; earlier versions did not keep it.
     """
 
     model: str
@@ -135,6 +137,7 @@ class FitResult:
     structures: tuple[Structure, ...] = ()
     searched: tuple[str, ...] = ()
     evolution: tuple[Generation, ...] = ()
+    actuator: Actuator | None = None
 
     @property
     def values(self) -> dict[str, float]:

@@ -108,6 +108,7 @@ def summarise(
         settings=settings.to_json(),
         searched=tuple(label[name][0] for name in space.names),
         evolution=evolution(objective.space, state),
+        actuator=matrix.actuator,
     )
 
 

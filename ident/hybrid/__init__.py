@@ -1,1 +1,1 @@
-"""What an identified actuator is good for: tracking, control, hybrid simulation, and what a change would do."""
+"""A fit in, what it is good for out: tracking, controllers, hybrid simulation, feedforward, and what a change would do."""

@@ -18,7 +18,7 @@ from ident.readers.strict_yaml import read_yaml
 from ident.units.quantity import shown
 
 TOP = ("actuator", "runs", "controller", "machine", "limits")
-ACTUATOR = ("serial", "name", "batch", "piston_area", "stroke", "supply_pressure", "servo_valve", "notes")
+ACTUATOR = ("serial", "name", "batch", "piston_area", "stroke", "volume", "supply_pressure", "servo_valve", "notes")
 
 
 @dataclass(frozen=True)
@@ -61,6 +61,7 @@ def describe_actuator(data: Any) -> Actuator:
         supply_pressure=fields.positive("supply_pressure", "pressure"),
         servo_valve=fields.text("servo_valve"),
         notes=fields.text("notes"),
+        volume=fields.positive("volume", "volume"),
     )
 
 

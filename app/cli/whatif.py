@@ -1,0 +1,186 @@
+"""`servoident whatif`: what a change of size, specimen or parameters would do to an identified machine."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from app.cli.arguments import in_si, number, split
+from app.cli.compare import FORMATS
+from app.cli.given import read_fit
+from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
+from app.cli.progress import shown
+
+if TYPE_CHECKING:
+    from ident.fit.result import FitResult
+    from ident.hybrid.changed_machine import Change
+    from ident.hybrid.peak_problem import PeakTarget
+    from ident.hybrid.what_if import WhatIf
+    from ident.matrix import Specimen
+
+_OF_SPECIMEN = {"mass": "mass", "stiffness": "stiffness", "damping": "damping"}
+_NEAR = 2 / 45  # of the frequency: the usual tolerance, 2 Hz at 45 Hz
+
+
+FitPath = Annotated[Path, typer.Argument(metavar="FIT.json", help="What `servoident fit --json` wrote.")]
+Changed = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="Change area, stroke, volume (with unit) or a parameter; Z0 goes with the area, Ka with area × stroke or "
+        "with the volume. May be repeated.",
+    ),
+]
+Fitted = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME=VALUE", help="Area, stroke or volume of the machine that was fitted, where its fit lacks it."
+    ),
+]
+OfSpecimen = Annotated[
+    str | None,
+    typer.Option(metavar="mass=…,stiffness=…,damping=…", help="What it moves, with units; nothing without it."),
+]
+Gains = Annotated[
+    str | None, typer.Option(metavar="LO:HI", help="Gains Kp of the responses and the root locus; 1:10 without it.")
+]
+AtPeak = Annotated[
+    str | None, typer.Option(metavar="HZ", help="Find the smallest change that puts a peak there, as in 45 Hz.")
+]
+Near = Annotated[
+    str | None, typer.Option(metavar="HZ", help="How near the peak has to be; 2 Hz at 45 Hz and in proportion.")
+]
+InAxes = Annotated[
+    list[str] | None,
+    typer.Option(metavar="KP=LO:HI", help="Range of |G| to keep at a gain with the peak; may be repeated."),
+]
+UpTo = Annotated[str | None, typer.Option(metavar="HZ", help="Where the axes end; at the peak's tolerance without it.")]
+Seed = Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Seed of the search for a peak.")]
+Json = Annotated[Path | None, typer.Option(metavar="FILE", help="Write the result as JSON; - is stdout.")]
+Out = Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures: svg, png, pdf, json.")]
+
+
+def whatif(
+    fit: FitPath, set_: Changed = None, fitted: Fitted = None, specimen: OfSpecimen = None, gain: Gains = None,
+    peak: AtPeak = None, tolerance: Near = None, axes: InAxes = None, up_to: UpTo = None, seed: Seed = 0,
+    json: Json = None, out: Out = None,
+) -> None:  # fmt: skip
+    """Change area, stroke, volume, specimen or parameters of an identified machine: response, peaks, root locus."""
+    from ident.hybrid.what_if import what_if
+
+    check_target(json)
+    result = read_fit(fit)
+    change = _change(result, set_ or [], fitted or [], specimen)
+    gains = None if gain is None else _range(gain, "--gain", "LO:HI")
+    target = _target(peak, tolerance, axes or [], up_to)
+    with shown() as report:
+        found = what_if(result, change, gains, target, seed, report)
+    if json is not None:
+        write_json(found.to_json(), json)
+    if json != STANDARD_OUTPUT:
+        show(found)
+    if out is not None:
+        draw(found, out)
+
+
+def _change(fit: FitResult, set_: list[str], fitted: list[str], specimen: str | None) -> Change:
+    """What is to change, SI. Raises Unusable."""
+    from ident.custom.definition import preset_with
+    from ident.errors import Unusable
+    from ident.hybrid.changed_machine import SIZES, Change
+    from ident.units.quantity import quantity
+
+    pairs = [split(text, "--set", "NAME=VALUE") for text in set_]
+    known = [split(text, "--fitted", "NAME=VALUE") for text in fitted]
+    if strange := [name for name, _ in known if name not in SIZES]:
+        raise Unusable("unknown-size", f"no size {strange[0]!r}", "--fitted", f"choose from {', '.join(SIZES)}")
+    model = preset_with(fit.model, fit.effects, tuple(fit.settings.get("custom", ())))
+    return Change(
+        sizes={name: quantity(value, SIZES[name], f"--set {name}") for name, value in pairs if name in SIZES},
+        values={name: in_si(value, name, model, f"--set {name}") for name, value in pairs if name not in SIZES},
+        specimen=_specimen(specimen),
+        known={name: quantity(value, SIZES[name], f"--fitted {name}") for name, value in known},
+    )
+
+
+def _specimen(text: str | None) -> Specimen:
+    """A specimen from `mass=2.06 kg, stiffness=30.65 kN/m`. Raises Unusable."""
+    from ident.errors import Unusable
+    from ident.matrix import Specimen
+    from ident.units.quantity import quantity
+
+    form, found = "mass=…,stiffness=…,damping=…", {}
+    for part in (text or "").split(","):
+        if part.strip():
+            name, value = split(part, "--specimen", form)
+            if name not in _OF_SPECIMEN:
+                raise Unusable("bad-option", f"a specimen has no {name!r}", "--specimen", f"write --specimen {form}")
+            found[name] = quantity(value, _OF_SPECIMEN[name], f"--specimen {name}")
+            if found[name] < 0:
+                raise Unusable("bad-number", f"{value} is below 0", f"--specimen {name}", "give 0 or more")
+    return Specimen(**found)
+
+
+def _target(peak: str | None, tolerance: str | None, axes: list[str], up_to: str | None) -> PeakTarget | None:
+    """The peak that is asked for. Raises Unusable."""
+    from ident.errors import Unusable
+    from ident.hybrid.peak_problem import Axes, PeakTarget
+    from ident.units.quantity import quantity
+
+    if peak is None:
+        if tolerance or axes or up_to:
+            raise Unusable("bad-option", "no peak is asked for", "--peak", "write --peak '45 Hz' with it")
+        return None
+    frequency = quantity(peak, "frequency", "--peak")
+    near = _NEAR * frequency if tolerance is None else quantity(tolerance, "frequency", "--tolerance")
+    end = 0.0 if up_to is None else quantity(up_to, "frequency", "--up-to")
+    pairs = [split(text, "--axes", "KP=LO:HI") for text in axes]
+    kept = tuple(Axes(number(kp, "--axes", "KP=LO:HI"), *_range(ends, "--axes", "KP=LO:HI")) for kp, ends in pairs)
+    return PeakTarget(frequency, near, axes=kept, up_to=end)
+
+
+def _range(text: str, option: str, form: str) -> tuple[float, float]:
+    """`LO:HI` as numbers; one number is both."""
+    lower, separator, upper = text.partition(":")
+    return number(lower, option, form), number(upper if separator else lower, option, form)
+
+
+def show(found: WhatIf) -> None:
+    """Print what was changed, the poles and peaks, and what is to be said of them."""
+    from app.cli.tables import output, table
+
+    console = output()
+    rows = [
+        (name, f"{entry.before:.5g}", f"{entry.after:.5g}", entry.unit, entry.why)
+        for name, entry in found.parameters.items()
+    ]
+    console.print(table(("parameter", "fitted", "changed", "unit", ""), rows, numbers=("fitted", "changed")))
+    for each in (*found.responses, *found.with_peak):
+        where = "no loop" if each.gain is None else f"Kp = {each.gain:g}"
+        poles = ", ".join(f"{p.real:.4g}{p.imaginary:+.4g}i" if p.imaginary else f"{p.real:.4g}" for p in each.poles)
+        tops = ", ".join(f"{peak.frequency:.4g} Hz (|G| {peak.magnitude:.3g})" for peak in each.peaks) or "none"
+        after = ", with the smallest change that makes the peak" if each in found.with_peak else ""
+        console.print(f"{where}{after}: poles {poles} Hz; peaks: {tops}", markup=False)
+    if found.critical_gain is not None:
+        console.print(f"stability is lost at Kp = {found.critical_gain:.4g}", markup=False)
+    for note in found.notes:
+        console.print(f"note: {note}", markup=False)
+
+
+def draw(found: WhatIf, out: Path) -> None:
+    """Write the figures in every format to the folder `out`."""
+    from ident.figures import look, render
+    from ident.figures.root_locus import root_locus
+    from ident.figures.what_if_response import what_if_response
+
+    out.mkdir(parents=True, exist_ok=True)
+    charts = {"response": what_if_response(found, look("light"))}
+    if found.locus is not None:
+        charts["root-locus"] = root_locus(found, look("light"))
+    for name, chart in charts.items():
+        for format_ in FORMATS:
+            write_bytes(render(chart, format_), out / f"{name}.{format_}")
+    print(f"wrote {', '.join(charts)} to {out}")

@@ -1,0 +1,198 @@
+"""An identified machine of another size, or with another specimen: what scales with what, and its linear model.
+
+The flow gain Z0 is the gain of the valve times the piston area, so Z0 ∝ A; the compressibility Ka = Vt/(4 βe) goes
+with the oil volume, so Ka ∝ A × stroke where no volume is named (Qian et al. 2014, eqs. 4, 8). All else is
+carried over.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.chain.chain import Chain
+from ident.chain.conditions import conditions
+from ident.custom.definition import preset_with
+from ident.errors import Unusable
+from ident.fit.bulk_modulus import COMPRESSIBILITY
+from ident.fit.result import FitResult
+from ident.linear import LinearModel
+from ident.matrix import Actuator, Run, Specimen
+from ident.presets.preset import Preset
+
+Array = NDArray[np.float64]
+FLOW_GAIN = "m^4/s"
+"""The unit of the flow gain that has the piston area in it."""
+SIZES = {"area": "area", "stroke": "length", "volume": "volume"}
+"""What may be changed of a cylinder, with its dimension."""
+_FIELDS = {"area": "piston_area", "stroke": "stroke", "volume": "volume"}
+
+
+@dataclass(frozen=True)
+class Change:
+    """What is to be changed, SI: `sizes` of the cylinder (:data:`SIZES`), `values` of parameters by name.
+
+    `specimen` is what the machine moves then, nothing where it has no mass, stiffness or damping. `known` are sizes of
+    the machine that was fitted which its fit does not hold.
+    """
+
+    sizes: Mapping[str, float] = field(default_factory=dict)
+    values: Mapping[str, float] = field(default_factory=dict)
+    specimen: Specimen = field(default_factory=Specimen)
+    known: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Carried:
+    """One parameter before and after the change, in `unit`, and by what it changed, in words."""
+
+    unit: str
+    before: float
+    after: float
+    why: str
+
+
+@dataclass(frozen=True)
+class ChangedMachine:
+    """The machine after a change. `parameters` are by name, SI; `left_out` the effects that have no linear response."""
+
+    preset: Preset
+    parameters: Mapping[str, Carried]
+    actuator: Actuator
+    specimen: Specimen
+    left_out: tuple[str, ...] = ()
+
+    @property
+    def chain(self) -> Chain:
+        """The equations."""
+        return self.preset.chain
+
+    @property
+    def output(self) -> str:
+        """The channel whose response is shown: the first that the model has."""
+        return next(iter(self.chain.outputs))
+
+    @property
+    def has_gain(self) -> bool:
+        """Whether there is a loop with a gain Kp."""
+        return "Kp" in self.chain.symbols
+
+    @cached_property
+    def values(self) -> dict[str, float]:
+        """Every symbol of the equations but Kp, SI."""
+        known = conditions(Run("what if", "", 1.0, {}, specimen=self.specimen), self.actuator)
+        known |= {self.preset.parameter(name).in_equations: entry.after for name, entry in self.parameters.items()}
+        return {symbol: known[symbol] for symbol in self.chain.symbols}
+
+    def linear(self, gain: Array, factors: Mapping[str, Array] | None = None) -> LinearModel:
+        """The linearised chain at gains Kp; parameters named in `factors` are that many times as large.
+
+        All arrays broadcast to the shape of the batch.
+        """
+        values: dict[str, Array | float] = {**self.values, **({"Kp": gain} if self.has_gain else {})}
+        for name, factor in (factors or {}).items():
+            symbol = self.preset.parameter(name).in_equations
+            values[symbol] = self.values[symbol] * factor
+        shape = np.broadcast_shapes(np.shape(gain), *(np.shape(value) for value in values.values()))
+        return self.chain.linearise({name: np.broadcast_to(v, shape) for name, v in values.items()}, self.output)
+
+
+def changed_machine(fit: FitResult, change: Change) -> ChangedMachine:
+    """The machine of a fit after a change.
+
+    Raises Unusable for a model without a chain, a name that is none of its parameters or sizes, a value that is not
+    positive where it must be, and where something would have to scale with a size that is not known.
+    """
+    custom = tuple(fit.settings.get("custom", ()))
+    whole = preset_with(fit.model, fit.effects, custom)
+    if whole.kind != "chain":
+        raise Unusable("no-what-if", f"{fit.model} is fitted to records of a bench", "fit", "give a fit of test runs")
+    kept = tuple(name for name in fit.effects if preset_with(fit.model, (name,), custom).chain.is_linear)
+    before = _known(fit, change.known)
+    after = _resized(before, change.sizes)
+    scaled = _scaled(fit, whole, before, after, change)
+    preset = preset_with(fit.model, kept, custom)
+    own = {p.in_equations for p in preset.parameters}
+    parameters = {name: entry for name, entry in scaled.items() if whole.parameter(name).in_equations in own}
+    left_out = tuple(name for name in fit.effects if name not in kept)
+    return ChangedMachine(preset, parameters, after, change.specimen, left_out)
+
+
+def _known(fit: FitResult, stated: Mapping[str, float]) -> Actuator:
+    """The machine that was fitted, with what is stated of it beside its fit."""
+    actuator = fit.actuator or Actuator("")
+    for name, value in stated.items():
+        there = getattr(actuator, _FIELDS[name])
+        if there is not None and not np.isclose(there, value, rtol=1e-6):
+            raise Unusable("two-sizes", f"the fit was made with {name} {there:.6g}, not {value:.6g}", f"fitted {name}",
+                           "change it instead, or fit again")  # fmt: skip
+    if "area" in stated and any("A^" in name for name in fit.parameters):
+        raise Unusable("missing-area", "the fit knows only ratios to the piston area", "fitted area",
+                       "state piston_area in matrix.yaml and fit again")  # fmt: skip
+    return _with_sizes(actuator, stated)
+
+
+def _with_sizes(actuator: Actuator, sizes: Mapping[str, float]) -> Actuator:
+    return replace(
+        actuator,
+        piston_area=sizes.get("area", actuator.piston_area),
+        stroke=sizes.get("stroke", actuator.stroke),
+        volume=sizes.get("volume", actuator.volume),
+    )
+
+
+def _resized(before: Actuator, sizes: Mapping[str, float]) -> Actuator:
+    """The machine with the new sizes; a volume that is stated goes with area × stroke unless it is named."""
+    for name, value in sizes.items():
+        if not (np.isfinite(value) and value > 0):
+            raise Unusable("bad-size", f"{name} is {value:g}", f"set {name}", "give a size above 0")
+    after = _with_sizes(before, sizes)
+    if "volume" not in sizes and before.volume is not None and sizes:
+        after = replace(after, volume=before.volume * _ratio(before, after, ("area", "stroke"), sizes))
+    return after
+
+
+def _ratio(before: Actuator, after: Actuator, names: tuple[str, ...], sizes: Mapping[str, float]) -> float:
+    """How many times as large the product of these sizes is; raises Unusable where one was not known."""
+    ratio = 1.0
+    for name in names:
+        if name in sizes:
+            old = getattr(before, _FIELDS[name])
+            if old is None:
+                raise Unusable("missing-size", f"{name} is to change, but the fit does not hold what it was",
+                               f"set {name}", f"state it of the fitted machine (--fitted {name}=…)")  # fmt: skip
+            ratio *= getattr(after, _FIELDS[name]) / old
+    return ratio
+
+
+def _scaled(fit: FitResult, preset: Preset, before: Actuator, after: Actuator, change: Change) -> dict[str, Carried]:
+    """Every parameter of the fit, scaled, carried over, or as it was set."""
+    named = {preset.parameter(name).in_equations: value for name, value in change.values.items()}
+    fitted = {preset.parameter(name).in_equations for name in fit.parameters}
+    if strange := [name for name in change.values if preset.parameter(name).in_equations not in fitted]:
+        raise Unusable("unknown-parameter", f"the fit has no parameter {strange[0]!r}", "set",
+                       f"choose from {', '.join((*SIZES, *fit.parameters))}")  # fmt: skip
+    found = {}
+    for name, entry in fit.parameters.items():
+        symbol = preset.parameter(name).in_equations
+        if symbol in named:
+            found[name] = Carried(entry.unit, entry.value, named[symbol], "as set")
+            continue
+        factor, why = _factor(entry.unit, before, after, change.sizes)
+        found[name] = Carried(entry.unit, entry.value, entry.value * factor, why)
+    return found
+
+
+def _factor(unit: str, before: Actuator, after: Actuator, sizes: Mapping[str, float]) -> tuple[float, str]:
+    """What a parameter of this unit is multiplied by, and why."""
+    if unit == FLOW_GAIN and "area" in sizes:
+        return _ratio(before, after, ("area",), sizes), "∝ A"
+    if unit == COMPRESSIBILITY and "volume" in sizes:
+        return _ratio(before, after, ("volume",), sizes), "∝ volume"
+    if unit == COMPRESSIBILITY and {"area", "stroke"} & set(sizes):
+        return _ratio(before, after, ("area", "stroke"), sizes), "∝ A × stroke"
+    return 1.0, "carried over"

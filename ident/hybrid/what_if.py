@@ -1,0 +1,237 @@
+"""What a change would do to an identified machine: response, peaks, poles, and the gain at which it goes unstable."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from ident.errors import Unusable
+from ident.fit.bulk_modulus import BulkModulus, bulk_modulus
+from ident.fit.result import Estimate, FitResult
+from ident.hybrid.changed_machine import Carried, Change, ChangedMachine, changed_machine
+from ident.hybrid.fig_19 import said_of_fig_19
+from ident.hybrid.oil_column import PeakSearch, find_peak
+from ident.hybrid.peak_problem import PeakTarget
+from ident.hybrid.peaks import Peak, peaks
+from ident.matrix import Actuator, Specimen
+from ident.plain import written
+from ident.progress import Report, silent
+from ident.words.number import trimmed
+
+Array = NDArray[np.float64]
+USUAL_GAINS = (1.0, 10.0)
+HIGHEST = 100.0
+"""Hz: peaks are looked for up to here at least."""
+_POINTS, _LOCUS, _BEYOND = (
+    1500,
+    121,
+    1e3,
+)  # of a response and of the locus; how far beyond the gains stability is sought
+
+
+@dataclass(frozen=True)
+class Pole:
+    """A pole of the closed loop in Hz, s/(2π): it settles where `real` is below 0."""
+
+    real: float
+    imaginary: float
+
+
+@dataclass(frozen=True)
+class Response:
+    """The response at one gain, None where there is no loop: |G| and its phase (degrees) over frequency (Hz)."""
+
+    gain: float | None
+    stable: bool
+    poles: tuple[Pole, ...]
+    peaks: tuple[Peak, ...]
+    frequency: tuple[float, ...]
+    magnitude: tuple[float, ...]
+    phase: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class RootLocus:
+    """The poles (Hz) over the gain, those of one gain a row."""
+
+    gain: tuple[float, ...]
+    poles: tuple[tuple[Pole, ...], ...]
+
+
+@dataclass(frozen=True)
+class WhatIf:
+    """An identified machine after a change. `critical_gain` is the smallest Kp above which it is no longer stable.
+
+    It is None where the machine is stable, or unstable, at all gains that were looked at. `peak` is what was found for
+    a peak that was asked for, `with_peak` the responses after the smallest change that puts it there.
+    """
+
+    model: str
+    output: str
+    actuator: Actuator
+    specimen: Specimen
+    parameters: dict[str, Carried]
+    responses: tuple[Response, ...]
+    locus: RootLocus | None
+    critical_gain: float | None
+    bulk_modulus: BulkModulus | None
+    notes: tuple[str, ...]
+    peak: PeakSearch | None = None
+    with_peak: tuple[Response, ...] = ()
+
+    def to_json(self) -> dict[str, Any]:
+        """As plain JSON data."""
+        data: dict[str, Any] = written(self)
+        return data
+
+
+def what_if(
+    fit: FitResult, change: Change, gains: tuple[float, float] | None = None, peak: PeakTarget | None = None,
+    seed: int = 0, report: Report = silent,
+) -> WhatIf:  # fmt: skip
+    """The machine of a fit after a change, at the two ends of a range of gains Kp; what would put a `peak` there.
+
+    Responses are the linearisation of the fitted chain (:meth:`ident.chain.chain.Chain.linearise`). Raises Unusable
+    as :func:`ident.hybrid.changed_machine.changed_machine` does, and for gains that are no range above 0.
+    """
+    machine = changed_machine(fit, change)
+    ends = _gains(machine, gains)
+    band = _band(machine, ends)
+    responses = tuple(response(machine, gain, band) for gain in ends)
+    oil, found = _oil(fit, machine), None
+    with_peak: tuple[Response, ...] = ()
+    if peak is not None:
+        found = find_peak(machine, replace(peak, gains=tuple(gain or 1.0 for gain in ends)), seed, report=report)
+        with_peak = _with_peak(machine, found, ends, band)
+    return WhatIf(
+        model=fit.model, output=machine.output, actuator=machine.actuator, specimen=machine.specimen,
+        parameters=dict(machine.parameters), responses=responses, locus=_locus(machine, ends),
+        critical_gain=_critical_gain(machine, ends), bulk_modulus=oil,
+        peak=found, with_peak=with_peak, notes=(*_notes(machine, responses, oil), *(found.text if found else ())),
+    )  # fmt: skip
+
+
+def _gains(machine: ChangedMachine, gains: tuple[float, float] | None) -> tuple[float | None, ...]:
+    """The gains whose response is shown."""
+    if not machine.has_gain:
+        if gains is not None:
+            raise Unusable("no-gain", "the model has no loop with a gain", "gain", "leave the gain out")
+        return (None,)
+    known = machine.preset.gains.get("Kp")
+    lower, upper = gains or (USUAL_GAINS if known is None else (known, known))
+    if not (0 < lower <= upper < np.inf):
+        raise Unusable("bad-gain", f"{lower:g} to {upper:g} is no range of gains above 0", "gain", "write it as 2:3")
+    return (lower,) if lower == upper else (lower, upper)
+
+
+def _with_peak(
+    machine: ChangedMachine, found: PeakSearch, gains: tuple[float | None, ...], frequency: Array
+) -> tuple[Response, ...]:
+    """The responses after the smallest change."""
+    if found.smallest is None:
+        return ()
+    factors = found.smallest.factors
+    parameters = {n: replace(p, after=p.after * factors.get(n, 1.0)) for n, p in machine.parameters.items()}
+    return tuple(response(replace(machine, parameters=parameters), gain, frequency) for gain in gains)
+
+
+def response(machine: ChangedMachine, gain: float | None, frequency: Array) -> Response:
+    """The response at one gain over `frequency` (f,) in Hz."""
+    model = machine.linear(np.array([1.0 if gain is None else gain]))
+    G = model.frequency_response(frequency)[0]
+    roots = np.linalg.eigvals(model.A[0]).astype(complex) / (2 * np.pi)
+    magnitude = np.abs(G)
+    return Response(
+        gain, bool(roots.real.max(initial=-np.inf) < 0), _poles(roots), peaks(frequency, magnitude),
+        tuple(frequency.tolist()), tuple(magnitude.tolist()), tuple(np.degrees(np.unwrap(np.angle(G))).tolist()),
+    )  # fmt: skip
+
+
+def _poles(roots: NDArray[Any]) -> tuple[Pole, ...]:
+    """Those furthest from the imaginary axis first."""
+    return tuple(Pole(float(root.real), float(root.imag)) for root in sorted(roots, key=lambda r: (r.real, -r.imag)))
+
+
+def _band(machine: ChangedMachine, gains: tuple[float | None, ...]) -> Array:
+    """Frequencies in Hz that show every pole, (f,)."""
+    roots = np.abs(np.linalg.eigvals(_at(machine, gains).A)) / (2 * np.pi)
+    slowest = float(np.min(roots, where=roots > 1e-6 * roots.max(), initial=np.inf))
+    lowest = min(0.1, slowest / 10)
+    return np.geomspace(lowest, max(HIGHEST, 1.5 * float(roots.max())), _POINTS)
+
+
+def _at(machine: ChangedMachine, gains: tuple[float | None, ...]) -> Any:
+    return machine.linear(np.array([1.0 if gain is None else gain for gain in gains]))
+
+
+def _growth(machine: ChangedMachine, gain: Array) -> Array:
+    """The largest real part of a pole in 1/s, for gains (g,) → (g,)."""
+    return np.asarray(np.linalg.eigvals(machine.linear(gain).A).real.max(axis=-1))
+
+
+def _locus(machine: ChangedMachine, ends: tuple[float | None, ...]) -> RootLocus | None:
+    """The poles over the gains, or over a decade around the one there is."""
+    if ends[0] is None or ends[-1] is None:
+        return None
+    lower, upper = (ends[0], ends[-1]) if len(ends) > 1 else (ends[0] / 3, ends[0] * 3)
+    gain = np.geomspace(lower, upper, _LOCUS)
+    roots = np.linalg.eigvals(machine.linear(gain).A).astype(complex) / (2 * np.pi)
+    return RootLocus(tuple(gain.tolist()), tuple(map(_poles, roots)))
+
+
+def _critical_gain(machine: ChangedMachine, ends: tuple[float | None, ...]) -> float | None:
+    """Where stability is lost, from the lower gain to a thousand times the upper one."""
+    if ends[0] is None or ends[-1] is None:
+        return None
+    gain = np.geomspace(ends[0], _BEYOND * ends[-1], 601)
+    growth = _growth(machine, gain)
+    lost = np.flatnonzero((growth[:-1] < 0) & (growth[1:] >= 0))
+    if not len(lost):
+        return None
+    at = lost[0]
+    found = brentq(lambda log: float(_growth(machine, np.exp([log]))[0]), *np.log(gain[[at, at + 1]]), xtol=1e-10)
+    return float(np.exp(found))
+
+
+def _oil(fit: FitResult, machine: ChangedMachine) -> BulkModulus | None:
+    """The bulk modulus after the change: a compressibility keeps its relative standard error, unless it is set."""
+    after = {
+        name: replace(old, value=new.after, std_error=_error(old, new))
+        for name, new in machine.parameters.items()
+        if (old := fit.parameters.get(name))
+    }
+    return bulk_modulus(after, machine.actuator)
+
+
+def _error(old: Estimate, new: Carried) -> float | None:
+    known = old.std_error is not None and new.why != "as set"
+    return old.std_error * new.after / new.before if known and old.std_error is not None else None
+
+
+def _notes(machine: ChangedMachine, responses: tuple[Response, ...], oil: BulkModulus | None) -> Iterator[str]:
+    """What a reader has to know of the responses."""
+    if machine.left_out:
+        yield (
+            f"Left out of the response: {', '.join(machine.left_out)}. The linearised equations know nothing of what "
+            "hangs on the amplitude, nor of the lags and delays of effects."
+        )
+    unstable = [each.gain for each in responses if not each.stable]
+    if unstable:
+        yield f"Unstable{_at_gains(unstable)}: no steady motion has that response."
+    flat = [each.gain for each in responses if not any(peak.frequency < HIGHEST for peak in each.peaks)]
+    if flat:
+        yield f"No peak below {trimmed(HIGHEST)} Hz{_at_gains(flat)}."
+    told = said_of_fig_19(machine, tuple(peak for each in responses for peak in each.peaks))
+    if told:
+        yield told
+    if oil:
+        yield oil.note
+
+
+def _at_gains(gains: Sequence[float | None]) -> str:
+    return "" if gains[0] is None else f" at Kp = {' and '.join(trimmed(gain) for gain in gains if gain is not None)}"
