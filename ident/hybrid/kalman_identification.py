@@ -29,7 +29,7 @@ NAME = "ekf"
 _MOST = 0.2  # of the output's deviation: as noise is taken what a loop that does not hold leaves
 _NAMES = ("tau", "gain")
 _DOES_NOT_HOLD = "a first-order loop with constant parameters does not hold, so that its filter knows no standard error"
-_KNOWN = (kalman.PP, kalman.PG, kalman.GG)
+_KNOWN = (kalman.DP, kalman.UPG, kalman.DG)
 _OPEN = 0.5  # relative standard deviation with which the second pass starts
 
 
@@ -92,14 +92,15 @@ def filtered(runs: Sequence[Run], report: Report = silent) -> Found:
     for place, passed in enumerate(tracks):
         report(Progress("filter", len(runs) + place, 2 * len(runs)))
         tracker = _constant(passed, tau, gain, known)
-        constant = constant and tracker.verdict.holds
+        said = tracker.verdict
+        constant = constant and said.holds and (said.nis_mean or 0.0) <= kalman.MOST_NIS
         (tau, gain), known = tracker.estimate, tuple(tracker.state[list(_KNOWN)])
     report(Progress("filter", 2 * len(runs), 2 * len(runs)))
     return Found(tau, gain, tracker.covariance[1:, 1:], tuple(tracks), constant)
 
 
 def _constant(passed: Track, tau: float, gain: float, known: tuple[float, ...]) -> Tracker:
-    """The filter after a run without fictitious noise, from τ and k and the covariance of 1/τ and k/τ before it."""
+    """The filter after a run without fictitious noise, from τ and k, and what was `known` of 1/τ and k/τ, before it."""
     run, size = passed.run, passed.noise.measurement
     if not passed.verdict.holds:
         most = _MOST * float(np.std(run.measured))
