@@ -30,11 +30,12 @@ from app.cli.revise import revise
 from app.cli.serve import serve
 from app.cli.simulate import simulate
 from app.cli.token import token
+from app.cli.track import track
 from app.cli.upload import upload
 from app.cli.whatif import whatif
 from app.cli.worker import worker
 
-LOCAL = (simulate, check, fit, compare, diagnose, next_, bench, write_report, control, whatif)
+LOCAL = (simulate, check, fit, compare, diagnose, next_, bench, write_report, track, control, whatif)
 SERVICE = (serve, worker, demo, token, migrate, regress)
 CLIENT = (upload, approve, query, revise)
 
