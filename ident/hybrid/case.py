@@ -1,0 +1,305 @@
+"""The case of a hybrid simulation: the structure, what of it is physical, the actuator's loop, and the ground motion.
+
+    structure:  {mass: 87.5 kg, stiffness: 87.5 kN/m, damping: 3.5 kN*s/m}
+    physical:   {mass: 8.75 kg, stiffness: 17.5 kN/m, damping: 0 N*s/m, storey: 1}
+    gain: 2                     # Kp of the actuator's loop
+    piston_area: 497 mm^2       # where the fit knew one: it is no parameter of the model
+    ground:     {file: el_centro.txt, unit: g, step: 0.02 s, scale: 1}
+    sample_rate: 4096 Hz        # of the outer loop
+    delay: 1                    # samples from a measurement to the command that answers it
+    noise:      {displacement: 1 um, force: 1 N, quantisation: {displacement: 1 um, force: 0.1 N}, seed: 0}
+
+A matrix is a list of rows, `{matrix: [[...]], unit: kN/m}` or a list of lists of quantities; a plain list of quantities
+is a diagonal; `damping: {ratio: 5 %}` gives every mode that ratio.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from ident.errors import Unusable
+from ident.hybrid.ground import Ground, ground_of
+from ident.matrix import Specimen
+from ident.readers.fields import Fields
+from ident.readers.strict_yaml import read_yaml
+from ident.units.quantity import quantity, shown, split
+
+Array = NDArray[np.float64]
+_KEYS = (
+    "name", "structure", "physical", "gain", "piston_area", "ground", "sample_rate", "delay", "noise",
+)  # fmt: skip
+_LARGEST, _STOREYS = 1_000_000, 12
+
+
+@dataclass(frozen=True)
+class Noise:
+    """White noise of the sensors (standard deviations, m and N), the steps of their converters (m and N), its seed."""
+
+    displacement: float = 0.0
+    force: float = 0.0
+    displacement_step: float = 0.0
+    force_step: float = 0.0
+    seed: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """One hybrid simulation, SI.
+
+    M x'' + C x' + K x = −M 1 a(t) is the whole structure: `mass`, `stiffness`, `damping` (n, n) hold its physical part
+    too, x its displacements against the ground. `physical` is that part: mass, spring and damper between the ground and
+    storey `place` (0 is the lowest), which the actuator moves. `gain` is Kp of the actuator's loop; `delay` the samples
+    from a measurement to the command that answers it, at least 1.
+
+    Raises Unusable where the matrices do not go together, or what is physical is more than there is.
+    """
+
+    name: str
+    mass: Array
+    stiffness: Array
+    damping: Array
+    physical: Specimen
+    place: int = 0
+    gain: float = 1.0
+    piston_area: float | None = None
+    ground: Ground = field(default_factory=Ground)
+    sample_rate: float = 4096.0
+    delay: int = 1
+    noise: Noise = field(default_factory=Noise)
+
+    def __post_init__(self) -> None:
+        n = len(self.mass)
+        for what in ("mass", "stiffness", "damping"):
+            given: Array = getattr(self, what)
+            if given.shape != (n, n) or not 1 <= n <= _STOREYS or not np.allclose(given, given.T, rtol=1e-6):
+                raise Unusable("bad-case", f"{what} is no symmetric matrix of {n} rows", "structure",
+                               f"give three symmetric matrices of one size, at most {_STOREYS}")  # fmt: skip
+        if not 0 <= self.place < n:
+            raise Unusable("bad-case", f"storey {self.place + 1} of {n}", "physical", f"give a storey from 1 to {n}")
+        # A substructure without mass has no motion of its own to integrate.
+        if np.linalg.eigvalsh(self.numerical_mass).min() <= 0:
+            raise Unusable("bad-case", "no mass is left in the numerical part", "physical mass", "give less of it")
+        if self.delay < 1:
+            raise Unusable("bad-case", "the command would act before it is computed", "delay", "give 1 sample or more")
+        if self.sample_rate <= 0 or self.gain <= 0:
+            raise Unusable("bad-case", "sample rate and gain are above 0", "case", "correct them")
+
+    @property
+    def storeys(self) -> int:
+        """The number n of degrees of freedom."""
+        return len(self.mass)
+
+    @property
+    def numerical_mass(self) -> Array:
+        """The mass that is left to the computer, (n, n)."""
+        return self._less(self.mass, self.physical.mass)
+
+    @property
+    def numerical_stiffness(self) -> Array:
+        """The stiffness that is left to the computer, (n, n)."""
+        return self._less(self.stiffness, self.physical.stiffness)
+
+    @property
+    def numerical_damping(self) -> Array:
+        """The damping that is left to the computer, (n, n)."""
+        return self._less(self.damping, self.physical.damping)
+
+    def _less(self, whole: Array, physical: float) -> Array:
+        left = whole.copy()
+        left[self.place, self.place] -= physical
+        return left
+
+    def with_shares(self, mass: float, stiffness: float) -> Case:
+        """The case with these shares (0 to 1) of the storey's mass and stiffness in the specimen, its damper as is."""
+        m, k = (float(whole[self.place, self.place]) for whole in (self.mass, self.stiffness))
+        return replace(self, physical=replace(self.physical, mass=mass * m, stiffness=stiffness * k))
+
+    def with_ground(self, given: Path | str) -> Case:
+        """The case with another motion: `blwn`, `sine`, the text file of a record, or a YAML file with `ground` keys.
+
+        A record has the unit and step of the case's own ground (g and 0.02 s where that states none).
+        """
+        path = Path(given)
+        if str(given) in ("blwn", "sine"):
+            return replace(self, ground=replace(self.ground, kind=str(given)))
+        if path.suffix.lower() in (".yaml", ".yml"):
+            return replace(self, ground=ground_of(_yaml(path), path.parent, self.ground))
+        return replace(self, ground=replace(self.ground, kind="record", file=str(path)))
+
+
+# Built in ---------------------------------------------------------------------------------------------------------
+
+
+def qian() -> Case:
+    """Qian et al. 2014, section 5.2: one storey, 10 % of its mass and 20 % of its stiffness physical, Kp = 2."""
+    return Case(
+        name="qian",
+        mass=np.array([[87.5]]),
+        stiffness=np.array([[87.5e3]]),
+        damping=np.array([[3.5e3]]),
+        physical=Specimen(mass=8.75, stiffness=17.5e3),
+        gain=2.0,
+        piston_area=4.97e-4,
+    )
+
+
+def benchmark2020(number: int = 1) -> Case:
+    """Case `number` (1 to 4) of the benchmark problem of 2020: three storeys, a frame behind the lowest.
+
+    C. E. Silva, D. Gomez, A. Maghareh, S. J. Dyke, B. F. Spencer: Benchmark control problem for real-time hybrid
+    simulation. Mechanical Systems and Signal Processing 135 (2020) 106381.
+    """
+    m, ratio = ((1000.0, 0.05), (1100.0, 0.04), (1300.0, 0.03), (1000.0, 0.03))[number - 1]
+    mass = m * np.eye(3)
+    stiffness = 1e7 * np.array([[2.6055, -2.3134, 0.5937], [-2.3134, 3.2561, -1.4420], [0.5937, -1.4420, 0.9267]])
+    frame, spring = 29.13, 1190e3
+    return Case(
+        name="benchmark2020" if number == 1 else f"benchmark2020-{number}",
+        mass=mass,
+        stiffness=stiffness,
+        damping=modal_damping(mass, stiffness, ratio),
+        physical=Specimen(frame, spring, 2 * 0.0097 * float(np.sqrt(spring * frame))),
+        ground=Ground(scale=0.4),
+        noise=Noise(displacement=1e-6),
+    )
+
+
+BUILT_IN: Mapping[str, Callable[[], Case]] = {
+    "qian": qian,
+    "benchmark2020": benchmark2020,
+    **{f"benchmark2020-{number}": partial(benchmark2020, number) for number in (1, 2, 3, 4)},
+}
+
+
+def modal_damping(mass: Array, stiffness: Array, ratio: float) -> Array:
+    """C with which every mode has the damping ratio ζ: C = M Φ diag(2 ζ ω) Φᵀ M, where Φᵀ M Φ = 1, (n, n)."""
+    squares, modes = scipy.linalg.eigh(stiffness, mass)
+    if squares.min() <= 0:
+        raise Unusable("bad-case", "the structure does not stand by itself", "structure", "correct its stiffness")
+    shape = mass @ modes
+    return np.asarray(shape @ np.diag(2 * ratio * np.sqrt(squares)) @ shape.T)
+
+
+# Reading ----------------------------------------------------------------------------------------------------------
+
+
+def read_case(given: str | Path) -> Case:
+    """A case by its name (see :data:`BUILT_IN`) or from a YAML file. Raises Unusable with the field at fault."""
+    if str(given) in BUILT_IN:
+        return BUILT_IN[str(given)]()
+    path = Path(given)
+    if not path.is_file():
+        names = ", ".join(("qian", "benchmark2020 (or benchmark2020-1 to -4)"))
+        raise Unusable("no-such-case", f"no case {shown(given)!r}", "case", f"give {names} or a YAML file")
+    return case_of(_yaml(path), path.parent, path.stem)
+
+
+def _yaml(path: Path) -> Any:
+    if not path.is_file():
+        raise Unusable("no-such-file", "the file does not exist", str(path), "give its path")
+    text = path.read_bytes()
+    if len(text) > _LARGEST:
+        raise Unusable("too-large", "too long to be a description", str(path), "give a YAML file")
+    return read_yaml(text, str(path))
+
+
+def case_of(data: Any, base: Path = Path(), name: str = "case") -> Case:
+    """The case of a description (see the module); `base` is the folder of its files.
+
+    Raises Unusable with the field at fault.
+    """
+    top = Fields(data, "case", _KEYS)
+    structure = Fields(top.need("structure", "give mass, stiffness, damping"), "structure",
+                       ("mass", "stiffness", "damping"))  # fmt: skip
+    mass = _matrix(structure, "mass", "mass")
+    stiffness = _matrix(structure, "stiffness", "stiffness")
+    physical, place = _physical(top, mass, stiffness)
+    delay = top.whole("delay", 1)
+    rate, gain = top.positive("sample_rate", "frequency"), top.number("gain")
+    return Case(
+        name=top.text("name", name),
+        mass=mass,
+        stiffness=stiffness,
+        damping=_damping(structure, mass, stiffness),
+        physical=physical,
+        place=place,
+        gain=1.0 if gain is None else gain,
+        piston_area=top.positive("piston_area", "area"),
+        ground=ground_of(top.data["ground"], base, Ground()) if "ground" in top else Ground(),
+        sample_rate=4096.0 if rate is None else rate,
+        delay=delay,
+        noise=_noise(top.data["noise"]) if "noise" in top else Noise(),
+    )
+
+
+def _matrix(fields: Fields, key: str, dimension: str) -> Array:
+    """A number, a diagonal or a matrix with units, (n, n)."""
+    value, where = fields.need(key, f"give the structure's {key}"), fields.place(key)
+    unit = ""
+    if isinstance(value, Mapping):
+        inside = Fields(value, where, ("matrix", "unit"))
+        value, unit = inside.need("matrix", "give its rows"), inside.text("unit")
+    rows = value if isinstance(value, list) else [[value]]
+    if not all(isinstance(row, list) for row in rows):
+        rows = [[entry if i == j else f"0 {unit or _unit(entry)}" for j in range(len(rows))]
+                for i, entry in enumerate(rows)]  # fmt: skip
+    if not rows or len(rows) > _STOREYS or any(len(row) != len(rows) for row in rows):
+        raise Unusable("bad-case", "no square matrix", where, f"give as many rows as columns, at most {_STOREYS}")
+    return np.array([[quantity(_with(entry, unit), dimension, where) for entry in row] for row in rows])
+
+
+def _unit(entry: object) -> str:
+    return split(entry, "structure")[1] or "1"
+
+
+def _with(entry: object, unit: str) -> object:
+    """A bare number with the matrix's unit."""
+    return f"{entry} {unit}" if unit and not split(entry, "structure")[1] else entry
+
+
+def _damping(structure: Fields, mass: Array, stiffness: Array) -> Array:
+    value = structure.need("damping", "give the structure's damping, or {ratio: 5 %}")
+    if isinstance(value, Mapping) and "ratio" in value:
+        ratio = Fields(value, "structure damping", ("ratio",)).number("ratio") or 0.0
+        return modal_damping(mass, stiffness, ratio)
+    return _matrix(structure, "damping", "damping")
+
+
+def _physical(top: Fields, mass: Array, stiffness: Array) -> tuple[Specimen, int]:
+    fields = Fields(top.need("physical", "give the part that stands in the laboratory"), "physical",
+                    ("mass", "stiffness", "damping", "storey"))  # fmt: skip
+    place = fields.whole("storey", 1) - 1
+    if not 0 <= place < len(mass):
+        raise Unusable("bad-case", f"storey {place + 1} of {len(mass)}", "physical storey", "count from 1, the lowest")
+    whole = {"mass": mass[place, place], "stiffness": stiffness[place, place]}
+    parts = {key: _part(fields, key, whole.get(key)) for key in ("mass", "stiffness", "damping")}
+    return Specimen(**parts), place
+
+
+def _part(fields: Fields, key: str, whole: float | None) -> float:
+    """A quantity, or a share of the storey's own in per cent."""
+    value = fields.data.get(key)
+    if value is not None and whole is not None and split(value, fields.place(key))[1] in ("%", "percent"):
+        return float(whole) * quantity(value, "1", fields.place(key))
+    found = fields.not_negative(key, key)
+    return 0.0 if found is None else found
+
+
+def _noise(data: Any) -> Noise:
+    fields = Fields(data, "noise", ("displacement", "force", "quantisation", "seed"))
+    step = Fields(fields.data.get("quantisation") or {}, "noise quantisation", ("displacement", "force"))
+    return Noise(
+        displacement=fields.not_negative("displacement", "length") or 0.0,
+        force=fields.not_negative("force", "force") or 0.0,
+        displacement_step=step.not_negative("displacement", "length") or 0.0,
+        force_step=step.not_negative("force", "force") or 0.0,
+        seed=fields.whole("seed"),
+    )

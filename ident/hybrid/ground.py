@@ -1,0 +1,163 @@
+"""Ground motion of a hybrid simulation: a record from a text file, band-limited white noise, or a sine."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.errors import Unusable
+from ident.readers.fields import Fields
+from ident.units.quantity import shown, unit_scale
+
+Array = NDArray[np.float64]
+GRAVITY = 9.80665  # m/s²
+KEYS = ("kind", "file", "unit", "step", "scale", "column", "band", "frequency", "amplitude", "duration", "seed")
+KINDS = ("record", "blwn", "sine")
+_LARGEST, _LONGEST = 50_000_000, 4_000_000  # bytes of a record's file, samples of a motion
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
+
+
+@dataclass(frozen=True)
+class Ground:
+    """A ground acceleration, SI.
+
+    `kind` "record": the numbers of `file` in rows, one after the other, each times `factor` (m/s² for one of the file's
+    unit) and `scale`, `step` seconds apart, straight lines between them; `column` (0 is the first) takes one of several
+    columns. "blwn": white noise from `band[0]` to `band[1]` Hz with the RMS `amplitude` (m/s²), of `seed`. "sine": one
+    of `frequency` Hz and peak `amplitude`. `duration` in s cuts a record short (None: all of it).
+    """
+
+    kind: str = "blwn"
+    file: str = ""
+    factor: float = GRAVITY
+    step: float = 0.02
+    scale: float = 1.0
+    column: int | None = None
+    band: tuple[float, float] = (0.0, 30.0)
+    frequency: float = 1.0
+    amplitude: float = 0.1 * GRAVITY
+    duration: float | None = None
+    seed: int = 0
+
+    @property
+    def name(self) -> str:
+        """What it is, in words."""
+        if self.kind == "record":
+            return f"{Path(self.file).name}{f' × {self.scale:g}' if self.scale != 1 else ''}"
+        if self.kind == "sine":
+            return f"sine of {self.frequency:g} Hz"
+        return f"band-limited white noise {self.band[0]:g} to {self.band[1]:g} Hz"
+
+    def samples(self, sample_rate: float) -> Array:
+        """The acceleration (m/s²) at k/`sample_rate`, (n,). Raises Unusable where the file holds no record."""
+        if self.kind == "record":
+            values = read_record(Path(self.file), self.column) * (self.factor * self.scale)
+            last = (len(values) - 1) * self.step
+            seconds = last if self.duration is None else min(self.duration, last)
+            count = _count(seconds, sample_rate)
+            return np.interp(np.arange(count) / sample_rate, np.arange(len(values)) * self.step, values)
+        count = _count(30.0 if self.duration is None else self.duration, sample_rate)
+        if self.kind == "sine":
+            wave = np.sin(2 * np.pi * self.frequency * np.arange(count) / sample_rate)
+            return np.asarray(self.amplitude * self.scale * wave)
+        return self.scale * _white(count, self, sample_rate)
+
+
+def _count(seconds: float, sample_rate: float) -> int:
+    count = round(seconds * sample_rate) + 1
+    if not 16 <= count <= _LONGEST:
+        raise Unusable("bad-ground", f"{seconds:g} s at {sample_rate:g} Hz are {count} samples", "ground",
+                       f"let it have 16 to {_LONGEST} samples")  # fmt: skip
+    return count
+
+
+def _white(count: int, of: Ground, sample_rate: float) -> Array:
+    """Noise whose spectrum is flat in the band and zero elsewhere, of exactly the RMS value asked for."""
+    frequency = np.fft.rfftfreq(count, 1 / sample_rate)
+    used = (frequency > 0) & (frequency >= of.band[0]) & (frequency <= of.band[1])
+    if not used.any():
+        raise Unusable("bad-ground", f"no frequency of the motion lies in {of.band[0]:g} to {of.band[1]:g} Hz",
+                       "ground band", "give a wider band or a longer duration")  # fmt: skip
+    rng = np.random.default_rng(of.seed)
+    lines = np.zeros(len(frequency), dtype=complex)
+    lines[used] = rng.standard_normal(used.sum()) + 1j * rng.standard_normal(used.sum())
+    noise = np.fft.irfft(lines, count)
+    return np.asarray(noise * (of.amplitude / np.sqrt(np.mean(noise**2))))
+
+
+def read_record(path: Path, column: int | None = None) -> Array:
+    """The numbers of a text file, row by row; lines before the first row of numbers are a header.
+
+    Raises Unusable: ``no-such-file``, ``bad-ground`` where a later line holds something else, or a number is not
+    finite, and where rows have several numbers of different count and one `column` is asked for.
+    """
+    if not path.is_file() or path.stat().st_size > _LARGEST:
+        raise Unusable("no-such-file", "there is no such record of ground motion", str(path), "give its path")
+    rows: list[list[float]] = []
+    for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
+        words = re.split(r"[\s,;]+", line.strip())
+        if words == [""]:
+            continue
+        if all(_NUMBER.fullmatch(word) for word in words):
+            rows.append([float(re.sub("[dD]", "e", word)) for word in words])
+        elif rows:
+            raise Unusable("bad-ground", f"{shown(line)!r} is no row of numbers", f"{path} line {number}",
+                           "leave numbers alone in the file")  # fmt: skip
+    if column is not None:
+        if any(len(row) <= column for row in rows):
+            raise Unusable("bad-ground", f"no column {column} in every row", str(path), "count columns from 0")
+        rows = [[row[column]] for row in rows]
+    values = np.array([value for row in rows for value in row])
+    if len(values) < 2 or not np.isfinite(values).all():
+        raise Unusable("bad-ground", "no record of finite numbers", str(path), "give a text file of numbers")
+    return values
+
+
+def ground_of(data: Any, base: Path, default: Ground) -> Ground:
+    """The motion of a description; what a record's entry leaves out (unit, step) is that of `default`.
+
+    `base` is the folder from which a file's name counts. Raises Unusable with the field.
+    """
+    fields = Fields(data, "ground", KEYS)
+    kind = fields.choice("kind", KINDS, "record" if "file" in fields else "blwn")
+    file = fields.text("file")
+    if kind == "record" and not file:
+        raise Unusable("missing-field", "'file' is missing", "ground", "name the record's text file")
+    factor = default.factor
+    if "unit" in fields:
+        factor = unit_scale(fields.text("unit"), "acceleration", "ground unit").factor
+    scale = fields.number("scale")
+    return Ground(
+        kind=kind,
+        file=str(base / file) if file else "",
+        factor=factor,
+        step=fields.positive("step", "time") or default.step,
+        scale=1.0 if scale is None else scale,
+        column=fields.whole("column") if "column" in fields else None,
+        band=_band(fields, default),
+        frequency=fields.positive("frequency", "frequency") or default.frequency,
+        amplitude=_amplitude(fields, default),
+        duration=fields.positive("duration", "time") or default.duration,
+        seed=fields.whole("seed", default.seed),
+    )
+
+
+def _amplitude(fields: Fields, default: Ground) -> float:
+    found = fields.not_negative("amplitude", "acceleration")
+    return default.amplitude if found is None else found
+
+
+def _band(fields: Fields, default: Ground) -> tuple[float, float]:
+    pair = fields.pair("band") if isinstance(fields.data.get("band"), list) else None
+    if pair is None:
+        top = fields.positive("band", "frequency") if "band" in fields else None
+        return (0.0, top) if top else default.band
+    ends: Mapping[str, Any] = {"from": pair[0], "to": pair[1]}
+    both = Fields(ends, "ground band", ("from", "to"))
+    return both.not_negative("from", "frequency") or 0.0, both.positive("to", "frequency") or default.band[1]
