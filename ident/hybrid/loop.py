@@ -62,33 +62,40 @@ class Rig(NamedTuple):
     f: Array
     limit: Array
     ended: NDArray[np.int64]
+    scratch: Array
+
+
+@njit(cache=True, nogil=True)
+def _feed(k: int, lane: int, of: int, rig: Any) -> None:
+    """The command of a lane, that of system `of`, before, at and behind the steps of sample k.
+
+    The command that follows is not known at the last step where it hangs on this sample: a jump then acts at once on
+    what reads its rate, instead of half before and half behind it.
+    """
+    steps, before, now = rig.steps, rig.command * LANES + lane, (rig.command + 1) * LANES + lane
+    begin = k * steps - rig.whole[lane]
+    sample, rest = (begin - 1) // steps, (begin - 1) % steps
+    for j in range(-1, steps + 1):
+        value = 0.0 if sample < 0 else rig.held[min(sample, k + rig.delay - 1), of]
+        if j == -1:
+            rig.buffer[before] = value
+        elif j == 0:
+            rig.buffer[now] = value
+        else:
+            rig.window[lane * steps + j - 1] = value
+        rest += 1
+        if rest == steps:
+            sample, rest = sample + 1, 0
+    if rig.delay == 1 and rig.whole[lane] == 0 and not rig.broken[lane]:
+        rig.buffer[before] = 2 * rig.buffer[before] - rig.buffer[now]
 
 
 @njit(cache=True, nogil=True)
 def advance_machine(k: int, rig: Any) -> None:
-    """The machine from sample k to k + 1; what its transducers read at k is noted.
-
-    The command that follows is not known at its last step where it hangs on this sample: a jump then acts at once on
-    what reads its rate, instead of half before and half behind it.
-    """
+    """The machine from sample k to k + 1; what its transducers read at k is noted."""
     steps, lanes = rig.steps, rig.held.shape[1]
     for lane in range(rig.lanes):
-        of = min(lane, lanes - 1)
-        begin = k * steps - rig.whole[lane]
-        for j in range(-1, steps + 1):
-            i = begin + j
-            value = 0.0
-            if i >= 0:
-                value = rig.held[min(i // steps, k + rig.delay - 1), of]
-            if j == -1:
-                rig.buffer[rig.command * LANES + lane] = value
-            elif j == 0:
-                rig.buffer[(rig.command + 1) * LANES + lane] = value
-            if j > 0:
-                rig.window[lane * steps + j - 1] = value
-        if rig.delay == 1 and rig.whole[lane] == 0 and not rig.broken[lane]:
-            now = rig.buffer[(rig.command + 1) * LANES + lane]
-            rig.buffer[rig.command * LANES + lane] = 2 * rig.buffer[rig.command * LANES + lane] - now
+        _feed(k, lane, min(lane, lanes - 1), rig)
         rig.places[lane] = (lane - k) * steps - 1
     _advance(k * steps, k * steps + 1, rig)
     for lane in range(lanes):
@@ -113,12 +120,13 @@ def control(k: int, lane: int, rig: Any) -> Any:
     u = rig.D[0, 0] * d + rig.D[0, 1] * y
     for i in range(n):
         u += rig.C[0, i] * x[i]
-    on = np.empty(n)
+    on = rig.scratch[:n]
     for i in range(n):
         on[i] = rig.B[i, 0] * d + rig.B[i, 1] * y
         for j in range(n):
             on[i] += rig.A[i, j] * x[j]
-    x[:] = on
+    for i in range(n):
+        x[i] = on[i]
     return u
 
 
@@ -130,13 +138,13 @@ def close(k: int, lane: int, u: float, rig: Any) -> None:
     guess = 2 * f - rig.before[lane]
     rig.before[lane] = f
     a, then = rig.ground[k], rig.ground[min(k + 1, len(rig.ground) - 1)]
-    on = np.empty(n)
+    on, drives = rig.scratch[:n], rig.drives[lane]
     for i in range(n):
-        drives = rig.drives[lane]
         on[i] = drives[0, i] * f + drives[1, i] * guess + drives[2, i] * a + drives[3, i] * then
         for j in range(n):
             on[i] += rig.phi[lane, i, j] * z[j]
-    z[:] = on
+    for i in range(n):
+        z[i] = on[i]
 
 
 @njit(cache=True, nogil=True)

@@ -31,11 +31,6 @@ _STAGE = "hybrid simulation"
 class Compensator(Protocol):
     """A controller that is no sampled linear one: what is wanted and what was measured in, the command out, all m."""
 
-    @property
-    def name(self) -> str:
-        """What it is, in words."""
-        ...
-
     def step(self, d: float, y: float) -> float:
         """The command u(k) that answers d(k) and y(k), called once a sample, in their order."""
         ...
@@ -138,7 +133,7 @@ def simulate_machine(
         radius = spectral_radius(of, case, acting)
     d, y, u = rig.d[:, 0], rig.y[:, 0], rig.held[case.delay :, 0]
     return HybridResult(
-        case, acting.name, dict(effects or {}), kept and (radius is None or radius < 1.0),
+        case, getattr(acting, "name", "") or type(acting).__name__.lower(), dict(effects or {}), kept and (radius is None or radius < 1.0),
         scores(y, d, wanted, case.sample_rate) if kept else None,
         float(np.std(u)) if kept else None, critical_delay(case), radius,
         None if kept else ended / case.sample_rate, perf_counter() - begun,
@@ -210,4 +205,5 @@ def rig_of(
         quantum=np.array([case.noise.displacement_step, case.noise.force_step]),
         d=np.zeros((n, count)), y=np.zeros((n, count)), f=np.zeros((n, count)),
         limit=np.full(count, limit), ended=np.full(count, n, dtype=np.int64),
+        scratch=np.zeros(max(2 * case.storeys, linear.order)),
     )  # fmt: skip
