@@ -30,6 +30,7 @@ from ident.fit.identification import Identification, StepwiseFit, check_settings
 from ident.fit.regressed import RegressedIdentification
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
+from ident.hybrid.kalman_identification import KalmanIdentification
 from ident.matrix import Matrix
 from ident.presets.preset import Kind
 from ident.progress import Report, silent
@@ -58,7 +59,7 @@ SERVED: Mapping[Kind, Served] = {
         Identification,
         comparison.modelled,
         diagnosis.diagnose,
-        {"inverse-dynamics": RegressedIdentification},
+        {"inverse-dynamics": RegressedIdentification, "ekf": KalmanIdentification},
         proposes=True,
     ),
     "bench": Served(BenchIdentification, bench_outputs, diagnose_bench, {}),

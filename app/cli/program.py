@@ -29,10 +29,11 @@ from app.cli.revise import revise
 from app.cli.serve import serve
 from app.cli.simulate import simulate
 from app.cli.token import token
+from app.cli.track import track
 from app.cli.upload import upload
 from app.cli.worker import worker
 
-LOCAL = (simulate, check, fit, compare, diagnose, next_, bench, write_report)
+LOCAL = (simulate, check, fit, compare, diagnose, next_, bench, track, write_report)
 SERVICE = (serve, worker, demo, token, migrate, regress)
 CLIENT = (upload, approve, query, revise)
 

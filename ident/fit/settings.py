@@ -11,7 +11,7 @@ from ident.plain import Misfit, read, written
 
 GENERAL = ("ga", "paper-ga", "differential-evolution", "cma-es")
 """Methods of any model; a preset may name more of its own."""
-METHODS = (*GENERAL, "gradient", "inverse-dynamics")
+METHODS = (*GENERAL, "gradient", "inverse-dynamics", "ekf")
 
 
 @dataclass(frozen=True)

@@ -35,4 +35,5 @@ FIRST_ORDER = Preset(
         outputs={"displacement": "y", "velocity": "y", "load_pressure": "y", "force": "y"},
     ),
     drive_scale="U",
+    methods=("ekf",),
 )

@@ -1,0 +1,83 @@
+"""`servoident track`: a run followed as if it came in now: time constant and gain of its loop over time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from app.cli.fit_options import MatrixPath
+from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
+
+if TYPE_CHECKING:
+    from ident.hybrid.tracked_run import Track
+    from ident.matrix import Actuator
+
+FORMATS = ("svg", "png", "pdf", "json")
+
+
+def track(
+    matrix: MatrixPath,
+    run: Annotated[str | None, typer.Option(metavar="ID", help="Run to follow; without it, the first.")] = None,
+    noise: Annotated[
+        str | None,
+        typer.Option(
+            metavar="VALUE", help="Standard deviation of the sensor, such as 0.12 mm; without it, that of the record."
+        ),
+    ] = None,
+    json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the track as JSON; - is stdout.")] = None,
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figure: svg, png, pdf, json.")] = None,
+) -> None:
+    """Follow time constant and gain of a first-order loop over a run, by a Kalman filter, and say whether it holds."""
+    from ident.hybrid.tracked_run import chosen
+    from ident.hybrid.tracked_run import track as tracked
+    from ident.readers import read_matrix
+
+    check_target(json)
+    read = read_matrix(matrix)
+    followed = chosen(read, run)
+    found = tracked(followed, _size(noise, followed.units.get(followed.output, "m")))
+    if json is not None:
+        write_json(found.to_json(), json)
+    if json != STANDARD_OUTPUT:
+        show(found)
+    if out is not None:
+        draw(found, read.actuator, out)
+
+
+def _size(noise: str | None, unit: str) -> float | None:
+    from ident.units.quantity import parameter_value
+
+    return None if noise is None else parameter_value(noise, unit, "--noise")
+
+
+def show(found: Track) -> None:
+    """Print the last estimates and the verdict."""
+    from app.cli.tables import output, table
+    from ident.words.engineering import quantity
+    from ident.words.number import plain
+
+    clock = "s" if found.run.time_unit == "s" else "samples"
+    rows = [
+        ("τyr", quantity(float(found.tau[-1]), clock), quantity(float(found.std_tau[-1]), clock)),
+        ("kyr", plain(float(found.gain[-1])), plain(float(found.std_gain[-1]), 2)),
+    ]
+    said = found.verdict
+    output().print(table((f"run {found.run.id}, at its end", "value", "std"), rows, numbers=("value", "std")))
+    mean = "unknown" if said.nis_mean is None else plain(said.nis_mean)
+    unit = found.run.units.get(found.run.output, "m")
+    print(f"noise of the sensor {quantity(found.noise.measurement, unit)}; mean normalised innovation squared {mean}")
+    print(f"{'holds' if said.holds else 'does not hold'}: {said.reason}")
+
+
+def draw(found: Track, actuator: Actuator, out: Path) -> None:
+    """Write the figure in every format to the folder `out`."""
+    from ident.figures import look, render
+    from ident.figures.tracking import tracking
+
+    out.mkdir(parents=True, exist_ok=True)
+    chart = tracking(found, actuator, look("light"))
+    for format_ in FORMATS:
+        write_bytes(render(chart, format_), out / f"tracking.{format_}")
+    print(f"wrote tracking to {out}")

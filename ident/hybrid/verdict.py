@@ -1,0 +1,53 @@
+"""Whether a first-order loop holds: what the innovations of a tracking filter say of its model.
+
+If the model holds, innovations are white and as large as the filter expects them: the mean of their normalised squares
+over n samples lies within 1 ± 1.96 √(2/n) in 95 % of cases. Judged in windows of 512 samples, from the second on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from ident.hybrid import kalman
+from ident.words.number import trimmed
+from ident.words.percent import percent
+
+_FEW_WINDOWS = 0.2  # of the windows may fail: after a change there are some while the filter finds its way
+_FEW_SAMPLES = 0.05  # may be outliers
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """`holds`, with the reason in words; `nis_mean` over the samples that were taken up, None without any."""
+
+    holds: bool
+    reason: str
+    nis_mean: float | None
+    outliers: int
+    changes: int
+
+
+def verdict(state: Any) -> Verdict:
+    """What the counts in a filter's state say."""
+    used, windows, failed = int(state[kalman.USED]), int(state[kalman.WINDOWS]), int(state[kalman.FAILED])
+    mean = float(state[kalman.NIS]) / used if used else None
+    outliers, changes = int(state[kalman.GATED]), int(state[kalman.REOPENED])
+
+    def judged(holds: bool, reason: str) -> Verdict:
+        return Verdict(holds, reason, mean, outliers, changes)
+
+    if not windows or mean is None:
+        return judged(False, f"nothing is told by fewer than {2 * kalman.WINDOW} samples")
+    if failed > _FEW_WINDOWS * windows:
+        return judged(False, f"no first-order loop with slowly changing parameters does what was measured: in "
+                      f"{percent(failed / windows)} of the windows of {kalman.WINDOW} samples what it leaves is larger "
+                      f"than the sensor's noise, or each sample of it follows from the one before; identify a model of "
+                      f"higher order")  # fmt: skip
+    if changes > _FEW_WINDOWS * windows:
+        return judged(False, f"the parameters had to be found anew {changes} times in {windows} windows of "
+                      f"{kalman.WINDOW} samples: no first-order loop lasts that long")  # fmt: skip
+    if outliers > _FEW_SAMPLES * (used + outliers):
+        return judged(False, f"{percent(outliers / (used + outliers))} of the samples are further off than any noise "
+                      f"of the sensor")  # fmt: skip
+    return judged(True, f"what the loop leaves looks like the sensor's noise (mean normalised square {trimmed(mean)})")

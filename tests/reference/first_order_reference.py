@@ -1,0 +1,103 @@
+"""A closed loop that follows like a single lag, solved in closed form: an independent judge of tracking.
+
+    tau y' + y = k r,   r(t) = sum of A sin(2 pi f t + phase)
+
+The reference is continuous: nothing is held between samples and nothing is integrated in steps. For constant tau and k
+
+    y(t) = p(t) + (y(t0) - p(t0)) exp(-(t - t0)/tau),
+    p(t) = sum of k A / sqrt(1 + (w tau)^2) sin(w t + phase - atan(w tau)),   w = 2 pi f
+
+and where tau or k steps, y goes on from where it was. A reference that is held between samples has the exact solution
+y[n+1] = k r[n] + (y[n] - k r[n]) exp(-dt/tau). Everything is SI; nothing here comes from the program's library.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Samples = NDArray[np.float64]
+
+SAMPLE_RATE = 4096.0  # Hz
+SENSOR = 1.2e-4  # m, standard deviation: the position sensor of the hybrid-simulation paper
+FREQUENCY, AMPLITUDE = 1.0, 0.05  # Hz and m: its test
+
+
+class Sine(NamedTuple):
+    """A sin(2 pi f t + phase): m, Hz, rad."""
+
+    amplitude: float = AMPLITUDE
+    frequency: float = FREQUENCY
+    phase: float = 0.0
+
+
+class Loop(NamedTuple):
+    """Constant parameters from the time `start` (s) on."""
+
+    tau: float  # s
+    gain: float
+    start: float = 0.0
+
+
+def reference(t: Samples, sines: Sequence[Sine] = (Sine(),)) -> Samples:
+    """r at the times t."""
+    return sum((a * np.sin(2 * np.pi * f * t + phase) for a, f, phase in sines), np.zeros_like(t))
+
+
+def forced(t: Samples | float, loop: Loop, sines: Sequence[Sine]) -> Samples:
+    """The particular solution p at the times t."""
+    found = np.zeros_like(np.asarray(t, dtype=float))
+    for amplitude, frequency, phase in sines:
+        w = 2 * np.pi * frequency
+        size = loop.gain * amplitude / np.hypot(1.0, w * loop.tau)
+        found = found + size * np.sin(w * np.asarray(t) + phase - np.arctan(w * loop.tau))
+    return found
+
+
+def response(t: Samples, loops: Sequence[Loop], sines: Sequence[Sine] = (Sine(),)) -> Samples:
+    """y at the times t, at rest when the first loop starts."""
+    y, value = np.zeros_like(t), 0.0
+    ends = [*(loop.start for loop in loops[1:]), np.inf]
+    for loop, end in zip(loops, ends, strict=True):
+        missing = value - float(forced(loop.start, loop, sines))
+        inside = (t >= loop.start) & (t < end)
+        y[inside] = forced(t[inside], loop, sines) + missing * np.exp(-(t[inside] - loop.start) / loop.tau)
+        if np.isfinite(end):
+            value = float(forced(end, loop, sines)) + missing * np.exp(-(end - loop.start) / loop.tau)
+    return y
+
+
+def held(command: Samples, loop: Loop, sample_rate: float = SAMPLE_RATE) -> Samples:
+    """y at the samples where each command is held until the next, from rest."""
+    decay, y = np.exp(-1.0 / (sample_rate * loop.tau)), np.zeros(len(command))
+    for n in range(len(command) - 1):
+        y[n + 1] = loop.gain * command[n] + (y[n] - loop.gain * command[n]) * decay
+    return y
+
+
+def times(seconds: float, sample_rate: float = SAMPLE_RATE) -> Samples:
+    """The times of the samples."""
+    return np.arange(round(seconds * sample_rate)) / sample_rate
+
+
+class Trial(NamedTuple):
+    """One drawn loop, where a filter starts, and what it is given."""
+
+    loop: Loop
+    tau0: float
+    gain0: float
+    r: Samples
+    y: Samples
+
+
+def trial(seed: int, seconds: float) -> Trial:
+    """tau uniform in its logarithm over 5 to 50 ms, k over 0.7 to 1.2, starts off by up to five times, noise."""
+    draw = np.random.default_rng(seed)
+    loop = Loop(float(np.exp(draw.uniform(np.log(5e-3), np.log(50e-3)))), float(draw.uniform(0.7, 1.2)))
+    off = 5.0 ** draw.uniform(-1, 1, 2)
+    t = times(seconds)
+    y = response(t, [loop]) + SENSOR * draw.standard_normal(len(t))
+    return Trial(loop, loop.tau * off[0], loop.gain * off[1], reference(t), y)
