@@ -12,12 +12,14 @@ from app.cli.approve import approve
 from app.cli.bench import bench
 from app.cli.check import check
 from app.cli.compare import compare
+from app.cli.control import control
 from app.cli.demo import demo
 from app.cli.diagnose import diagnose
 from app.cli.drop import drop
 from app.cli.effects import effects
 from app.cli.failures import INTERRUPTED, UNREAD, report
 from app.cli.fit import fit
+from app.cli.hybrid import hybrid
 from app.cli.interrupts import heard
 from app.cli.keep import keep
 from app.cli.migrate import migrate
@@ -33,7 +35,7 @@ from app.cli.track import track
 from app.cli.upload import upload
 from app.cli.worker import worker
 
-LOCAL = (simulate, check, fit, compare, diagnose, next_, bench, track, write_report)
+LOCAL = (simulate, check, fit, compare, diagnose, next_, bench, track, control, hybrid, write_report)
 SERVICE = (serve, worker, demo, token, migrate, regress)
 CLIENT = (upload, approve, query, revise)
 

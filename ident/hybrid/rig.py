@@ -45,6 +45,11 @@ def no_controller(sample_rate: float) -> SampledController:
                              "none")  # fmt: skip
 
 
+def name_of(controller: Controller) -> str:
+    """What a controller is called: by its own name, else by what it is."""
+    return getattr(controller, "name", "") or type(controller).__name__.lower()
+
+
 @dataclass(frozen=True, eq=False)
 class HybridResult:
     """What a hybrid simulation gave, SI; the records are (n,) at `sample_rate` (Hz).
@@ -133,7 +138,7 @@ def simulate_machine(
         radius = spectral_radius(of, case, acting)
     d, y, u = rig.d[:, 0], rig.y[:, 0], rig.held[case.delay :, 0]
     return HybridResult(
-        case, getattr(acting, "name", "") or type(acting).__name__.lower(), dict(effects or {}), kept and (radius is None or radius < 1.0),
+        case, name_of(acting), dict(effects or {}), kept and (radius is None or radius < 1.0),
         scores(y, d, wanted, case.sample_rate) if kept else None,
         float(np.std(u)) if kept else None, critical_delay(case), radius,
         None if kept else ended / case.sample_rate, perf_counter() - begun,

@@ -1,0 +1,81 @@
+"""`servoident control`: a loop-shaping controller for an identified actuator, as files for a rig."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from app.cli.given import read_fit
+from app.cli.output import write_bytes, write_json
+from ident.errors import Unusable
+
+if TYPE_CHECKING:
+    from ident.hybrid.controller_design import ControllerDesign
+    from ident.hybrid.target import Target
+
+FILES = ("controller.json", "controller.mat", "controller.h", "closed-loop.svg")
+
+
+def control(
+    fit: Annotated[Path, typer.Argument(metavar="FIT.json", help="What `servoident fit --json` wrote.")],
+    case: Annotated[str, typer.Option(metavar="CASE", help="qian, benchmark2020, or a YAML file.")],
+    out: Annotated[Path, typer.Option(metavar="DIR", help=f"Folder for {', '.join(FILES)}.")],
+    target: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="The open loop wanted, YAML; else eq. (19) of Qian et al. 2014.")
+    ] = None,
+    structure: Annotated[
+        str, typer.Option(metavar="NAME", help="feedback, or two-degree: a path forward beside it.")
+    ] = "feedback",
+    seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Seed of the draws from the covariance.")] = 0,
+) -> None:
+    """Design a controller that makes the measured displacement follow the wanted one, by loop shaping.
+
+    The controller is designed on the linear part of the fit with the physical specimen, the gain, the sample rate and
+    the delay of the case, and tried on 100 actuators drawn from the covariance of the fit.
+    """
+    from ident.hybrid.case import read_case
+    from ident.hybrid.controller_design import design_controller
+    from ident.hybrid.target import QIAN2014_TARGET
+
+    result, given = read_fit(fit), read_case(case)
+    wanted = QIAN2014_TARGET if target is None else _target(target)
+    made = design_controller(
+        result, given.physical, sample_rate=given.sample_rate, gain=given.gain, piston_area=given.piston_area,
+        delay=given.delay, target=wanted, structure=structure, seed=seed,
+    )  # fmt: skip
+    _write(made, out, given.name)
+    _show(made)
+    print(f"wrote {', '.join(FILES)} to {out}")
+
+
+def _target(path: Path) -> Target:
+    from ident.hybrid.target import read_target
+
+    if not path.is_file():
+        raise Unusable("no-such-file", "the file does not exist", str(path), "give its path")
+    return read_target(path.read_bytes(), str(path))
+
+
+def _write(made: ControllerDesign, out: Path, case: str) -> None:
+    from ident.figures import look, render
+    from ident.figures.closed_loop import closed_loop
+    from ident.hybrid.export import as_header, as_mat
+
+    out.mkdir(parents=True, exist_ok=True)
+    controller = made.design.controller
+    write_json(made.to_json(), out / FILES[0])
+    write_bytes(as_mat(controller), out / FILES[1])
+    write_bytes(as_header(controller).encode(), out / FILES[2])
+    write_bytes(render(closed_loop(made, look("light"), f"case {case}"), "svg"), out / FILES[3])
+
+
+def _show(made: ControllerDesign) -> None:
+    """Print what the loop can stand and how it follows."""
+    from app.cli.tables import output, table
+
+    console = output()
+    console.print(table(("quantity", "value", "unit"), made.rows, numbers=("value",)))
+    for note in made.notes:
+        console.print(f"note: {note}", markup=False)

@@ -1,0 +1,119 @@
+"""A fit in, a controller out: designed on the linear part, with its margins and with what the fit leaves open."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ident.fit.result import FitResult
+from ident.hybrid.linear_plant import linear_plant
+from ident.hybrid.loop_shaping import Design, design
+from ident.hybrid.margins import Margins, margins
+from ident.hybrid.robustness import (
+    DRAWS,
+    Robustness,
+    drawn_parameters,
+    frequencies,
+    robustness,
+    undetermined,
+)
+from ident.hybrid.target import QIAN2014_TARGET, Target
+from ident.matrix import Specimen
+
+
+@dataclass(frozen=True)
+class ControllerDesign:
+    """A design, its margins, its robustness over the fitted covariance (None where that is unknown), and notes."""
+
+    design: Design
+    margins: Margins
+    robustness: Robustness | None
+    notes: tuple[str, ...]
+
+    def to_json(self) -> dict[str, Any]:
+        """The JSON of the controller, with the design beside it."""
+        made = self.design
+        found: dict[str, Any] = {
+            "structure": made.structure,
+            "target": made.target.to_json(),
+            "delay": made.delay,
+            "gamma": {
+                "target": made.gamma_target,
+                "min": made.stabilised.gamma_min,
+                "used": made.stabilised.gamma,
+            },
+            "order": {"full": made.full.order, "reduced": made.controller.order},
+            "margins": self.margins.to_json(),
+            "notes": list(self.notes),
+        }
+        if self.robustness is not None:
+            counts = {name: getattr(self.robustness, name) for name in ("draws", "stable", "within")}
+            found["robustness"] = {**counts, "held": list(self.robustness.held)}
+        return {**made.controller.to_json(), "design": found}
+
+    @property
+    def rows(self) -> list[tuple[str, str, str]]:
+        """What a reader wants to know: quantity, value, unit."""
+        made, found, judged = self.design, self.margins, self.robustness
+        rows = [
+            ("structure", made.structure, ""),
+            ("γmin of the target", f"{made.gamma_target:.3f}", ""),
+            ("γmin with its roll-off", f"{made.stabilised.gamma_min:.3f}", ""),
+            ("states, and before the reduction", f"{made.controller.order}, {made.full.order}", ""),
+            ("gain margin", _or_none(found.gain, 1.0), "dB"),
+            ("phase margin", _or_none(found.phase, 1.0), "°"),
+            ("delay margin", _or_none(found.delay, 1e3), "ms"),
+            ("sensitivity peak", f"{found.sensitivity_peak:.2f}", ""),
+            ("magnitude to 5 Hz, within", f"{found.magnitude_5:.2g}", "dB"),
+            ("magnitude to 25 Hz, within", f"{found.magnitude_25:.2g}", "dB"),
+            ("phase to 10 Hz, within", f"{found.phase_10:.2g}", "°"),
+            ("phase to 25 Hz, within", f"{found.phase_25:.2g}", "°"),
+            ("largest gain", f"{found.peak:.1f}", "dB"),
+            ("command by sensor noise", f"{found.noise_gain:.0f}", "m/m RMS"),
+        ]
+        if judged is not None:
+            rows += [
+                ("drawn actuators that stay stable", f"{judged.stable} of {judged.draws}", ""),
+                (f"and within ± 1 dB, ± 10° to 25 Hz of {'nominal' if made.structure == 'feedback' else 'wanted'}",
+                 f"{judged.within} of {judged.draws}", ""),
+            ]  # fmt: skip
+        return rows
+
+
+def _or_none(value: float | None, factor: float) -> str:
+    return "no limit" if value is None else f"{factor * value:.3g}"
+
+
+def design_controller(
+    fit: FitResult, specimen: Specimen, *, sample_rate: float, gain: float | None = None,
+    piston_area: float | None = None, delay: float = 1.0, target: Target = QIAN2014_TARGET,
+    structure: str = "feedback", draws: int = DRAWS, seed: int = 0,
+) -> ControllerDesign:  # fmt: skip
+    """A controller for the actuator of a fit with this specimen, gain Kp and piston area (m²).
+
+    `sample_rate` in Hz, `delay` in samples; `draws` plants are drawn from the fitted covariance with `seed`. Raises
+    Unusable where the fit has no displacement that a command drives, or no stable loop is found.
+    """
+    plant = linear_plant(fit, specimen, gain, piston_area)
+    made = design(plant.model, sample_rate, delay, target, structure)
+    drawn = drawn_parameters(fit, draws, seed)
+    judged = None
+    if drawn:
+        wanted = made.loop.response(frequencies()) if structure == "feedback" else None
+        plants = plant.drawn({name: np.asarray(values) for name, values in drawn.items()})
+        judged = robustness(made.controller, delay, plants, wanted, undetermined(fit))
+    return ControllerDesign(made, margins(made.loop), judged, _notes(plant.left_out, judged))
+
+
+def _notes(left_out: tuple[str, ...], judged: Robustness | None) -> tuple[str, ...]:
+    """What a reader should know before trusting it."""
+    notes = []
+    if left_out:
+        notes.append(f"designed on the linear part of the model, without {', '.join(left_out)}")
+    if judged is None:
+        notes.append("the fit states no standard errors: nothing is known about the robustness over its covariance")
+    elif judged.held:
+        notes.append(f"the data do not determine {', '.join(judged.held)}: fixed at the fitted values in every draw")
+    return tuple(notes)
