@@ -64,11 +64,11 @@ def told(shown: Mapping[str, HybridResult]) -> list[str]:
 
 
 def _until_end(one: HybridResult) -> Real:
-    """The measured displacement as far as the simulation went."""
+    """The measured displacement as far as the simulation went, then zero."""
     if one.ended is None:
         return one.measured
     kept = np.arange(len(one.measured)) <= one.ended * one.sample_rate
-    return np.where(kept, np.clip(one.measured, -1e3, 1e3), np.nan)
+    return np.where(kept, np.nan_to_num(one.measured), 0.0)
 
 
 def _rows(curves: Mapping[str, Real], factor: float, part: slice, rate: float) -> list[Row]:
@@ -76,10 +76,10 @@ def _rows(curves: Mapping[str, Real], factor: float, part: slice, rate: float) -
     most = 3.0 * float(np.max(np.abs(next(iter(curves.values())))))  # what runs away leaves the axis
     for name, signal in curves.items():
         piece = np.clip(signal[part], -most, most)
-        places = envelope(np.nan_to_num(piece), _BINS)
+        places = envelope(piece, _BINS)
         times = np.round((part.start + places) / rate, 6).tolist()
         values = significant(factor * piece[places], 5)
-        rows += [{"t": t, "y": y, "s": name} for t, y in zip(times, values, strict=True) if y == y]
+        rows += [{"t": t, "y": y, "s": name} for t, y in zip(times, values, strict=True)]
     return rows
 
 
