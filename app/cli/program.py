@@ -19,6 +19,7 @@ from app.cli.drop import drop
 from app.cli.effects import effects
 from app.cli.failures import INTERRUPTED, UNREAD, report
 from app.cli.fit import fit
+from app.cli.hybrid import hybrid
 from app.cli.interrupts import heard
 from app.cli.keep import keep
 from app.cli.migrate import migrate
@@ -35,7 +36,7 @@ from app.cli.upload import upload
 from app.cli.whatif import whatif
 from app.cli.worker import worker
 
-LOCAL = (simulate, check, fit, compare, diagnose, next_, bench, write_report, track, control, whatif)
+LOCAL = (simulate, check, fit, compare, diagnose, next_, bench, write_report, track, control, hybrid, whatif)
 SERVICE = (serve, worker, demo, token, migrate, regress)
 CLIENT = (upload, approve, query, revise)
 

@@ -174,9 +174,9 @@ class Chain:
         names = {p.right.id for p in powers if isinstance(p.op, ast.Pow) and isinstance(p.right, ast.Name)}
         return tuple(sorted(names & set(self.symbols)))
 
-    def needed(self, output: str) -> tuple[Equation, ...]:
-        """Of the signals, in order, those that the rates, the memories or the channel `output` depend on."""
-        wanted = {self.signal(output), *self.memories}
+    def needed(self, *outputs: str) -> tuple[Equation, ...]:
+        """Of the signals, in order, those that the rates, the memories or the channels `outputs` depend on."""
+        wanted = {*map(self.signal, outputs), *self.memories}
         wanted |= frozenset().union(*(equation.names for equation in self.equations if equation.is_rate))
         kept = []
         for equation in reversed(self.signals):

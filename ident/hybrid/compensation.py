@@ -26,6 +26,8 @@ class Compensation:
     Raises Unusable as :class:`ident.hybrid.tracking.Tracker`.
     """
 
+    name = "kalman"
+
     def __init__(self, sample_rate: float, tau0: float = TAU, gain0: float = GAIN, noise: Noise | None = None) -> None:
         self.tracker = Tracker(sample_rate, "zoh", tau0, gain0, noise, reopens=False)
         self.state, self.constants = self.tracker.state, self.tracker.constants

@@ -138,7 +138,7 @@ class Simulation:
         for row, node in built.constants:
             rows[row] = constant(node, values)
         for known in built.filters:
-            _pack_filter(rows, known, values)
+            pack_filter(rows, known, values)
         for name, first in built.inputs.items():
             # The first value did not jump there: what the command did before the record is hardly ever known.
             of = inputs[name]
@@ -254,7 +254,7 @@ def _jump_share(delay: Array) -> Array:
 # Filters ----------------------------------------------------------------------------------------------------------
 
 
-def _pack_filter(rows: Array, known: Filter, values: Mapping[str, Array]) -> None:
+def pack_filter(rows: Array, known: Filter, values: Mapping[str, Array]) -> None:
     """The gains of a filter over half a step and a whole step, exactly for an input that is a parabola.
 
     Rows of a block: for each state, the gains of the states at the start, then of three inputs half a step apart, the

@@ -19,9 +19,14 @@ from ident.simulation.kernel.writer import Writer
 
 
 @lru_cache(maxsize=64)
-def kernel(chain: Chain, output: str, plain: frozenset[tuple[str, float]] = frozenset()) -> Kernel:
-    """The kernel of a chain for one output; `plain` are symbols that stand as numbers in the code."""
-    return Writer(chain, output, dict(plain)).kernel()
+def kernel(
+    chain: Chain, output: str, plain: frozenset[tuple[str, float]] = frozenset(), beside: tuple[str, ...] = ()
+) -> Kernel:
+    """The kernel of a chain for one output; `plain` are symbols that stand as numbers in the code.
+
+    Channels `beside` the output are left in rows of the buffer at every step.
+    """
+    return Writer(chain, output, dict(plain), beside=beside).kernel()
 
 
 __all__ = ["HELD", "LANES", "SHARE", "Filter", "Kernel", "constant", "kernel"]

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from ident.chain.chain import INPUT, Chain
-from ident.simulation.kernel.machine_code import Advance, advance
+from ident.simulation.kernel.machine_code import Advance, address, advance
 
 HELD, SHARE = "held", "share"
 """Rows that the packing fills: 1 where a lane's command is held between samples; the delay's fraction of a step."""
@@ -45,12 +45,20 @@ class Kernel:
     inputs: Mapping[str, int]  # the rows previous, current, next begin here, one triple an input
     shift: ast.expr | None  # delay of the command
     shown: int  # the row of the output
+    beside: Mapping[str, int] = field(default_factory=dict)  # rows of further channels, as at the begin of the step
 
     @cached_property
     def advance(self) -> Advance:
         """The compiled function."""
-        fed = tuple((row + 2, "commands" if name == INPUT else "forces") for name, row in self.inputs.items())
-        return advance(self.lines, fed, self.shown)
+        return advance(self.lines, self._fed, self.shown)
+
+    def address(self, lanes: int) -> tuple[int, object]:
+        """Where the machine code of :attr:`advance` stands for the first `lanes` alone, and what keeps it there."""
+        return address(self.lines, self._fed, self.shown, lanes)
+
+    @property
+    def _fed(self) -> tuple[tuple[int, str], ...]:
+        return tuple((row + 2, "commands" if name == INPUT else "forces") for name, row in self.inputs.items())
 
 
 def filter_rows(order: int) -> int:

@@ -15,6 +15,7 @@ import struct
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
+from typing import Any
 
 import llvmlite.binding as llvm
 import numpy as np
@@ -38,7 +39,7 @@ def advance(lines: Sequence[str], fed: Sequence[tuple[int, str]], shown: int) ->
     k + 1] or from the forces alike; row `shown` is what is written to `out` (see
     :class:`ident.simulation.kernel.layout.Kernel`). Arrays are contiguous, of float64 and int64.
     """
-    engine = _engine(_program(lines, fed, shown))
+    engine = _engine(_program(lines, fed, shown, LANES))
     types = [*[ctypes.c_void_p] * 5, *[ctypes.c_int64] * 3, ctypes.c_void_p, ctypes.c_int64]
     native = ctypes.CFUNCTYPE(None, *types)(engine.get_function_address("advance"))
 
@@ -51,6 +52,20 @@ def advance(lines: Sequence[str], fed: Sequence[tuple[int, str]], shown: int) ->
         native(*given, first, last, every, out.ctypes.data, stride)
 
     return run
+
+
+@lru_cache(maxsize=64)
+def _machine_code(lines: Sequence[str], fed: Sequence[tuple[int, str]], shown: int, lanes: int) -> Any:
+    return _engine(_program(lines, fed, shown, lanes))
+
+
+def address(lines: Sequence[str], fed: Sequence[tuple[int, str]], shown: int, lanes: int) -> tuple[int, object]:
+    """Where the machine code of :func:`advance` stands, for a compiled loop to call, and what keeps it there.
+
+    It serves the first `lanes` lanes of the buffer, a multiple of eight, and leaves the others alone.
+    """
+    engine = _machine_code(lines, fed, shown, lanes)
+    return engine.get_function_address("advance"), engine
 
 
 # Lines ------------------------------------------------------------------------------------------------------------
@@ -164,7 +179,7 @@ def _number(value: float) -> str:
 # Programs ---------------------------------------------------------------------------------------------------------
 
 
-def _program(lines: Sequence[str], fed: Sequence[tuple[int, str]], shown: int) -> str:
+def _program(lines: Sequence[str], fed: Sequence[tuple[int, str]], shown: int, lanes: int) -> str:
     """The function in the language of LLVM: groups of lanes one after the other, each over all steps."""
     of = _Writer()
     for row, array in fed:
@@ -184,7 +199,7 @@ def _program(lines: Sequence[str], fed: Sequence[tuple[int, str]], shown: int) -
     )
     return _PROGRAM.format(
         declared="\n".join(sorted(declared)), begins="\n  ".join(begins), steps="\n  ".join(of.written),
-        vector=_VECTOR, output=output, wide=_WIDE, lanes=LANES,
+        vector=_VECTOR, output=output, wide=_WIDE, lanes=lanes,
     )  # fmt: skip
 
 

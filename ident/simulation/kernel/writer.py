@@ -24,6 +24,7 @@ class Writer(Source):
     filters: dict[str, Filter] = field(default_factory=dict)
     shift: ast.expr | None = None
     keys: dict[tuple[str, ...], str] = field(default_factory=dict)
+    beside: tuple[str, ...] = ()
 
     def kernel(self) -> Kernel:
         """The kernel of the chain for the output."""
@@ -33,19 +34,19 @@ class Writer(Source):
         memories = {name: self._row() for name in chain.memories}
         read = frozenset().union(*(e.names for e in (*needed, *rates)))
         inputs = {name: self._row(3) for name in (INPUT, *MEASURED) if name == INPUT or name in read}
-        shown = self._row()
-        body = self._body(needed, rates, states, memories, inputs, shown)
+        shown, beside = self._row(), {channel: self._row() for channel in self.beside}
+        body = self._body(needed, rates, states, memories, inputs, {self.output: shown} | beside)
         loads = [f"c{row} = b[{row * LANES} + lane]" for row, _ in self.constants.values()]
         return Kernel(
             chain, self.output, (*loads, *body), self.rows, tuple(self.constants.values()),
-            tuple(self.filters.values()), states, memories, inputs, self.shift, shown,
+            tuple(self.filters.values()), states, memories, inputs, self.shift, shown, beside,
         )  # fmt: skip
 
     def _folded(self) -> tuple[list[Equation], list[Equation]]:
         """Signals and rates, with the signals that never change put in where they are read."""
         fixed: dict[str, ast.expr] = {}
         kept = []
-        for original in self.chain.needed(self.output):
+        for original in self.chain.needed(self.output, *self.beside):
             found, equation = dry_friction(original), original.with_values(fixed)
             if found and isinstance(limit := fixed.get(found[0]), ast.Constant) and not limit.value:
                 fixed[equation.target] = ast.Constant(0.0)
@@ -56,14 +57,14 @@ class Writer(Source):
             else:
                 kept.append(equation)
         rates = [e.with_values(fixed) for e in self.chain.equations if e.is_rate]
-        shown = self.chain.signal(self.output)
-        if shown in fixed:
-            kept.append(Equation(f"{shown} = {ast.unparse(fixed[shown])}"))
+        for shown in dict.fromkeys(map(self.chain.signal, (self.output, *self.beside))):
+            if shown in fixed:
+                kept.append(Equation(f"{shown} = {ast.unparse(fixed[shown])}"))
         return kept, rates
 
     def _body(
         self, needed: Sequence[Equation], rates: Sequence[Equation], states: Mapping[str, int],
-        memories: Mapping[str, int], inputs: Mapping[str, int], shown: int,
+        memories: Mapping[str, int], inputs: Mapping[str, int], shown: Mapping[str, int],
     ) -> list[str]:  # fmt: skip
         self.lines = []
         for name, row in [*states.items(), *((f"{name}__old", row) for name, row in memories.items())]:
@@ -81,7 +82,8 @@ class Writer(Source):
             self._stage(needed, str(stage))
             for equation in rates:
                 self._write(f"{equation.target}_k{stage}", self._lower(equation.tree, str(stage)))
-        self._write(f"b[{shown * LANES} + lane]", self._name(self.chain.signal(self.output), "1"))
+        for channel, row in shown.items():
+            self._write(f"b[{row * LANES} + lane]", self._name(self.chain.signal(channel), "1"))
         for name, row in states.items():
             slope = f"{name}_k1 + 2.0 * ({name}_k2 + {name}_k3) + {name}_k4"
             self._write(f"b[{row * LANES} + lane]", f"{name}_1 + {sixth} * ({slope})")

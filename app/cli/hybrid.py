@@ -1,0 +1,124 @@
+"""`servoident hybrid`: a real-time hybrid simulation on an identified actuator."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from app.cli.arguments import effect_values
+from app.cli.given import read_fit
+from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
+from app.cli.progress import shown
+
+if TYPE_CHECKING:
+    from ident.figures import Chart
+    from ident.hybrid.case import Case
+    from ident.hybrid.rig import HybridResult
+    from ident.hybrid.share_map import ShareMap
+
+FORMATS = ("svg", "png", "pdf", "json")
+
+
+def hybrid(
+    fit: Annotated[Path, typer.Argument(metavar="FIT.json", help="What `servoident fit --json` wrote.")],
+    case: Annotated[str, typer.Option(metavar="CASE", help="qian, benchmark2020, or a YAML file.")],
+    controller: Annotated[
+        str, typer.Option(metavar="FILE|NAME", help="What `servoident control` wrote, none, kalman or feedforward.")
+    ] = "none",
+    ground: Annotated[
+        str | None, typer.Option(metavar="FILE|NAME", help="Record (text or YAML), blwn or sine, for the case's own.")
+    ] = None,
+    effect: Annotated[
+        list[str] | None, typer.Option(metavar="NAME[.PARAM=VALUE]", help="Effect to switch on; may be repeated.")
+    ] = None,
+    shares: Annotated[
+        bool, typer.Option("--map", help="Also the map over the shares of mass and stiffness that are physical.")
+    ] = False,
+    json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the scores as JSON; - is stdout.")] = None,
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures: svg, png, pdf, json.")] = None,
+) -> None:
+    """Simulate a real-time hybrid simulation: a numerical substructure, a controller, the actuator, a specimen."""
+    from ident.hybrid.acting import controller_called
+    from ident.hybrid.case import read_case
+    from ident.hybrid.rig import name_of, simulate_hybrid
+
+    check_target(json)
+    result, of = read_fit(fit), read_case(case)
+    of = of if ground is None else of.with_ground(ground)
+    effects = effect_values(effect or [], result.model)
+    acting = controller_called(controller, result, of)
+    with shown() as report:
+        runs = {name_of(acting): simulate_hybrid(result, of, acting, effects, report)}
+        if controller != "none" and out is not None:
+            runs["no controller"] = simulate_hybrid(result, of, None, effects, report)
+        found = _map(shares, acting, result, of, effects, report)
+    main = next(iter(runs.values()))
+    if json is not None:
+        write_json({**main.to_json(), **({"map": found.to_json()} if found else {})}, json)
+    if json != STANDARD_OUTPUT:
+        show(main)
+    if out is not None:
+        draw(runs, found, of, out)
+
+
+def _map(asked: bool, acting: Any, *rest: Any) -> ShareMap | None:
+    """The map, where it is asked for: of linear controllers, which run side by side."""
+    from ident.errors import Unusable
+    from ident.hybrid.controller import SampledController
+    from ident.hybrid.share_map import share_map
+
+    if not asked:
+        return None
+    if not isinstance(acting, SampledController):
+        raise Unusable("bad-option", "a map needs a linear controller", "map", "leave --map out, or give another")
+    fit, case, effects, report = rest
+    return share_map(fit, case, acting, effects, report=report)
+
+
+def show(found: HybridResult) -> None:
+    """Print the verdict and the scores."""
+    from app.cli.tables import output, table
+    from ident.words.engineering import quantity
+    from ident.words.percent import percent
+
+    rows: list[tuple[str, str, str]] = []
+    if (of := found.scores) is not None:
+        rows = [
+            ("delay", "measured behind numerical", quantity(of.delay, "s")),
+            ("tracking_rms", "measured against numerical", percent(of.tracking_rms)),
+            ("tracking_peak", "measured against numerical", percent(of.tracking_peak)),
+            ("reference_rms", "measured against reference", percent(of.reference_rms)),
+            ("reference_peak", "measured against reference", percent(of.reference_peak)),
+            ("numerical_rms", "numerical against reference", percent(of.numerical_rms)),
+            ("command_rms", "standard deviation of the command", quantity(found.command_rms or 0.0, "m")),
+        ]
+    critical = "none" if found.critical_delay is None else quantity(found.critical_delay, "s")
+    rows.append(("critical_delay", "of an otherwise perfect machine", critical))
+    console = output()
+    console.print(table((f"case {found.case.name}", "displacement", "value"), rows, numbers=("value",)))
+    said = "stable" if found.stable else "unstable"
+    if found.ended is not None:
+        said += f": ran away after {quantity(found.ended, 's')}"
+    print(f"{said}; controller {found.controller}; {found.case.ground.name}; {found.seconds:.2f} s of computing")
+    for note in found.notes:
+        print(f"note: {note}")
+
+
+def draw(runs: dict[str, HybridResult], found: ShareMap | None, case: Case, out: Path) -> None:
+    """Write the figures in every format to the folder `out`."""
+    from ident.figures import look, render
+    from ident.figures.hybrid_response import hybrid_response
+    from ident.figures.hybrid_time import hybrid_time
+    from ident.figures.share_map import share_map_chart
+
+    out.mkdir(parents=True, exist_ok=True)
+    of = look("light")
+    charts: dict[str, Chart] = {"displacement": hybrid_time(runs, of), "response": hybrid_response(runs, of)}
+    if found is not None:
+        charts["map"] = share_map_chart(found, case, next(iter(runs)), of)
+    for name, chart in charts.items():
+        for format_ in FORMATS:
+            write_bytes(render(chart, format_), out / f"{name}.{format_}")
+    print(f"wrote {', '.join(charts)} to {out}")

@@ -1,0 +1,55 @@
+"""The controller of a hybrid simulation by its name, or from the file that `servoident control` wrote."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from ident.errors import Unusable
+from ident.fit.result import FitResult
+from ident.hybrid.case import Case
+from ident.hybrid.compensation import Compensation
+from ident.hybrid.controller import SampledController
+from ident.hybrid.rig import Controller, no_controller
+from ident.units.quantity import shown
+
+_LARGEST = 50_000_000  # bytes of a controller's file
+
+
+def _none(_fit: FitResult, case: Case) -> Controller:
+    """u = d."""
+    return no_controller(case.sample_rate)
+
+
+def _kalman(_fit: FitResult, case: Case) -> Controller:
+    """u = (d + τ d′)/k from live estimates, which start from what a filter takes that knows nothing of the fit."""
+    return Compensation(case.sample_rate)
+
+
+NAMED: Mapping[str, Callable[[FitResult, Case], Controller]] = {"none": _none, "kalman": _kalman}
+"""Controllers by name, each made for one simulation."""
+
+
+def controller_called(given: str, fit: FitResult, case: Case) -> Controller:
+    """The controller of that name or file. Raises Unusable where it is neither, or made for another sample rate."""
+    if given in NAMED:
+        return NAMED[given](fit, case)
+    path = Path(given)
+    if not path.is_file() or path.stat().st_size > _LARGEST:
+        raise Unusable("unknown-controller", f"{shown(given)!r} is no controller", "controller",
+                       f"give {', '.join(NAMED)}, or the controller.json of `servoident control`")  # fmt: skip
+    try:
+        data = json.loads(path.read_bytes())
+    except (ValueError, RecursionError):
+        data = None
+    return for_rate(SampledController.from_json(data), case)
+
+
+def for_rate(controller: SampledController, case: Case) -> SampledController:
+    """The controller, where it was made for the sample rate of the case. Raises Unusable."""
+    if abs(controller.sample_rate / case.sample_rate - 1) > 1e-9:
+        made, asked = f"{controller.sample_rate:g} Hz", f"{case.sample_rate:g} Hz"
+        raise Unusable("bad-controller", f"it was made for {made}, the case samples at {asked}", "controller",
+                       "design it for this case")  # fmt: skip
+    return controller

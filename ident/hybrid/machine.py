@@ -1,0 +1,130 @@
+"""The machine of a hybrid simulation: an identified chain that moves the physical specimen."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.chain.chain import Chain
+from ident.chain.conditions import conditions
+from ident.custom.definition import preset_with
+from ident.effects.effect import Effect
+from ident.errors import Unusable
+from ident.fit.result import FitResult
+from ident.hybrid.case import Case
+from ident.matrix import Actuator, Run
+from ident.presets import Preset
+from ident.simulation.steps import rates, steps_needed
+from ident.stages import MASS_SPRING_DAMPER, Quantity
+from ident.stages.stage import Stage, stage
+
+Array = NDArray[np.float64]
+DISPLACEMENT, FORCE = "displacement", "force"
+_BAND = 80.0  # Hz: a hybrid simulation moves its specimen by less
+_SPECIMEN = stage(
+    "load",
+    (
+        Quantity("xL", "m", "position of the specimen"),
+        Quantity("vL", "m/s", "speed of the specimen"),
+        Quantity("xk", "m", "stretch of the specimen's spring"),
+        Quantity("S", "N", "reaction of the specimen's spring and damper"),
+        Quantity("F", "N", "force on the specimen"),
+    ),
+    ("xL = x", "the specimen moves with the rod"),
+    ("vL = v", "the specimen is as fast as the rod"),
+    ("xk = xL", "the spring has no play"),
+    ("S = k * xk + cL * vL", "spring and damper of the specimen"),
+    ("F = S", "what a load cell between rod and specimen measures"),
+)
+"""A specimen that a machine moves whatever it takes, as one without an equation of forces does."""
+
+
+@dataclass(frozen=True, eq=False)
+class Machine:
+    """A chain with its values by the equations' names, whose channels are what is measured beside the specimen.
+
+    `displacement` is what the recorder reads, effects of the sensor in it. `force` is the load cell between rod and
+    specimen: spring, damper and inertia of the specimen, not of the rod.
+    """
+
+    chain: Chain
+    values: Mapping[str, float]
+
+    def at(self, case: Case) -> dict[str, float]:
+        """Every symbol of the chain under the conditions of a case."""
+        return {**_conditions(case), **self.values}
+
+    def steps(self, case: Case) -> int:
+        """Into how many steps a sample is divided."""
+        known = {name: np.array([value]) for name, value in self.at(case).items()}
+        fastest = rates(self.chain, known, DISPLACEMENT) / case.sample_rate
+        on = [effect for effect in self.chain.effects if known[effect.added[0].in_equations][0]]
+        return int(steps_needed(self.chain, fastest, "zoh", on, 2 * np.pi * _BAND / case.sample_rate)[0])
+
+    @cached_property
+    def nonlinear(self) -> tuple[Effect, ...]:
+        """The effects that are on and are not linear at small signals: a linear analysis leaves them out."""
+        core = self.chain.with_effects(())
+        return tuple(
+            effect for effect in self.chain.effects
+            if self.values[effect.added[0].in_equations] and not core.with_effects((effect,)).is_linear
+        )  # fmt: skip
+
+
+def machine(fit: FitResult, case: Case, effects: Mapping[str, float] | None = None) -> Machine:
+    """The machine of a fit with the specimen of a case; `effects` are values of further ones by name, SI.
+
+    Raises Unusable where the model has no command that moves a displacement, or the specimen's inertia has no place.
+    """
+    added = tuple(name.partition(".")[0] for name in effects or {})
+    preset = preset_with(fit.model, tuple({**dict.fromkeys(fit.effects), **dict.fromkeys(added)}),
+                         fit.settings.get("custom", ()))  # fmt: skip
+    if preset.kind != "chain" or preset.driven_by != "command" or DISPLACEMENT not in preset.chain.outputs:
+        raise Unusable("no-answer", f"the model {fit.model} has no command that moves a displacement", "fit",
+                       "give the fit of an actuator")  # fmt: skip
+    preset = _with_specimen(preset, case)
+    values = {p.in_equations: p.value for effect in preset.effects for p in effect.added}
+    values |= {preset.parameter(name).in_equations: value for name, value in fit.values.items()}
+    values |= {preset.parameter(name).in_equations: value for name, value in (effects or {}).items()}
+    values |= _stated(preset, fit, case)
+    if missing := sorted(set(preset.chain.symbols) - values.keys() - _conditions(case).keys()):
+        raise Unusable("bad-fit", f"no value of {', '.join(missing)}", "fit", f"give a fit of model {fit.model}")
+    return Machine(preset.chain, values)
+
+
+def _conditions(case: Case) -> dict[str, float]:
+    run = Run("hybrid", "", case.sample_rate, {}, specimen=case.physical, gain=case.gain)
+    return conditions(run, Actuator("hybrid", piston_area=case.piston_area))
+
+
+def _stated(preset: Preset, fit: FitResult, case: Case) -> dict[str, float]:
+    """What the fit knew beforehand and does not hold: its piston area, and gains that its model states."""
+    found = dict(preset.gains)
+    ratios = {name for name, _ in (preset.without_area or {}).values()}
+    if "A" in preset.chain.symbols:
+        known = case.piston_area or preset.bounds_hold_for
+        if not ratios & set(fit.parameters) and known is None:
+            raise Unusable("missing-area", "the fit stands on a piston area", "case piston_area", "state it")
+        found["A"] = 1.0 if ratios & set(fit.parameters) or known is None else known
+    return found
+
+
+def _with_specimen(preset: Preset, case: Case) -> Preset:
+    """The model whose channel of force is that on the specimen."""
+    chain = preset.chain
+    if "F" in chain.units:
+        return replace(preset, chain=replace(chain, outputs={**chain.outputs, FORCE: "F"}))
+    if case.physical.mass:
+        raise Unusable("no-inertia", f"the model {preset.name} has no force that would move a mass", "physical mass",
+                       "leave the mass to the numerical part, or take a model with a load")  # fmt: skip
+    stages = tuple(_beside(one) if one.place == MASS_SPRING_DAMPER.place else one for one in chain.stages)
+    return replace(preset, chain=replace(chain, stages=stages, outputs={**chain.outputs, FORCE: "F"}))
+
+
+def _beside(load: Stage) -> Stage:
+    publishes, equations = (*load.publishes, *_SPECIMEN.publishes), (*load.equations, *_SPECIMEN.equations)
+    return Stage(load.place, publishes, equations, load.parameters, load.scales)

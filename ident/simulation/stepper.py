@@ -1,0 +1,73 @@
+"""A chain that a loop outside advances sample by sample, under a held command that is computed on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.chain.chain import INPUT, STEP, Chain
+from ident.simulation.kernel import HELD, LANES, SHARE, constant, kernel
+from ident.simulation.simulate import pack_filter
+
+Array = NDArray[np.float64]
+WIDE = 8
+"""Lanes that are advanced at once: fewer cost as much."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stepper:
+    """The kernel of a chain for up to sixteen systems side by side, at rest, and where a loop finds what in it.
+
+    `code` is the address of the kernel's machine code for the first `lanes` lanes, for
+    :func:`ident.simulation.machine_call.advance_at`; it lives as long as `kept` does. `buffer` (rows × 16,) holds the
+    states and is changed as they go on; `command` is the first of the three rows of the command (before, now, then),
+    `shown` are the rows of the channels, in their order. Each sample is divided into `steps`; a command acts `whole`
+    steps later, (16,), and the fraction `share` of one.
+    """
+
+    code: int
+    kept: object
+    lanes: int
+    buffer: Array
+    command: int
+    shown: tuple[int, ...]
+    steps: int
+    whole: NDArray[np.int64]
+    share: Array
+
+
+def stepper(
+    chain: Chain, values: Mapping[str, Array], sample_rate: float, steps: int, channels: tuple[str, ...]
+) -> Stepper:
+    """The stepper of a chain for `values` of every symbol, each (v,) with v at most 16, at `sample_rate` (Hz).
+
+    `channels` are those whose readings are shown at the begin of each step. Spare lanes repeat the last system.
+    """
+    count = max(np.size(value) for value in values.values())
+    known = {name: np.array(values[name], dtype=np.float64) for name in chain.symbols}
+    known[STEP] = np.array(1.0 / (sample_rate * steps))
+    lane = {name: _filled(np.broadcast_to(value, (count,))) for name, value in known.items()}
+    exponents = {(name, float(lane[name][0])) for name in chain.exponents if np.ptp(lane[name]) == 0}
+    built = kernel(chain, channels[0], frozenset(exponents), channels[1:])
+    delay = np.zeros(LANES)
+    if built.shift is not None:
+        delay = np.broadcast_to(constant(built.shift, lane) / lane[STEP], (LANES,))
+    whole = np.floor(delay + 1e-9).astype(np.int64)
+    share = np.maximum(delay - whole, 0.0)
+    lane |= {HELD: np.ones(LANES), SHARE: share}
+    rows = np.zeros((built.rows, LANES))
+    for row, node in built.constants:
+        rows[row] = constant(node, lane)
+    for known_filter in built.filters:
+        pack_filter(rows, known_filter, lane)
+    lanes = WIDE * -(-count // WIDE)
+    code, kept = built.address(lanes)
+    shown = (built.shown, *(built.beside[channel] for channel in channels[1:]))
+    return Stepper(code, kept, lanes, rows.ravel(), built.inputs[INPUT], shown, steps, whole, share)
+
+
+def _filled(values: Array) -> Array:
+    return np.concatenate([values, np.full(LANES - len(values), values[-1])])
