@@ -42,7 +42,8 @@ class SimulatedRuns:
 
     `band` (rad/s) is what the commands excite: see :func:`ident.fit.reduction.excited_band`. Values are by the
     equations' names, SI: numbers, or arrays of v parameter vectors side by side. With a `horizon` (s)
-    the moments are those of windows of that length, each begun where it was measured: see :mod:`ident.fit.windows`.
+    the moments are those of windows of that length, each begun where it was measured: see :mod:`ident.fit.windows`. Of
+    the outputs named in `absolute` the mean counts too, which eq. (17) does not see.
     """
 
     preset: Preset
@@ -51,6 +52,7 @@ class SimulatedRuns:
     band: float
     starts: dict[str, Array] = field(default_factory=dict, kw_only=True)
     horizon: float | None = field(default=None, kw_only=True)
+    absolute: tuple[str, ...] = field(default=(), kw_only=True)
 
     @property
     def chain(self) -> Chain:
@@ -113,14 +115,15 @@ class SimulatedRuns:
         """
         released = self.released(runs, values, steps)
         length, window = max(16, -(-runs[0].length // _BLOCKS)), self.window(runs[0])
-        records = np.column_stack([run.measured - run.measured.mean() for run in runs])
+        free = runs[0].output not in self.absolute
+        records = np.column_stack([run.measured - (run.measured.mean() if free else 0.0) for run in runs])
         if window:
             length, records = -(-length // window) * window, anchored(records, window)
         q = released.shape[1] + 1
         sums = np.zeros((-(-runs[0].length // length), len(runs), q, q))
         for block, (rows, first, last) in enumerate(released.outputs(length)):
             add_products(anchored(rows, window), records[first:last], q - 2, sums[block])
-        if window:
+        if window or not free:
             sums[..., -2, :] = sums[..., :, -2] = 0.0  # no mean is free: each window begins where it was measured
         return completed(sums, strides).transpose(1, 0, 2, 3)
 
@@ -145,8 +148,8 @@ class SimulatedRuns:
         return anchored(signal, self.window(run))
 
     def whole(self) -> Self:
-        """The same over whole runs."""
-        return replace(self, horizon=None, starts=dict(self.starts))
+        """The same over whole runs, as eq. (17) sees them."""
+        return replace(self, horizon=None, absolute=(), starts=dict(self.starts))
 
     def released(self, runs: tuple[Run, ...], values: Mapping[str, Array], steps: int) -> Simulation:
         """A simulation of vectors and, where runs start moving, of the first with each of its first states moved."""

@@ -11,7 +11,7 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from ident.chain.chain import DISTURBANCE, FORCE, INPUT, MEASURED, STEP, Chain
+from ident.chain.chain import DISTURBANCE, FORCE, INPUT, MEASURED, STEP, SUPPLY, VERTICAL, Chain
 from ident.equations.grammar import TIME
 from ident.matrix import DISTURBANCES, Run
 from ident.simulation.kernel import HELD, LANES, SHARE, Filter, Kernel, constant, kernel
@@ -72,7 +72,9 @@ class Simulation:
         lane_values = self._lanes(lanes)
         inputs = {name: self._input(lanes, name, built, lane_values) for name in built.inputs}
         command = inputs[INPUT]
-        second = next((inputs[name] for name in MEASURED if name in inputs), command)
+        measured = [inputs[name].record for name in built.measured] or [command.record]
+        forces = np.column_stack(measured).ravel()
+        force_at = inputs[built.measured[0]].begin if built.measured else command.begin
         lane_values |= {HELD: self._held(lanes), SHARE: command.share}
         buffers = self._packed(built, lane_values, lanes, inputs)
         chunk = (
@@ -83,7 +85,7 @@ class Simulation:
             out = np.empty((end - begin) * lanes)
             for i, buffer in enumerate(buffers):
                 group = slice(i * LANES, (i + 1) * LANES)
-                driven = buffer, command.record, second.record, command.begin[group], second.begin[group]
+                driven = buffer, command.record, forces, command.begin[group], force_at[group]
                 ends = begin * self.steps, (end - 1) * self.steps + 1
                 built.advance(*driven, *ends, self.steps, out[i * LANES :], lanes)
                 if end < samples:  # on to the first step of the next chunk
@@ -197,7 +199,16 @@ def _record(run: Run, name: str) -> Array:
         return run.channels["force"]
     if name == DISTURBANCE:  # of a run that says nothing there was none
         return next((run.channels[one] for one in DISTURBANCES if one in run.channels), np.zeros(run.length))
+    if name in _BESIDE_MEAN:
+        channel, unit = _BESIDE_MEAN[name]
+        if run.units.get(channel) != unit or channel not in run.channels:  # stated, or nothing: it stays
+            return np.zeros(run.length)
+        return np.asarray(run.channels[channel] - run.channels[channel].mean())
     return run.command
+
+
+_BESIDE_MEAN = {SUPPLY: ("supply_pressure", "Pa"), VERTICAL: ("vertical_load", "N")}
+"""Inputs whose mean is a condition of the run, see :mod:`ident.chain.conditions`: channel and unit."""
 
 
 def _fine(run: Run, channel: str, steps: int, before: int) -> Array:

@@ -30,8 +30,8 @@ class Kernel:
 
     `advance(b, commands, forces, command_at, force_at, first, last, every, out, stride)` takes the buffer b over the
     steps first to last − 1 and writes the output of every `every`-th of them to the flat array out, rows `stride`
-    apart. Step k of a lane begins at commands[command_at[lane] + k], which its delay shifts, and at
-    forces[force_at[lane] + k], and reads up to the next value.
+    apart. Step k of a lane begins at commands[command_at[lane] + k], which its delay shifts, and at row
+    force_at[lane] + k of the forces, which have a column for each measured input, and reads up to the next value.
     """
 
     chain: Chain
@@ -49,8 +49,17 @@ class Kernel:
     @cached_property
     def advance(self) -> Advance:
         """The compiled function."""
-        fed = tuple((row + 2, "commands" if name == INPUT else "forces") for name, row in self.inputs.items())
+        measured = self.measured
+        fed = tuple(
+            (row + 2, "commands", 0, 1) if name == INPUT else (row + 2, "forces", measured.index(name), len(measured))
+            for name, row in self.inputs.items()
+        )
         return advance(self.lines, fed, self.shown)
+
+    @property
+    def measured(self) -> tuple[str, ...]:
+        """The inputs beside the command, in the order of the columns of `forces`."""
+        return tuple(name for name in self.inputs if name != INPUT)
 
 
 def filter_rows(order: int) -> int:
