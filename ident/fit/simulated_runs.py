@@ -43,7 +43,8 @@ class SimulatedRuns:
     `band` (rad/s) is what the commands excite: see :func:`ident.fit.reduction.excited_band`. Values are by the
     equations' names, SI: numbers, or arrays of v parameter vectors side by side. With a `horizon` (s)
     the moments are those of windows of that length, each begun where it was measured: see :mod:`ident.fit.windows`. Of
-    the outputs named in `absolute` the mean counts too, which eq. (17) does not see.
+    the outputs named in `absolute` the mean counts too, which eq. (17) does not see. A search follows the kinks of a core
+    `roughly`.
     """
 
     preset: Preset
@@ -53,6 +54,7 @@ class SimulatedRuns:
     starts: dict[str, Array] = field(default_factory=dict, kw_only=True)
     horizon: float | None = field(default=None, kw_only=True)
     absolute: tuple[str, ...] = field(default=(), kw_only=True)
+    roughly: bool = field(default=False, kw_only=True)
 
     @property
     def chain(self) -> Chain:
@@ -239,7 +241,9 @@ class SimulatedRuns:
         """Steps a sample for each vector."""
         found, kinds = self.fastest(values), {(run.hold, self.band / run.sample_rate) for run in self.matrix.runs}
         on = [effect for effect in self.preset.effects if kinks and self._is_on(effect, values)]
-        return np.asarray(np.max([steps_needed(self.chain, found, hold, on, band) for hold, band in kinds], axis=0))
+        least = self.preset.steps if kinks and not self.roughly else 1
+        needed = [steps_needed(self.chain, found, hold, on, band, least) for hold, band in kinds]
+        return np.asarray(np.max(needed, axis=0))
 
     def fastest(self, values: Mapping[str, Array]) -> Array:
         """Radians a sample of each vector's fastest mode, of the linear core and the effects at small signals.

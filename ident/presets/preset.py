@@ -57,7 +57,8 @@ class Preset:
     area is unknown. `driven_by` is the channel that drives the model, the command where a run has none of that name;
     `under_control` the model of the same machine under a controller. `methods` are fitting methods of this model
     alone; `opened` is the same machine where a command that is no way opens its valve. `alone`: a run that states no
-    specimen moves none. `needs` is what must be stated of the actuator, or measured. `absolute` are outputs whose zero
+    specimen moves none. `needs` is what must be stated of the actuator, or measured; `steps` those a sample that the
+    kinks of its core ask for. `absolute` are outputs whose zero
     is the model's own, so that a fit counts their mean; `crossing` are parameters that may well be nothing: their
     standard error is no share of the value; `conventions` are what runs may leave open. `search` are the options of its
     genetic search that differ from the usual ones, `figures` those that it has, every figure of test runs where there
@@ -92,6 +93,7 @@ class Preset:
     opened: Preset | None = None
     alone: bool = False
     needs: tuple[str, ...] = ()
+    steps: int = 1
     absolute: tuple[str, ...] = ()
     crossing: tuple[str, ...] = ()
     conventions: tuple[Convention, ...] = ()

@@ -37,6 +37,7 @@ _IN_LOOP = Preset(
     bounds_hold_for=AREA,
     alone=True,
     needs=("piston_area", "supply_pressure"),
+    steps=8,
     absolute=("spool",),
     conventions=(
         Convention(
