@@ -43,8 +43,8 @@ class SimulatedRuns:
     `band` (rad/s) is what the commands excite: see :func:`ident.fit.reduction.excited_band`. Values are by the
     equations' names, SI: numbers, or arrays of v parameter vectors side by side. With a `horizon` (s)
     the moments are those of windows of that length, each begun where it was measured: see :mod:`ident.fit.windows`. Of
-    the outputs named in `absolute` the mean counts too, which eq. (17) does not see. A search follows the kinks of a core
-    `roughly`.
+    the outputs named in `absolute` the mean counts too, which eq. (17) does not see. A search follows the kinks of a
+    core `roughly`.
     """
 
     preset: Preset

@@ -34,8 +34,8 @@ def steps_needed(
 
     They and the `band` up to which the command excites the machine are in radians a sample. A mode that does nothing
     but follow is given fewer: a Runge-Kutta step of one time constant is off by 2 % in how fast it decays, and not in
-    where it tends to. Kinks of effects that are on, and those of the core, `kinks`, ask for more, the fewer the slower the motion is for the samples,
-    and so does a held command whose jumps act at once or between the samples.
+    where it tends to. Kinks of effects that are on, and those of the core, `kinks`, ask for more, the fewer the slower
+    the motion is for the samples, and so does a held command whose jumps act at once or between the samples.
     """
     least = max((effect.steps for effect in on), default=1)
     least = max(least, kinks) * min(band / _KINKED, 1.0)
