@@ -12,6 +12,7 @@ from ident.chain.chain import Chain
 from ident.chain.conditions import CONDITIONS
 from ident.chain.disturbance import disturbed
 from ident.chain.refusals import unfit
+from ident.chain.varying import varying
 from ident.effects.effect import Effect
 from ident.equations.equation import Equation
 from ident.errors import Unusable
@@ -203,6 +204,8 @@ class Preset:
         if preset.force_scale and {run.output for run in matrix.runs} == {"load_pressure"}:
             preset = replace(preset, force_scale="A*X")  # its forces are measured
         preset = preset.disturbed_as(matrix, load)
+        if preset.kind == "chain":
+            preset = replace(preset, chain=varying(preset.chain, matrix.runs))
         if preset.driven_by in MOTIONS:
             matrix = passive(matrix)
         elif preset.kind == "chain" and preset.driven_by == "command":

@@ -11,7 +11,8 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from ident.chain.chain import DISTURBANCE, FORCE, INPUT, MEASURED, STEP, SUPPLY, VERTICAL, Chain
+from ident.chain.chain import DISTURBANCE, FORCE, INPUT, MEASURED, STEP, Chain
+from ident.chain.varying import MEASURED_CONDITIONS, is_measured
 from ident.equations.grammar import TIME
 from ident.matrix import DISTURBANCES, Run
 from ident.simulation.kernel import HELD, LANES, SHARE, Filter, Kernel, constant, kernel
@@ -199,16 +200,11 @@ def _record(run: Run, name: str) -> Array:
         return run.channels["force"]
     if name == DISTURBANCE:  # of a run that says nothing there was none
         return next((run.channels[one] for one in DISTURBANCES if one in run.channels), np.zeros(run.length))
-    if name in _BESIDE_MEAN:
-        channel, unit = _BESIDE_MEAN[name]
-        if run.units.get(channel) != unit or channel not in run.channels:  # stated, or nothing: it stays
-            return np.zeros(run.length)
-        return np.asarray(run.channels[channel] - run.channels[channel].mean())
+    for beside, channel, unit in MEASURED_CONDITIONS.values():
+        if name == beside:  # of a run that did not measure it, it stays
+            known = is_measured(run, channel, unit)
+            return np.asarray(run.channels[channel] - run.channels[channel].mean()) if known else np.zeros(run.length)
     return run.command
-
-
-_BESIDE_MEAN = {SUPPLY: ("supply_pressure", "Pa"), VERTICAL: ("vertical_load", "N")}
-"""Inputs whose mean is a condition of the run, see :mod:`ident.chain.conditions`: channel and unit."""
 
 
 def _fine(run: Run, channel: str, steps: int, before: int) -> Array:

@@ -37,8 +37,7 @@ def steps_needed(
     where it tends to. Kinks of effects that are on, and those of the core, `kinks`, ask for more, the fewer the slower
     the motion is for the samples, and so does a held command whose jumps act at once or between the samples.
     """
-    least = max((effect.steps for effect in on), default=1)
-    least = max(least, kinks) * min(band / _KINKED, 1.0)
+    least = max(kinks, *(effect.steps for effect in on), 1) * min(band / _KINKED, 1.0)
     if hold == "zoh" and any(chain.reads(name) for name in (INPUT_RATE, "delay")):
         least = max(least, 2.0)
     following = min(_FOLLOWING * band, np.pi / 2)  # at the latest at half of what a record can show

@@ -61,7 +61,7 @@ TWO_SIDED_FLOW = stage(
     "flow",
     (Quantity("Q", "m^3/s", "load flow"),),
     (
-        "Q = where(w > 0, kqp, kqn) * w * sqrt(max(0, Ps + dPs - sgn(w) * P))",
+        "Q = where(w > 0, kqp, kqn) * w * sqrt(max(0, Ps - sgn(w) * P))",
         "turbulent flow by the pressure left across the edges, with another gain to either side (eq. 4)",
     ),
     parameters=(
@@ -84,7 +84,7 @@ TABLE_ON_GUIDES = replace(
     MASS_SPRING_DAMPER.with_equations(
         ("R = sigma * v", "viscous friction (eq. 3)"),
         (
-            "Ff = Fc + mu * (Nv + dNv)",
+            "Ff = Fc + mu * Nv",
             "dry friction of the seals, and of the guides under the vertical load (eqs. 2, 3)",
         ),
         ("M = m + mL", "table and specimen stop together"),

@@ -8,7 +8,7 @@
 
 u is the command in V, or K (r - y) under a position loop. Steps are so small that a Runge-Kutta step of them is exact
 to what the tests ask (halving them is a test); dry friction sticks exactly: the table stands while the force on it is
-below the friction, and a step in which its speed would change its sign ends at standstill.
+below the friction; where its speed changes its sign within a step it stays there, or turns with the friction.
 """
 
 from __future__ import annotations
@@ -113,8 +113,13 @@ def _run(p, area, supply, vertical, gain, command, fine, rate, spring, damping):
                 _rates(p, area, Ps, load, u, at[0], at[1], at[2], at[3], stuck, into)
             before = state[3]
             state += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-            if stuck != 0.0 or (before != 0.0 and state[3] * before < 0.0):
+            if stuck != 0.0:
                 state[3] = 0.0
+            elif before != 0.0 and state[3] * before < 0.0:  # it stops within the step, and stays or turns
+                rest = h * state[3] / (state[3] - before)
+                force = area * state[2] - spring * state[4]
+                turned = 1.0 if force > 0.0 else -1.0
+                state[3] = rest * (force - turned * limit) / p[10] if abs(force) > limit else 0.0
     return out
 
 
