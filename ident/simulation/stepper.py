@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.chain.chain import INPUT, STEP, Chain
+from ident.errors import Unusable
 from ident.simulation.kernel import HELD, LANES, SHARE, constant, kernel
 from ident.simulation.simulate import pack_filter
 
@@ -44,7 +45,8 @@ def stepper(
 ) -> Stepper:
     """The stepper of a chain for `values` of every symbol, each (v,) with v at most 16, at `sample_rate` (Hz).
 
-    `channels` are those whose readings are shown at the begin of each step. Spare lanes repeat the last system.
+    `channels` are those whose readings are shown at the begin of each step. Spare lanes repeat the last system. Raises
+    Unusable where something measured drives the chain beside its command: no loop knows it beforehand.
     """
     count = max(np.size(value) for value in values.values())
     known = {name: np.array(values[name], dtype=np.float64) for name in chain.symbols}
@@ -52,6 +54,9 @@ def stepper(
     lane = {name: _filled(np.broadcast_to(value, (count,))) for name, value in known.items()}
     exponents = {(name, float(lane[name][0])) for name in chain.exponents if np.ptp(lane[name]) == 0}
     built = kernel(chain, channels[0], frozenset(exponents), channels[1:])
+    if built.measured:
+        raise Unusable("no-loop", "its displacement hangs on what was measured beside the command", "model",
+                       "use a model that the command alone drives")  # fmt: skip
     delay = np.zeros(LANES)
     if built.shift is not None:
         delay = np.broadcast_to(constant(built.shift, lane) / lane[STEP], (LANES,))
