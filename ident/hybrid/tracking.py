@@ -62,7 +62,7 @@ class Noise:
 
         Of a parameter θ by which y moves ∂y/∂θ = S (RMS; for k the way, for τ the speed), a filter in its steady state
         forgets with the time constant T = σ √Δt / (S q). With T = 1/6 s that is q = σ √Δt / (S T): in the paper's test
-        at 4096 Hz 5·10⁻⁵ s/√s and 3·10⁻⁴ 1/√s. Much more biases the estimates: 3·10⁻³ s/√s takes 5 ms for 17 % more.
+        at 4096 Hz 5·10⁻⁵ s/√s and 3·10⁻⁴ 1/√s. With 3·10⁻³ s/√s an estimate of 5 ms scatters by 3 %, ten times as much.
         """
         size = measurement / math.sqrt(sample_rate) / FOLLOWED_IN
         return cls(measurement, size / speed, size / way)

@@ -153,3 +153,9 @@ def test_the_command_tracks_a_run_and_draws_it(servoident, tmp_path: Path):
     for wrong in (("--run", "none"), ("--noise", "-1 mm"), ("--noise", "much")):
         refused = servoident("track", tmp_path, *wrong)
         assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
+
+
+def test_a_few_samples_tell_nothing():
+    said = track(recorded(LOOPS[0], 0.1)).verdict
+    assert not said.holds
+    assert "fewer than" in said.reason
