@@ -58,10 +58,9 @@ def linear_plant(
 ) -> LinearPlant:  # fmt: skip
     """The linear part of a fit with this specimen, gain Kp and piston area (m²).
 
-    Effects that are linear stay, their lags and delays as states; of the others nothing is known to a linear design, and
-    they are named in `left_out`.
-    A fit made without an area has ratios to it as parameters, and needs none. Raises Unusable where the model has no
-    displacement that a command drives, and where the fit needs an area that is not given.
+    Effects that are linear stay, their lags and delays as states; a linear design knows nothing of the others, which
+    `left_out` names. A fit made without an area has ratios to it as parameters, and needs none. Raises Unusable where
+    the model has no displacement that a command drives, and where the fit needs an area that is not given.
     """
     preset = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
     if preset.kind != "chain" or preset.driven_by != "command" or OUTPUT not in preset.chain.outputs:

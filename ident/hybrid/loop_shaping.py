@@ -85,8 +85,8 @@ def design(
         full = SampledController(*_of_difference(feedback), sample_rate, name)
     else:
         late = (delay + 0.5) / sample_rate + 2.0 * float(np.sum(1.0 / through.zeros).real)
-        forward = prefilter(outer, sample_rate, late).realised()
         model = sampled_plant(plant, sample_rate, delay)
+        forward = prefilter(outer, model, sample_rate, late).realised()
         full = SampledController(*_two_degree(forward, model, feedback), sample_rate, name)
     whole = SampledLoop(plant, full, delay)
     if not whole.stable:

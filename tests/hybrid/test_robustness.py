@@ -68,6 +68,14 @@ def test_a_fit_that_knows_little_is_told_so(fit):
     assert made.robustness.within < 95
 
 
+def test_a_loop_with_little_margin_is_told(fit):
+    """With eight samples of delay it is stable, and the design says how near the end that is."""
+    made = design_controller(fit, SPECIMEN, delay=8, **CASE)
+    assert made.design.loop.stable
+    assert "leaves little margin" in made.notes[0]
+    assert not design_controller(fit, SPECIMEN, **CASE).notes
+
+
 def test_without_standard_errors_nothing_is_claimed(fit):
     """No count of draws, and a note that says why."""
     bare = replace(fit, parameters={name: replace(one, std_error=None) for name, one in fit.parameters.items()})
