@@ -22,8 +22,8 @@ DISK_FULL = "53100"  # PostgreSQL's state
 _log = logging.getLogger("servoident")
 _TITLES = {
     400: "Bad request", 401: "Token needed", 403: "Not allowed", 404: "Not found", 405: "Method not allowed",
-    409: "Conflict", 411: "Length needed", 413: "Too large", 415: "Unsupported media type", 422: "Unusable input",
-    500: "A defect of the program", 503: "Not ready", 507: "Disk full",
+    408: "Idle", 409: "Conflict", 411: "Length needed", 413: "Too large", 415: "Unsupported media type",
+    422: "Unusable input", 426: "WebSocket needed", 500: "A defect of the program", 503: "Not ready", 507: "Disk full",
 }  # fmt: skip
 
 

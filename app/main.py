@@ -23,6 +23,7 @@ from app.pages import router as pages
 from app.security import Guard
 from app.settings import Settings
 from app.storage import Storage
+from app.stream.service import LARGEST_MESSAGE
 from ident.parallel import one_thread
 
 API = "/api/v1"
@@ -36,6 +37,7 @@ FEATURES = (
     "parameters",
     "catalogue",
     "own_effects",
+    "stream",
     "operation",
 )
 """Folders whose endpoints.py has a `router` of the API."""
@@ -91,4 +93,7 @@ def make_context(settings: Settings) -> Context:
 def run(settings: Settings) -> None:
     """Serve until interrupted."""
     app = create_app(settings)
-    uvicorn.run(app, host=settings.host, port=settings.port, log_level="warning", timeout_graceful_shutdown=2)
+    uvicorn.run(
+        app, host=settings.host, port=settings.port, log_level="warning", timeout_graceful_shutdown=2,
+        ws_max_size=LARGEST_MESSAGE, ws_per_message_deflate=False,
+    )  # fmt: skip

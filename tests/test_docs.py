@@ -33,7 +33,7 @@ def test_every_command_of_the_contract_is_documented():
     """The names that scripts rely on are on the page of the command line."""
     promised = (
         "simulate check fit compare diagnose next bench report serve worker demo token migrate regress upload approve "
-        "query revise effects"
+        "query revise effects track"
     )
     for command in promised.split():
         assert f"## servoident {command}" in PAGES["cli.md"], command

@@ -6,7 +6,8 @@ starts that are far off. Between samples the reference is a straight line or hel
     y⁺ = a y + g Δt (c₀ r₀ + c₁ r₁),   a = exp(−pΔt).
 
 τ and k walk at random, by the fictitious noise of the paper's eq. (24); brought into p and g that is
-dp = −p² dτ, dg = p dk − p g dτ. The covariance is updated in Joseph's form.
+dp = −p² dτ, dg = p dk − p g dτ. The covariance is kept as U D Uᵀ, Bierman's square
+root form: no rounding makes it lose its sign.
 
 A filter is two flat arrays, its state `s` and its constants `c`, whose places are named below, so that a compiled loop
 may hold it.
@@ -19,8 +20,8 @@ from typing import Any
 
 from numba import njit
 
-Y, P, G, YY, YP, YG, PP, PG, GG = range(9)
-"""Places in the state: the estimate and its covariance."""
+Y, P, G, DY, DP, DG, UYP, UYG, UPG = range(9)
+"""Places in the state: the estimate, and the factors of its covariance U D Uᵀ, U unit upper triangular."""
 REFERENCE, STARTED, BIAS, PREVIOUS = range(9, 13)
 """The last reference, whether there was a sample, the mean and the last of the normalised innovations."""
 SAMPLES, GATED, REOPENED, NIS, USED, IN_WINDOW, OF_WINDOW, PRODUCTS, WINDOWS, FAILED, SINCE = range(13, 24)
@@ -40,8 +41,10 @@ CHANGE = 1.25  # of that average, eight of its own standard deviations: more tha
 RESTED = 1024.0  # samples from one such change to the next: more often there is none, the model is wrong
 CAP = 0.1  # relative standard deviation of a parameter from which no fictitious noise is added
 MOTION = 0.2  # of the sensor's noise: a lag or a way that is less shows nothing of a parameter
+FLOOR = 1e-12  # of the sensor's variance, added to that of y each sample: it never becomes 0
 WINDOW = 512  # samples that are judged together
-MOST_NIS, MOST_COLOUR = 2.0, 0.5  # mean normalised innovation squared, and correlation of neighbours, of a sound window
+MOST_NIS, MOST_COLOUR = 2.0, 0.5  # of a sound window: mean normalised innovation squared, correlation of neighbours
+LEAST_NIS = 0.05  # below which what is left drowns in the noise, whatever its colour
 _SERIES = 0.1  # of pΔt, below which series are quicker than the exponential and lose no digits
 
 
@@ -64,17 +67,15 @@ def _weights(h: float) -> Any:
 
 @njit(cache=True, nogil=True)
 def _predict(s: Any, c: Any, r0: float, r1: float) -> None:
-    """Estimate and covariance a sample later."""
+    """Estimate and covariance a sample later: the step's Jacobian is upper triangular, as U is."""
     dt, y, p, g = c[STEP], s[Y], s[P], s[G]
     a, c0, c1, d0, d1 = _weights(p * dt)
     by_g = dt * (c0 * r0 + c1 * r1)
     by_p = -dt * a * y + g * dt * dt * (d0 * r0 + d1 * r1)
-    yp, yg = s[YP], s[YG]
-    left, pp, pg, gg = a * s[YY] + by_p * yp + by_g * yg, s[PP], s[PG], s[GG]
     s[Y] = a * y + g * by_g
-    s[YP] = a * yp + by_p * pp + by_g * pg
-    s[YG] = a * yg + by_p * pg + by_g * gg
-    s[YY] = a * left + by_p * s[YP] + by_g * s[YG]
+    s[DY] = a * a * s[DY] + FLOOR * c[NOISE]
+    s[UYP] = a * s[UYP] + by_p
+    s[UYG] = a * s[UYG] + by_p * s[UPG] + by_g
     _wander(s, c, r1)
 
 
@@ -85,45 +86,78 @@ def _wander(s: Any, c: Any, r: float) -> None:
     A relative change of τ moves y by at most the lag k r − y, one of k by y; where these are less than a part of the
     sensor's noise there is no motion, and the parameters rest.
     """
-    dt, y, p, g = c[STEP], s[Y], s[P], s[G]
+    y, p, g = s[Y], s[P], s[G]
     cap, seen = CAP * CAP, MOTION * MOTION * c[NOISE]
     lag = g * r - p * y
-    if s[PP] < cap * p * p and lag * lag > seen * p * p:
-        q = c[TAU_NOISE] * dt * p * p
-        s[PP] += p * p * q
-        s[PG] += p * g * q
-        s[GG] += g * g * q
-    if s[GG] * p * p - 2 * s[PG] * p * g + s[PP] * g * g < cap * g * g * p * p and y * y > seen:
-        s[GG] += c[GAIN_NOISE] * dt * p * p
+    if s[DP] + s[UPG] * s[UPG] * s[DG] < cap * p * p and lag * lag > seen * p * p:
+        _widen(s, p * p * c[TAU_NOISE] * c[STEP], p, g)
+    if _of_gain(s, p, g) < cap * g * g * p * p and y * y > seen:
+        _widen(s, c[GAIN_NOISE] * c[STEP], 0.0, p)
+
+
+@njit(cache=True, nogil=True)
+def _of_gain(s: Any, p: float, g: float) -> Any:
+    """p⁴ times the variance of k = g/p, to first order: a sum of squares, never below 0."""
+    by = p - g * s[UPG]
+    return s[DP] * g * g + s[DG] * by * by
+
+
+@njit(cache=True, nogil=True)
+def _widen(s: Any, q: float, xp: float, xg: float) -> None:
+    """Add q x xᵀ to the covariance, x = (0, xp, xg): the rank-one update of Agee and Turner."""
+    if q == 0.0:
+        return
+    before = s[DG]
+    s[DG] = before + q * xg * xg
+    xy, xp = -xg * s[UYG], xp - xg * s[UPG]
+    share = q * xg / s[DG]
+    s[UYG] += share * xy
+    s[UPG] += share * xp
+    q *= before / s[DG]
+    before = s[DP]
+    s[DP] = before + q * xp * xp
+    xy -= xp * s[UYP]
+    s[UYP] += q * xp / s[DP] * xy
+    s[DY] += q * before / s[DP] * xy * xy
 
 
 @njit(cache=True, nogil=True)
 def _correct(s: Any, c: Any, innovation: float) -> None:
-    """Take a sample up: Joseph's form, which no rounding makes indefinite."""
-    R = c[NOISE]
-    yy, yp, yg = s[YY], s[YP], s[YG]
-    S = yy + R
-    ky, kp, kg = yy / S, yp / S, yg / S
-    s[Y] += ky * innovation
-    s[P] = min(max(s[P] + kp * innovation, -c[MOST_P]), c[MOST_P])
-    s[G] += kg * innovation
-    rest = R / S  # 1 − ky without cancellation
-    s[YY] = rest * rest * yy + ky * ky * R
-    s[YP] = rest * (yp - kp * yy) + ky * kp * R
-    s[YG] = rest * (yg - kg * yy) + ky * kg * R
-    s[PP] += -2 * kp * yp + kp * kp * S
-    s[PG] += -kp * yg - kg * yp + kp * kg * S
-    s[GG] += -2 * kg * yg + kg * kg * S
+    """Take a sample up, by Bierman's update of the factors."""
+    yp, yg = s[UYP], s[UYG]
+    vp, vg = s[DP] * yp, s[DG] * yg
+    first = c[NOISE] + s[DY]
+    second = first + yp * vp
+    last = second + yg * vg
+    ky = s[DY]
+    s[UYP] = yp - yp / first * ky
+    ky += vp * yp
+    s[UYG] = yg - yg / second * ky
+    kg, kp = vg, vp + vg * s[UPG]
+    s[UPG] -= yg / second * vp
+    ky += vg * yg
+    s[DY] *= c[NOISE] / first
+    s[DP] *= first / second
+    s[DG] *= second / last
+    s[Y] += ky / last * innovation
+    s[P] = min(max(s[P] + kp / last * innovation, -c[MOST_P]), c[MOST_P])
+    s[G] += kg / last * innovation
 
 
 @njit(cache=True, nogil=True)
 def _reopen(s: Any, c: Any, innovation: float) -> None:
     """What was known of the parameters holds no longer: the covariance of a start, about the present estimate."""
-    s[YP] = s[YG] = s[PG] = 0.0
-    s[YY] = max(s[YY], innovation * innovation)
     p, gain = max(s[P], c[LEAST_P]), abs(s[G] / max(s[P], c[LEAST_P]))
-    s[PP] = c[SPREAD_P] * p * p
-    s[GG] = c[SPREAD_G] * p * p * min(max(gain, 1e-4 * c[MOST_GAIN]), c[MOST_GAIN]) ** 2
+    s[DY] = max(_of_y(s), innovation * innovation)
+    s[UYP] = s[UYG] = s[UPG] = 0.0
+    s[DP] = c[SPREAD_P] * p * p
+    s[DG] = c[SPREAD_G] * p * p * min(max(gain, 1e-4 * c[MOST_GAIN]), c[MOST_GAIN]) ** 2
+
+
+@njit(cache=True, nogil=True)
+def _of_y(s: Any) -> Any:
+    """The variance of y."""
+    return s[DY] + s[UYP] * s[UYP] * s[DP] + s[UYG] * s[UYG] * s[DG]
 
 
 @njit(cache=True, nogil=True)
@@ -134,7 +168,7 @@ def advance(s: Any, c: Any, r0: float, r1: float, y: float) -> Any:
     """
     if s[STARTED] == 0.0:
         if math.isfinite(y):
-            s[STARTED], s[Y], s[YY] = 1.0, y, c[NOISE]
+            s[STARTED], s[Y], s[DY] = 1.0, y, c[NOISE]
             s[SAMPLES] += 1
         return 0.0
     s[SAMPLES] += 1
@@ -145,7 +179,7 @@ def advance(s: Any, c: Any, r0: float, r1: float, y: float) -> Any:
     if not there:
         return 0.0
     innovation = y - s[Y]
-    nu = innovation / math.sqrt(s[YY] + c[NOISE])
+    nu = innovation / math.sqrt(_of_y(s) + c[NOISE])
     s[BIAS] += (min(max(nu, -GATE), GATE) - s[BIAS]) / MEMORY
     if abs(s[BIAS]) > CHANGE:  # what lasts is no outlier
         if c[REOPENS] != 0.0 and s[SINCE] > RESTED:
@@ -173,7 +207,8 @@ def _count(s: Any, nu: float) -> None:
         return
     if s[USED] > WINDOW:
         s[WINDOWS] += 1
-        if s[OF_WINDOW] > MOST_NIS * WINDOW or s[PRODUCTS] > MOST_COLOUR * s[OF_WINDOW]:
+        mean, follows = s[OF_WINDOW] / WINDOW, s[PRODUCTS] > MOST_COLOUR * s[OF_WINDOW]
+        if mean > MOST_NIS or (follows and mean > LEAST_NIS):
             s[FAILED] += 1
     s[IN_WINDOW] = s[OF_WINDOW] = s[PRODUCTS] = 0.0
 
@@ -181,10 +216,11 @@ def _count(s: Any, nu: float) -> None:
 @njit(cache=True, nogil=True)
 def estimate(s: Any, c: Any) -> Any:
     """τ, k, y and the variances of τ and k, to first order. τ is positive, and both are within their limits."""
-    p, g = max(s[P], c[LEAST_P]), s[G]
-    gain = min(max(g / p, -c[MOST_GAIN]), c[MOST_GAIN])
-    var_gain = (s[GG] - 2 * gain * s[PG] + gain * gain * s[PP]) / (p * p)
-    return 1.0 / p, gain, s[Y], s[PP] / (p * p * p * p), max(var_gain, 0.0)
+    p = max(s[P], c[LEAST_P])
+    gain = min(max(s[G] / p, -c[MOST_GAIN]), c[MOST_GAIN])
+    square = 1.0 / (p * p)
+    var_tau = (s[DP] + s[UPG] * s[UPG] * s[DG]) * square * square
+    return 1.0 / p, gain, s[Y], var_tau, _of_gain(s, 1.0, gain) * square
 
 
 @njit(cache=True, nogil=True)

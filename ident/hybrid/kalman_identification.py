@@ -28,18 +28,20 @@ from ident.progress import Progress, Report, silent
 NAME = "ekf"
 _MOST = 0.2  # of the output's deviation: as noise is taken what a loop that does not hold leaves
 _NAMES = ("tau", "gain")
-_DOES_NOT_HOLD = "a first-order loop does not hold, so that its filter knows no standard error"
+_DOES_NOT_HOLD = "a first-order loop with constant parameters does not hold, so that its filter knows no standard error"
+_KNOWN = (kalman.DP, kalman.UPG, kalman.DG)
 _OPEN = 0.5  # relative standard deviation with which the second pass starts
 
 
 @dataclass(frozen=True)
 class Found:
-    """τ and k (SI), their covariance (2, 2), and the first pass over each run."""
+    """τ and k (SI), their covariance (2, 2), the first pass over each run, and whether constants held in the second."""
 
     tau: float
     gain: float
     covariance: NDArray[np.float64]
     tracks: tuple[Track, ...]
+    constant: bool
 
 
 class KalmanIdentification(Identification):
@@ -64,7 +66,7 @@ class KalmanIdentification(Identification):
         found = super().finish(state)
         errors = np.sqrt(np.diag(self.found.covariance))
         linked = float(self.found.covariance[0, 1] / (errors[0] * errors[1]))
-        holds = all(passed.verdict.holds for passed in self.found.tracks)
+        holds = self.found.constant and all(passed.verdict.holds for passed in self.found.tracks)
         parameters = {
             name: replace(found.parameters[name], std_error=float(error) if holds else None, fixed=False)
             for name, error in zip(_NAMES, errors, strict=True)
@@ -86,26 +88,24 @@ def filtered(runs: Sequence[Run], report: Report = silent) -> Found:
         tracks.append(track(run))
     first = [(t.tau[len(t.tau) // 2 :], t.gain[len(t.gain) // 2 :]) for t in tracks]
     tau, gain = (float(np.median(np.concatenate(part))) for part in zip(*first, strict=True))
-    known = np.diag([(_OPEN / tau) ** 2, (_OPEN * gain / tau) ** 2])
+    known, constant = ((_OPEN / tau) ** 2, 0.0, (_OPEN * gain / tau) ** 2), True
     for place, passed in enumerate(tracks):
         report(Progress("filter", len(runs) + place, 2 * len(runs)))
-        tau, gain, known = _constant(passed, tau, gain, known)
-    to_parameters = np.array([[-tau * tau, 0.0], [-gain * tau, tau]])
+        tracker = _constant(passed, tau, gain, known)
+        said = tracker.verdict
+        constant = constant and said.holds and (said.nis_mean or 0.0) <= kalman.MOST_NIS
+        (tau, gain), known = tracker.estimate, tuple(tracker.state[list(_KNOWN)])
     report(Progress("filter", 2 * len(runs), 2 * len(runs)))
-    return Found(tau, gain, to_parameters @ known @ to_parameters.T, tuple(tracks))
+    return Found(tau, gain, tracker.covariance[1:, 1:], tuple(tracks), constant)
 
 
-def _constant(
-    passed: Track, tau: float, gain: float, known: NDArray[np.float64]
-) -> tuple[float, float, NDArray[np.float64]]:
-    """τ and k after a run without fictitious noise, and the covariance of 1/τ and k/τ before and after it."""
+def _constant(passed: Track, tau: float, gain: float, known: tuple[float, ...]) -> Tracker:
+    """The filter after a run without fictitious noise, from τ and k, and what was `known` of 1/τ and k/τ, before it."""
     run, size = passed.run, passed.noise.measurement
     if not passed.verdict.holds:
         most = _MOST * float(np.std(run.measured))
         size = min(max(size, size * math.sqrt(passed.verdict.nis_mean or 1.0)), max(most, size))
     tracker = Tracker(run.sample_rate, run.hold, tau, gain, Noise(size, 0.0, 0.0), reopens=False)
-    s = tracker.state
-    s[kalman.PP], s[kalman.PG], s[kalman.GG] = known[0, 0], known[0, 1], known[1, 1]
+    tracker.state[list(_KNOWN)] = known
     tracker.block(run.command, run.measured)
-    after = np.array([[s[kalman.PP], s[kalman.PG]], [s[kalman.PG], s[kalman.GG]]])
-    return *tracker.estimate, after
+    return tracker

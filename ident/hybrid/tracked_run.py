@@ -19,7 +19,7 @@ ROWS = 4096
 """Rows that a file or a figure holds at most: of a longer run every n-th sample."""
 _SETTLED = 0.1  # of a run, in which the filter finds its way
 _START = 20.0  # samples, where the clock is unknown
-_ROUNDING = 1e-6  # of the output's deviation: the least noise of a record in digits
+_LEAST = 1e-4  # of the output's deviation: no sensor has less noise
 _GAIN_OF_DIFFERENCES = np.sqrt(70.0)  # of the fourth difference on white noise
 
 
@@ -86,7 +86,7 @@ def chosen(matrix: Matrix, run: str | None) -> Run:
 def sensor_noise(y: Array) -> float:
     """The standard deviation of white noise in a record, of its fourth differences, in which slow motion vanishes."""
     told = float(np.std(np.diff(y, 4)) / _GAIN_OF_DIFFERENCES) if len(y) > 8 else 0.0
-    return max(told, _ROUNDING * float(np.std(y)))
+    return max(told, _LEAST * float(np.std(y)))
 
 
 def _samples(run: Run) -> tuple[Array, Array]:

@@ -89,7 +89,7 @@ class Tracker:
             _SPREAD_G**2, p0 / _FURTHEST, max(2.0 * sample_rate, 2.0 * p0), _FURTHEST * abs(gain0), float(reopens),
         )  # fmt: skip
         self.state[[kalman.P, kalman.G]] = p0, gain0 * p0
-        self.state[[kalman.PP, kalman.GG]] = (_SPREAD_P * p0) ** 2, (_SPREAD_G * gain0 * p0) ** 2
+        self.state[[kalman.DP, kalman.DG]] = (_SPREAD_P * p0) ** 2, (_SPREAD_G * gain0 * p0) ** 2
         self._held, self._sample = hold == "zoh", kalman.sample
 
     def step(self, r: float, y: float) -> Sample:
@@ -120,10 +120,11 @@ class Tracker:
     @property
     def covariance(self) -> Array:
         """Of (y, τ, k), shape (3, 3), to first order."""
-        yy, yp, yg, pp, pg, gg = self.state[[kalman.YY, kalman.YP, kalman.YG, kalman.PP, kalman.PG, kalman.GG]]
-        tau, gain = self.estimate
+        s, (tau, gain) = self.state, self.estimate
+        factor = np.array([[1.0, s[kalman.UYP], s[kalman.UYG]], [0.0, 1.0, s[kalman.UPG]], [0.0, 0.0, 1.0]])
         to_parameters = np.array([[1.0, 0.0, 0.0], [0.0, -tau * tau, 0.0], [0.0, -gain * tau, tau]])
-        found: Array = to_parameters @ np.array([[yy, yp, yg], [yp, pp, pg], [yg, pg, gg]]) @ to_parameters.T
+        root = to_parameters @ factor * np.sqrt(s[[kalman.DY, kalman.DP, kalman.DG]])
+        found: Array = root @ root.T
         return found
 
     @property

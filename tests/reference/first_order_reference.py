@@ -101,3 +101,40 @@ def trial(seed: int, seconds: float) -> Trial:
     t = times(seconds)
     y = response(t, [loop]) + SENSOR * draw.standard_normal(len(t))
     return Trial(loop, loop.tau * off[0], loop.gain * off[1], reference(t), y)
+
+
+class Rig(NamedTuple):
+    """A hybrid simulation of one storey, part of it physical, behind a first-order actuator.
+
+    The numerical part m, c, (1 - share) k is driven by the ground and by the force that the physical spring had at
+    the last sample; what it moves by is wanted of the actuator, whose command is held between samples.
+    """
+
+    mass: float = 1000.0  # kg
+    stiffness: float = 1e6  # N/m
+    damping_ratio: float = 0.01
+    share: float = 0.2  # of the stiffness that is physical
+    actuator: Loop = Loop(20e-3, 1.0)
+
+
+def hybrid(rig: Rig, ground: Samples, command: object, noise: Samples, largest: float = 1.0) -> tuple[Samples, Samples]:
+    """d, the numerical displacement, and y, the measured one, to a ground acceleration (m/s^2) at the samples.
+
+    `command(d, y)` gives what is sent to the actuator. Where d passes `largest` (m) the simulation ends, the rest NaN.
+    """
+    dt, parts = 1 / SAMPLE_RATE, 8
+    c = 2 * rig.damping_ratio * np.sqrt(rig.mass * rig.stiffness)
+    decay = np.exp(-dt / rig.actuator.tau)
+    d_all, y_all = np.full(len(ground), np.nan), np.full(len(ground), np.nan)
+    d = v = y = 0.0
+    for n, acceleration in enumerate(ground):
+        d_all[n], y_all[n] = d, y
+        if abs(d) > largest:
+            break
+        u = command(d, y + noise[n])  # type: ignore[operator]
+        force = rig.share * rig.stiffness * y
+        for _ in range(parts):
+            v += dt / parts * (-acceleration - (c * v + (1 - rig.share) * rig.stiffness * d + force) / rig.mass)
+            d += dt / parts * v
+        y = rig.actuator.gain * u + (y - rig.actuator.gain * u) * decay
+    return d_all, y_all

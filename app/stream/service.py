@@ -1,0 +1,132 @@
+"""One stream of the tracking filter: messages of samples in, messages of estimates out."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any, TypeVar
+
+import numpy as np
+from pydantic import BaseModel, ValidationError
+
+from app.errors import Failure, refusal
+from ident.errors import Unusable
+from ident.hybrid.tracking import COLUMNS, Noise, Tracker
+from schemas.stream import MOST_ROWS, StreamNoise, StreamSamples, StreamStart
+
+IDLE = 60.0
+"""s without a message, after which a stream is closed."""
+MOST_STREAMS = 64
+"""At once, of one process."""
+LARGEST_MESSAGE = 4 << 20
+"""Bytes of a message."""
+SHORT = 64 << 10
+"""Bytes of a message that is answered at once; a longer one is handed to another thread."""
+Model = TypeVar("Model", bound=BaseModel)
+_ROW = np.dtype("<f8")
+_LARGEST = 1e9
+
+
+class Stream:
+    """The filter behind one connection. Raises Failure for a message that cannot be used."""
+
+    def __init__(self) -> None:
+        self.tracker: Tracker | None = None
+
+    def answer(self, message: Mapping[str, Any]) -> str | bytes | None:
+        """The answer to a message, in its own form; none to the first, which starts the filter."""
+        text, binary = message.get("text"), message.get("bytes")
+        try:
+            if len(text or binary or "") > LARGEST_MESSAGE:
+                raise _too_large()
+            if self.tracker is None:
+                self.tracker = _started(text)
+                return None
+            return _of_text(self.tracker, text) if text is not None else _of_rows(self.tracker, binary or b"")
+        except Unusable as error:
+            raise Failure(422, error.code, error.what, error.where, error.remedy) from None
+
+
+_open: set[Stream] = set()
+
+
+@contextmanager
+def begun() -> Iterator[Stream]:
+    """A stream for as long as its connection lasts. Raises Failure where too many are open."""
+    if len(_open) >= MOST_STREAMS:
+        raise Failure(503, "too-many-streams", f"{MOST_STREAMS} streams are open", "stream", "close one of them")
+    stream = Stream()
+    _open.add(stream)
+    try:
+        yield stream
+    finally:
+        _open.discard(stream)
+
+
+def problem_of(error: Failure) -> str:
+    """A refusal as the JSON text of a problem document."""
+    return bytes(refusal(error).body).decode()
+
+
+def too_idle() -> Failure:
+    """What is said before a stream is closed that nobody uses."""
+    return Failure(408, "idle-stream", f"no message for {IDLE:g} s", "stream", "connect again when there are samples")
+
+
+def no_socket() -> Failure:
+    """What a plain request is told."""
+    return Failure(426, "upgrade-needed", "this address speaks WebSocket", "Upgrade", "connect to it as ws://")
+
+
+def warm() -> None:
+    """Have the filter compiled before a stream needs it."""
+    Tracker(1.0).block(np.zeros(2), np.zeros(2))
+
+
+def _started(text: str | None) -> Tracker:
+    if text is None:
+        raise Failure(422, "bad-message", "the first message is not JSON", "message 1",
+                      "send sample_rate, hold, tau0, gain0 and noise as JSON first")  # fmt: skip
+    start = _read(StreamStart, text, "message 1")
+    return Tracker(start.sample_rate, start.hold, start.tau0, start.gain0, _noise(start.sample_rate, start.noise))
+
+
+def _noise(sample_rate: float, given: StreamNoise) -> Noise:
+    """What was given, over what follows from the sensor's noise."""
+    stated = given.model_dump(exclude_none=True)
+    sensor = {"measurement": stated["measurement"]} if "measurement" in stated else {}
+    return Noise(**{**vars(Noise.of_sensor(sample_rate, **sensor)), **stated})
+
+
+def _of_text(tracker: Tracker, text: str) -> str:
+    samples = _read(StreamSamples, text, "samples")
+    rows = tracker.block(samples.r, np.array(samples.y, dtype=np.float64))
+    return json.dumps(dict(zip(COLUMNS, rows.T.tolist(), strict=True)), allow_nan=False)
+
+
+def _of_rows(tracker: Tracker, binary: bytes) -> bytes:
+    if len(binary) % (2 * _ROW.itemsize):
+        raise Failure(422, "bad-message", f"{len(binary)} bytes are no rows of two float64", "samples",
+                      "send r and y of each sample, little-endian, 16 bytes a row")  # fmt: skip
+    rows = np.frombuffer(binary, _ROW).reshape(-1, 2)
+    if len(rows) > MOST_ROWS:
+        raise _too_large()
+    if np.any(np.abs(rows) > _LARGEST):
+        raise Failure(422, "bad-message", f"a sample is beyond {_LARGEST:g}", "samples", "send r and y in m")
+    return tracker.block(rows[:, 0], rows[:, 1]).astype(_ROW, copy=False).tobytes()
+
+
+def _too_large() -> Failure:
+    return Failure(413, "message-too-large", f"more than {MOST_ROWS} samples or {LARGEST_MESSAGE >> 20} MB", "samples",
+                   "send fewer samples at a time")  # fmt: skip
+
+
+def _read(model: type[Model], text: str, where: str) -> Model:
+    try:
+        return model.model_validate_json(text)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_context=False, include_input=False)[0]
+        place = ".".join(map(str, first["loc"]))
+        raise Failure(422, "bad-message", f"{place}: {first['msg']}" if place else first["msg"], where,
+                      "see docs/service.md for the messages of a stream") from None  # fmt: skip

@@ -1,0 +1,137 @@
+"""The WebSocket of the tracking filter: samples in, estimates out, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+import pytest
+from fastapi.testclient import TestClient
+from starlette.websockets import WebSocketDisconnect
+
+from app.stream import service as streams
+from ident.hybrid.tracking import COLUMNS, Noise, Tracker
+from tests.reference import first_order_reference as reference
+from tests.running import TOKEN
+
+PATH = "/api/v1/stream/ekf"
+START = {"sample_rate": 4096, "hold": "linear", "tau0": 0.01, "gain0": 0.7}
+BEARER = {"Authorization": f"Bearer {TOKEN}"}
+
+
+@contextmanager
+def connected(service: TestClient, first: Any = START, headers: dict[str, str] = BEARER) -> Iterator[Any]:
+    """A stream whose first message was sent."""
+    with service.websocket_connect(PATH, headers=headers | {"Host": "127.0.0.1:8000"}) as socket:
+        if first is not None:
+            socket.send_text(first if isinstance(first, str) else json.dumps(first))
+        yield socket
+
+
+def refused(socket: Any) -> tuple[dict[str, Any], int]:
+    """The problem document that a stream ends with, and the code of its end."""
+    problem = socket.receive_json()
+    with pytest.raises(WebSocketDisconnect) as ended:
+        socket.receive_text()
+    return problem, ended.value.code
+
+
+def test_samples_are_answered_in_their_own_form_with_what_the_library_finds(service: TestClient) -> None:
+    """JSON and binary messages in one stream are one record to the filter, which comes to the true parameters."""
+    drawn = reference.trial(4, 2.0)
+    noise = {"measurement": reference.SENSOR, "tau": 5e-5, "gain": 3e-4}
+    whole = Tracker(4096.0, "linear", 0.01, 0.7, Noise(**noise)).block(drawn.r, drawn.y)
+    with connected(service, {**START, "noise": noise}) as socket:
+        socket.send_json({"r": drawn.r[:100].tolist(), "y": drawn.y[:100].tolist()})
+        told = socket.receive_json()
+        socket.send_bytes(np.column_stack([drawn.r, drawn.y])[100:].astype("<f8").tobytes())
+        rows = np.frombuffer(socket.receive_bytes(), "<f8").reshape(-1, 6)
+    assert list(told) == list(COLUMNS)
+    np.testing.assert_allclose(np.column_stack(list(told.values())), whole[:100])
+    np.testing.assert_allclose(rows, whole[100:])
+    assert rows[-1, :2] == pytest.approx(drawn.loop[:2], rel=0.02)
+
+
+def test_only_the_sample_rate_must_be_given(service: TestClient) -> None:
+    with connected(service, {"sample_rate": 4096}) as socket:
+        socket.send_json({"r": [0.0, 0.01], "y": [0.0, None]})
+        told = socket.receive_json()
+    assert [len(column) for column in told.values()] == [2] * 6
+    assert told["tau"][0] == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize(
+    "first",
+    ["no JSON", "[]", {}, {"sample_rate": 0}, {"sample_rate": "fast"}, {**START, "hold": "cubic"}, {**START, "x": 1},
+     {**START, "tau0": -1}, {**START, "gain0": 0}, {**START, "tau0": 1e-30}, '{"sample_rate": NaN}',
+     {**START, "noise": {"measurement": 0}}, {**START, "noise": {"tau": -1}}],
+)  # fmt: skip
+def test_a_first_message_that_says_nothing_usable_is_a_problem_and_the_end(service: TestClient, first: Any) -> None:
+    with connected(service, first) as socket:
+        problem, code = refused(socket)
+    assert problem["status"] == 422
+    assert problem["detail"]
+    assert problem["remedy"]
+    assert code == 1008
+
+
+@pytest.mark.parametrize(
+    "message",
+    ["no JSON", '{"r": [1]}', '{"r": [1], "y": [1, 2]}', '{"r": [NaN], "y": [1]}', '{"r": [1e300], "y": [1]}', b"123",
+     np.array([[1e300, 0.0]]).tobytes(), np.array([[np.nan, 0.0]]).tobytes()],
+)  # fmt: skip
+def test_samples_that_are_none_are_a_problem_and_the_end(service: TestClient, message: str | bytes) -> None:
+    with connected(service) as socket:
+        (socket.send_bytes if isinstance(message, bytes) else socket.send_text)(message)
+        problem, code = refused(socket)
+    assert (problem["status"], code) == (422, 1008)
+
+
+def test_a_message_has_an_upper_bound(service: TestClient) -> None:
+    """One sample more than is allowed, and bytes beyond the limit."""
+    with connected(service) as socket:
+        socket.send_bytes(np.zeros((65_537, 2)).tobytes())
+        problem, code = refused(socket)
+    assert (problem["code"], code) == ("message-too-large", 1009)
+    with connected(service, " " * (streams.LARGEST_MESSAGE + 1)) as socket:
+        assert refused(socket)[1] == 1009
+
+
+def test_a_stream_that_nobody_uses_is_closed(service: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(streams, "IDLE", 0.05)
+    with connected(service) as socket:
+        problem, code = refused(socket)
+    assert (problem["code"], code) == ("idle-stream", 1001)
+
+
+def test_so_many_streams_are_served_and_no_more(service: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(streams, "MOST_STREAMS", 1)
+    with connected(service) as one:
+        with connected(service) as other:
+            assert refused(other)[0]["code"] == "too-many-streams"
+        one.send_json({"r": [0.0], "y": [0.0]})
+        assert one.receive_json()["tau"]
+    with connected(service) as again:
+        again.send_json({"r": [0.0], "y": [0.0]})
+        assert again.receive_json()["tau"]
+
+
+def test_a_stream_needs_the_token_and_takes_the_cookie(service: TestClient) -> None:
+    nobody = {"Authorization": ""}
+    with pytest.raises(WebSocketDisconnect), connected(service, headers=nobody):
+        pass
+    with connected(service, headers=nobody | {"Cookie": f"servoident={TOKEN}"}) as socket:
+        socket.send_json({"r": [0.0], "y": [0.0]})
+        assert socket.receive_json()["nis"] == [0.0]
+    with pytest.raises(WebSocketDisconnect), connected(service, headers=BEARER | {"Origin": "http://evil.example"}):
+        pass
+
+
+def test_who_asks_without_a_socket_is_told_what_it_is(service: TestClient) -> None:
+    answer = service.get(PATH)
+    assert (answer.status_code, answer.json()["code"]) == (426, "upgrade-needed")
+    told = service.get("/api/v1/openapi.json").json()["paths"][PATH]["get"]
+    assert set(told["x-messages"]) == {"first", "samples", "estimates"}
