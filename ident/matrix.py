@@ -23,7 +23,7 @@ MOTIONS = ("displacement", "velocity")
 """Channels that may be imposed on a machine that answers with a force, such as a damper."""
 CHANNELS = (
     "command", "displacement", "velocity", "force", "drive_force", "load_pressure", "pressure_a", "pressure_b",
-    "supply_pressure", "spool", "current", "temperature",
+    "supply_pressure", "vertical_load", "spool", "current", "temperature",
 )  # fmt: skip
 DISTURBANCES = {"flow_disturbance": "flow", "load_disturbance": "load", "sensor_disturbance": "sensor"}
 """What acts on a machine beside its command, measured: the channel, and the place where it adds."""
@@ -186,12 +186,12 @@ class Run:
         "moving": what acted before the record still shows.
 
         A line is fitted to the first millisecond (at least 4 samples): a servo-hydraulic machine needs longer than
-        that to follow a jump of its command. Still: speed below 5 % of the typical speed; at zero: value below 2 % of
-        the record's standard deviation; or either within 4 standard errors of zero. A record cut out of a moving test
-        passes by accident about once in a thousand.
+        that to follow a jump of its command. Of a record with many outputs the position, where it was recorded, says
+        it for all: a machine begins in one way. Still: speed below 5 % of the typical speed; at zero: value below 2 %
+        of the record's standard deviation; or either within 4 standard errors of zero. A record cut out of a moving
+        test passes by accident about once in a thousand.
         """
-        n = self._first
-        x = self.measured
+        n, x = self._first, self._first_seen
         slope, value = np.polyfit(np.arange(n), x[:n], 1)
         # Differences of fourth order leave the noise of a well sampled record (their gain on white noise is √70).
         noise = min(float(np.std(np.diff(x, 4))) / np.sqrt(70.0), 0.03 * float(np.std(x))) if len(x) > 8 else 0.0
@@ -214,7 +214,8 @@ class Run:
         of the record's standard deviation or four standard errors. Fewer samples than 16 may be a step that has not
         arrived yet.
         """
-        command, x = self.channels.get("command", self.measured), self.measured
+        x = self._first_seen
+        command = self.channels.get("command", x)
         changes = np.flatnonzero(command != command[0])
         count = int(changes[0]) if len(changes) else 0
         if count < _LEAST:
@@ -222,6 +223,11 @@ class Run:
         parts = (x[: self._first], *np.array_split(x[:count], 4))
         means, errors = [part.mean() for part in parts], [part.std() / np.sqrt(len(part)) for part in parts]
         return count if np.ptp(means) <= 0.02 * np.std(x) + 4.0 * max(errors) else 0
+
+    @property
+    def _first_seen(self) -> Samples:
+        """The channel by which the beginning is told."""
+        return self.channels.get("displacement", self.measured) if self.record else self.measured
 
     @property
     def _first(self) -> int:

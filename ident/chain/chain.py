@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from ident.chain.conditions import conditions, zeros
 from ident.chain.dry_friction import dry_friction
 from ident.chain.linearity import LINEAR, OTHER, ZERO, degree
+from ident.chain.refusals import of_other_unit, unfit
 from ident.effects.effect import Effect
 from ident.equations.equation import Equation
 from ident.equations.grammar import FUNCTIONS, TIME
@@ -33,8 +34,10 @@ from ident.stages import Stage
 Array = NDArray[np.float64]
 INPUT, INPUT_RATE, FORCE, DISTURBANCE, STEP = "u", "du", "fm", "dm", "dt"
 """What drives a chain: the command, its rate, a measured force or disturbance; and the step of the simulation."""
-MEASURED = (FORCE, DISTURBANCE)
-"""The inputs beside the command; a chain reads one of them at most."""
+SUPPLY, VERTICAL = "dPs", "dNv"
+"""What a measured supply pressure (Pa) and vertical load (N) are beside their mean, which is a condition of the run."""
+MEASURED = (FORCE, DISTURBANCE, SUPPLY, VERTICAL)
+"""The inputs beside the command."""
 _SMALL, _SHARE = 1e-9, 1e-7  # of a unit, and of what stands there: the step of slopes
 
 
@@ -42,12 +45,15 @@ _SMALL, _SHARE = 1e-9, 1e-7  # of a unit, and of what stands there: the step of 
 class Chain:
     """Stages in the order of the signal, the signal that each recordable channel shows, and the effects added.
 
+    `about` names states, or the command, that are not at zero where small signals are taken, with what they are there:
+    a valve with overlap answers none at rest.
     Raises Unusable where an effect finds nothing to act on, or a signal in another unit than it is made for.
     """
 
     stages: tuple[Stage, ...]
     outputs: Mapping[str, str]
     effects: tuple[Effect, ...] = ()
+    about: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
         for effect in self.effects:
@@ -58,7 +64,7 @@ class Chain:
                     raise of_other_unit(effect, signal, self.units[signal])
 
     def __hash__(self) -> int:
-        return hash((self.stages, tuple(self.outputs.items()), self.effects))
+        return hash((self.stages, tuple(self.outputs.items()), self.effects, self.about))
 
     def with_effects(self, effects: tuple[Effect, ...]) -> Chain:
         """The chain with these effects instead of its own."""
@@ -221,7 +227,7 @@ class Chain:
             lines = [f"    {name} = values[{name!r}]" for name in self.symbols if name in read]
             lines += [
                 f"    ({', '.join(self.states)},) = states",
-                f"    {INPUT_RATE} = {FORCE} = {DISTURBANCE} = {STEP} = {TIME} = 0.0",
+                f"    {' = '.join((INPUT_RATE, *MEASURED, STEP, TIME))} = 0.0",
             ]
             lines += [f"    {name}__old = 0.0" for name in self.memories]
             lines += [f"    {equation.target} = {_still(equation)}" for equation in needed]
@@ -234,26 +240,31 @@ class Chain:
         return self._evaluators[output]
 
     def linearise(
-        self, values: Mapping[str, Array | float], output: str = "displacement", about: Sequence[float] | None = None
+        self, values: Mapping[str, Array | float], output: str = "displacement", about: Sequence[Any] | None = None
     ) -> LinearModel:
         """State matrices: where the equations are linear exact, by applying them to unit vectors.
 
-        Else they are the slopes about an operating point, the states and the command `about` (n + 1 numbers; rest at
-        zero where None), over a step of 1e-9 of a unit: a kink that lies there is seen from its side of larger values.
+        Else they are the slopes about an operating point, the states and the command `about` (n + 1 numbers; that of
+        the chain where None), over a step of 1e-9 of a unit: a kink that lies there is seen from its larger side.
         `values` holds every symbol, as numbers or arrays of one broadcast shape, which is that of the batch whether the
         equations read them all or not; `output` is a channel's name.
         """
         evaluate, n = self.evaluator(output), len(self.states)
         shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
         system = np.zeros((n + 1, n + 1, *shape))
-        for j, rates, shown in self._columns(lambda x: evaluate(x[n], x[:n], values), about or [0.0] * (n + 1)):
+        for j, rates, shown in self._columns(lambda x: evaluate(x[n], x[:n], values), about or self._point(values)):
             for i, rate in enumerate(rates):
                 system[i, j] = rate
             system[n, j] = shown
         return LinearModel(system)
 
+    def _point(self, values: Mapping[str, Any]) -> list[Any]:
+        """States and command where small signals are taken."""
+        at = {name: Equation(f"{name} = {text}").value(values) for name, text in self.about}
+        return [at.get(name, 0.0) for name in (*self.states, INPUT)]
+
     def _columns(
-        self, evaluate: Callable[[list[float]], tuple[tuple[Any, ...], Any]], about: Sequence[float]
+        self, evaluate: Callable[[list[Any]], tuple[tuple[Any, ...], Any]], about: Sequence[Any]
     ) -> Iterator[tuple[int, Iterable[Any], Any]]:
         """Rates and output by each state and the command: (number, rates, output)."""
         if self.is_linear:
@@ -262,7 +273,7 @@ class Chain:
             return
         rest_rates, rest = evaluate(list(about))
         for j, there in enumerate(about):
-            step = max(_SMALL, _SHARE * abs(there))
+            step = np.maximum(_SMALL, _SHARE * np.abs(there))
             rates, shown = evaluate([value + step * (i == j) for i, value in enumerate(about)])
             yield j, [(a - b) / step for a, b in zip(rates, rest_rates, strict=True)], (shown - rest) / step
 
@@ -312,19 +323,6 @@ def linear_model(chain: Chain, values: Mapping[str, float], run: Run, actuator: 
     """The linearised chain under the conditions of a run, as a batch of one."""
     known = conditions(run, actuator) | dict(values)
     return chain.linearise({name: np.array([known[name]]) for name in chain.symbols}, run.output)
-
-
-def unfit(effect: Effect) -> Unusable:
-    """The refusal of an effect that a model has no place for."""
-    return Unusable("effect-does-not-fit", "the model has nothing that it could act on", f"effect {effect.name}",
-                    "choose another effect, or a model that has its place")  # fmt: skip
-
-
-def of_other_unit(effect: Effect, signal: str, unit: str) -> Unusable:
-    """The refusal of an effect by a model whose signal has another unit than the effect is made for."""
-    here = "a plain number" if unit == "1" else f"in {unit}"
-    return Unusable("effect-does-not-fit", f"it redefines {signal} in {effect.units[signal]}, which is {here} here",
-                    f"effect {effect.name}", "choose another effect, or another model")  # fmt: skip
 
 
 def _needs(equation: Equation) -> frozenset[str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ident.matrix import Actuator, Run, Specimen
 from ident.stages import Quantity
 
@@ -12,7 +14,8 @@ CONDITIONS = {
     "cL": Quantity("cL", "N*s/m", "damping of the specimen"),
     "A": Quantity("A", "m^2", "piston area"),
     "Ir": Quantity("Ir", "1", "rated current, in the unit of the record"),
-    "Ps": Quantity("Ps", "Pa", "supply pressure"),
+    "Ps": Quantity("Ps", "Pa", "supply pressure, its mean where it was measured"),
+    "Nv": Quantity("Nv", "N", "vertical load, its mean where it was measured"),
 }
 """What an equation may read of a run and its actuator."""
 NEVER = 1e12
@@ -23,12 +26,19 @@ def conditions(run: Run, actuator: Actuator) -> dict[str, float]:
     """The values of :data:`CONDITIONS` for a run.
 
     Without a stated area A = 1 m²: every parameter that is divided by A² in the model is then that ratio. Without a
-    stated rated current 1, without a supply pressure one that never limits.
+    stated rated current 1, without a supply pressure, measured or stated, one that never limits.
     """
     specimen = run.specimen or Specimen()
     area = 1.0 if actuator.piston_area is None else actuator.piston_area
+    supply = _mean(run, "supply_pressure", "Pa") or actuator.supply_pressure or NEVER
     return {"Kp": run.Kp, "mL": specimen.mass, "k": specimen.stiffness, "cL": specimen.damping, "A": area,
-            "Ir": run.rated_current or 1.0, "Ps": actuator.supply_pressure or NEVER}  # fmt: skip
+            "Ir": run.rated_current or 1.0, "Ps": supply, "Nv": _mean(run, "vertical_load", "N")}  # fmt: skip
+
+
+def _mean(run: Run, channel: str, unit: str) -> float:
+    """Of a channel in its unit; 0 where it was not measured."""
+    known = channel in run.channels and run.units.get(channel) == unit
+    return float(np.mean(run.channels[channel])) if known else 0.0
 
 
 def zeros(run: Run, actuator: Actuator) -> frozenset[str]:

@@ -60,8 +60,9 @@ class Identification:
         self.objective: Fitness
         self._integrates = integrates(self.preset.chain, self._runs, matrix.actuator)
         if not self.preset.is_linear or self._integrates:
-            self.objective = SimulatedFitness(self.preset, matrix, self._runs, band, space)
-            self.searched: Fitness = self.objective.fresh(shortened(self._runs, _SEARCHED))
+            absolute = self.preset.absolute
+            self.objective = SimulatedFitness(self.preset, matrix, self._runs, band, space, absolute=absolute)
+            self.searched: Fitness = replace(self.objective, roughly=True).fresh(shortened(self._runs, _SEARCHED))
         else:
             self.objective = self.searched = LinearFitness(self.preset, matrix, self._runs, space, Basis(band))
         options = options_of(settings, self.preset)

@@ -53,14 +53,15 @@ class SimulatedFitness(SimulatedRuns):
             measured = np.column_stack([run.measured for run in runs])[:, :, None]
             sums, size = np.zeros((2, len(runs), vectors)), np.std(measured, axis=0)
             measured = self.shown(runs[0], measured)
-            mean = measured.mean(axis=0) if self.horizon is None else np.zeros_like(size)
+            free = self.horizon is None and runs[0].output not in self.absolute
+            mean = measured.mean(axis=0) if free else np.zeros_like(size)
             for rows, first, last in self.outputs_of(self.simulation(runs, values, steps)):
                 residual = measured[first:last] - mean - rows
                 sums[0] += residual.sum(axis=0)
                 sums[1] += np.einsum("nrv,nrv->rv", residual, residual)
             n = len(measured)
             with np.errstate(invalid="ignore", over="ignore"):
-                variance = sums[1] / n - ((sums[0] / n) ** 2 if self.horizon is None else 0.0)
+                variance = sums[1] / n - ((sums[0] / n) ** 2 if free else 0.0)
                 found = np.sqrt(np.maximum(variance, 0.0)) / size
             return np.where(np.isfinite(found), found, np.inf)
 

@@ -42,7 +42,9 @@ class SimulatedRuns:
 
     `band` (rad/s) is what the commands excite: see :func:`ident.fit.reduction.excited_band`. Values are by the
     equations' names, SI: numbers, or arrays of v parameter vectors side by side. With a `horizon` (s)
-    the moments are those of windows of that length, each begun where it was measured: see :mod:`ident.fit.windows`.
+    the moments are those of windows of that length, each begun where it was measured: see :mod:`ident.fit.windows`. Of
+    the outputs named in `absolute` the mean counts too, which eq. (17) does not see. A search follows the kinks of a
+    core `roughly`.
     """
 
     preset: Preset
@@ -51,6 +53,8 @@ class SimulatedRuns:
     band: float
     starts: dict[str, Array] = field(default_factory=dict, kw_only=True)
     horizon: float | None = field(default=None, kw_only=True)
+    absolute: tuple[str, ...] = field(default=(), kw_only=True)
+    roughly: bool = field(default=False, kw_only=True)
 
     @property
     def chain(self) -> Chain:
@@ -113,14 +117,15 @@ class SimulatedRuns:
         """
         released = self.released(runs, values, steps)
         length, window = max(16, -(-runs[0].length // _BLOCKS)), self.window(runs[0])
-        records = np.column_stack([run.measured - run.measured.mean() for run in runs])
+        free = runs[0].output not in self.absolute
+        records = np.column_stack([run.measured - (run.measured.mean() if free else 0.0) for run in runs])
         if window:
             length, records = -(-length // window) * window, anchored(records, window)
         q = released.shape[1] + 1
         sums = np.zeros((-(-runs[0].length // length), len(runs), q, q))
         for block, (rows, first, last) in enumerate(released.outputs(length)):
             add_products(anchored(rows, window), records[first:last], q - 2, sums[block])
-        if window:
+        if window or not free:
             sums[..., -2, :] = sums[..., :, -2] = 0.0  # no mean is free: each window begins where it was measured
         return completed(sums, strides).transpose(1, 0, 2, 3)
 
@@ -145,8 +150,8 @@ class SimulatedRuns:
         return anchored(signal, self.window(run))
 
     def whole(self) -> Self:
-        """The same over whole runs."""
-        return replace(self, horizon=None, starts=dict(self.starts))
+        """The same over whole runs, as eq. (17) sees them."""
+        return replace(self, horizon=None, absolute=(), starts=dict(self.starts))
 
     def released(self, runs: tuple[Run, ...], values: Mapping[str, Array], steps: int) -> Simulation:
         """A simulation of vectors and, where runs start moving, of the first with each of its first states moved."""
@@ -236,7 +241,9 @@ class SimulatedRuns:
         """Steps a sample for each vector."""
         found, kinds = self.fastest(values), {(run.hold, self.band / run.sample_rate) for run in self.matrix.runs}
         on = [effect for effect in self.preset.effects if kinks and self._is_on(effect, values)]
-        return np.asarray(np.max([steps_needed(self.chain, found, hold, on, band) for hold, band in kinds], axis=0))
+        least = self.preset.steps if kinks and not self.roughly else 1
+        needed = [steps_needed(self.chain, found, hold, on, band, least) for hold, band in kinds]
+        return np.asarray(np.max(needed, axis=0))
 
     def fastest(self, values: Mapping[str, Array]) -> Array:
         """Radians a sample of each vector's fastest mode, of the linear core and the effects at small signals.

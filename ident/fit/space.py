@@ -15,6 +15,7 @@ from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Matrix, Run
 from ident.presets import Preset
+from ident.presets.convention import Convention, of_runs
 from ident.simulation.steps import FASTEST
 
 Array = NDArray[np.float64]
@@ -38,8 +39,9 @@ class Space:
     """Axes searched, values held fixed, and what the axes' scales may read.
 
     `convention` names a parameter that no run can determine (without a specimen of known mass only ratios to the mass
-    are seen): it is held at `fixed` and reported as undetermined. `followed`: only models whose modes a simulation
-    follows at the sample time are searched; where the user says where to look, all that are there.
+    are seen): it is held at `fixed` and reported as undetermined; so is what `conventions` hold.
+    `followed`: only models whose modes a simulation follows at the sample time are searched; where the user says where
+    to look, all that are there.
     """
 
     axes: tuple[Axis, ...]
@@ -47,6 +49,7 @@ class Space:
     fixed: Mapping[str, float]
     typical: Mapping[str, float]
     convention: str | None = None
+    conventions: tuple[Convention, ...] = ()
     scale_free: bool = False
     followed: bool = False
 
@@ -108,8 +111,8 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     given = {preset.parameter(name).in_equations: bounds for name, bounds in settings.bounds.items()}
     fixed = {preset.parameter(name).in_equations: value for name, value in settings.fixed.items()}
     area, known_for = matrix.actuator.piston_area, preset.bounds_hold_for
-    stated = all(run.gain is not None and run.specimen is not None for run in runs)
-    same = known_for is not None and area is not None and abs(area / known_for - 1) < _SAME_AREA and stated
+    same = known_for is not None and area is not None and abs(area / known_for - 1) < _SAME_AREA
+    same = same and _stated(preset, runs)
     if all(run.stepped for run in runs):
         band /= _OF_STEPS
     typical = _typical(matrix, runs, band)
@@ -117,13 +120,7 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     if force:  # a mass that would need it
         typical["mL"] = force / (typical["V"] * band)
     of_effects = [p for effect in preset.effects for p in effect.added]
-    shapes = {
-        p.in_equations: p.relative * typical["L"] if p.relative and preset.relative_ways else p.value
-        for effect in preset.effects
-        for p in effect.added[1:]
-        if not p.searched
-    }
-    known = shapes | {name: value for name, value in preset.gains.items() if name != "Kp"}
+    known = _shapes(preset, typical) | {name: value for name, value in preset.gains.items() if name != "Kp"}
     fixed = {name: value for name, value in known.items() if name not in given} | fixed
     convention = None
     forced = force or preset.driven_by != "command"
@@ -131,6 +128,8 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     if free & set(preset.share_force[:1]) and not (same or forced or _loaded(runs)):
         convention = preset.share_force[0]
         fixed[convention] = typical["mL"]
+    held = tuple(one for one in of_runs(preset.conventions, runs) if not {*one.held} & {*fixed, *given})
+    fixed = {name: value for one in held for name, value in one.held.items()} | fixed
     axes, fastest = [], FASTEST * min(run.sample_rate for run in runs)
     for scale in preset.scales:
         if scale.name in fixed:
@@ -142,10 +141,27 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
             axes.append(Axis(scale.name, lower, upper, parameter.logarithmic))
         else:
             axes.append(Axis(scale.name, *scale.slower_than(fastest / band), scale.logarithmic, scale.equation))
-    _refuse_bad_values(fixed, {p.in_equations for p in of_effects} | known.keys())
+    of_any_sign = {*preset.crossing, *(name for one in held for name in one.held)}
+    _refuse_bad_values(fixed, {p.in_equations for p in of_effects} | known.keys() | of_any_sign)
     order = tuple(scale.name for scale in preset.scales)
     bounded = {*settings.bounds, *settings.fixed} - {p.name for p in of_effects}
-    return Space(tuple(axes), order, fixed, typical, convention, not same, not (same or bounded))
+    return Space(tuple(axes), order, fixed, typical, convention, held, not same, not (same or bounded))
+
+
+def _shapes(preset: Preset, typical: Mapping[str, float]) -> dict[str, float]:
+    """What effects' shapes are held at where nobody says otherwise."""
+    return {
+        p.in_equations: p.relative * typical["L"] if p.relative and preset.relative_ways else p.value
+        for effect in preset.effects
+        for p in effect.added[1:]
+        if not p.searched
+    }
+
+
+def _stated(preset: Preset, runs: tuple[Run, ...]) -> bool:
+    """Whether of every run all is stated that its model reads: the gain of a loop, and what the machine moves."""
+    loop, load = preset.chain.reads("Kp"), not preset.alone
+    return all(not (loop and run.gain is None) and not (load and run.specimen is None) for run in runs)
 
 
 def _loaded(runs: tuple[Run, ...]) -> bool:

@@ -54,6 +54,7 @@ def summarise(
     fit_errors, verify_errors = _run_errors(fit_runs, own), _run_errors(verify_runs, verify)
     strengths = {p.in_equations for p in preset.parameters if p.of}
     strengths |= {axis.name for axis in space.axes if axis.lower == 0}  # what may be nothing has no relative error
+    strengths |= {*preset.crossing} & {*space.names}
     relative = {name: found.relative(_value(objective, name)) for name in space.names if name not in strengths}
     deviation = {name: values[name] * error for name, error in relative.items()}
     deviation |= {name: found.deviation(_value(objective, name)) for name in space.names if name in strengths}
@@ -66,6 +67,8 @@ def summarise(
             *(name for name in preset.share_force if name in relative and name not in weak),
             space.convention,
         ]
+    for one in space.conventions:
+        weak += [name for name in (*(n for n in one.shared if n in space.names), *one.held) if name not in weak]
     label = _labels(objective)
     known = {name: error for name, error in deviation.items() if name not in weak}
     told = parted(optimum.ends, known, {name: label[name][0] for name in known})
@@ -186,7 +189,12 @@ def _determined(
     """Where a parameter is not determined: the parameters and combinations that are."""
     label, space = _labels(objective), objective.space
     for name, error in relative.items():
-        if error <= DETERMINED and not (space.convention and name in objective.preset.share_force):
+        shared = {n for one in space.conventions for n in one.shared}
+        if (
+            error <= DETERMINED
+            and name not in shared
+            and not (space.convention and name in objective.preset.share_force)
+        ):
             yield Combination(label[name][0], values[name], label[name][1], values[name] * error)
     for combined in objective.preset.combinations:
         names = combined.equation.names - values.keys()
@@ -207,6 +215,11 @@ def _reason(objective: Fitness, name: str, relative: Mapping[str, float]) -> str
         return "no specimen of known mass, stiffness or damping gives forces a scale; held by convention"
     if objective.space.convention and name in objective.preset.share_force:
         return "known at best as a ratio to the moving mass, which is a convention here"
+    for one in objective.space.conventions:
+        if name in one.held:
+            return one.why
+        if name in one.shared:
+            return f"known only with {' and '.join(one.held)}, held by convention"
     if name not in relative:
         return "any strength in its bounds explains these runs as well"
     size = "not seen by these runs" if relative[name] > 10 else f"standard error {relative[name]:.0%} of the value"

@@ -95,7 +95,9 @@ def covariance(here: Scattered, point: Array, valley: Array | None = None) -> Co
     valley = np.empty((0, p)) if valley is None else valley
     if not p or not np.isfinite(here.error):
         return Covariance(point, np.zeros((p, p)), np.eye(p), valley)
-    S = here.scores.T @ here.scores
+    blocks = len(here.scores)
+    # The optimum makes the scores of the blocks sum to zero in p directions: so much less do they scatter (HC1).
+    S = here.scores.T @ here.scores * (blocks / (blocks - p) if blocks > p else 1.0)
     scale = np.sqrt(np.maximum(np.diag(H), 1e-12 * max(np.diag(H).max(), 1e-300)))
     strengths, directions = np.linalg.eigh(H / scale[:, None] / scale)
     seen = strengths > _LOST * strengths[-1]

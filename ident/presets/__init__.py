@@ -20,6 +20,7 @@ _FILES = (
     "specimen",
     "force_loop",
     "kononykhin",
+    "strano",
 )
 """Each with the preset of its name."""
 _PRESETS: tuple[Preset, ...] = tuple(getattr(import_module(f"ident.presets.{file}"), file.upper()) for file in _FILES)

@@ -8,16 +8,20 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal, TypeVar
 
-from ident.chain.chain import Chain, unfit
+from ident.chain.chain import Chain
 from ident.chain.conditions import CONDITIONS
 from ident.chain.disturbance import disturbed
+from ident.chain.refusals import unfit
+from ident.chain.varying import varying
 from ident.effects.effect import Effect
 from ident.equations.equation import Equation
 from ident.errors import Unusable
 from ident.matrix import DISTURBANCES, MOTIONS, Matrix
 from ident.parameter import Parameter
+from ident.presets.convention import Convention
 from ident.presets.neutral import from_neutral
 from ident.presets.passivity import passive
+from ident.presets.stated import refuse_unstated
 from ident.stages import MASS_SPRING_DAMPER, MEASURED_LOAD, OPENED_BY_COMMAND, Scale
 from ident.stages.scale import OF_THE_RUNS, in_reading_order
 
@@ -53,10 +57,15 @@ class Preset:
     machine is searched over `scales`. `without_area` gives the name and unit of what a parameter becomes when the
     area is unknown. `driven_by` is the channel that drives the model, the command where a run has none of that name;
     `under_control` the model of the same machine under a controller. `methods` are fitting methods of this model
-    alone, `search` the options of its genetic search that differ from the usual ones, `figures` those that it has,
-    every figure of test runs where there are none. `force_scale` is the size of its forces in the words of a scale,
-    `drive_scale` that of its drive signal, the motion times the gain where none is stated; with `relative_ways` lengths
-    of effects' shapes are measured by its motion. `of_drive` are parameters in whose unit a metre is one of the drive
+    alone; `opened` is the same machine where a command that is no way opens its valve. `alone`: a run that states no
+    specimen moves none. `needs` is what must be stated of the actuator, or measured; `steps` those a sample that the
+    kinks of its core ask for. `absolute` are outputs whose zero
+    is the model's own, so that a fit counts their mean; `crossing` are parameters that may well be nothing: their
+    standard error is no share of the value; `conventions` are what runs may leave open. `search` are the options of its
+    genetic search that differ from the usual ones, `figures` those that it has, every figure of test runs where there
+    are none. `force_scale` is the size of its forces in the words of a scale, `drive_scale` that of its drive signal,
+    the motion times the gain where none is stated; with `relative_ways` lengths of effects' shapes are measured by its
+    motion. `of_drive` are parameters in whose unit a metre is one of the drive
     signal; it is shown as `drive_unit`, the command's in open loop. `turns`: the motion of such a machine is an angle
     as a rule. `compares` is the channel that its controller does, nothing without one; `gains` are gains of it that
     are known, Kp that of runs that state none. Multiplied or divided by one factor, the parameters `share_force` change
@@ -82,6 +91,13 @@ class Preset:
     notes: tuple[str, ...] = ()
     driven_by: str = "command"
     under_control: Preset | None = None
+    opened: Preset | None = None
+    alone: bool = False
+    needs: tuple[str, ...] = ()
+    steps: int = 1
+    absolute: tuple[str, ...] = ()
+    crossing: tuple[str, ...] = ()
+    conventions: tuple[Convention, ...] = ()
     kind: Kind = "chain"
     methods: tuple[str, ...] = ()
     search: Mapping[str, float] = field(default_factory=dict)
@@ -173,7 +189,8 @@ class Preset:
         `load` "force": the measured force takes the place of the specimen's equation. Raises Unusable where it was
         not measured, or the model has no specimen.
         """
-        preset = self
+        preset = self._driven_as(matrix)
+        refuse_unstated(preset.needs, matrix)
         if matrix.controller is not None and self.under_control is not None:
             preset = self.under_control.with_effects(self.effects)
         if "Kp" in preset.gains:
@@ -187,11 +204,23 @@ class Preset:
         if preset.force_scale and {run.output for run in matrix.runs} == {"load_pressure"}:
             preset = replace(preset, force_scale="A*X")  # its forces are measured
         preset = preset.disturbed_as(matrix, load)
+        if preset.kind == "chain":
+            preset = replace(preset, chain=varying(preset.chain, matrix.runs))
         if preset.driven_by in MOTIONS:
             matrix = passive(matrix)
         elif preset.kind == "chain" and preset.driven_by == "command":
             matrix = from_neutral(matrix, preset.core)
         return (preset.with_measured_load(matrix), matrix) if load == "force" else (preset, matrix)
+
+    def _driven_as(self, matrix: Matrix) -> Preset:
+        """The machine in open loop where the command is no way. Raises Unusable where runs differ in that."""
+        loops = {run.units.get("command") in _WAYS for run in matrix.runs if "command" in run.channels}
+        if self.opened is None or loops <= {True}:
+            return self
+        if len(loops) > 1:
+            raise Unusable("bad-command", "runs with a command in m and others in V", "command",
+                           "fit the open and the closed loop one after the other")  # fmt: skip
+        return self.opened.with_effects(self.effects)
 
     def disturbed_as(self, matrix: Matrix, load: str) -> Preset:
         """The model with what was measured at a place beside the command, as it is where nothing was.
@@ -271,6 +300,9 @@ class Preset:
             "bounds or values",
             f"choose from {', '.join(p.name for p in self.parameters)}",
         )
+
+
+_WAYS = ("m", "rad")
 
 
 def _in_order(found: Mapping[str, T], first: Iterable[str]) -> tuple[T, ...]:

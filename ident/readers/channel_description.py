@@ -16,7 +16,7 @@ KINDS_OF_UNIT: dict[str, Sequence[str]] = {
     "command": tuple(name for name in DIMENSIONS if name not in ("dimensionless", "per sample")),
     "displacement": WAY, "velocity": SPEED,
     "force": FORCE, "drive_force": FORCE, "load_pressure": PRESSURE,
-    "pressure_a": PRESSURE, "pressure_b": PRESSURE, "supply_pressure": PRESSURE,
+    "pressure_a": PRESSURE, "pressure_b": PRESSURE, "supply_pressure": PRESSURE, "vertical_load": ("force",),
     "flow_disturbance": ("flow",), "load_disturbance": FORCE, "sensor_disturbance": WAY,
     "spool": ("length", "voltage", "current"), "current": ("current", "voltage"), "temperature": ("temperature",),
 }  # fmt: skip

@@ -12,6 +12,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from ident.chain.chain import DISTURBANCE, FORCE, INPUT, MEASURED, STEP, Chain
+from ident.chain.varying import MEASURED_CONDITIONS, is_measured
 from ident.equations.grammar import TIME
 from ident.matrix import DISTURBANCES, Run
 from ident.simulation.kernel import HELD, LANES, SHARE, Filter, Kernel, constant, kernel
@@ -72,7 +73,9 @@ class Simulation:
         lane_values = self._lanes(lanes)
         inputs = {name: self._input(lanes, name, built, lane_values) for name in built.inputs}
         command = inputs[INPUT]
-        second = next((inputs[name] for name in MEASURED if name in inputs), command)
+        measured = [inputs[name].record for name in built.measured] or [command.record]
+        forces = np.column_stack(measured).ravel()
+        force_at = inputs[built.measured[0]].begin if built.measured else command.begin
         lane_values |= {HELD: self._held(lanes), SHARE: command.share}
         buffers = self._packed(built, lane_values, lanes, inputs)
         chunk = (
@@ -83,7 +86,7 @@ class Simulation:
             out = np.empty((end - begin) * lanes)
             for i, buffer in enumerate(buffers):
                 group = slice(i * LANES, (i + 1) * LANES)
-                driven = buffer, command.record, second.record, command.begin[group], second.begin[group]
+                driven = buffer, command.record, forces, command.begin[group], force_at[group]
                 ends = begin * self.steps, (end - 1) * self.steps + 1
                 built.advance(*driven, *ends, self.steps, out[i * LANES :], lanes)
                 if end < samples:  # on to the first step of the next chunk
@@ -197,6 +200,10 @@ def _record(run: Run, name: str) -> Array:
         return run.channels["force"]
     if name == DISTURBANCE:  # of a run that says nothing there was none
         return next((run.channels[one] for one in DISTURBANCES if one in run.channels), np.zeros(run.length))
+    for beside, channel, unit in MEASURED_CONDITIONS.values():
+        if name == beside:  # of a run that did not measure it, it stays
+            known = is_measured(run, channel, unit)
+            return np.asarray(run.channels[channel] - run.channels[channel].mean()) if known else np.zeros(run.length)
     return run.command
 
 

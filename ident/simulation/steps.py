@@ -28,16 +28,16 @@ def rates(chain: Chain, values: Mapping[str, Any], output: str) -> Array:
 
 
 def steps_needed(
-    chain: Chain, fastest: Array, hold: str, on: Sequence[Effect], band: float = np.pi / 2
+    chain: Chain, fastest: Array, hold: str, on: Sequence[Effect], band: float = np.pi / 2, kinks: int = 1
 ) -> NDArray[np.int64]:
     """Steps a sample, a power of two up to :data:`MOST`, for eigenvalues `fastest`, (v,).
 
     They and the `band` up to which the command excites the machine are in radians a sample. A mode that does nothing
     but follow is given fewer: a Runge-Kutta step of one time constant is off by 2 % in how fast it decays, and not in
-    where it tends to. Kinks of effects that are on ask for more, the fewer the slower the motion is for the samples,
-    and so does a held command whose jumps act at once or between the samples.
+    where it tends to. Kinks of effects that are on, and those of the core, `kinks`, ask for more, the fewer the slower
+    the motion is for the samples, and so does a held command whose jumps act at once or between the samples.
     """
-    least = max((effect.steps for effect in on), default=1) * min(band / _KINKED, 1.0)
+    least = max(kinks, *(effect.steps for effect in on), 1) * min(band / _KINKED, 1.0)
     if hold == "zoh" and any(chain.reads(name) for name in (INPUT_RATE, "delay")):
         least = max(least, 2.0)
     following = min(_FOLLOWING * band, np.pi / 2)  # at the latest at half of what a record can show

@@ -4,6 +4,7 @@ from ident.stages.controller import OPENED_BY_COMMAND, PI, PID, PROPORTIONAL, SP
 from ident.stages.drive import CASCADE, DIRECT_FORCE, IDEAL_DRIVE
 from ident.stages.flow import FLOW_TO_SPEED, LINEAR_FLOW, SQUARE_ROOT_FLOW
 from ident.stages.load import BLOCKED, DRIVEN_MASS, FOLLOWING, MASS_SPRING_DAMPER, MEASURED_LOAD, PRESSED_SPECIMEN
+from ident.stages.long_stroke import DRIVEN_VALVE, OVERLAP, TABLE_ON_GUIDES, TIGHT_CYLINDER, TWO_SIDED_FLOW
 from ident.stages.motor import TORQUE
 from ident.stages.pressure import COMPRESSIBLE
 from ident.stages.scale import Scale
@@ -19,6 +20,7 @@ __all__ = [
     "COMPRESSIBLE",
     "DIRECT_FORCE",
     "DRIVEN_MASS",
+    "DRIVEN_VALVE",
     "FIRST_ORDER_VALVE",
     "FLOW_TO_SPEED",
     "FOLLOWING",
@@ -30,6 +32,7 @@ __all__ = [
     "MEASURED_LOAD",
     "MOVED_SPECIMEN",
     "OPENED_BY_COMMAND",
+    "OVERLAP",
     "PI",
     "PID",
     "PLACES",
@@ -39,7 +42,10 @@ __all__ = [
     "SECOND_ORDER_VALVE",
     "SPEED_INSIDE",
     "SQUARE_ROOT_FLOW",
+    "TABLE_ON_GUIDES",
+    "TIGHT_CYLINDER",
     "TORQUE",
+    "TWO_SIDED_FLOW",
     "Quantity",
     "Scale",
     "Stage",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -15,6 +16,7 @@ from ident.matrix import Actuator, Matrix, Run, Specimen
 from ident.presets import PRESETS
 from ident.words.percent import percent
 from ident.workflows import diagnose, identify
+from tests.fit import rig
 from tests.fit.test_windows import cylinder
 from tests.presets.test_composed import force_loop
 from tests.presets.test_machines import motor, specimen
@@ -70,6 +72,13 @@ def driven() -> Matrix:
     return Matrix(Actuator("DRIVEN"), tuple(runs))
 
 
+def rigs() -> Matrix:
+    """Two records of the hybrid-simulation rig: with position and spool to fit, with the position alone to verify."""
+    fit = rig.matrix(rig.machine(0), 0, ("displacement", "spool"), seconds=2.0)
+    (verify,) = rig.matrix(rig.machine(0), 1, ("displacement",), seconds=2.0).runs
+    return replace(fit, runs=(*fit.runs, replace(verify, id="verify", use="verify")))
+
+
 MACHINES: dict[str, tuple[str, Callable[[], Matrix], tuple[str, ...]]] = {
     "a loop": ("qian2014", loop, ()),
     "a loop, held": ("qian2014", lambda: loop(held=True), ()),
@@ -84,6 +93,7 @@ MACHINES: dict[str, tuple[str, Callable[[], Matrix], tuple[str, ...]]] = {
     "a specimen with an effect": ("specimen", lambda: specimen(4, friction=50.0), ("presliding_friction",)),
     "a press": ("force_loop", lambda: force_loop(6, seconds=4.0), ()),
     "a cylinder": ("open_valve", lambda: cylinder(4, wander=0.0), ()),
+    "a rig": ("strano", rigs, ()),
     "a disturbed cylinder": ("motor", lambda: cylinder(4, wander=1e-3), ()),
 }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -27,6 +28,7 @@ OTHER_UNIT = {
     "kononykhin": {"command_limit", "integral_action", "lead", "pressure_feedback", "valve_second_order",
                    "valve_rate_limit", "spool_stiction", "backlash", "null_bias", "dead_zone", "underlap",
                    "gain_asymmetry", "flow_saturation", "flow_force"},
+    "strano": {"second_lag"},
     "drive under control": {"command_limit", "integral_action", "lead", "pressure_feedback", "flow_force"},
 }  # fmt: skip
 """What has a signal to act on there, but in rated currents or newtons where the effect is of metres."""
@@ -45,7 +47,8 @@ def units(model: Preset) -> dict[str, dimensions.Dimension]:
     inputs = {INPUT: command, INPUT_RATE: "1/s" if command == "1" else f"{command}/s", FORCE: "N", TIME: "s"}
     known = {**inputs, **{q.name: q.unit for q in CONDITIONS.values()}, **published(model)}
     return {
-        name: dimensions.of(unit) for name, unit in (known | {p.in_equations: p.unit for p in model.parameters}).items()
+        name: dimensions.of(re.sub(r"\bV\b", "m", unit))  # a metre stands for a volt of the drive signal
+        for name, unit in (known | {p.in_equations: p.unit for p in model.parameters}).items()
     }
 
 

@@ -23,11 +23,13 @@ ONE = {
 def test_a_case_of_one_storey():
     """Numbers with units; a share in per cent is one of the storey's own."""
     case = case_of({**ONE, "gain": 2, "delay": 2, "sample_rate": "2 kHz", "noise": {"displacement": "1 um"}})
-    assert case.mass.tolist() == [[87.5]] and case.stiffness.tolist() == [[87.5e3]]
+    assert case.mass.tolist() == [[87.5]]
+    assert case.stiffness.tolist() == [[87.5e3]]
     assert case.physical == Specimen(8.75, 17.5e3, 0.0)
     assert (case.gain, case.delay, case.sample_rate) == (2.0, 2, 2000.0)
     assert case.noise.displacement == pytest.approx(1e-6)
-    assert case.numerical_mass[0, 0] == 78.75 and case.numerical_stiffness[0, 0] == 70e3
+    assert case.numerical_mass[0, 0] == 78.75
+    assert case.numerical_stiffness[0, 0] == 70e3
 
 
 def test_the_built_in_cases_are_read_by_name():
@@ -58,7 +60,8 @@ def test_matrices_in_every_form_are_the_same():
     for name in ("mass", "stiffness", "damping"):
         assert np.allclose(getattr(first, name), getattr(second, name))
     assert np.allclose(first.damping, modal_damping(first.mass, first.stiffness, 0.05))
-    assert first.place == 1 and first.numerical_stiffness[1, 1] == pytest.approx(80e3)
+    assert first.place == 1
+    assert first.numerical_stiffness[1, 1] == pytest.approx(80e3)
 
 
 @pytest.mark.parametrize(
@@ -135,8 +138,10 @@ def test_scores_say_what_they_compare():
     late = np.sin(2 * np.pi * (t - 0.0123)) + 0.3 * np.sin(2 * np.pi * 3.7 * (t - 0.0123))
     assert delay(wanted, late, rate) == pytest.approx(0.0123, abs=1e-4)
     assert delay(late, wanted, rate) == pytest.approx(-0.0123, abs=1e-4)
-    assert rms(1.1 * wanted, wanted) == pytest.approx(0.1) and peak(1.1 * wanted, wanted) == pytest.approx(0.1)
+    assert rms(1.1 * wanted, wanted) == pytest.approx(0.1)
+    assert peak(1.1 * wanted, wanted) == pytest.approx(0.1)
     found = scores(1.1 * wanted, wanted, 0.5 * wanted, rate)
     assert found.tracking_rms == pytest.approx(0.1)
-    assert found.reference_rms == pytest.approx(1.2) and found.reference_peak == pytest.approx(1.2)
+    assert found.reference_rms == pytest.approx(1.2)
+    assert found.reference_peak == pytest.approx(1.2)
     assert found.numerical_rms == pytest.approx(1.0)

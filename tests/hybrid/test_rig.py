@@ -12,9 +12,9 @@ from ident.errors import Cancelled, Unusable
 from ident.hybrid.case import qian
 from ident.hybrid.compensation import Compensation
 from ident.hybrid.controller import SampledController
-from ident.hybrid.loop_shaping import design
 from ident.hybrid.ground import Ground
 from ident.hybrid.linear_plant import linear_plant
+from ident.hybrid.loop_shaping import design
 from ident.hybrid.machine import machine
 from ident.hybrid.perfect import perfect_machine
 from ident.hybrid.rig import simulate_hybrid, simulate_machine
@@ -104,9 +104,11 @@ def test_loop_shaping_brings_the_measured_motion_to_the_reference(structure, rec
     """Eq. (19): at most 3 % under El Centro and 10 % under noise to 30 Hz; with two degrees 0.5 % and 1 %."""
     controller = shaped(structure)
     found = simulate_hybrid(FIT, of_qian(8.0), controller)
-    assert found.stable and found.scores.reference_rms <= blwn
+    assert found.stable
+    assert found.scores.reference_rms <= blwn
     found = simulate_hybrid(FIT, el_centro(qian(), 12.0), controller)
-    assert found.stable and found.scores.reference_rms <= record
+    assert found.stable
+    assert found.scores.reference_rms <= record
 
 
 @pytest.mark.parametrize("gain", [5.0, 10.0])
@@ -132,7 +134,8 @@ def test_a_lightly_damped_structure_behind_a_slow_actuator_needs_compensation():
     slow = fitted("first_order", gain=1.0, tau=0.02)
     alone, helped = simulate_hybrid(slow, case), simulate_hybrid(slow, case, Compensation(4096.0))
     assert not alone.stable
-    assert helped.stable and helped.scores.reference_rms < 0.5
+    assert helped.stable
+    assert helped.scores.reference_rms < 0.5
 
 
 @pytest.mark.parametrize(("ratio", "expected"), [(0.02, 6.37e-3), (0.05, 16.54e-3)])
@@ -172,19 +175,23 @@ def test_what_runs_away_has_no_scores_and_says_when():
     """An unstable loop ends early, and its JSON has no number where there is none."""
     case = replace(sprung(0.01), ground=noise(20.0))
     found = simulate_hybrid(fitted("first_order", gain=1.0, tau=0.05), case)
-    assert not found.stable and found.scores is None and 0 < found.ended < 20
+    assert not found.stable
+    assert found.scores is None
+    assert 0 < found.ended < 20
     data = found.to_json()
-    assert data["scores"]["tracking_rms"] is None and data["command_rms"] is None
+    assert data["scores"]["tracking_rms"] is None
+    assert data["command_rms"] is None
 
 
 def test_every_effect_at_a_tenth_runs_and_costs():
-    """All effects of the catalogue that the chain takes, at a tenth of their bounds: it runs, further off than before."""
+    """All effects of the catalogue, at a tenth of their bounds: it runs, further off than before."""
     model = preset("qian2014")
     on = {effect.name: effect.strength.upper / 10 for effect in EFFECTS if model.takes(effect)}
     assert len(on) == len(EFFECTS)
     case = of_qian(3.0)
     found, before = simulate_hybrid(FIT, case, None, on), simulate_hybrid(FIT, case)
-    assert found.stable and found.scores.tracking_rms > before.scores.tracking_rms
+    assert found.stable
+    assert found.scores.tracking_rms > before.scores.tracking_rms
     assert any("cannot be judged by poles" in note for note in found.notes)
 
 
@@ -199,13 +206,14 @@ def test_sensor_noise_and_converters_are_in_what_is_measured():
     coarse = replace(case, noise=replace(case.noise, displacement_step=1e-5, force_step=0.5))
     stepped = simulate_hybrid(FIT, coarse)
     for record, step in ((stepped.measured, 1e-5), (stepped.force, 0.5)):
-        assert np.allclose(record / step, np.round(record / step), atol=1e-6) and np.ptp(record) > 5 * step
+        assert np.allclose(record / step, np.round(record / step), atol=1e-6)
+        assert np.ptp(record) > 5 * step
 
 
 def test_it_is_cancelled_between_blocks():
     """What its report raises ends the simulation."""
 
-    def stop(progress):
+    def stop(_progress):
         raise Cancelled
 
     with pytest.raises(Cancelled):

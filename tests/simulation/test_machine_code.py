@@ -19,8 +19,8 @@ def by_hand(lines, fed, shown, b, records, at, first, last, every):
     for k in range(first, last):
         for lane in range(LANES):
             names = {"b": b, "lane": lane, "k": k, **PLAIN}
-            for row, array in fed:
-                b[row * LANES + lane] = records[array][at[array][lane] + k + 1]
+            for row, array, column, columns in fed:
+                b[row * LANES + lane] = records[array][(at[array][lane] + k + 1) * columns + column]
             for line in lines:
                 exec(line, {"__builtins__": {}}, names)
         if k % every == 0:
@@ -50,7 +50,7 @@ def with_machine(lines, fed, shown, b, records, at, first, last, every):
 def given(seed):
     rng = np.random.default_rng(seed)
     b = rng.uniform(-1, 1, ROWS * LANES)
-    records = {name: rng.standard_normal(STEPS + 20) for name in ("commands", "forces")}
+    records = {name: rng.standard_normal(3 * (STEPS + 20)) for name in ("commands", "forces")}
     at = {name: rng.integers(0, 10, LANES) for name in ("commands", "forces")}
     return b, records, at
 
@@ -66,15 +66,21 @@ CASES = {
     "functions": [f"x = {row(0)}", "y = x * x", f"{row(3)} = sqrt(y) + pow(y, 1.7) + sin(x) + cos(3.0 * x) + tanh(x)"],
     "state": [f"x = {row(0)}",
               f"{row(0)} = 0.9 * x + 0.1 * {row(2)}", f"{row(3)} = {row(0)}", f"{row(0)} = {row(0)} * x"],
+    "many inputs": [f"{row(3)} = {row(2)} + 10.0 * {row(5)} + 100.0 * {row(6)}"],
     "time": [f"{row(3)} = {row(0)} * sin(0.1 * (k + 0.5)) + k"],
     "names again": [f"x = {row(0)}", "x = x + 1.0", f"{row(0)} = 0.5 * x", f"{row(3)} = x * {row(1)}"],
 }  # fmt: skip
+
+FED = {
+    "state": [(2, "commands", 0, 1), (5, "forces", 0, 1)],
+    "many inputs": [(2, "commands", 0, 1), (5, "forces", 2, 3), (6, "forces", 0, 3)],
+}
 
 
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize(("first", "last", "every"), [(0, STEPS, 1), (4, 33, 4), (5, 5, 1)])
 def test_the_machine_does_what_the_lines_say(name, first, last, every):
-    fed = [(2, "commands"), (5, "forces")] if name == "state" else [(2, "commands")]
+    fed = FED.get(name, [(2, "commands", 0, 1)])
     job = (CASES[name], fed, 3, *given(7), first, last, every)
     for found, wanted in zip(with_machine(*job), by_hand(*job), strict=True):
         assert found.shape == wanted.shape or not wanted.size
@@ -82,7 +88,7 @@ def test_the_machine_does_what_the_lines_say(name, first, last, every):
 
 
 def test_the_same_lines_give_the_same_digits_wherever_memory_lies():
-    job = (CASES["functions"], [(2, "commands")], 3, *given(8), 0, STEPS, 1)
+    job = (CASES["functions"], [(2, "commands", 0, 1)], 3, *given(8), 0, STEPS, 1)
     first = with_machine(*job)[1]
     kept = []
     for offset in range(1, 9):

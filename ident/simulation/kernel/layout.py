@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from ident.chain.chain import INPUT, Chain
-from ident.simulation.kernel.machine_code import Advance, address, advance
+from ident.simulation.kernel.machine_code import Advance, Fed, address, advance
 
 HELD, SHARE = "held", "share"
 """Rows that the packing fills: 1 where a lane's command is held between samples; the delay's fraction of a step."""
@@ -30,8 +30,8 @@ class Kernel:
 
     `advance(b, commands, forces, command_at, force_at, first, last, every, out, stride)` takes the buffer b over the
     steps first to last − 1 and writes the output of every `every`-th of them to the flat array out, rows `stride`
-    apart. Step k of a lane begins at commands[command_at[lane] + k], which its delay shifts, and at
-    forces[force_at[lane] + k], and reads up to the next value.
+    apart. Step k of a lane begins at commands[command_at[lane] + k], which its delay shifts, and at row
+    force_at[lane] + k of the forces, which have a column for each measured input, and reads up to the next value.
     """
 
     chain: Chain
@@ -57,8 +57,17 @@ class Kernel:
         return address(self.lines, self._fed, self.shown, lanes)
 
     @property
-    def _fed(self) -> tuple[tuple[int, str], ...]:
-        return tuple((row + 2, "commands" if name == INPUT else "forces") for name, row in self.inputs.items())
+    def _fed(self) -> tuple[Fed, ...]:
+        measured = self.measured
+        return tuple(
+            (row + 2, "commands", 0, 1) if name == INPUT else (row + 2, "forces", measured.index(name), len(measured))
+            for name, row in self.inputs.items()
+        )
+
+    @property
+    def measured(self) -> tuple[str, ...]:
+        """The inputs beside the command, in the order of the columns of `forces`."""
+        return tuple(name for name in self.inputs if name != INPUT)
 
 
 def filter_rows(order: int) -> int:

@@ -29,15 +29,17 @@ _SIGNS = {ast.Add: "fadd", ast.Sub: "fsub", ast.Mult: "fmul", ast.Div: "fdiv"}
 _RELATIONS = {ast.Lt: "olt", ast.LtE: "ole", ast.Gt: "ogt", ast.GtE: "oge", ast.Eq: "oeq", ast.NotEq: "une"}
 _CALLS = {"sqrt": 1, "pow": 2, "sin": 1, "cos": 1, "tanh": 1}
 Advance = Callable[..., None]
+Fed = tuple[int, str, int, int]
+"""A row that is filled in each step: the row, from what array, from which column of how many."""
 
 
 @lru_cache(maxsize=256)
-def advance(lines: Sequence[str], fed: Sequence[tuple[int, str]], shown: int) -> Advance:
+def advance(lines: Sequence[str], fed: Sequence[Fed], shown: int) -> Advance:
     """The function advance(b, commands, forces, command_at, force_at, first, last, every, out, stride) of some lines.
 
     Before the lines of step k of a lane are carried out, each row of `fed` is filled from commands[command_at[lane] +
-    k + 1] or from the forces alike; row `shown` is what is written to `out` (see
-    :class:`ident.simulation.kernel.layout.Kernel`). Arrays are contiguous, of float64 and int64.
+    k + 1] or from the forces alike, of which the columns that it names lie side by side; row `shown` is what is
+    written to `out` (see :class:`ident.simulation.kernel.layout.Kernel`). Arrays are contiguous, of float64 and int64.
     """
     engine = _engine(_program(lines, fed, shown, LANES))
     types = [*[ctypes.c_void_p] * 5, *[ctypes.c_int64] * 3, ctypes.c_void_p, ctypes.c_int64]
@@ -55,11 +57,11 @@ def advance(lines: Sequence[str], fed: Sequence[tuple[int, str]], shown: int) ->
 
 
 @lru_cache(maxsize=64)
-def _machine_code(lines: Sequence[str], fed: Sequence[tuple[int, str]], shown: int, lanes: int) -> Any:
+def _machine_code(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int) -> Any:
     return _engine(_program(lines, fed, shown, lanes))
 
 
-def address(lines: Sequence[str], fed: Sequence[tuple[int, str]], shown: int, lanes: int) -> tuple[int, object]:
+def address(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int) -> tuple[int, object]:
     """Where the machine code of :func:`advance` stands, for a compiled loop to call, and what keeps it there.
 
     It serves the first `lanes` lanes of the buffer, a multiple of eight, and leaves the others alone.
@@ -81,11 +83,13 @@ class _Writer:
     called: set[str] = field(default_factory=set)
     count: int = 0
 
-    def feed(self, row: int, array: str) -> None:
+    def feed(self, row: int, array: str, column: int, columns: int) -> None:
         """Fill a row from the next value of every lane."""
         vector = "undef"
         for lane in range(_WIDE):
-            at = self._new(f"add i64 %{array}_{lane}, %k")
+            at = self._once(f"add i64 %{array}_{lane}, %k")
+            if columns > 1:
+                at = self._new(f"add i64 {self._once(f'mul i64 {at}, {columns}')}, {column}")
             value = self._new(f"load double, ptr {self._new(f'getelementptr double, ptr %{array}, i64 {at}')}")
             vector = self._new(f"insertelement {_VECTOR} {vector}, double {value}, i32 {lane}")
         self.store(row * LANES, vector)
@@ -179,11 +183,11 @@ def _number(value: float) -> str:
 # Programs ---------------------------------------------------------------------------------------------------------
 
 
-def _program(lines: Sequence[str], fed: Sequence[tuple[int, str]], shown: int, lanes: int) -> str:
+def _program(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int) -> str:
     """The function in the language of LLVM: groups of lanes one after the other, each over all steps."""
     of = _Writer()
-    for row, array in fed:
-        of.feed(row, array)
+    for row, array, column, columns in fed:
+        of.feed(row, array, column, columns)
     for line in lines:
         of.line(line)
     output = of.load(shown * LANES)

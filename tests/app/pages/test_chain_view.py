@@ -20,10 +20,12 @@ TAKEN = {
     "specimen": 10,
     "force_loop": 41,
     "kononykhin": 7,
+    "strano": 40,
 }
 LOOPS = {
     "qian2014": {"v", "y"}, "first_order": set(), "drive": set(), "open_valve": {"v"}, "motor": set(),
     "specimen": set(), "force_loop": {"v", "y"}, "kononykhin": set(),
+    "strano": {"P", "v", "y"},
 }  # fmt: skip
 
 

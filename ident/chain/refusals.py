@@ -1,0 +1,17 @@
+"""What is said of an effect that a chain does not take."""
+
+from ident.effects.effect import Effect
+from ident.errors import Unusable
+
+
+def unfit(effect: Effect) -> Unusable:
+    """The refusal of an effect that a model has no place for."""
+    return Unusable("effect-does-not-fit", "the model has nothing that it could act on", f"effect {effect.name}",
+                    "choose another effect, or a model that has its place")  # fmt: skip
+
+
+def of_other_unit(effect: Effect, signal: str, unit: str) -> Unusable:
+    """The refusal of an effect by a model whose signal has another unit than the effect is made for."""
+    here = "a plain number" if unit == "1" else f"in {unit}"
+    return Unusable("effect-does-not-fit", f"it redefines {signal} in {effect.units[signal]}, which is {here} here",
+                    f"effect {effect.name}", "choose another effect, or another model")  # fmt: skip
