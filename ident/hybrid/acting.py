@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from ident.errors import Unusable
@@ -11,7 +12,10 @@ from ident.fit.result import FitResult
 from ident.hybrid.case import Case
 from ident.hybrid.compensation import Compensation
 from ident.hybrid.controller import SampledController
+from ident.hybrid.feedforward import FeedforwardController, plant_of
+from ident.hybrid.machine import actuator
 from ident.hybrid.rig import Controller, no_controller
+from ident.hybrid.substructure import reference
 from ident.units.quantity import shown
 
 _LARGEST = 50_000_000  # bytes of a controller's file
@@ -27,7 +31,19 @@ def _kalman(_fit: FitResult, case: Case) -> Controller:
     return Compensation(case.sample_rate)
 
 
-NAMED: Mapping[str, Callable[[FitResult, Case], Controller]] = {"none": _none, "kalman": _kalman}
+def _feedforward(fit: FitResult, case: Case) -> Controller:
+    """d with the voltage beside it that the inverse of the model needs to follow the reference solution.
+
+    The motion of the whole structure is known ahead, as the ground is.
+    """
+    wanted = reference(case, case.ground.samples(case.sample_rate))
+    plant = replace(plant_of(fit, actuator(case), case.gain), specimen=case.physical)
+    return FeedforwardController(plant, wanted, case.sample_rate)
+
+
+NAMED: Mapping[str, Callable[[FitResult, Case], Controller]] = {
+    "none": _none, "kalman": _kalman, "feedforward": _feedforward,
+}  # fmt: skip
 """Controllers by name, each made for one simulation."""
 
 

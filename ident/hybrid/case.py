@@ -3,7 +3,7 @@
     structure:  {mass: 87.5 kg, stiffness: 87.5 kN/m, damping: 3.5 kN*s/m}
     physical:   {mass: 8.75 kg, stiffness: 17.5 kN/m, damping: 0 N*s/m, storey: 1}
     gain: 2                     # Kp of the actuator's loop
-    piston_area: 497 mm^2       # where the fit knew one: it is no parameter of the model
+    piston_area: 497 mm^2       # where the fit knew one: it is no parameter of the model; so supply_pressure
     ground:     {file: el_centro.txt, unit: g, step: 0.02 s, scale: 1}
     sample_rate: 4096 Hz        # of the outer loop
     delay: 1                    # samples from a measurement to the command that answers it
@@ -34,7 +34,8 @@ from ident.units.quantity import quantity, shown, split
 
 Array = NDArray[np.float64]
 _KEYS = (
-    "name", "structure", "physical", "gain", "piston_area", "ground", "sample_rate", "delay", "noise",
+    "name", "structure", "physical", "gain", "piston_area", "supply_pressure", "ground", "sample_rate", "delay",
+    "noise",
 )  # fmt: skip
 _LARGEST, _STOREYS = 1_000_000, 12
 
@@ -70,6 +71,7 @@ class Case:
     place: int = 0
     gain: float = 1.0
     piston_area: float | None = None
+    supply_pressure: float | None = None
     ground: Ground = field(default_factory=Ground)
     sample_rate: float = 4096.0
     delay: int = 1
@@ -233,6 +235,7 @@ def case_of(data: Any, base: Path = Path(), name: str = "case") -> Case:
         place=place,
         gain=1.0 if gain is None else gain,
         piston_area=top.positive("piston_area", "area"),
+        supply_pressure=top.positive("supply_pressure", "pressure"),
         ground=ground_of(top.data["ground"], base, Ground()) if "ground" in top else Ground(),
         sample_rate=4096.0 if rate is None else rate,
         delay=delay,

@@ -188,6 +188,8 @@ class FeedforwardController:
     The feedforward of a `reference` known ahead is added to d; the loop's own feedback does the rest.
     """
 
+    name = "feedforward"
+
     def __init__(self, plant: Plant, reference: Array, sample_rate: float, width: float = 0.0) -> None:
         self._beside = command(plant, reference, sample_rate, width) - reference
         self.sample_rate = sample_rate

@@ -48,11 +48,13 @@ class Machine:
     """A chain with its values by the equations' names, whose channels are what is measured beside the specimen.
 
     `displacement` is what the recorder reads, effects of the sensor in it. `force` is the load cell between rod and
-    specimen: spring, damper and inertia of the specimen, not of the rod.
+    specimen: spring, damper and inertia of the specimen, not of the rod. `kinks` are
+    the steps that those of the model's core ask for.
     """
 
     chain: Chain
     values: Mapping[str, float]
+    kinks: int = 1
 
     def at(self, case: Case) -> dict[str, float]:
         """Every symbol of the chain under the conditions of a case."""
@@ -62,8 +64,9 @@ class Machine:
         """Into how many steps a sample is divided."""
         known = {name: np.array([value]) for name, value in self.at(case).items()}
         fastest = rates(self.chain, known, DISPLACEMENT) / case.sample_rate
+        band = 2 * np.pi * _BAND / case.sample_rate
         on = [effect for effect in self.chain.effects if known[effect.added[0].in_equations][0]]
-        return int(steps_needed(self.chain, fastest, "zoh", on, 2 * np.pi * _BAND / case.sample_rate)[0])
+        return int(steps_needed(self.chain, fastest, "zoh", on, band, self.kinks)[0])
 
     @cached_property
     def nonlinear(self) -> tuple[Effect, ...]:
@@ -86,6 +89,9 @@ def machine(fit: FitResult, case: Case, effects: Mapping[str, float] | None = No
     if preset.kind != "chain" or preset.driven_by != "command" or DISPLACEMENT not in preset.chain.outputs:
         raise Unusable("no-answer", f"the model {fit.model} has no command that moves a displacement", "fit",
                        "give the fit of an actuator")  # fmt: skip
+    if "Ps" in preset.core.symbols and case.supply_pressure is None:
+        raise Unusable("not-stated", "the flow of this model hangs on the supply pressure", "case supply_pressure",
+                       "state it, with its unit")  # fmt: skip
     preset = _with_specimen(preset, case)
     values = {p.in_equations: p.value for effect in preset.effects for p in effect.added}
     values |= {preset.parameter(name).in_equations: value for name, value in fit.values.items()}
@@ -93,12 +99,17 @@ def machine(fit: FitResult, case: Case, effects: Mapping[str, float] | None = No
     values |= _stated(preset, fit, case)
     if missing := sorted(set(preset.chain.symbols) - values.keys() - _conditions(case).keys()):
         raise Unusable("bad-fit", f"no value of {', '.join(missing)}", "fit", f"give a fit of model {fit.model}")
-    return Machine(preset.chain, values)
+    return Machine(preset.chain, values, preset.steps)
+
+
+def actuator(case: Case) -> Actuator:
+    """What the case states of the actuator."""
+    return Actuator("hybrid", piston_area=case.piston_area, supply_pressure=case.supply_pressure)
 
 
 def _conditions(case: Case) -> dict[str, float]:
     run = Run("hybrid", "", case.sample_rate, {}, specimen=case.physical, gain=case.gain)
-    return conditions(run, Actuator("hybrid", piston_area=case.piston_area))
+    return conditions(run, actuator(case))
 
 
 def _stated(preset: Preset, fit: FitResult, case: Case) -> dict[str, float]:

@@ -52,13 +52,18 @@ def peak(found: Array, wanted: Array) -> float:
 def delay(wanted: Array, found: Array, sample_rate: float) -> float:
     """By how much `found` lags `wanted` where they correlate best, s; between samples by a parabola through three.
 
-    Looked for up to 0.1 s either way.
+    Looked for up to 0.1 s either way. Each correlation is that of the stretch which both share: without this a record
+    that does not end at rest would seem less late than it is.
     """
-    n, furthest = len(wanted), min(round(_LATEST * sample_rate), len(wanted) - 2)
+    w, f = wanted - wanted.mean(), found - found.mean()
+    n, furthest = len(w), min(round(_LATEST * sample_rate), len(w) - 2)
     size = 1 << (2 * n - 1).bit_length()
-    spectra = np.fft.rfft(found - found.mean(), size) * np.conj(np.fft.rfft(wanted - wanted.mean(), size))
     lags = np.arange(-furthest, furthest + 1)
-    correlation = np.fft.irfft(spectra, size)[lags]
+    products = np.fft.irfft(np.fft.rfft(f, size) * np.conj(np.fft.rfft(w, size)), size)[lags]
+    before, behind = np.maximum(lags, 0), np.maximum(-lags, 0)  # samples of f, and of w, that the other has not
+    energy = [np.concatenate([[0.0], np.cumsum(signal**2)]) for signal in (w, f)]
+    shared = (energy[0][n - before] - energy[0][behind]) * (energy[1][n - behind] - energy[1][before])
+    correlation = products / np.sqrt(np.maximum(shared, 1e-300))
     best = int(np.argmax(correlation))
     shift = 0.0
     if 0 < best < len(lags) - 1:

@@ -91,8 +91,8 @@ def simulate_matrix(
     """
     model = preset_called(preset, tuple(name.partition(".")[0] for name in effects or {}))
     on_bench = model.kind == "bench"
-    if model.bounds_hold_for is None and not on_bench:
-        able = [name for name, p in PRESETS.items() if p.bounds_hold_for is not None or p.kind == "bench"]
+    if model.bounds_hold_for != AREA and not on_bench:
+        able = [name for name, p in PRESETS.items() if p.bounds_hold_for == AREA or p.kind == "bench"]
         remedy = f"use {' or '.join(able)}"
         raise Unusable("cannot-simulate", f"model {preset} has no test matrix of its own", "simulate", remedy)
     if not (1 / 16 <= seconds <= 600 and 0 <= noise < 1):

@@ -86,7 +86,7 @@ def rods(a: Actuator, s: Specimen, Kp: float) -> tuple[Array, Array]:
 def simulate(
     ground: Array, rate: float, Kp: float, delay: int = 1, actuator: Actuator | None = None,
     structure: Structure | None = None, specimen: Specimen | None = None,
-    law: Callable[[float, float], float] = lambda d, y: d,
+    law: Callable[[float, float], float] = lambda d, _y: d,
 ) -> tuple[Array, Array, Array]:  # fmt: skip
     """Wanted d, measured x (m) and force f (N) at the samples, each (n,), under u = law(d, x)."""
     a, w, s = actuator or Actuator(), structure or Structure(), specimen or Specimen()

@@ -1,0 +1,44 @@
+"""`servoident hybrid`, as a user runs it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+FIT = Path(__file__).parents[1] / "stored" / "fit.json"
+CASE = """
+structure: {mass: 87.5 kg, stiffness: 87.5 kN/m, damping: 3.5 kN*s/m}
+physical: {mass: 10 %, stiffness: 20 %}
+gain: 5
+piston_area: 497 mm^2
+ground: {kind: blwn, band: 20 Hz, amplitude: 0.1 g, duration: 2 s}
+"""
+
+
+def test_a_case_is_simulated_and_drawn(servoident, tmp_path):
+    """Scores as JSON under the names of the contract, and the figures with and without the controller."""
+    case, out = tmp_path / "case.yaml", tmp_path / "figures"
+    case.write_text(CASE)
+    done = servoident("hybrid", FIT, "--case", case, "--controller", "kalman", "--effect", "coulomb_friction.force=20 N",
+                      "--json", tmp_path / "scores.json", "--out", out)  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    data = json.loads((tmp_path / "scores.json").read_text())
+    assert {"stable", "scores", "command_rms", "critical_delay", "seconds"} <= data.keys()
+    names = {"delay", "tracking_rms", "tracking_peak", "reference_rms", "reference_peak", "numerical_rms"}
+    assert data["scores"].keys() == names
+    assert data["stable"]
+    assert data["controller"] == "kalman"
+    assert data["effects"] == {"coulomb_friction.force": 20.0}
+    assert {file.name for file in out.iterdir()} == {
+        f"{name}.{kind}" for name in ("displacement", "response") for kind in ("svg", "png", "pdf", "json")
+    }
+    assert "measured against numerical" in done.stdout
+
+
+def test_bad_input_is_one_line(servoident, tmp_path):
+    """A case, a controller and a ground motion that are none: exit status 2, and what to do instead."""
+    for given in (("--case", "quian"), ("--case", "qian", "--controller", "pid"),
+                  ("--case", "qian", "--ground", tmp_path / "none.txt")):  # fmt: skip
+        done = servoident("hybrid", FIT, *given)
+        assert done.returncode == 2, done.stderr
+        assert len(done.stderr.splitlines()[-1].split(";")) >= 2
