@@ -20,12 +20,11 @@ from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.inverse import Inverse
 from ident.matrix import Actuator, Run, Specimen
-from ident.presets import PRESETS
+from ident.presets.strano import STRANO
 from ident.simulation.simulate import responses
 from ident.simulation.steps import rates, steps_needed
 
 Array = NDArray[np.float64]
-MODEL = "strano"
 _SIDES = ((("q1", "vep - ve0"), ("u", "1")), (("q1", "ven - ve0 - 1e-6"), ("u", "-1")))
 _REACH = (1e-3, 1e7)  # V/m: where the limit is looked for
 _BAND = (5.0, 95.0)  # per cent
@@ -48,9 +47,9 @@ class Plant:
     specimen: Specimen = field(default_factory=Specimen)
 
     def __post_init__(self) -> None:
-        missing = [p.name for p in PRESETS[MODEL].parameters if p.name not in self.values]
+        missing = [p.name for p in STRANO.parameters if p.name not in self.values]
         if missing:
-            raise Unusable("not-that-model", f"no value of {', '.join(missing)}", "fit", f"fit the model {MODEL}")
+            raise Unusable("not-that-model", f"no value of {', '.join(missing)}", "fit", f"fit the model {STRANO.name}")
         if not self.gain > 0:
             raise Unusable("zero-gain", f"gain {self.gain:g} V/m", "gain", "give the gain of the position loop, V/m")
 
@@ -64,8 +63,8 @@ class Plant:
 
 def plant_of(fit: FitResult, actuator: Actuator, gain: float, vertical: float = 0.0) -> Plant:
     """The machine of a fit of `strano`. Raises Unusable for another model, or where area or supply are not stated."""
-    if fit.model != MODEL:
-        raise Unusable("not-that-model", f"the fit is of {fit.model}", "fit", f"fit the model {MODEL}")
+    if fit.model != STRANO.name:
+        raise Unusable("not-that-model", f"the fit is of {fit.model}", "fit", f"fit the model {STRANO.name}")
     if actuator.piston_area is None or actuator.supply_pressure is None:
         what = "piston_area" if actuator.piston_area is None else "supply_pressure"
         raise Unusable("not-stated", f"{what} is not stated", f"actuator.{what}", "state it, with its unit")
@@ -84,7 +83,7 @@ def gain_limit(plant: Plant) -> float:
     The smaller one of both sides, with the valve just open, where no flow damps the oil: the least favourable point.
     The computer's delay, if it has one, is not in it.
     """
-    chain = PRESETS[MODEL].chain
+    chain = STRANO.chain
     values = {name: np.asarray(value, dtype=float) for name, value in plant.known.items()}
 
     def growth(gain: float, about: tuple[tuple[str, str], ...]) -> float:
@@ -102,14 +101,13 @@ def gain_limit(plant: Plant) -> float:
 
 def followed(plant: Plant, commanded: Array, sample_rate: float) -> Array:
     """The position (m) of each machine of a plant under a command (m), (v, n), from rest."""
-    preset = PRESETS[MODEL]
     known = {name: np.atleast_1d(np.asarray(value, dtype=float)) for name, value in plant.known.items()}
-    symbols = {name: known[name] for name in preset.chain.symbols}
-    fastest = rates(preset.chain, symbols, "displacement") / sample_rate
-    steps = int(steps_needed(preset.chain, np.atleast_1d(fastest), "linear", (), kinks=preset.steps).max())
+    symbols = {name: known[name] for name in STRANO.chain.symbols}
+    fastest = rates(STRANO.chain, symbols, "displacement") / sample_rate
+    steps = int(steps_needed(STRANO.chain, np.atleast_1d(fastest), "linear", (), kinks=STRANO.steps).max())
     run = Run("", "", sample_rate, {"command": commanded, "displacement": commanded}, gain=plant.gain)
     wide = {name: value[None] for name, value in symbols.items()}
-    return np.asarray(responses(preset.chain, [run], wide, steps)[:, 0].T)
+    return np.asarray(responses(STRANO.chain, [run], wide, steps)[:, 0].T)
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,7 +181,7 @@ def drawn_values(fit: FitResult, count: int = 100, seed: int = 0) -> dict[str, A
 
 
 class FeedforwardController:
-    """The sampled controller of a rig: d wanted and y measured in this sample (m) → the actuator's command (m).
+    """The controller of a rig: d wanted and y measured in this sample (m) → the actuator's command (m).
 
     The feedforward of a `reference` known ahead is added to d; the loop's own feedback does the rest.
     """
@@ -199,8 +197,8 @@ class FeedforwardController:
         """Back to the first sample."""
         self._next = 0
 
-    def step(self, wanted: float, measured: float) -> float:  # noqa: ARG002  the loop itself compares
-        """The command of this sample."""
+    def step(self, d: float, y: float) -> float:  # noqa: ARG002  the loop itself compares
+        """The command u(k) that answers d(k) and y(k), called once a sample, in their order."""
         beside = self._beside[min(self._next, len(self._beside) - 1)]
         self._next += 1
-        return float(wanted + beside)
+        return float(d + beside)

@@ -141,8 +141,9 @@ def describe_specimen(fields: Fields) -> Specimen | None:
 
 
 def describe_gain(fields: Fields) -> float | None:
-    """Kp, a dial. Raises Unusable: ``zero-gain``, ``negative-gain``."""
-    gain = fields.number("gain")
+    """Kp, a dial, or V/m. Raises Unusable: ``zero-gain``, ``negative-gain``."""
+    in_volts = "gain" in fields and "V" in split(fields.data["gain"], fields.place("gain"))[1]
+    gain = fields.number("gain", "V/m" if in_volts else "1")
     if gain is not None and gain <= 0:
         raise Unusable(
             "zero-gain" if gain == 0 else "negative-gain",

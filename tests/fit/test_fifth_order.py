@@ -94,9 +94,10 @@ def test_with_the_displacement_alone_nothing_of_the_load_is_called_sure(full):
 
 def test_a_record_with_many_outputs_and_measured_inputs_is_read_from_a_folder(tmp_path):
     """The list of outputs, the difference of two pressures, the supply and the vertical load, all from matrix.yaml."""
-    matrix = read_matrix(rig.written(tmp_path, rig.machine(0), 0))
+    matrix = read_matrix(rig.written(tmp_path, rig.machine(0), 0, gain="6e-2 V/mm"))
     assert [run.id for run in matrix.runs] == ["rig.displacement", "rig.load_pressure", "rig.spool"]
     assert [run.begins for run in matrix.runs] == ["at rest"] * 3
+    assert matrix.runs[0].gain == pytest.approx(rig.GAIN)
     fixed = rig.machine(0)._asdict()
     fit = identify(matrix, Settings(model="strano", fixed=fixed))
     assert compare(matrix, fit).error["fit"] == pytest.approx(fit.error["fit"], rel=1e-9)

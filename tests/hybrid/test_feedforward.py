@@ -98,7 +98,7 @@ def test_the_model_simulated_is_the_reference():
 def test_a_controller_of_a_rig_gives_the_same_commands():
     r = sine(1.0)
     of = FeedforwardController(plant(50.0), r, RATE)
-    assert [of.step(wanted, 0.0) for wanted in r] == pytest.approx(command(plant(50.0), r, RATE))
+    assert [of.step(d, 0.0) for d in r] == pytest.approx(command(plant(50.0), r, RATE))
 
 
 def test_a_motion_that_the_supply_cannot_give_is_refused():
