@@ -205,7 +205,8 @@ def _determined(
             return np.asarray(combined.equation.value({**known, **space.values(points)}))
 
         error = found.relative(quantity)
-        if error <= COMBINED:
+        open_ = any(one.held.keys() & combined.equation.names for one in space.conventions)
+        if error <= (DETERMINED if open_ else COMBINED):  # all that is known of what a convention holds
             value = float(quantity(found.point[None])[0])
             yield Combination(combined.text.replace("**", "^"), value, combined.unit, value * error)
     yield from slow_lag(objective, found)
