@@ -1,1 +1,1 @@
-"""What an identified actuator is good for: tracking, control, hybrid simulation, and what a change would do."""
+"""An identified actuator in, what it is good for out: tracking, control, hybrid simulation, what a change would do."""
