@@ -7,19 +7,28 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from websockets.sync.client import connect
 
 from benchmarks.table import Table, seconds_of
+from ident.effects import EFFECTS
+from ident.hybrid.case import qian
+from ident.hybrid.ground import Ground
+from ident.hybrid.rig import simulate_hybrid
+from ident.hybrid.share_map import SHARES, share_map
 from ident.hybrid.tracking import Tracker
+from tests.hybrid.cases import fitted
 from tests.reference import first_order_reference as reference
+from tests.reference import hybrid_reference as loop_reference
 from tests.running import TOKEN, process
 
 SAMPLES, PLAIN = 400_000, 20_000
 BLOCK_GOAL, SINGLE_GOAL = 2e6, 2e5  # samples a second
 STREAMS, BATCH, STREAMED = 4, 64, 10.0  # at once, samples a message, s
+RUN, FLAT = 30.0, 2.0  # s of a hybrid simulation, and of the flat one
 
 
 def tracking() -> Table:
@@ -109,7 +118,37 @@ def streams() -> Table:
     )
 
 
-SECTIONS: tuple[Callable[[], Table], ...] = (tracking, streams)
+def rig() -> Table:
+    """Qian's case without and with every effect, against the flat reference; and a map of shares on every core."""
+    fit, case = fitted(), replace(qian(), ground=Ground(duration=RUN))
+    on = {effect.name: effect.strength.upper / 10 for effect in EFFECTS}
+    ground = case.ground.samples(case.sample_rate)
+    part = ground[: round(FLAT * case.sample_rate)]
+    simulate_hybrid(fit, case), simulate_hybrid(fit, case, None, on)  # compiles
+    bare, full, plain = seconds_of(
+        lambda: simulate_hybrid(fit, case),
+        lambda: simulate_hybrid(fit, case, None, on),
+        lambda: loop_reference.simulate(part, case.sample_rate, case.gain),
+        repeats=3,
+    )
+    begun = time.perf_counter()
+    share_map(fit, case)
+    mapped, slow = time.perf_counter() - begun, plain * RUN / FLAT
+    rows = [
+        ("linear chain", bare, slow / bare), (f"all {len(on)} effects", full, slow / full),
+        ("the linear chain in plain NumPy, scaled up", slow, 1.0), (f"map of {SHARES} × {SHARES} shares", mapped, None),
+    ]  # fmt: skip
+    return Table(
+        "Hybrid: simulation",
+        f"{RUN:g} s of Qian's case at 4096 Hz under noise; the map is of as many seconds, on every core.",
+        ("what", "seconds", "times plain NumPy"),
+        [(name, f"{seconds:.2f}", "" if times is None else f"{times:.3g}") for name, seconds, times in rows],
+        "30 s with all effects within 3 s, a map of 20 × 20 within 20 s on two cores",
+        full <= 3.0 and mapped <= 20.0,
+    )
+
+
+SECTIONS: tuple[Callable[[], Table], ...] = (tracking, streams, rig)
 
 
 def measure() -> tuple[Table, ...]:

@@ -19,8 +19,8 @@ def test_a_case_is_simulated_and_drawn(servoident, tmp_path):
     """Scores as JSON under the names of the contract, and the figures with and without the controller."""
     case, out = tmp_path / "case.yaml", tmp_path / "figures"
     case.write_text(CASE)
-    done = servoident("hybrid", FIT, "--case", case, "--controller", "kalman", "--effect", "coulomb_friction.force=20 N",
-                      "--json", tmp_path / "scores.json", "--out", out)  # fmt: skip
+    given = ("--case", case, "--controller", "kalman", "--effect", "coulomb_friction.force=20 N")
+    done = servoident("hybrid", FIT, *given, "--json", tmp_path / "scores.json", "--out", out)
     assert done.returncode == 0, done.stderr
     data = json.loads((tmp_path / "scores.json").read_text())
     assert {"stable", "scores", "command_rms", "critical_delay", "seconds"} <= data.keys()
