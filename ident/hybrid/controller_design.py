@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 
 from ident.fit.result import FitResult
+from ident.hybrid.draws import DRAWS, drawn_parameters
 from ident.hybrid.linear_plant import linear_plant
 from ident.hybrid.loop_shaping import Design, design
 from ident.hybrid.margins import Margins, margins
 from ident.hybrid.robustness import (
-    DRAWS,
     Robustness,
-    drawn_parameters,
     frequencies,
     robustness,
     undetermined,

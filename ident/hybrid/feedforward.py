@@ -28,7 +28,6 @@ Array = NDArray[np.float64]
 _SIDES = ((("q1", "vep - ve0"), ("u", "1")), (("q1", "ven - ve0 - 1e-6"), ("u", "-1")))
 _REACH = (1e-3, 1e7)  # V/m: where the limit is looked for
 _BAND = (5.0, 95.0)  # per cent
-_LEAST = 1e-3  # of a value of one sign: what a draw is at least
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,24 +159,6 @@ def tracked(
     left = [reference - followed(one, what, sample_rate) for one in (machine, drawn) for what in (reference, given)]
     errors = {"feedback": left[0][0], "both": left[1][0], "drawn_feedback": left[2], "drawn_both": left[3]}
     return Tracked(sample_rate, model.gain, gain_limit(model), reference, given, **errors)
-
-
-def drawn_values(fit: FitResult, count: int = 100, seed: int = 0) -> dict[str, Array]:
-    """`count` values of every parameter that has a standard error, of the normal distribution that the fit states.
-
-    What the data do not determine stays as fitted. A parameter of one sign keeps it.
-    """
-    known = {name: one for name, one in fit.parameters.items() if one.std_error and not one.fixed}
-    errors = np.array([one.std_error for one in known.values()], dtype=float)
-    related = np.array([[fit.correlation.get(a, {}).get(b, float(a == b)) for b in known] for a in known])
-    strengths, directions = np.linalg.eigh(related.reshape(len(known), len(known)))
-    normal = np.random.default_rng(seed).standard_normal((count, len(known)))
-    steps = normal * np.sqrt(np.maximum(strengths, 0.0)) @ directions.T * errors
-    drawn = {}
-    for (name, one), step in zip(known.items(), steps.T, strict=True):
-        least = _LEAST * one.value if one.lower > 0 else -np.inf
-        drawn[name] = np.maximum(one.value + step, least)
-    return drawn
 
 
 class FeedforwardController:

@@ -15,11 +15,11 @@ from ident.figures.feedforward import feedforward_figure
 from ident.figures.look import look
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
+from ident.hybrid.draws import drawn_parameters
 from ident.hybrid.feedforward import (
     FeedforwardController,
     Plant,
     command,
-    drawn_values,
     followed,
     gain_limit,
     plant_of,
@@ -121,7 +121,7 @@ def test_a_fit_gives_the_feedforward_and_its_band(fit):
     """From the fitted values and their covariance to commands, errors, and what 90 % of the draws leave."""
     actuator = Actuator("RIG", piston_area=reference.AREA, supply_pressure=reference.SUPPLY)
     model = plant_of(fit, actuator, 50.0)
-    draws = drawn_values(fit, 40)
+    draws = drawn_parameters(fit, 40)
     assert all(len(values) == 40 for values in draws.values())
     for name in ("kep", "wn", "C"):
         assert np.std(draws[name]) == pytest.approx(fit.parameters[name].std_error, rel=0.4)
