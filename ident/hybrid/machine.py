@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from ident.chain.chain import Chain
 from ident.chain.conditions import conditions
 from ident.custom.definition import preset_with
-from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
@@ -69,11 +68,13 @@ class Machine:
         return int(steps_needed(self.chain, fastest, "zoh", on, band, self.kinks)[0])
 
     @cached_property
-    def nonlinear(self) -> tuple[Effect, ...]:
-        """The effects that are on and are not linear at small signals: a linear analysis leaves them out."""
+    def nonlinear(self) -> tuple[str, ...]:
+        """What is not linear at small signals, so that poles do not tell: the effects that are on, the core itself."""
         core = self.chain.with_effects(())
+        if not core.is_linear:
+            return ("the model itself",)
         return tuple(
-            effect for effect in self.chain.effects
+            effect.name for effect in self.chain.effects
             if self.values[effect.added[0].in_equations] and not core.with_effects((effect,)).is_linear
         )  # fmt: skip
 

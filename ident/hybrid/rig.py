@@ -149,7 +149,7 @@ def simulate_machine(
 def _notes(of: Machine) -> tuple[str, ...]:
     found = []
     if of.nonlinear:
-        names = ", ".join(effect.name for effect in of.nonlinear)
+        names = ", ".join(of.nonlinear)
         found.append(f"stable is what this record showed: {names} cannot be judged by poles")
     if any(effect.of_specimen for effect in of.chain.effects):
         found.append("the reference is the structure as stated, without the effects of the specimen")

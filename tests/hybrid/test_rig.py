@@ -9,7 +9,8 @@ import pytest
 
 from ident.effects import EFFECTS
 from ident.errors import Cancelled, Unusable
-from ident.hybrid.case import qian
+from ident.hybrid.acting import controller_called
+from ident.hybrid.case import case_of, qian
 from ident.hybrid.compensation import Compensation
 from ident.hybrid.controller import SampledController
 from ident.hybrid.ground import Ground
@@ -226,3 +227,20 @@ def test_what_does_not_go_together_is_refused():
         simulate_hybrid(fitted("first_order"), of_qian(1.0))
     with pytest.raises(Unusable, match="no command that moves"):
         simulate_hybrid(fitted("specimen"), of_qian(1.0))
+
+
+def test_the_fifth_order_actuator_follows_with_its_feedforward():
+    """`strano` in the rig: the feedforward for the reference solution leaves a twentieth; no poles judge it."""
+    case = case_of({
+        "structure": {"mass": "20 t", "stiffness": "0.8 MN/m", "damping": {"ratio": "20 %"}},
+        "physical": {"mass": "500 kg", "stiffness": "10 %"},
+        "gain": 100, "piston_area": "9050 mm^2", "supply_pressure": "210 bar",
+        "ground": {"kind": "sine", "frequency": "0.8 Hz", "amplitude": "0.1 g", "duration": "4 s"},
+    })  # fmt: skip
+    fit = fitted("strano")
+    alone, helped = (simulate_hybrid(fit, case, controller_called(name, fit, case)) for name in ("none", "feedforward"))
+    assert helped.stable
+    assert helped.scores.tracking_rms <= alone.scores.tracking_rms / 20
+    assert helped.radius is None
+    with pytest.raises(Unusable, match="supply pressure"):
+        simulate_hybrid(fit, replace(case, supply_pressure=None))
