@@ -9,7 +9,7 @@ from ident.words.titles import title
 from schemas.fit import JobProblem, JobView
 
 _OPEN = ("queued", "running")
-_PLACES = {"diagnosis": "#missing", "hybrid": "#use"}
+_PLACES = {"diagnosis": "#missing", "hybrid simulation": "#use"}
 
 
 @dataclass(frozen=True)
