@@ -4,7 +4,7 @@
     physical:   {mass: 8.75 kg, stiffness: 17.5 kN/m, damping: 0 N*s/m, storey: 1}
     gain: 2                     # Kp of the actuator's loop
     piston_area: 497 mm^2       # where the fit knew one: it is no parameter of the model; so supply_pressure
-    ground:     {file: el_centro.txt, unit: g, step: 0.02 s, scale: 1}
+    ground:     {file: el_centro.txt, unit: g, step: 0.02 s, scale: 1}      # or the record itself: {text: ..., name}
     sample_rate: 4096 Hz        # of the outer loop
     delay: 1                    # samples from a measurement to the command that answers it
     noise:      {displacement: 1 um, force: 1 N, quantisation: {displacement: 1 um, force: 0.1 N}, seed: 0}
@@ -38,6 +38,10 @@ _KEYS = (
     "noise",
 )  # fmt: skip
 _LARGEST, _STOREYS = 1_000_000, 12
+_LATEST = 500
+"""Samples: the longest delay of a command; each is a state of the loop whose poles are sought."""
+_HUGE = 1e15
+"""SI: what is larger is a slip of the pen, and would leave the range of a computer."""
 
 
 @dataclass(frozen=True)
@@ -84,13 +88,20 @@ class Case:
             if given.shape != (n, n) or not 1 <= n <= _STOREYS or not np.allclose(given, given.T, rtol=1e-6):
                 raise Unusable("bad-case", f"{what} is no symmetric matrix of {n} rows", "structure",
                                f"give three symmetric matrices of one size, at most {_STOREYS}")  # fmt: skip
+        parts = (self.mass, self.stiffness, self.damping, *vars(self.physical).values(), self.gain,
+                 self.piston_area or 0.0)  # fmt: skip
+        if not all(np.all(np.abs(part) <= _HUGE) for part in parts):
+            raise Unusable("bad-case", f"a number is larger than {_HUGE:g}", "case", "correct it")
+        if self.piston_area is not None and not self.piston_area * _HUGE >= 1:
+            raise Unusable("bad-case", f"a piston of {self.piston_area:g} m^2", "piston_area", "correct it")
         if not 0 <= self.place < n:
             raise Unusable("bad-case", f"storey {self.place + 1} of {n}", "physical", f"give a storey from 1 to {n}")
         # A substructure without mass has no motion of its own to integrate.
         if np.linalg.eigvalsh(self.numerical_mass).min() <= 0:
             raise Unusable("bad-case", "no mass is left in the numerical part", "physical mass", "give less of it")
-        if self.delay < 1:
-            raise Unusable("bad-case", "the command would act before it is computed", "delay", "give 1 sample or more")
+        if not 1 <= self.delay <= _LATEST:
+            raise Unusable("bad-case", f"a delay of {self.delay:.6g} samples", "delay",
+                           f"give 1, with which the command is computed before it acts, to {_LATEST}")  # fmt: skip
         if self.sample_rate <= 0 or self.gain <= 0:
             raise Unusable("bad-case", "sample rate and gain are above 0", "case", "correct them")
 
@@ -183,8 +194,11 @@ BUILT_IN: Mapping[str, Callable[[], Case]] = {
 
 def modal_damping(mass: Array, stiffness: Array, ratio: float) -> Array:
     """C with which every mode has the damping ratio ζ: C = M Φ diag(2 ζ ω) Φᵀ M, where Φᵀ M Φ = 1, (n, n)."""
-    squares, modes = scipy.linalg.eigh(stiffness, mass)
-    if squares.min() <= 0:
+    try:
+        squares, modes = scipy.linalg.eigh(stiffness, mass)
+    except (scipy.linalg.LinAlgError, ValueError):  # a mass that is none, or numbers beyond a computer's
+        squares, modes = np.zeros(1), np.zeros((1, 1))
+    if not squares.min() > 0:
         raise Unusable("bad-case", "the structure does not stand by itself", "structure", "correct its stiffness")
     shape = mass @ modes
     return np.asarray(shape @ np.diag(2 * ratio * np.sqrt(squares)) @ shape.T)
@@ -213,8 +227,8 @@ def _yaml(path: Path) -> Any:
     return read_yaml(text, str(path))
 
 
-def case_of(data: Any, base: Path = Path(), name: str = "case") -> Case:
-    """The case of a description (see the module); `base` is the folder of its files.
+def case_of(data: Any, base: Path | None = Path(), name: str = "case") -> Case:
+    """The case of a description (see the module); `base` is the folder of its files, without one it may name none.
 
     Raises Unusable with the field at fault.
     """
