@@ -100,8 +100,10 @@ def test_nothing_is_named_where_nothing_is_hidden(full):
     assert "Nothing is missing" in found.verdict.text
 
 
-def test_runs_to_verify_report_only():
+def test_runs_to_verify_report_only(full):
     """A sine that no fit saw gets an error of its own, which the missing load shows and the refit takes away."""
+    if not full:
+        pytest.skip("twelve seconds: run with --full")
     matrix = matrix_with("load")
     kept = tuple(replace(run, use="verify") if run.id == "sine-50-0.5" else run for run in matrix.runs)
     matrix = replace(matrix, runs=kept)

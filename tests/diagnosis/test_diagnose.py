@@ -120,8 +120,10 @@ def test_with_nothing_hidden_nothing_is_added():
     assert found.verdict.suspects == ()
 
 
-def test_repeats_tell_that_what_is_left_is_noise_in_the_band():
+def test_repeats_tell_that_what_is_left_is_noise_in_the_band(full):
     """Low-passed noise: no spectrum shows it, but the runs that were measured twice do."""
+    if not full:  # tests/noise has the floor of repeats
+        pytest.skip("ten seconds: run with --full")
     clean = Machine(PLANT, {}, 0.0, small=True, seed=21).measured(seconds=1.0, every=4)
     matrix = with_noise(clean, "low_passed", NOISE, seed=7, repeats=2)
     fit = identify(matrix, Settings())

@@ -23,9 +23,9 @@ def data(measured_data: Path) -> Path:
 
 
 def test_a_measured_drive_lacks_dry_friction(data):
-    """The first 15 s of the electro-mechanical drive: dry friction comes first, and the error falls by half."""
+    """The first 8 s of the electro-mechanical drive: dry friction comes first, and the error falls by half."""
     matrix = read_matrix(data / "emps")
-    runs = tuple(run.part(0, 15_000) for run in matrix.of_use("fit"))
+    runs = tuple(run.part(0, 8_000) for run in matrix.of_use("fit"))
     found = diagnose(replace(matrix, runs=runs), settings=Settings(model="drive"), most=1)
     assert found.candidates[0].effect in DRY
     assert set(found.verdict.effects) <= DRY

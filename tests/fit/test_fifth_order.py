@@ -80,6 +80,8 @@ def test_without_the_spool_two_directions_are_open_and_what_stays_is_named(full)
 
 def test_with_the_displacement_alone_nothing_of_the_load_is_called_sure(full):
     """Mass, friction and compressibility are within three of their standard errors, which are not small."""
+    if not full:
+        pytest.skip("twenty seconds a machine: run with --full")
     for number in machines(full, FEW):
         fit, true = found(number, ("displacement",)), rig.truth(rig.machine(number))
         stated = errors(fit)
