@@ -1,4 +1,4 @@
-"""What an identified actuator is good for, in a browser: a controller, a hybrid simulation, files, what if, tracking."""
+"""What an identified actuator is good for, in a browser: controller, hybrid simulation, files, what if, tracking."""
 
 from __future__ import annotations
 
