@@ -16,6 +16,7 @@ from app.context import Context
 from app.database import connect, migrate, sessions
 from app.diagnoses.work import DIAGNOSIS
 from app.fits.work import FIT
+from app.hybrid.work import HYBRID
 from app.jobs.engine import Jobs
 from app.jobs.service import resume
 from app.jobs.steps import GuardedSteps
@@ -37,6 +38,7 @@ FEATURES = (
     "parameters",
     "catalogue",
     "own_effects",
+    "hybrid",
     "stream",
     "operation",
 )
@@ -86,7 +88,7 @@ def make_context(settings: Settings) -> Context:
     migrate(settings.database)
     engine = connect(settings.database)
     makers, storage = sessions(engine), Storage(settings.data / "blobs")
-    steps = GuardedSteps(makers, storage, FIT, DIAGNOSIS)
+    steps = GuardedSteps(makers, storage, FIT, DIAGNOSIS, HYBRID)
     return Context(settings, engine, makers, storage, Jobs(settings, steps))
 
 

@@ -125,6 +125,35 @@ class DiagnosisRow(Base):
     result: Mapped[dict[str, Any]]
 
 
+class ControllerRow(Base):
+    """A controller that was designed for a fit: `asked` is the request, `result` the contract's controller JSON."""
+
+    __tablename__ = "controllers"
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    fit: Mapped[str] = mapped_column(ForeignKey("fits.id"), index=True)
+    created_at: Mapped[str] = mapped_column(String(40), default=now, index=True)
+    asked: Mapped[dict[str, Any]]
+    result: Mapped[dict[str, Any]]
+
+
+class HybridRow(Base):
+    """A hybrid simulation. Its id is that of the job that made it.
+
+    `asked` is what its job was asked, `records` the displacements of its figures: see `app/hybrid/records.py`.
+    """
+
+    __tablename__ = "hybrid_simulations"
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    fit: Mapped[str] = mapped_column(ForeignKey("fits.id"), index=True)
+    matrix: Mapped[str] = mapped_column(ForeignKey("matrices.id"))
+    serial: Mapped[str] = mapped_column(ForeignKey("actuators.serial"))
+    controller: Mapped[str | None] = mapped_column(ForeignKey("controllers.id"))
+    created_at: Mapped[str] = mapped_column(String(40), default=now, index=True)
+    asked: Mapped[dict[str, Any]]
+    result: Mapped[dict[str, Any]]
+    records: Mapped[bytes] = mapped_column(LargeBinary, deferred=True)
+
+
 class OwnEffectRow(Base):
     """An effect of the lab's own that is kept under a name: see `app/own_effects/kept.py`."""
 

@@ -72,11 +72,17 @@ class ProgressView(BaseModel):
 
 
 class JobSettings(SettingsView):
-    """What a job was asked for: the fit, and of a diagnosis what to add at most, its time, and a search made anew."""
+    """What a job was asked for: the fit, and of a diagnosis what to add at most, its time, and a search made anew.
+
+    Of a hybrid simulation the names of its case, controller and ground motion.
+    """
 
     max_effects: int | None = None
     time: float | None = None
     reseed: int | None = None
+    case: str | None = None
+    controller: str | None = None
+    ground: str | None = None
 
 
 class JobProblem(BaseModel):
@@ -91,7 +97,7 @@ class JobProblem(BaseModel):
 class JobView(BaseModel):
     """A queued, running or ended job; `parent` is the fit that it starts from, `problem` says why it failed.
 
-    `fit` and `diagnosis` are the ids of what it made.
+    `fit`, `diagnosis` and `hybrid_simulation` are the ids of what it made.
     """
 
     id: str
@@ -104,6 +110,7 @@ class JobView(BaseModel):
     parent: str | None
     fit: str | None
     diagnosis: str | None
+    hybrid_simulation: str | None = None
     problem: JobProblem | None
     created_at: str
     ended_at: str | None

@@ -105,12 +105,14 @@ def conclude(context: Context, job_id: str) -> JobView:
 def view(row: JobRow, serial: str) -> JobView:
     """A job as it is sent."""
     made, diagnosis = row.state == "succeeded", row.kind == "diagnosis"
+    makes_fit = row.kind == "fit" or (diagnosis and row.parent is None)
     return JobView(
         id=row.id, kind=row.kind, state=row.state, matrix=row.matrix, serial=serial,
         settings=JobSettings(**row.settings),
         progress=ProgressView(**row.progress), parent=row.parent,
-        fit=row.id if made and not (diagnosis and row.parent) else None,
+        fit=row.id if made and makes_fit else None,
         diagnosis=row.id if made and diagnosis else None,
+        hybrid_simulation=row.id if made and row.kind == "hybrid" else None,
         problem=None if row.problem is None else JobProblem(**row.problem),
         created_at=row.created_at, ended_at=row.ended_at,
     )  # fmt: skip

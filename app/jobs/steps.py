@@ -6,6 +6,7 @@ import logging
 import time
 from collections.abc import Callable
 from dataclasses import asdict
+from functools import partial
 from typing import Any
 
 from sqlalchemy.orm import Session, sessionmaker
@@ -102,12 +103,13 @@ class GuardedSteps:
         return under_way[1]
 
     def _task(self, job: str) -> Task:
-        """The job's record with the samples of its matrix. Raises Unusable."""
+        """The job's record, and where the samples of its matrix are read. Raises Unusable."""
         with self.sessions() as session:
             row, matrix = repository.find(session, job), repository.matrix_of(session, job)
         if row is None or matrix is None:
             raise Unusable("no-such-job", "the job is not recorded", job, "start it again")
-        return Task(row.settings, row.parent, load_row(self.storage, matrix), self._reporter(job), self.sessions)
+        load = partial(load_row, self.storage, matrix)
+        return Task(row.settings, row.parent, load, self._reporter(job), self.sessions, self.storage)
 
     def _reporter(self, job: str) -> Report:
         """A report that is recorded for those who watch the job.

@@ -9,6 +9,7 @@ from typing import Any
 
 from sqlalchemy.orm import Session, sessionmaker
 
+from app.storage import Storage
 from app.tables import JobRow
 from ident.matrix import Matrix
 from ident.progress import Report
@@ -20,13 +21,22 @@ Keep = Callable[[Session, JobRow, str, State], None]
 
 @dataclass(frozen=True)
 class Task:
-    """What a job is asked: its settings, the fit that it starts from, if any, the samples, and whom it tells of it."""
+    """What a job is asked: its settings, the fit that it starts from, if any, and whom it tells of its progress.
+
+    `load` reads the samples of its matrix.
+    """
 
     settings: dict[str, Any]
     parent: str | None
-    matrix: Matrix
+    load: Callable[[], Matrix]
     report: Report
     sessions: sessionmaker[Session]
+    storage: Storage
+
+    @property
+    def matrix(self) -> Matrix:
+        """The samples. Raises Unusable."""
+        return self.load()
 
 
 class Work(ABC):

@@ -9,6 +9,7 @@ from ident.words.titles import title
 from schemas.fit import JobProblem, JobView
 
 _OPEN = ("queued", "running")
+_PLACES = {"diagnosis": "#missing", "hybrid": "#use"}
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ def job_page(job: JobView) -> JobPageView:
         id=job.id,
         kind=job.kind,
         parent=job.parent,
-        at=f"/fits/{job.parent}#missing" if job.kind == "diagnosis" and job.parent else f"/fits/{job.id}",
+        at=_at(job),
         serial=job.serial,
         matrix=job.matrix,
         state=job.state,
@@ -57,9 +58,17 @@ def job_page(job: JobView) -> JobPageView:
     )
 
 
+def _at(job: JobView) -> str:
+    """The page that shows a job: that of its fit where it makes none."""
+    if job.parent is not None and job.kind in _PLACES:
+        return f"/fits/{job.parent}{_PLACES[job.kind]}"
+    return f"/fits/{job.id}"
+
+
 def settings_facts(settings: dict[str, Any]) -> tuple[tuple[str, str], ...]:
     """What the user chose, as far as it is not empty."""
-    names = ("model", "effects", "method", "seed", "bounds", "fixed", "load", "options", "max_effects", "time")
+    names = ("model", "effects", "method", "seed", "bounds", "fixed", "load", "options", "max_effects", "time",
+             "case", "controller", "ground")  # fmt: skip
     chosen = ((name, settings.get(name)) for name in names)
     return tuple(
         (title(name).capitalize(), _words(value)) for name, value in chosen if value not in (None, [], {}, "none")

@@ -4,7 +4,7 @@
     physical:   {mass: 8.75 kg, stiffness: 17.5 kN/m, damping: 0 N*s/m, storey: 1}
     gain: 2                     # Kp of the actuator's loop
     piston_area: 497 mm^2       # where the fit knew one: it is no parameter of the model
-    ground:     {file: el_centro.txt, unit: g, step: 0.02 s, scale: 1}
+    ground:     {file: el_centro.txt, unit: g, step: 0.02 s, scale: 1}      # or the record itself: {text: ..., name}
     sample_rate: 4096 Hz        # of the outer loop
     delay: 1                    # samples from a measurement to the command that answers it
     noise:      {displacement: 1 um, force: 1 N, quantisation: {displacement: 1 um, force: 0.1 N}, seed: 0}
@@ -37,6 +37,8 @@ _KEYS = (
     "name", "structure", "physical", "gain", "piston_area", "ground", "sample_rate", "delay", "noise",
 )  # fmt: skip
 _LARGEST, _STOREYS = 1_000_000, 12
+_LATEST = 10_000
+"""Samples: the longest delay of a command."""
 
 
 @dataclass(frozen=True)
@@ -87,8 +89,9 @@ class Case:
         # A substructure without mass has no motion of its own to integrate.
         if np.linalg.eigvalsh(self.numerical_mass).min() <= 0:
             raise Unusable("bad-case", "no mass is left in the numerical part", "physical mass", "give less of it")
-        if self.delay < 1:
-            raise Unusable("bad-case", "the command would act before it is computed", "delay", "give 1 sample or more")
+        if not 1 <= self.delay <= _LATEST:
+            raise Unusable("bad-case", f"a delay of {self.delay:.6g} samples", "delay",
+                           f"give 1, with which the command is computed before it acts, to {_LATEST}")  # fmt: skip
         if self.sample_rate <= 0 or self.gain <= 0:
             raise Unusable("bad-case", "sample rate and gain are above 0", "case", "correct them")
 
@@ -211,8 +214,8 @@ def _yaml(path: Path) -> Any:
     return read_yaml(text, str(path))
 
 
-def case_of(data: Any, base: Path = Path(), name: str = "case") -> Case:
-    """The case of a description (see the module); `base` is the folder of its files.
+def case_of(data: Any, base: Path | None = Path(), name: str = "case") -> Case:
+    """The case of a description (see the module); `base` is the folder of its files, without one it may name none.
 
     Raises Unusable with the field at fault.
     """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,10 @@ from ident.units.quantity import shown, unit_scale
 
 Array = NDArray[np.float64]
 GRAVITY = 9.80665  # m/s²
-KEYS = ("kind", "file", "unit", "step", "scale", "column", "band", "frequency", "amplitude", "duration", "seed")
+KEYS = (
+    "kind", "file", "text", "name", "unit", "step", "scale", "column", "band", "frequency", "amplitude", "duration",
+    "seed",
+)  # fmt: skip
 KINDS = ("record", "blwn", "sine")
 _LARGEST, _LONGEST = 50_000_000, 4_000_000  # bytes of a record's file, samples of a motion
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
@@ -29,12 +32,14 @@ class Ground:
 
     `kind` "record": the numbers of `file` in rows, one after the other, each times `factor` (m/s² for one of the file's
     unit) and `scale`, `step` seconds apart, straight lines between them; `column` (0 is the first) takes one of several
-    columns. "blwn": white noise from `band[0]` to `band[1]` Hz with the RMS `amplitude` (m/s²), of `seed`. "sine": one
-    of `frequency` Hz and peak `amplitude`. `duration` in s cuts a record short (None: all of it).
+    columns. Where `text` holds the rows, `file` is but their name. "blwn": white noise from `band[0]` to `band[1]` Hz
+    with the RMS `amplitude` (m/s²), of `seed`. "sine": one of `frequency` Hz and peak `amplitude`. `duration` in s cuts
+    a record short (None: all of it).
     """
 
     kind: str = "blwn"
     file: str = ""
+    text: str = field(default="", repr=False)
     factor: float = GRAVITY
     step: float = 0.02
     scale: float = 1.0
@@ -57,7 +62,7 @@ class Ground:
     def samples(self, sample_rate: float) -> Array:
         """The acceleration (m/s²) at k/`sample_rate`, (n,). Raises Unusable where the file holds no record."""
         if self.kind == "record":
-            values = read_record(Path(self.file), self.column) * (self.factor * self.scale)
+            values = self._rows() * (self.factor * self.scale)
             last = (len(values) - 1) * self.step
             seconds = last if self.duration is None else min(self.duration, last)
             count = _count(seconds, sample_rate)
@@ -67,6 +72,12 @@ class Ground:
             wave = np.sin(2 * np.pi * self.frequency * np.arange(count) / sample_rate)
             return np.asarray(self.amplitude * self.scale * wave)
         return self.scale * _white(count, self, sample_rate)
+
+    def _rows(self) -> Array:
+        """The record's own numbers, (r,)."""
+        if self.text:
+            return record_of(self.text, self.name, self.column)
+        return read_record(Path(self.file), self.column)
 
 
 def _count(seconds: float, sample_rate: float) -> int:
@@ -92,50 +103,57 @@ def _white(count: int, of: Ground, sample_rate: float) -> Array:
 
 
 def read_record(path: Path, column: int | None = None) -> Array:
-    """The numbers of a text file, row by row; lines before the first row of numbers are a header.
-
-    Raises Unusable: ``no-such-file``, ``bad-ground`` where a later line holds something else, or a number is not
-    finite, and where rows have several numbers of different count and one `column` is asked for.
-    """
+    """The numbers of a text file, as :func:`record_of`. Raises Unusable: ``no-such-file``, ``bad-ground``."""
     if not path.is_file() or path.stat().st_size > _LARGEST:
         raise Unusable("no-such-file", "there is no such record of ground motion", str(path), "give its path")
+    return record_of(path.read_text(encoding="utf-8", errors="replace"), str(path), column)
+
+
+def record_of(text: str, where: str, column: int | None = None) -> Array:
+    """The numbers of a text, row by row, (r,); lines before the first row of numbers are a header.
+
+    Raises Unusable: ``bad-ground`` where a later line holds something else, or a number is not finite, and where rows
+    have several numbers of different count and one `column` is asked for.
+    """
     rows: list[list[float]] = []
-    for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
+    for number, line in enumerate(text.splitlines(), 1):
         words = re.split(r"[\s,;]+", line.strip())
         if words == [""]:
             continue
         if all(_NUMBER.fullmatch(word) for word in words):
             rows.append([float(re.sub("[dD]", "e", word)) for word in words])
         elif rows:
-            raise Unusable("bad-ground", f"{shown(line)!r} is no row of numbers", f"{path} line {number}",
+            raise Unusable("bad-ground", f"{shown(line)!r} is no row of numbers", f"{where} line {number}",
                            "leave numbers alone in the file")  # fmt: skip
     if column is not None:
         if any(len(row) <= column for row in rows):
-            raise Unusable("bad-ground", f"no column {column} in every row", str(path), "count columns from 0")
+            raise Unusable("bad-ground", f"no column {column} in every row", where, "count columns from 0")
         rows = [[row[column]] for row in rows]
     values = np.array([value for row in rows for value in row])
     if len(values) < 2 or not np.isfinite(values).all():
-        raise Unusable("bad-ground", "no record of finite numbers", str(path), "give a text file of numbers")
+        raise Unusable("bad-ground", "no record of finite numbers", where, "give a text file of numbers")
     return values
 
 
-def ground_of(data: Any, base: Path, default: Ground) -> Ground:
+def ground_of(data: Any, base: Path | None, default: Ground) -> Ground:
     """The motion of a description; what a record's entry leaves out (unit, step) is that of `default`.
 
-    `base` is the folder from which a file's name counts. Raises Unusable with the field.
+    `base` is the folder from which a file's name counts; without one no file is read, and a record is the `text` of the
+    description, which its `name` names. Raises Unusable with the field.
     """
     fields = Fields(data, "ground", KEYS)
-    kind = fields.choice("kind", KINDS, "record" if "file" in fields else "blwn")
-    file = fields.text("file")
-    if kind == "record" and not file:
-        raise Unusable("missing-field", "'file' is missing", "ground", "name the record's text file")
+    kind = fields.choice("kind", KINDS, "record" if {"file", "text"} & set(fields.data) else "blwn")
+    file, text = _record(fields, base)
+    if kind == "record" and not (file or text):
+        raise Unusable("missing-field", "there is no record", "ground", f"give its {'file' if base else 'text'}")
     factor = default.factor
     if "unit" in fields:
         factor = unit_scale(fields.text("unit"), "acceleration", "ground unit").factor
     scale = fields.number("scale")
     return Ground(
         kind=kind,
-        file=str(base / file) if file else "",
+        file=file,
+        text=text,
         factor=factor,
         step=fields.positive("step", "time") or default.step,
         scale=1.0 if scale is None else scale,
@@ -146,6 +164,18 @@ def ground_of(data: Any, base: Path, default: Ground) -> Ground:
         duration=fields.positive("duration", "time") or default.duration,
         seed=fields.whole("seed", default.seed),
     )
+
+
+def _record(fields: Fields, base: Path | None) -> tuple[str, str]:
+    """The path of a record and "", or its name and its text."""
+    file, text = fields.text("file"), fields.data.get("text") or ""
+    if file and base is None:
+        raise Unusable("no-file-here", "files cannot be named here", "ground file", "put the record itself into text")
+    if not isinstance(text, str) or len(text) > _LARGEST or (text and file):
+        raise Unusable("bad-ground", "not the text of a record, or a file beside it", "ground text", "give one of them")
+    if text:
+        return fields.text("name", "own record"), text
+    return str(base / file) if base is not None and file else "", ""
 
 
 def _amplitude(fields: Fields, default: Ground) -> float:

@@ -74,7 +74,12 @@ def read_target(text: bytes, where: str) -> Target:
     """
     if len(text) > _LARGEST:
         raise Unusable("bad-target", "it is too long to be a target", where, "give numerator and denominator")
-    fields = Fields(read_yaml(text, where), where, KEYS)
+    return target_of(read_yaml(text, where), where)
+
+
+def target_of(data: Any, where: str = "target") -> Target:
+    """A target from a description as :func:`read_target` reads it. Raises Unusable."""
+    fields = Fields(data, where, KEYS)
     numerator, denominator = _numbers(fields, "numerator"), _numbers(fields, "denominator")
     roll_off = fields.quantity("roll_off", "angular velocity")
     name = fields.text("name") or "own target"

@@ -1,0 +1,33 @@
+"""The controller of a hybrid simulation over HTTP: by a name, by the id of a stored one, or as its JSON."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ident.errors import Unusable
+from ident.fit.result import FitResult
+from ident.hybrid.acting import NAMED, for_rate
+from ident.hybrid.case import Case
+from ident.hybrid.controller import SampledController
+from ident.hybrid.rig import Controller
+from ident.units.quantity import shown
+
+MOST_STATES = 200
+
+
+def named(given: str) -> bool:
+    """Whether a controller goes by this name."""
+    return given in NAMED
+
+
+def acting(given: str | dict[str, Any], fit: FitResult, case: Case) -> Controller:
+    """The controller of that name, or of that JSON. Raises Unusable."""
+    if isinstance(given, str):
+        if given not in NAMED:
+            raise Unusable("unknown-controller", f"{shown(given)!r} is no controller", "controller",
+                           f"give {', '.join(NAMED)}, or the id of one")  # fmt: skip
+        return NAMED[given](fit, case)
+    rows = given.get("A")
+    if isinstance(rows, list) and len(rows) > MOST_STATES:
+        raise Unusable("bad-controller", f"{len(rows)} states", "controller", f"give at most {MOST_STATES}")
+    return for_rate(SampledController.from_json(given), case)

@@ -1,0 +1,125 @@
+"""/controllers, /hybrid-simulations, /fits/ID/what-if, /matrices/ID/track: what an identified actuator is good for."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Response
+
+from app.context import Here
+from app.errors import COMMON
+from app.hybrid import controllers, drawing, service, tracking, what_if
+from app.idempotency import Answer, Key, fingerprint, once, queued_once
+from schemas.fit import JobView
+from schemas.hybrid import ControllerRequest, HybridRequest, WhatIfRequest
+from schemas.hybrid_result import ControllerPage, ControllerView, HybridPage, HybridView, TrackView, WhatIfView
+
+router = APIRouter(tags=["hybrid"], responses=COMMON)
+_MEDIA = ("application/json", "image/svg+xml", "image/png", "application/pdf")
+_IMAGES: dict[int | str, dict[str, Any]] = {200: {"content": {kind: {} for kind in _MEDIA}}}
+_FILES: dict[int | str, dict[str, Any]] = {200: {"content": {kind: {} for kind in controllers.FILES.values()}}}
+Limit = Annotated[int, Query(ge=1, le=200)]
+Theme = Annotated[str, Query(max_length=20, description="light or dark")]
+Run = Annotated[str | None, Query(max_length=200, description="Id of the run; without it the first")]
+Noise = Annotated[
+    str | None,
+    Query(max_length=60, description="Standard deviation of the sensor (0.12 mm); without it that of the record"),
+]
+Asked = Annotated[str, Query(max_length=8000, description="The body of POST /fits/ID/what-if, as JSON text")]
+
+
+@router.post("/controllers", status_code=201, response_model=ControllerView)
+def design(here: Here, request: ControllerRequest, key: Key = None) -> Response:
+    """Design a controller for a fit and keep it: it makes the measured displacement follow the wanted one."""
+
+    def answer(made: ControllerView) -> Answer:
+        return 201, made.model_dump(exclude_unset=True), f"/api/v1/controllers/{made.id}"
+
+    def find(controller: str) -> Answer | None:
+        found = controllers.made_as(here, controller)
+        return None if found is None else answer(found)
+
+    asked = fingerprint("controller", request.model_dump())
+    return once(here.sessions, key, asked, lambda controller: answer(controllers.design(here, request, controller)),
+                find)  # fmt: skip
+
+
+@router.get("/controllers", response_model_exclude_unset=True)
+def designed(here: Here, fit: str | None = None, cursor: str | None = None, limit: Limit = 50) -> ControllerPage:
+    """Controllers, newest first: all, or those of a fit."""
+    return controllers.listed(here, fit, cursor, limit)
+
+
+@router.get("/controllers/{controller}.{kind}", response_class=Response, responses=_FILES)
+def controller_file(here: Here, controller: str, kind: str) -> Response:
+    """A controller as json (what `servoident control` writes), mat (MATLAB, Octave) or h (a C header)."""
+    content, media = controllers.file(here, controller, kind)
+    name = f'attachment; filename="controller.{kind}"'
+    return Response(content, media_type=media, headers={"Content-Disposition": name})
+
+
+@router.get("/controllers/{controller}", response_model_exclude_unset=True)
+def controller(here: Here, controller: str) -> ControllerView:
+    """A controller: the fit and case it is for, margins and robustness."""
+    return controllers.get(here, controller)
+
+
+@router.get("/controllers/{controller}/figures/{name}.{kind}", response_class=Response, responses=_IMAGES)
+def controller_drawn(here: Here, controller: str, name: str, kind: str, theme: Theme = "light") -> Response:
+    """The figure `closed-loop` of a controller as json (Vega-Lite), svg, png or pdf."""
+    content, media = drawing.of_controller(here, controller, name, kind, theme)
+    return Response(content, media_type=media)
+
+
+@router.post("/hybrid-simulations", status_code=202, response_model=JobView)
+def simulate(here: Here, request: HybridRequest, key: Key = None) -> Response:
+    """Queue a hybrid simulation on the machine of a fit; Location is its job."""
+    asked = fingerprint("hybrid", request.model_dump())
+    return queued_once(here, key, asked, lambda job: service.submit(here, request, job))
+
+
+@router.get("/hybrid-simulations")
+def simulated(here: Here, fit: str | None = None, cursor: str | None = None, limit: Limit = 50) -> HybridPage:
+    """Hybrid simulations, newest first: all, or those of a fit."""
+    return service.listed(here, fit, cursor, limit)
+
+
+@router.get("/hybrid-simulations/{simulation}")
+def simulation(here: Here, simulation: str) -> HybridView:
+    """A hybrid simulation: whether it is stable, its scores, and the same without a controller."""
+    return service.get(here, simulation)
+
+
+@router.get("/hybrid-simulations/{simulation}/figures/{name}.{kind}", response_class=Response, responses=_IMAGES)
+def simulation_drawn(here: Here, simulation: str, name: str, kind: str, theme: Theme = "light") -> Response:
+    """The figures `displacement`, `response` and `map` of a simulation as json (Vega-Lite), svg, png or pdf."""
+    content, media = drawing.of_simulation(here, simulation, name, kind, theme)
+    return Response(content, media_type=media)
+
+
+@router.post("/fits/{fit}/what-if")
+def changed(here: Here, fit: str, request: WhatIfRequest) -> WhatIfView:
+    """What a change of size, specimen or parameters would do to the machine of a fit. Nothing is stored."""
+    return what_if.answer(here, fit, request)
+
+
+@router.get("/fits/{fit}/what-if/figures/{name}.{kind}", response_class=Response, responses=_IMAGES)
+def changed_drawn(here: Here, fit: str, name: str, kind: str, asked: Asked = "{}", theme: Theme = "light") -> Response:
+    """The figures `response` and `root-locus` of a change as json (Vega-Lite), svg, png or pdf."""
+    content, media = drawing.of_what_if(here, fit, what_if.asked(asked), name, kind, theme)
+    return Response(content, media_type=media)
+
+
+@router.get("/matrices/{matrix}/track")
+def track(here: Here, matrix: str, run: Run = None, noise: Noise = None) -> TrackView:
+    """Time constant and gain of a first-order loop over a run, by a Kalman filter, and whether it holds."""
+    return tracking.answer(here, matrix, run, noise)
+
+
+@router.get("/matrices/{matrix}/track/figures/{name}.{kind}", response_class=Response, responses=_IMAGES)
+def track_drawn(
+    here: Here, matrix: str, name: str, kind: str, run: Run = None, noise: Noise = None, theme: Theme = "light"
+) -> Response:
+    """The figure `tracking` of a run as json (Vega-Lite), svg, png or pdf."""
+    content, media = drawing.of_track(here, matrix, run, noise, name, kind, theme)
+    return Response(content, media_type=media)

@@ -1,0 +1,60 @@
+"""The displacements of a hybrid simulation as they are kept: every n-th sample in single precision, compressed.
+
+What the figures show ends at 30 Hz; 512 samples a second are plenty, also near a peak.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+
+from ident.hybrid.case import Case
+from ident.hybrid.rig import HybridResult
+from ident.hybrid.scores import Scores
+
+RATE, ROWS = 512.0, 131_072
+"""Samples a second that are kept where there are more, and rows that are kept at most."""
+_KEPT = ("numerical", "measured", "reference")
+_NONE = np.zeros(0)
+
+
+def packed(runs: Mapping[str, HybridResult]) -> bytes:
+    """The displacements of simulations of one case, by name."""
+    first = next(iter(runs.values()))
+    every = max(1, int(first.sample_rate // RATE), -(-len(first.reference) // ROWS))
+    arrays: dict[str, Any] = {"every": np.array(every), "reference": _thinned(first.reference, every)}
+    for number, run in enumerate(runs.values()):
+        arrays |= {f"{name}{number}": _thinned(getattr(run, name), every) for name in _KEPT[:2]}
+    held = io.BytesIO()
+    np.savez_compressed(held, **arrays)
+    return held.getvalue()
+
+
+def _thinned(signal: Any, every: int) -> Any:
+    with np.errstate(over="ignore", invalid="ignore"):  # of what ran away
+        return signal[::every].astype(np.float32)
+
+
+def unpacked(content: bytes, case: Case, results: Mapping[str, Mapping[str, Any]]) -> dict[str, HybridResult]:
+    """The simulations again, by name, of what :func:`packed` made and their JSON: displacements alone."""
+    with np.load(io.BytesIO(content), allow_pickle=False) as held:
+        arrays = {name: held[name].astype(float) for name in held.files}
+    thinned = replace(case, sample_rate=case.sample_rate / float(arrays["every"]))
+    return {
+        name: _result(thinned, result, arrays | {key: arrays[f"{key}{number}"] for key in _KEPT[:2]})
+        for number, (name, result) in enumerate(results.items())
+    }
+
+
+def _result(case: Case, result: Mapping[str, Any], arrays: Mapping[str, Any]) -> HybridResult:
+    found = result["scores"]
+    scores = None if found["delay"] is None else Scores(**{field.name: found[field.name] for field in fields(Scores)})
+    return HybridResult(
+        case, result["controller"], result["effects"], result["stable"], scores, result["command_rms"],
+        result["critical_delay"], result["largest_pole"], result["ended"], result["seconds"],
+        _NONE, arrays["numerical"], arrays["measured"], arrays["reference"], _NONE, _NONE, tuple(result["notes"]),
+    )  # fmt: skip

@@ -1,0 +1,122 @@
+"""Hybrid simulations: queue, look, list."""
+
+from __future__ import annotations
+
+import io
+import json
+from dataclasses import asdict
+from typing import Any
+
+from app.context import Context
+from app.errors import missing
+from app.fits import service as fits
+from app.hybrid import repository
+from app.hybrid.acting import acting, named
+from app.hybrid.asked import AskedCase, asked_case, effects_of
+from app.jobs import service as jobs
+from app.paging import cursor, keys_of
+from app.tables import HybridRow
+from ident.errors import Unusable
+from ident.fit.result import FitResult
+from ident.hybrid.case import Case
+from ident.hybrid.controller import SampledController
+from ident.hybrid.machine import machine
+from ident.hybrid.rig import Controller, name_of
+from schemas.fit import JobView
+from schemas.hybrid import HybridRequest
+from schemas.hybrid_result import HybridPage, HybridView
+
+FIGURES = ("displacement", "response")
+MOST_STEPS, MOST_MAPPED = 100_000_000, 500_000
+"""Steps of integration of a simulation, and samples of one that is mapped: minutes of computing."""
+_FILE_KEYS = ("name", "sample_rate", "A", "B", "C", "D")
+
+
+def submit(context: Context, request: HybridRequest, job: str) -> JobView:
+    """Queue a hybrid simulation under the id decided for its job. Raises Unusable where it cannot be run."""
+    row = fits.find(context, request.fit)
+    fit = FitResult.from_json(row.result)
+    asked = asked_case(request.case, request.ground)
+    case, effects = asked.read(), effects_of(request, fit.model)
+    given, stored = _controller(context, request.controller)
+    chosen = acting(given, fit, case)
+    _check(fit, case, effects, chosen, request.map)
+    settings = {
+        "model": fit.model, "effects": list(effects), "case": case.name, "controller": name_of(chosen),
+        "ground": case.ground.name,
+        "asked": {
+            **asdict(asked), "text": _kept(context, asked.text), "effects": effects, "map": request.map,
+            "controller": given if isinstance(given, str) else _kept(context, json.dumps(given)),
+            "inline": not isinstance(given, str), "controller_id": stored,
+        },
+    }  # fmt: skip
+    return jobs.record(context, job, row.matrix, settings, request.fit, "hybrid")
+
+
+def _controller(context: Context, given: str | dict[str, Any]) -> tuple[str | dict[str, Any], str | None]:
+    """A controller by its name or as JSON, and the id of the stored one that it is; raises Failure 404."""
+    if isinstance(given, dict):
+        return {name: given.get(name) for name in _FILE_KEYS}, None
+    if named(given):
+        return given, None
+    with context.sessions() as session:
+        row = repository.controller(session, given)
+    if row is None:
+        raise missing("controller", given)
+    return {name: row.result[name] for name in _FILE_KEYS}, row.id
+
+
+def _kept(context: Context, text: str) -> str:
+    """The name of the blob that holds a text, "" for none: a job's record stays short."""
+    return context.storage.put(io.BytesIO(text.encode())) if text else ""
+
+
+def _check(fit: FitResult, case: Case, effects: dict[str, float], chosen: Controller, mapped: bool) -> None:
+    """Raise Unusable where a simulation cannot be run, or would take too long."""
+    samples = len(case.ground.samples(case.sample_rate))
+    steps = samples * machine(fit, case, effects).steps(case)
+    if steps > MOST_STEPS or (mapped and samples > MOST_MAPPED):
+        raise Unusable("too-long", f"{samples} samples, {steps} steps", "ground duration", "give a shorter motion")
+    if mapped and not isinstance(chosen, SampledController):
+        raise Unusable("bad-option", "a map needs a linear controller", "map", "leave the map out, or give another")
+
+
+def get(context: Context, simulation: str) -> HybridView:
+    """A hybrid simulation by id; raises Failure 404."""
+    with context.sessions() as session:
+        row = repository.simulation(session, simulation)
+    if row is None:
+        raise missing("hybrid-simulation", simulation)
+    return view(row)
+
+
+def listed(context: Context, fit: str | None, after: str | None, limit: int) -> HybridPage:
+    """A page of hybrid simulations, without their maps."""
+    with context.sessions() as session:
+        rows = repository.simulations(session, fit, keys_of(after, 2), limit)
+    following = cursor(rows[-1].created_at, rows[-1].id) if len(rows) == limit else None
+    return HybridPage(items=[view(row).model_copy(update={"map": None}) for row in rows], next=following)
+
+
+def view(row: HybridRow) -> HybridView:
+    """A hybrid simulation as it is sent."""
+    held = row.result
+    names = [*FIGURES, *(["map"] if held["map"] else [])]
+    return HybridView(
+        **held["result"], id=row.id, fit=row.fit, matrix=row.matrix, serial=row.serial, created_at=row.created_at,
+        controller_id=row.controller, without=held["without"], map=held["map"], figures=names,
+    )  # fmt: skip
+
+
+def case_of_row(row: HybridRow) -> Case:
+    """The case that was simulated, its motion without the record."""
+    return AskedCase(row.asked["case"], row.asked["ground"]).read()
+
+
+def with_records(context: Context, simulation: str) -> HybridRow:
+    """A hybrid simulation with its records; raises Failure 404."""
+    with context.sessions() as session:
+        row = repository.simulation_with_records(session, simulation)
+    if row is None:
+        raise missing("hybrid-simulation", simulation)
+    return row

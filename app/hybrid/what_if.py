@@ -1,0 +1,45 @@
+"""What a change would do to an identified machine: answered at once, and kept nowhere."""
+
+from __future__ import annotations
+
+from pydantic import ValidationError
+
+from app.context import Context
+from app.errors import Failure
+from app.fits import service as fits
+from app.hybrid.asked import change_of, gains_of, peak_of
+from app.lru import LRU
+from ident.fit.result import FitResult
+from ident.hybrid import what_if as library
+from ident.hybrid.what_if import WhatIf
+from schemas.hybrid import WhatIfRequest
+from schemas.hybrid_result import WhatIfView
+
+_MOST = 16  # answers in memory, about 1 MB each: one with a peak takes seconds
+_answers: LRU[WhatIf] = LRU(_MOST)
+
+
+def answer(context: Context, fit: str, request: WhatIfRequest) -> WhatIfView:
+    """The machine of a fit after a change, as it is sent. Raises Unusable, and Failure 404."""
+    return WhatIfView(**what_if(context, fit, request).to_json())
+
+
+def what_if(context: Context, fit: str, request: WhatIfRequest) -> WhatIf:
+    """The machine of a fit after a change. Raises Unusable, and Failure 404."""
+
+    def made() -> WhatIf:
+        found = FitResult.from_json(fits.find(context, fit).result)
+        change, target = change_of(found, request), peak_of(request)
+        return library.what_if(found, change, gains_of(request), target, request.seed)
+
+    return _answers.get((str(context.storage.folder), fit, request.model_dump_json()), made)
+
+
+def asked(text: str) -> WhatIfRequest:
+    """The request of a figure: the body of the POST as text. Raises Failure 422."""
+    try:
+        return WhatIfRequest.model_validate_json(text or "{}")
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(map(str, ("asked", *first["loc"])))
+        raise Failure(422, "invalid-request", str(first["msg"]), where, "write the body of the POST") from None

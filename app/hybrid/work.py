@@ -1,0 +1,70 @@
+"""A hybrid simulation as the work of a job: in one piece, which a kill makes run again from its beginning."""
+
+from __future__ import annotations
+
+import base64
+import json
+from typing import Any
+
+from sqlalchemy.orm import Session
+
+from app.fits import repository as fits
+from app.hybrid import repository
+from app.hybrid.acting import acting
+from app.hybrid.asked import AskedCase
+from app.hybrid.records import packed
+from app.jobs.work import Kind, State, Task, Work
+from app.tables import JobRow
+from ident.errors import Unusable
+from ident.fit.result import FitResult
+from ident.hybrid.controller import SampledController
+from ident.hybrid.rig import simulate_hybrid
+from ident.hybrid.share_map import share_map
+
+WITHOUT = "no controller"
+
+
+class HybridWork(Work):
+    """A simulation, the same without a controller, and the map over physical shares where it is asked for."""
+
+    def __init__(self, task: Task) -> None:
+        self.task = task
+
+    def finish(self, state: State) -> State:  # noqa: ARG002  nothing comes before it
+        """What `servoident hybrid` writes, and the displacements for its figures."""
+        asked, report, fit = self.task.settings["asked"], self.task.report, self._fit()
+        case = AskedCase(asked["case"], asked["ground"], self._blob(asked["text"])).read()
+        given: Any = json.loads(self._blob(asked["controller"])) if asked["inline"] else asked["controller"]
+        chosen, effects = acting(given, fit, case), asked["effects"]
+        main = simulate_hybrid(fit, case, chosen, effects, report)
+        alone = None if given == "none" else simulate_hybrid(fit, case, None, effects, report)
+        mapped = None
+        if asked["map"] and isinstance(chosen, SampledController):
+            mapped = share_map(fit, case, chosen, effects, report=report)
+        runs = {main.controller: main} | ({WITHOUT: alone} if alone else {})
+        return {
+            "result": main.to_json(),
+            "without": alone.to_json() if alone else None,
+            "map": mapped.to_json() if mapped else None,
+            "records": base64.b85encode(packed(runs)).decode(),
+        }
+
+    def _fit(self) -> FitResult:
+        """The fit that is simulated. Raises Unusable."""
+        with self.task.sessions() as session:
+            stored = fits.fit(session, self.task.parent or "")
+        if stored is None:
+            raise Unusable("no-such-fit", "the fit is not stored any more", str(self.task.parent), "simulate another")
+        return FitResult.from_json(stored.result)
+
+    def _blob(self, name: str) -> str:
+        return self.task.storage.path(name).read_text(encoding="utf-8") if name else ""
+
+
+def _keep(session: Session, job: JobRow, serial: str, made: State) -> None:
+    if repository.simulation(session, job.id) is None:
+        result = {name: made[name] for name in ("result", "without", "map")}
+        repository.add_simulation(session, job, serial, result, base64.b85decode(made["records"]))
+
+
+HYBRID = Kind("hybrid", HybridWork, _keep)

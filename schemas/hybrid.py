@@ -1,0 +1,116 @@
+"""What an identified actuator is good for, as it is asked: controllers, hybrid simulations, what-if."""
+
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from schemas.fit import Finite
+
+Short = Annotated[str, Field(max_length=200)]
+Value = Finite | Short
+"""SI, or a text with its unit."""
+Case = Annotated[Short | dict[str, Any], Field(examples=["qian", "benchmark2020"])]
+"""`qian`, `benchmark2020` (or `benchmark2020-1` to `-4`), or an object with what the YAML file of a case holds.
+
+No file is read: where its ground is a record, `text` holds it.
+"""
+
+
+class _Asked(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class TargetRequest(_Asked):
+    """The open loop that is wanted: coefficients in falling powers of s, and the pole of its roll-off."""
+
+    numerator: list[Finite] = Field(max_length=20)
+    denominator: list[Finite] = Field(max_length=20)
+    roll_off: Value | None = None
+    name: Short | None = None
+
+
+class ControllerRequest(_Asked):
+    """A controller to be designed for a stored fit with the specimen, gain, sample rate and delay of a case.
+
+    `structure` is `feedback` or `two-degree`; `target` stands for eq. (19) of Qian et al. 2014; `seed` is that of the
+    draws from the fitted covariance.
+    """
+
+    fit: str
+    case: Case = "qian"
+    target: TargetRequest | None = None
+    structure: str = "feedback"
+    seed: int = Field(default=0, ge=0, lt=2**31)
+
+
+class GroundRequest(_Asked):
+    """A ground motion in place of the case's own: a record as `text`, `blwn`, or a `sine`.
+
+    A record is rows of numbers in `unit` (of acceleration), `step` apart; a header may stand above. `column` (0 is the
+    first) takes one of several columns. `amplitude` is the RMS of `blwn` and the peak of a `sine`.
+    """
+
+    kind: str | None = None
+    text: str | None = Field(default=None, max_length=2_000_000)
+    name: Short | None = None
+    unit: Short | None = None
+    step: Short | None = None
+    scale: Value | None = None
+    column: int | None = Field(default=None, ge=0, le=1000)
+    band: Short | tuple[Short, Short] | None = None
+    frequency: Short | None = None
+    amplitude: Short | None = None
+    duration: Short | None = None
+    seed: int | None = Field(default=None, ge=0, lt=2**31)
+
+
+class HybridRequest(_Asked):
+    """A hybrid simulation of a case on the machine of a stored fit.
+
+    `controller` is `none`, `kalman` or another that has a name, the id of a stored one, or what its `.json` holds.
+    `effects` are switched on at a fifth of their largest strength; `set` gives values by NAME or NAME.PARAM, with a
+    unit or in SI. With `map` there is also the map over the shares of mass and stiffness that are physical.
+    """
+
+    fit: str
+    case: Case = "qian"
+    controller: Annotated[str, Field(max_length=64)] | dict[str, Any] = "none"
+    ground: Short | GroundRequest | None = None
+    effects: list[Short] = Field(default_factory=list, max_length=50)
+    set: dict[str, Value] = Field(default_factory=dict, max_length=50)
+    map: bool = False
+
+
+class SpecimenRequest(_Asked):
+    """What the machine moves: each in SI or with its unit, nothing without it."""
+
+    mass: Value | None = None
+    stiffness: Value | None = None
+    damping: Value | None = None
+
+
+class AxesRequest(_Asked):
+    """The range of |G| to keep at a gain with the peak."""
+
+    gain: Finite
+    lower: Finite
+    upper: Finite
+
+
+class WhatIfRequest(_Asked):
+    """What is to be changed of the machine of a fit: `set` area, stroke, volume or parameters, in SI or with units.
+
+    `fitted` states sizes of the machine that was fitted which its fit does not hold. `gain` are the gains Kp of the
+    responses, one or a range. `peak` (Hz) asks for the smallest change that puts a peak there within `tolerance` (2 Hz
+    at 45 Hz and in proportion), inside `axes` up to the frequency `up_to`; that takes some seconds.
+    """
+
+    set: dict[str, Value] = Field(default_factory=dict, max_length=50)
+    fitted: dict[str, Value] = Field(default_factory=dict, max_length=3)
+    specimen: SpecimenRequest = Field(default_factory=SpecimenRequest)
+    gain: Finite | tuple[Finite, Finite] | None = None
+    peak: Value | None = None
+    tolerance: Value | None = None
+    axes: list[AxesRequest] = Field(default_factory=list, max_length=10)
+    up_to: Value | None = None
+    seed: int = Field(default=0, ge=0, lt=2**31)

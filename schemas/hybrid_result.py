@@ -1,0 +1,349 @@
+"""What came of controllers, hybrid simulations, what-if and tracking, in the contract's words; SI where no unit is."""
+
+from pydantic import BaseModel
+
+Matrix = list[list[float]]
+
+
+class GammaView(BaseModel):
+    """γmin of the target, γmin with its roll-off, and the γ that was used."""
+
+    target: float
+    min: float
+    used: float
+
+
+class OrderView(BaseModel):
+    """States of the controller before and after its reduction."""
+
+    full: int
+    reduced: int
+
+
+class MarginsView(BaseModel):
+    """Margins of the sampled loop: gain dB, phase °, delay s (null without a limit); deviations in dB and degrees."""
+
+    gain: float | None
+    phase: float | None
+    delay: float | None
+    sensitivity_peak: float
+    peak: float
+    magnitude_5: float
+    magnitude_25: float
+    phase_10: float
+    phase_25: float
+    bandwidth: float
+    noise_gain: float
+
+
+class RobustnessView(BaseModel):
+    """Of how many draws from the fitted covariance how many stay stable and within 1 dB and 10° to 25 Hz."""
+
+    draws: int
+    stable: int
+    within: int
+    held: list[str]
+
+
+class TargetView(BaseModel):
+    """The open loop that was wanted, and the pole of its roll-off in rad/s."""
+
+    name: str
+    numerator: list[float]
+    denominator: list[float]
+    roll_off: float
+
+
+class DesignView(BaseModel):
+    """How a controller was designed; without `robustness` the fit states no standard errors."""
+
+    structure: str
+    target: TargetView
+    delay: float
+    gamma: GammaView
+    order: OrderView
+    margins: MarginsView
+    notes: list[str]
+    robustness: RobustnessView | None = None
+
+
+class ControllerFile(BaseModel):
+    """What `servoident control` writes: x(k+1) = A x + B [d, y], u = C x + D [d, y], one step 1/`sample_rate` s."""
+
+    name: str
+    sample_rate: float
+    A: Matrix
+    B: Matrix
+    C: Matrix
+    D: Matrix
+    design: DesignView
+
+
+class ControllerView(BaseModel):
+    """A stored controller, the fit and the case that it was designed for."""
+
+    id: str
+    fit: str
+    case: str
+    created_at: str
+    name: str
+    sample_rate: float
+    design: DesignView
+
+
+class ControllerPage(BaseModel):
+    """A page of controllers, newest first."""
+
+    items: list[ControllerView]
+    next: str | None = None
+
+
+class ScoresView(BaseModel):
+    """Null where the simulation ran away. `delay` in s; `tracking_*` measured against numerical displacement,
+    `reference_*` measured and `numerical_rms` numerical against the reference solution; fractions."""
+
+    delay: float | None
+    tracking_rms: float | None
+    tracking_peak: float | None
+    reference_rms: float | None
+    reference_peak: float | None
+    numerical_rms: float | None
+
+
+class ShareMapView(BaseModel):
+    """Over shares of `mass` (rows) and `stiffness` (columns) that are physical; null where it ran away."""
+
+    mass: list[float]
+    stiffness: list[float]
+    stable: list[list[bool]]
+    reference_rms: list[list[float | None]]
+    tracking_rms: list[list[float | None]]
+    critical_delay: list[list[float | None]]
+
+
+class HybridResultView(BaseModel):
+    """The verdict and the scores of a hybrid simulation, as `servoident hybrid --json` writes them.
+
+    `ended` (s) is when it ran away; `largest_pole` the largest magnitude of a pole of the sampled loop, null where it
+    is not linear; `seconds` what the computation took.
+    """
+
+    case: str
+    ground: str
+    controller: str
+    effects: dict[str, float]
+    stable: bool
+    scores: ScoresView
+    command_rms: float | None
+    critical_delay: float | None
+    ended: float | None
+    largest_pole: float | None
+    sample_rate: float
+    delay: int
+    samples: int
+    units: dict[str, str]
+    notes: list[str]
+    seconds: float
+
+
+class HybridView(HybridResultView):
+    """A stored hybrid simulation; its id is that of its job.
+
+    `without` is the same without a controller, `controller_id` the stored controller, `map` there where it was asked
+    for. Figures at `…/figures/NAME.{json,svg,png,pdf}` have the names in `figures`.
+    """
+
+    id: str
+    fit: str
+    matrix: str
+    serial: str
+    created_at: str
+    controller_id: str | None
+    without: HybridResultView | None
+    map: ShareMapView | None
+    figures: list[str]
+
+
+class HybridPage(BaseModel):
+    """A page of hybrid simulations, newest first, without their maps."""
+
+    items: list[HybridView]
+    next: str | None = None
+
+
+class MachineView(BaseModel):
+    """Sizes of a machine, null where unknown; `volume` is the oil on both sides of the piston."""
+
+    serial: str
+    name: str
+    batch: str
+    piston_area: float | None
+    stroke: float | None
+    supply_pressure: float | None
+    servo_valve: str
+    notes: str
+    volume: float | None
+
+
+class SpecimenView(BaseModel):
+    """What the machine moves: kg, N/m, N·s/m."""
+
+    mass: float
+    stiffness: float
+    damping: float
+
+
+class CarriedView(BaseModel):
+    """A parameter before and after the change, in `unit`, and by what it changed."""
+
+    unit: str
+    before: float
+    after: float
+    why: str
+
+
+class PoleView(BaseModel):
+    """A pole of the closed loop in Hz, s/(2π)."""
+
+    real: float
+    imaginary: float
+
+
+class PeakView(BaseModel):
+    """A peak of |G|: Hz, and its height."""
+
+    frequency: float
+    magnitude: float
+
+
+class ResponseView(BaseModel):
+    """The response at one gain Kp (null without a loop): |G| and its phase (°) over frequency (Hz)."""
+
+    gain: float | None
+    stable: bool
+    poles: list[PoleView]
+    peaks: list[PeakView]
+    frequency: list[float]
+    magnitude: list[float]
+    phase: list[float]
+
+
+class RootLocusView(BaseModel):
+    """The poles over the gain, those of one gain a row."""
+
+    gain: list[float]
+    poles: list[list[PoleView]]
+
+
+class OilView(BaseModel):
+    """The bulk modulus (Pa) after the change, its standard error, and the oil volume (m³) that it stands on."""
+
+    value: float
+    std_error: float | None
+    volume: float
+    stands_on: str
+    compressibility: str
+
+
+class JointChangeView(BaseModel):
+    """Factors of the parameters, the root of the sum of their squared logarithms, and the peak at each gain."""
+
+    factors: dict[str, float]
+    size: float
+    peaks: list[PeakView]
+
+
+class FactorRangeView(BaseModel):
+    """Between what a factor lies over all changes that do as well, and the change at either end."""
+
+    lower: float
+    upper: float
+    at_lower: JointChangeView
+    at_upper: JointChangeView
+
+
+class AxesView(BaseModel):
+    """The range of |G| at a gain that the response has to stay in."""
+
+    gain: float
+    lower: float
+    upper: float
+
+
+class PeakTargetView(BaseModel):
+    """The peak that was asked for: Hz."""
+
+    frequency: float
+    tolerance: float
+    gains: list[float]
+    axes: list[AxesView]
+    up_to: float
+
+
+class StartsView(BaseModel):
+    """Starts of the search, and how many ended at the smallest change."""
+
+    tried: int
+    agree: int
+
+
+class PeakSearchView(BaseModel):
+    """What puts a peak at the target: one parameter alone (null where it cannot), the smallest joint change, others."""
+
+    target: PeakTargetView
+    already: bool
+    singles: dict[str, float | None]
+    smallest: JointChangeView | None
+    others: dict[str, FactorRangeView]
+    starts: StartsView | None
+    seed: int
+    text: list[str]
+
+
+class WhatIfView(BaseModel):
+    """The machine after the change, as `servoident whatif --json` writes it.
+
+    `critical_gain` is the smallest Kp above which it is no longer stable; `peak` what was found for a peak that was
+    asked for, `with_peak` the responses after the smallest change.
+    """
+
+    model: str
+    output: str
+    actuator: MachineView
+    specimen: SpecimenView
+    parameters: dict[str, CarriedView]
+    responses: list[ResponseView]
+    locus: RootLocusView | None
+    critical_gain: float | None
+    bulk_modulus: OilView | None
+    notes: list[str]
+    peak: PeakSearchView | None
+    with_peak: list[ResponseView]
+
+
+class TrackNoise(BaseModel):
+    """Standard deviations assumed of the sensor (m) and of the drift of τ (s/√s) and k (1/√s)."""
+
+    measurement: float
+    tau: float
+    gain: float
+
+
+class TrackView(BaseModel):
+    """A run followed as if it came in now, as `servoident track --json` writes it; at most 4,096 rows.
+
+    `tau` in s (in samples where the clock of the run is unknown), `gain` and their standard deviations over `t`.
+    """
+
+    run: str
+    nis_mean: float | None
+    holds: bool
+    reason: str
+    outliers: int
+    changes: int
+    noise: TrackNoise
+    t: list[float]
+    tau: list[float]
+    gain: list[float]
+    std_tau: list[float]
+    std_gain: list[float]

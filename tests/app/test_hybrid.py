@@ -1,0 +1,263 @@
+"""What an identified actuator is good for, over HTTP: controllers, hybrid simulations, what-if, tracking."""
+
+from __future__ import annotations
+
+import io
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.io
+from fastapi.testclient import TestClient
+
+from ident.fit.result import FitResult
+from ident.hybrid.case import qian
+from ident.hybrid.controller import SampledController
+from ident.hybrid.ground import Ground
+from ident.hybrid.rig import simulate_hybrid
+from tests.app.test_bad_inputs import kept, refused_by_service
+from tests.app.test_diagnoses import ended
+
+API = "/api/v1"
+QUIET = "\n".join(["a header", *(f"{0.3 * np.sin(0.9 * k):.6f}" for k in range(120))])
+RECORD = {"text": QUIET, "name": "Small shake", "unit": "m/s^2", "step": "0.01 s"}
+STRUCTURE = {"mass": "87.5 kg", "stiffness": "87.5 kN/m", "damping": "3.5 kN*s/m"}
+PHYSICAL = {"mass": "8.75 kg", "stiffness": "17.5 kN/m"}
+OWN = {"structure": STRUCTURE, "physical": PHYSICAL, "gain": 2, "piston_area": "497 mm^2"}
+FORMATS = (("json", b"{"), ("svg", b"<svg"), ("png", b"\x89PNG"), ("pdf", b"%PDF"))
+
+
+@pytest.fixture(scope="module")
+def controller(service: TestClient, fitted: str) -> dict[str, Any]:
+    """A controller with two degrees of freedom for Qian's case."""
+    body = {"fit": fitted, "case": "qian", "structure": "two-degree"}
+    answer = service.post(f"{API}/controllers", json=body)
+    assert answer.status_code == 201, answer.text
+    assert answer.headers["Location"] == f"{API}/controllers/{answer.json()['id']}"
+    found: dict[str, Any] = answer.json()
+    return found
+
+
+@pytest.fixture(scope="module")
+def simulation(service: TestClient, fitted: str, controller: dict[str, Any]) -> dict[str, Any]:
+    """A hybrid simulation of 1.19 s with it, and its map."""
+    body = {"fit": fitted, "case": OWN, "ground": RECORD, "controller": controller["id"], "map": True}
+    job = ended(service, service.post(f"{API}/hybrid-simulations", json=body))
+    assert (job["kind"], job["state"], job["parent"], job["fit"]) == ("hybrid", "succeeded", fitted, None), job
+    assert job["settings"]["controller"] == controller["name"]
+    assert (job["settings"]["ground"], job["hybrid_simulation"]) == ("Small shake", job["id"])
+    assert job["progress"]["done"] == job["progress"]["total"] > 0
+    found: dict[str, Any] = service.get(f"{API}/hybrid-simulations/{job['id']}").json()
+    return found
+
+
+def test_a_controller_is_kept_and_its_three_forms_are_one(service, controller, fitted):
+    one = service.get(f"{API}/controllers/{controller['id']}.json")
+    read = SampledController.from_json(one.json())
+    assert "attachment" in one.headers["Content-Disposition"]
+    assert one.json()["design"]["structure"] == "two-degree"
+    assert controller["design"] == one.json()["design"]
+    held = scipy.io.loadmat(io.BytesIO(service.get(f"{API}/controllers/{controller['id']}.mat").content))
+    header = service.get(f"{API}/controllers/{controller['id']}.h").text
+    for name in ("A", "B", "C", "D"):
+        np.testing.assert_array_equal(held[name], getattr(read, name))
+    assert f"{read.A[0, 0]:.17e}" in header
+    assert [one["id"] for one in service.get(f"{API}/controllers", params={"fit": fitted}).json()["items"]] == [
+        controller["id"]
+    ]
+    for missing in (f"{controller['id']}.exe", "none.json", "none"):
+        assert service.get(f"{API}/controllers/{missing}").status_code == 404
+
+
+def test_the_same_key_makes_one_controller(service, fitted):
+    body, headers = {"fit": fitted, "case": OWN}, {"Idempotency-Key": "a controller"}
+    first, again = (service.post(f"{API}/controllers", json=body, headers=headers) for _ in range(2))
+    assert first.json() == again.json()
+    other = service.post(f"{API}/controllers", json=body | {"seed": 1}, headers=headers)
+    refused_by_service(other, "key-in-use", 409)
+
+
+def test_a_simulation_says_what_the_library_says(service, simulation, controller, fitted):
+    """Record, case and controller come through HTTP, the queue and the database to the last digit."""
+    fit = FitResult.from_json(service.get(f"{API}/fits/{fitted}").json()["result"])
+    ground = Ground("record", "Small shake", QUIET, factor=1.0, step=0.01)
+    case = qian().__class__(**{**vars(qian()), "name": "own case", "ground": ground})
+    acting = SampledController.from_json(service.get(f"{API}/controllers/{controller['id']}.json").json())
+    expected = simulate_hybrid(fit, case, acting).to_json()
+    assert expected["samples"] == 4875
+    for name in expected.keys() - {"seconds", "command_rms", "largest_pole", "scores"}:
+        assert simulation[name] == expected[name], name
+    assert simulation["command_rms"] == pytest.approx(expected["command_rms"])
+    assert simulation["scores"] == pytest.approx(expected["scores"])
+    assert simulation["scores"]["reference_rms"] < simulation["without"]["scores"]["reference_rms"] / 10
+    assert (simulation["fit"], simulation["controller_id"]) == (fitted, controller["id"])
+    assert np.shape(simulation["map"]["stable"]) == (20, 20)
+
+
+def test_every_figure_is_drawn_in_every_format(service, simulation, controller, fitted, matrix):
+    asked = {"asked": json.dumps({"set": {"Kl": 1}}) if False else json.dumps({"gain": [2, 3]})}
+    places = [(f"/hybrid-simulations/{simulation['id']}", name, {}) for name in simulation["figures"]]
+    places += [(f"/controllers/{controller['id']}", "closed-loop", {})]
+    places += [(f"/fits/{fitted}/what-if", name, asked) for name in ("response", "root-locus")]
+    places += [(f"/matrices/{matrix}/track", "tracking", {})]
+    assert simulation["figures"] == ["displacement", "response", "map"]
+    for place, name, query in places:
+        for kind, start in FORMATS:
+            answer = service.get(f"{API}{place}/figures/{name}.{kind}", params=query | {"theme": "dark"})
+            assert answer.content.startswith(start), (place, name, kind, answer.text)
+        assert service.get(f"{API}{place}/figures/none.svg").status_code == 404
+        assert service.get(f"{API}{place}/figures/{name}.gif").status_code == 404
+        refused_by_service(service.get(f"{API}{place}/figures/{name}.svg?theme=pink"), "unknown-theme")
+
+
+def test_the_kept_record_shows_the_reference(service, simulation):
+    """The figure of a stored simulation is of the displacements that were computed."""
+    drawn = service.get(f"{API}/hybrid-simulations/{simulation['id']}/figures/displacement.json").json()
+    curves = {row["s"] for row in drawn["datasets"]["whole"]}
+    assert {f"measured, {simulation['controller']}", "measured, no controller"} <= curves
+    largest = {s: max(abs(row["y"]) for row in drawn["datasets"]["whole"] if row["s"] == s) for s in curves}
+    (reference,) = (size for s, size in largest.items() if s.startswith("reference"))
+    followed = largest[f"measured, {simulation['controller']}"] / reference
+    assert followed == pytest.approx(1, abs=simulation["scores"]["reference_peak"] + 0.01)
+
+
+def test_other_motions_effects_and_controllers(service, fitted, controller):
+    """Live compensation against noise, a controller's own JSON against a sine, with an effect switched on."""
+    file = service.get(f"{API}/controllers/{controller['id']}.json").json()
+    bodies = (
+        {"controller": "kalman", "ground": {"kind": "blwn", "duration": "1 s", "seed": 3}},
+        {"controller": file, "case": OWN | {"ground": {"kind": "sine", "frequency": "2 Hz", "duration": "1 s"}},
+         "effects": ["coulomb_friction"], "set": {"dead_zone.half_width": "1 um"}},
+    )  # fmt: skip
+    found = []
+    for body in bodies:
+        job = ended(service, service.post(f"{API}/hybrid-simulations", json={"fit": fitted} | body))
+        assert job["state"] == "succeeded", job
+        found.append(service.get(f"{API}/hybrid-simulations/{job['id']}").json())
+    assert [one["controller"] for one in found] == ["kalman", controller["name"]]
+    assert found[0]["map"] is None
+    assert found[1]["ground"] == "sine of 2 Hz"
+    assert found[1]["effects"]["dead_zone.half_width"] == 1e-6
+    assert len(found[1]["effects"]) == 2
+    listed = service.get(f"{API}/hybrid-simulations", params={"fit": fitted, "limit": 2}).json()
+    assert [one["id"] for one in listed["items"]] == [found[1]["id"], found[0]["id"]]
+    assert listed["next"]
+
+
+def test_a_simulation_that_waits_can_be_cancelled(service, fitted):
+    """It is a job as any other: of two the second is cancelled, and nothing is stored of it."""
+    body = {"fit": fitted, "ground": {"kind": "blwn", "duration": "200 s"}}
+    job = service.post(f"{API}/hybrid-simulations", json=body).json()["id"]
+    service.delete(f"{API}/jobs/{job}")
+    service.get(f"{API}/jobs/{job}/events")
+    assert service.get(f"{API}/jobs/{job}").json()["state"] == "cancelled"
+    assert service.get(f"{API}/hybrid-simulations/{job}").status_code == 404
+    refused_by_service(service.post(f"{API}/jobs/{job}/conclude"), "not-a-diagnosis", 409)
+
+
+def test_what_if_scales_and_finds_a_peak(service, fitted):
+    before = service.post(f"{API}/fits/{fitted}/what-if", json={}).json()
+    body = {"set": {"area": "239 mm^2", "volume": 1e-4}, "fitted": {"volume": "0.2 L"}, "gain": [2, 3],
+            "specimen": {"mass": "2.06 kg", "stiffness": 30650}}  # fmt: skip
+    answer = service.post(f"{API}/fits/{fitted}/what-if", json=body)
+    assert answer.status_code == 200, answer.text
+    after = answer.json()
+    assert after["parameters"]["Z0"]["after"] == pytest.approx(after["parameters"]["Z0"]["before"] * 239 / 497)
+    assert after["parameters"]["Ka"]["after"] == pytest.approx(after["parameters"]["Ka"]["before"] / 2)
+    assert after["specimen"] == {"mass": 2.06, "stiffness": 30650.0, "damping": 0.0}
+    assert [one["gain"] for one in after["responses"]] == [2.0, 3.0]
+    assert before["parameters"]["Z0"]["after"] == before["parameters"]["Z0"]["before"]
+    assert after["peak"] is None
+
+
+def test_a_run_is_followed(service, matrix):
+    runs = [run["id"] for run in service.get(f"{API}/matrices/{matrix}").json()["runs"]]
+    first = service.get(f"{API}/matrices/{matrix}/track").json()
+    second = service.get(f"{API}/matrices/{matrix}/track", params={"run": runs[1], "noise": "0.1 mm"}).json()
+    assert (first["run"], second["run"], second["noise"]["measurement"]) == (runs[0], runs[1], pytest.approx(1e-4))
+    assert len(first["t"]) == len(first["tau"]) == len(first["std_gain"]) == 2048
+    assert first["reason"]
+
+
+BAD_CASES = [
+    ("/etc/passwd", "no-such-case"),
+    (OWN | {"ground": {"file": "/etc/passwd"}}, "no-file-here"),
+    (OWN | {"ground": {"kind": "record"}}, "missing-field"),
+    (OWN | {"ground": {"text": "x" * 2_000_001}}, "bad-ground"),
+    (OWN | {"delay": 10**30}, "bad-case"),
+    (OWN | {"surprise": 1}, "unknown-key"),
+    ({"structure": {"mass": 1}, "physical": {}}, "missing-unit"),
+]
+
+
+@pytest.mark.parametrize(("case", "code"), BAD_CASES, ids=lambda value: str(value)[-40:])
+def test_a_case_that_cannot_be_is_refused_and_no_file_is_read(service, fitted, case, code):
+    before = kept(service)
+    for place in ("controllers", "hybrid-simulations"):
+        if place == "controllers" and "ground" in str(case) and "text" in str(case):
+            continue  # a controller needs no motion
+        refused_by_service(service.post(f"{API}/{place}", json={"fit": fitted, "case": case}), code)
+    assert kept(service) == before
+
+
+BAD_SIMULATIONS = [
+    ({"controller": "/etc/passwd"}, 404, "no-such-controller"),
+    ({"controller": {"A": "x"}}, 422, "bad-controller"),
+    ({"ground": "/etc/passwd"}, 422, "bad-ground"),
+    ({"ground": {"text": "1\n2\nthree"}}, 422, "bad-ground"),
+    ({"ground": {"file": "el_centro.txt"}}, 422, "invalid-request"),
+    ({"ground": {"duration": "900 s"}, "map": True}, 422, "too-long"),
+    ({"case": OWN | {"sample_rate": "0.001 Hz", "ground": {"duration": "100000 s"}}}, 422, "too-long"),
+    ({"controller": "kalman", "map": True}, 422, "bad-option"),
+    ({"effects": ["magic"]}, 422, "unknown-effect"),
+    ({"set": {"dead_zone.half_width": "1 s"}}, 422, "wrong-dimension"),
+    ({"fit": "none"}, 404, "no-such-fit"),
+]
+
+
+@pytest.mark.parametrize(("body", "status", "code"), BAD_SIMULATIONS, ids=lambda value: str(value)[:40])
+def test_a_simulation_that_cannot_be_is_refused_and_nothing_is_kept(service, fitted, body, status, code):
+    before = kept(service)
+    answer = service.post(f"{API}/hybrid-simulations", json={"fit": fitted, "case": OWN} | body)
+    refused_by_service(answer, code, status)
+    assert kept(service) == before
+
+
+BAD_CHANGES = [
+    ({"set": {"width": 1}}, "unknown-parameter"),
+    ({"set": {"area": "1 s"}}, "wrong-dimension"),
+    ({"fitted": {"Z0": 1}}, "unknown-size"),
+    ({"specimen": {"mass": "-1 kg"}}, "bad-number"),
+    ({"gain": [3, 2]}, "bad-gain"),
+    ({"tolerance": "2 Hz"}, "bad-request"),
+    ({"peak": "-45 Hz"}, "bad-peak"),
+    ({"peak": 45, "axes": [{"gain": 1, "lower": 2, "upper": 1}]}, "bad-axes"),
+]
+
+
+@pytest.mark.parametrize(("body", "code"), BAD_CHANGES, ids=lambda value: str(value)[:40])
+def test_a_change_that_cannot_be_is_refused_in_both_its_forms(service, fitted, body, code):
+    refused_by_service(service.post(f"{API}/fits/{fitted}/what-if", json=body), code)
+    drawn = service.get(f"{API}/fits/{fitted}/what-if/figures/response.svg", params={"asked": json.dumps(body)})
+    refused_by_service(drawn, code)
+
+
+def test_a_figure_of_no_request_is_refused(service, fitted):
+    for asked in ("{", '{"surprise": 1}', '{"gain": NaN}'):
+        answer = service.get(f"{API}/fits/{fitted}/what-if/figures/response.svg", params={"asked": asked})
+        refused_by_service(answer, "invalid-request")
+
+
+def test_a_target_of_one_s_own_and_one_that_no_loop_can_be(service, fitted):
+    body = {"fit": fitted, "target": {"numerator": [6e5], "denominator": [0.008, 20, 65, 1200], "roll_off": "2 kHz"}}
+    answer = service.post(f"{API}/controllers", json=body | {"target": body["target"] | {"roll_off": "3000 rad/s"}})
+    assert answer.status_code == 201, answer.text
+    assert answer.json()["design"]["target"]["numerator"] == [6e5]
+    for target, code in (
+        ({"numerator": [1], "denominator": [1]}, "bad-target"),
+        ({"numerator": [1], "denominator": [1, -1]}, "bad-target"),
+    ):
+        refused_by_service(service.post(f"{API}/controllers", json=body | {"target": target}), code)
+    refused_by_service(service.post(f"{API}/controllers", json={"fit": fitted, "structure": "x"}), "unknown-structure")
+    refused_by_service(service.post(f"{API}/controllers", json={"fit": "none"}), "no-such-fit", 404)
