@@ -30,6 +30,7 @@ class Designed:
     id: str
     case: str
     structure: str
+    target: str
     made: str
     rows: Rows
     notes: tuple[str, ...]
@@ -70,7 +71,10 @@ def called(one: ControllerView) -> str:
 def _designed(one: ControllerView) -> Designed:
     figure = f"/api/v1/controllers/{one.id}/figures/closed-loop"
     rows = tuple(_rows(one.design.model_dump()))
-    return Designed(one.id, one.case, one.design.structure, one.created_at, rows, tuple(one.design.notes), figure)
+    return Designed(
+        one.id, one.case, one.design.structure, one.design.target.name, one.created_at, rows, tuple(one.design.notes),
+        figure,
+    )  # fmt: skip
 
 
 def _list(numbers: Sequence[float]) -> str:
@@ -80,7 +84,6 @@ def _list(numbers: Sequence[float]) -> str:
 def _rows(design: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
     """What a reader wants to know of a design: quantity, value, unit."""
     found, gamma, order = design["margins"], design["gamma"], design["order"]
-    yield "Target", str(design["target"]["name"]), ""
     yield "γmin of the target, with its roll-off", f"{gamma['target']:.3f}, {gamma['min']:.3f}", ""
     yield "Gain margin", _limit(found["gain"]), "dB"
     yield "Phase margin", _limit(found["phase"]), "°"

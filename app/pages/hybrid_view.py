@@ -17,7 +17,7 @@ from ident.presets import preset
 from ident.presets.strano import STRANO
 from ident.stages import PLACES
 from ident.words.engineering import power_of, quantity, with_unit
-from ident.words.number import plain, trimmed
+from ident.words.number import fixed, trimmed
 from ident.words.percent import percent_in_print
 from ident.words.titles import title
 from schemas.hybrid_result import HybridView
@@ -191,7 +191,7 @@ def _time(seconds: float | None) -> str:
     """In ms: what a rig's delay is spoken of in."""
     if seconds is None:
         return "–"
-    return f"{plain(1e3 * seconds, 3)} ms"
+    return f"{fixed(round(1e3 * seconds, 2) + 0.0, 2)} ms"
 
 
 def _facts(found: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

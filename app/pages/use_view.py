@@ -14,8 +14,8 @@ from ident.custom.definition import preset_with
 from ident.words.titles import with_effects
 
 CASES = (
-    ("qian", "Qian et al. 2014: one storey, 20 % of its stiffness physical"),
-    *((f"benchmark2020-{n}", f"benchmark of 2020, three storeys, case {n}") for n in (1, 2, 3, 4)),
+    ("qian", "Qian et al. 2014, one storey"),
+    *((f"benchmark2020-{n}", f"benchmark of 2020, case {n}") for n in (1, 2, 3, 4)),
 )
 """Cases that are built in, with what they are."""
 OWN_CASE = """\
