@@ -65,15 +65,20 @@ def control_view(stored: Sequence[ControllerView], shown: ControllerView | None)
 
 def called(one: ControllerView) -> str:
     """A controller in a list."""
-    return f"{one.design.structure}, case {one.case}"
+    return f"{one.design.structure}, {case_called(one.case)}"
+
+
+def case_called(name: str) -> str:
+    """A case by its name, or as one that has none."""
+    return name if name.startswith("own ") else f"case {name}"
 
 
 def _designed(one: ControllerView) -> Designed:
     figure = f"/api/v1/controllers/{one.id}/figures/closed-loop"
     rows = tuple(_rows(one.design.model_dump()))
     return Designed(
-        one.id, one.case, one.design.structure, one.design.target.name, one.created_at, rows, tuple(one.design.notes),
-        figure,
+        one.id, case_called(one.case), one.design.structure, one.design.target.name, one.created_at, rows,
+        tuple(one.design.notes), figure,
     )  # fmt: skip
 
 

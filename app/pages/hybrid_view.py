@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from app.pages.control_view import ControlView, Earlier
+from app.pages.control_view import ControlView, Earlier, case_called
 from app.pages.job_view import JobPageView
 from ident.custom.definition import preset_with
 from ident.effects import CATALOGUE
@@ -110,7 +110,7 @@ def hybrid_view(
 def _controllers(fit: FitResult, control: ControlView) -> Iterator[Choice]:
     """Those that were designed, the one that is shown first, then those that go by a name."""
     if (made := control.shown) is not None:
-        yield Choice(made.id, f"designed above: {made.structure}, case {made.case}")
+        yield Choice(made.id, f"designed above: {made.structure}, {made.case}")
     for other in control.others:
         yield Choice(other.id, f"designed: {other.text}, {other.made[:16].replace('T', ' ')}")
     for name in NAMED:
@@ -120,7 +120,12 @@ def _controllers(fit: FitResult, control: ControlView) -> Iterator[Choice]:
 
 def _called(one: HybridView) -> str:
     state = "stable" if one.stable else "unstable"
-    return f"Case {one.case}, {_controller(one.controller)}, {one.ground}: {state}"
+    return f"{_title(one)}: {state}"
+
+
+def _title(one: HybridView) -> str:
+    said = f"{case_called(one.case)}, {_controller(one.controller)}, {one.ground}"
+    return said[0].upper() + said[1:]
 
 
 def _controller(name: str) -> str:
@@ -154,7 +159,7 @@ def _simulated(one: HybridView) -> Simulated:
     found, at = one.model_dump(), f"/api/v1/hybrid-simulations/{one.id}/figures"
     return Simulated(
         id=one.id,
-        title=f"Case {one.case}, {_controller(one.controller)}, {one.ground}",
+        title=_title(one),
         made=one.created_at,
         stable=one.stable,
         verdict=_verdict(found),

@@ -8,7 +8,7 @@ from urllib.parse import urlencode
 
 from app.fits.rows import ParameterRow, parameter_rows
 from app.fits.service import Stored
-from ident.fit.result import FitResult
+from ident.fit.result import Estimate, FitResult
 from ident.hybrid.changed_machine import SIZES
 from ident.hybrid.oil_column import JointChange, PeakSearch
 from ident.hybrid.what_if import HIGHEST, USUAL_GAINS, Pole, Response, WhatIf
@@ -32,11 +32,22 @@ class SizeField:
 
 
 @dataclass(frozen=True)
+class ValueField:
+    """A parameter that may be set: its value now in words, and as one would write it."""
+
+    name: str
+    symbol: str
+    meaning: str
+    said: str
+    plain: str
+
+
+@dataclass(frozen=True)
 class WhatIfForm:
     """What may be asked of a machine, and what was: `given` by the names of the fields."""
 
     sizes: tuple[SizeField, ...]
-    parameters: tuple[ParameterRow, ...]
+    parameters: tuple[ValueField, ...]
     has_gain: bool
     usual: tuple[str, str]
     given: Mapping[str, str]
@@ -145,11 +156,16 @@ def what_if_form(fit: FitResult, given: Mapping[str, str]) -> WhatIfForm:
     usual = USUAL_GAINS if known is None else (known, known)
     return WhatIfForm(
         sizes=tuple(SizeField(name, _size(fit, name), _EXAMPLES[name]) for name in SIZES),
-        parameters=parameter_rows(fit),
+        parameters=tuple(_value(row, fit.parameters[row.name]) for row in parameter_rows(fit)),
         has_gain=model.kind == "chain" and "Kp" in model.chain.symbols,
         usual=(trimmed(usual[0]), trimmed(usual[1])),
         given=given,
     )
+
+
+def _value(row: ParameterRow, entry: Estimate) -> ValueField:
+    example = f"{entry.value:.5g} {'' if entry.unit == '1' else entry.unit}".strip()
+    return ValueField(row.name, row.symbol, row.meaning, quantity(entry.value, entry.unit), example)
 
 
 def _size(fit: FitResult, name: str) -> str:

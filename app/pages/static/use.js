@@ -3,6 +3,26 @@
 import { guarded, send } from "./api.js";
 import "./progress.js";
 
+// What was chosen is there again on the page that shows what came of it; no browser lets a page choose a file.
+const named = ({ name, type }) => name && !["hidden", "file"].includes(type);
+const memory = (form) => `${location.pathname} ${form.dataset.make}`;
+
+function remember(form) {
+  const chosen = [...form.elements].filter(named).map(({ name, type, value, checked }) => [name, type === "checkbox" ? checked : value, value]);
+  sessionStorage.setItem(memory(form), JSON.stringify(chosen));
+}
+
+function recall(form) {
+  for (const [name, state, value] of JSON.parse(sessionStorage.getItem(memory(form)) ?? "[]")) {
+    const field = [...form.elements].find((one) => one.name === name && (typeof state !== "boolean" || one.value === value));
+    if (!field) continue;
+    if (typeof state === "boolean") field.checked = state;
+    else if (!field.options || [...field.options].some((option) => option.value === state)) field.value = state;
+  }
+}
+
+for (const form of document.querySelectorAll("form[data-make]")) recall(form);
+
 // Fields that belong to one choice are there, and sent, only while that is chosen.
 for (const form of document.querySelectorAll("form")) {
   for (const choice of form.querySelectorAll("select[data-shows]")) {
@@ -42,12 +62,21 @@ for (const form of document.querySelectorAll("form[data-make]")) {
       button.textContent = form.dataset.wait;
       try {
         const { data } = await send("POST", form.action, await made[form.dataset.make](form));
+        remember(form);
+        if (form.dataset.make === "controller") choose(data.id);
         show(form.dataset.make, data.id, form.closest("section").id);
       } finally {
         button.textContent = said;
       }
     });
   });
+}
+
+// The next simulation is under the controller that was made last.
+function choose(id) {
+  const form = document.querySelector("form[data-make=simulation]");
+  form.elements.controller.add(new Option("", id, true, true));
+  remember(form);
 }
 
 // The same page with what was made; what else it shows stays.
@@ -61,7 +90,11 @@ async function controller(form) {
   const fields = new FormData(form);
   const asked = { fit: fields.get("fit"), structure: fields.get("structure"), seed: Number(fields.get("seed")) };
   asked.case = await caseOf(fields);
-  if (fields.get("target") === "own") asked.target = await read(fields.get("own-target"), "target");
+  if (fields.get("target") === "own") {
+    const target = await read(fields.get("own-target"), "target");
+    for (const name of ["numerator", "denominator"]) target[name] = target[name]?.map?.(Number) ?? target[name];
+    asked.target = target;
+  }
   return asked;
 }
 
@@ -69,6 +102,7 @@ async function simulation(form) {
   const fields = new FormData(form);
   const asked = { fit: fields.get("fit"), controller: fields.get("controller"), case: await caseOf(fields) };
   if (fields.get("ground")) asked.ground = await ground(fields);
+  asked.map = fields.has("map");
   const effects = fields.getAll("effects");
   asked.effects = effects.filter((name) => !fields.get(`strength.${name}`)?.trim());
   const stated = effects.filter((name) => !asked.effects.includes(name));
