@@ -16,7 +16,7 @@ from ident.hybrid.acting import NAMED
 from ident.presets import preset
 from ident.presets.strano import STRANO
 from ident.stages import PLACES
-from ident.words.engineering import power_of, quantity, with_unit
+from ident.words.engineering import power_of, quantity, scaled_unit, with_unit
 from ident.words.number import fixed, trimmed
 from ident.words.percent import percent_in_print
 from ident.words.titles import title
@@ -151,7 +151,10 @@ def _choice(fit: FitResult, effect: Effect) -> EffectChoice:
 
 
 def _short(value: float, unit: str) -> str:
+    """A value with its unit as one may write it into a field."""
     power = power_of(value)
+    if scaled_unit(unit, power).startswith("10"):
+        return f"{value:.4g} {'' if unit == '1' else unit}".strip()
     return with_unit(trimmed(value / 10.0**power), unit, power)
 
 
