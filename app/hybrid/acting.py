@@ -12,7 +12,7 @@ from ident.hybrid.controller import SampledController
 from ident.hybrid.rig import Controller
 from ident.units.quantity import shown
 
-MOST_STATES = 200
+MOST_STATES, _LONGEST = 200, 200  # of a controller that is sent; characters of its name
 
 
 def named(given: str) -> bool:
@@ -30,4 +30,7 @@ def acting(given: str | dict[str, Any], fit: FitResult, case: Case) -> Controlle
     rows = given.get("A")
     if isinstance(rows, list) and len(rows) > MOST_STATES:
         raise Unusable("bad-controller", f"{len(rows)} states", "controller", f"give at most {MOST_STATES}")
+    name = given.get("name") or ""
+    if not isinstance(name, str) or len(name) > _LONGEST or not name.isprintable():
+        raise Unusable("bad-controller", "its name is no line of text", "controller name", "give a short text")
     return for_rate(SampledController.from_json(given), case)

@@ -13,6 +13,7 @@ from app.hybrid import repository
 from app.hybrid.acting import acting
 from app.hybrid.asked import AskedCase
 from app.hybrid.records import packed
+from app.hybrid.service import KIND
 from app.jobs.work import Kind, State, Task, Work
 from app.tables import JobRow
 from ident.errors import Unusable
@@ -67,4 +68,4 @@ def _keep(session: Session, job: JobRow, serial: str, made: State) -> None:
         repository.add_simulation(session, job, serial, result, base64.b85decode(made["records"]))
 
 
-HYBRID = Kind("hybrid", HybridWork, _keep)
+HYBRID = Kind(KIND, HybridWork, _keep)

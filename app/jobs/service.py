@@ -112,7 +112,7 @@ def view(row: JobRow, serial: str) -> JobView:
         progress=ProgressView(**row.progress), parent=row.parent,
         fit=row.id if made and makes_fit else None,
         diagnosis=row.id if made and diagnosis else None,
-        hybrid_simulation=row.id if made and row.kind == "hybrid" else None,
+        hybrid_simulation=row.id if made and row.kind == "hybrid simulation" else None,
         problem=None if row.problem is None else JobProblem(**row.problem),
         created_at=row.created_at, ended_at=row.ended_at,
     )  # fmt: skip

@@ -9,7 +9,7 @@ from ident.words.titles import title
 from schemas.fit import JobProblem, JobView
 
 _OPEN = ("queued", "running")
-_PLACES = {"diagnosis": "#missing", "hybrid": "/use?simulation={job}#hybrid"}
+_PLACES = {"diagnosis": "#missing", "hybrid simulation": "/use?simulation={job}#hybrid"}
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,9 @@ from fastapi.responses import HTMLResponse
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.context import Here
-from app.hybrid.what_if import answer
 from app.pages import assets, use_page
 from app.pages.problems import PageRoute
 from app.pages.rendering import page
-from app.pages.what_if_asked import asked
-from ident.readers.strict_yaml import read_yaml
 from schemas.hybrid_result import WhatIfView
 
 pages = APIRouter(include_in_schema=False, route_class=PageRoute)
@@ -41,10 +38,10 @@ def use(request: Request, here: Here, fit: str) -> HTMLResponse:
 @parts.get("/fits/{fit}/use/what-if.json")
 def what_if(request: Request, here: Here, fit: str) -> WhatIfView:
     """All numbers of a what-if, as the API answers it."""
-    return answer(here, fit, asked(dict(request.query_params)))
+    return use_page.numbers(here, fit, dict(request.query_params))
 
 
 @parts.post("/use/reading")
 def reading(description: Description) -> Any:
     """A description in YAML as plain data, for a request that takes an object."""
-    return read_yaml(description.text.encode(), description.where)
+    return use_page.read(description.text, description.where)

@@ -19,8 +19,10 @@ from app.pages.use_view import UseView, use_view
 from app.pages.what_if_asked import asked
 from app.pages.what_if_view import WhatIfView, what_if_form, what_if_view
 from ident.errors import Unusable
+from ident.readers.strict_yaml import read_yaml
 from schemas.hybrid_result import ControllerView as Controller
 from schemas.hybrid_result import HybridView as Simulation
+from schemas.hybrid_result import WhatIfView as Numbers
 
 Query = Mapping[str, str]
 _MOST = 50  # controllers or simulations in a list
@@ -92,6 +94,16 @@ def _tracking(context: Context, stored: fits.Stored, given: Query) -> TrackingVi
         return tracking_view(stored.matrix, runs, given, tracking.track(context, stored.matrix, run, noise)[0])
     except (Unusable, Failure) as error:
         return tracking_view(stored.matrix, runs, given, problem=_sentence(error))
+
+
+def numbers(context: Context, fit_id: str, given: Query) -> Numbers:
+    """All numbers of a what-if, as the API answers it. Raises Failure 404, 422, Unusable."""
+    return what_if.answer(context, fit_id, asked(given))
+
+
+def read(text: str, where: str) -> Any:
+    """A description in YAML as plain data. Raises Unusable."""
+    return read_yaml(text.encode(), where)
 
 
 def _sentence(error: Unusable | Failure) -> str:

@@ -37,8 +37,10 @@ _KEYS = (
     "name", "structure", "physical", "gain", "piston_area", "ground", "sample_rate", "delay", "noise",
 )  # fmt: skip
 _LARGEST, _STOREYS = 1_000_000, 12
-_LATEST = 10_000
-"""Samples: the longest delay of a command."""
+_LATEST = 500
+"""Samples: the longest delay of a command; each is a state of the loop whose poles are sought."""
+_HUGE = 1e15
+"""SI: what is larger is a slip of the pen, and would leave the range of a computer."""
 
 
 @dataclass(frozen=True)
@@ -84,6 +86,10 @@ class Case:
             if given.shape != (n, n) or not 1 <= n <= _STOREYS or not np.allclose(given, given.T, rtol=1e-6):
                 raise Unusable("bad-case", f"{what} is no symmetric matrix of {n} rows", "structure",
                                f"give three symmetric matrices of one size, at most {_STOREYS}")  # fmt: skip
+        parts = (self.mass, self.stiffness, self.damping, *vars(self.physical).values(), self.gain,
+                 self.piston_area or 0.0)  # fmt: skip
+        if not all(np.all(np.abs(part) <= _HUGE) for part in parts):
+            raise Unusable("bad-case", f"a number is larger than {_HUGE:g}", "case", "correct it")
         if not 0 <= self.place < n:
             raise Unusable("bad-case", f"storey {self.place + 1} of {n}", "physical", f"give a storey from 1 to {n}")
         # A substructure without mass has no motion of its own to integrate.
@@ -184,8 +190,11 @@ BUILT_IN: Mapping[str, Callable[[], Case]] = {
 
 def modal_damping(mass: Array, stiffness: Array, ratio: float) -> Array:
     """C with which every mode has the damping ratio ζ: C = M Φ diag(2 ζ ω) Φᵀ M, where Φᵀ M Φ = 1, (n, n)."""
-    squares, modes = scipy.linalg.eigh(stiffness, mass)
-    if squares.min() <= 0:
+    try:
+        squares, modes = scipy.linalg.eigh(stiffness, mass)
+    except (scipy.linalg.LinAlgError, ValueError):  # a mass that is none, or numbers beyond a computer's
+        squares, modes = np.zeros(1), np.zeros((1, 1))
+    if not squares.min() > 0:
         raise Unusable("bad-case", "the structure does not stand by itself", "structure", "correct its stiffness")
     shape = mass @ modes
     return np.asarray(shape @ np.diag(2 * ratio * np.sqrt(squares)) @ shape.T)

@@ -98,7 +98,12 @@ class ChangedMachine:
             symbol = self.preset.parameter(name).in_equations
             values[symbol] = self.values[symbol] * factor
         shape = np.broadcast_shapes(np.shape(gain), *(np.shape(value) for value in values.values()))
-        return self.chain.linearise({name: np.broadcast_to(v, shape) for name, v in values.items()}, self.output)
+        with np.errstate(all="ignore"):
+            model = self.chain.linearise({name: np.broadcast_to(v, shape) for name, v in values.items()}, self.output)
+        if not all(np.isfinite(matrix).all() for matrix in (model.A, model.B, model.C, model.D)):
+            raise Unusable("out-of-range", "the equations of the changed machine leave the range of a computer", "set",
+                           "correct the values")  # fmt: skip
+        return model
 
 
 def changed_machine(fit: FitResult, change: Change) -> ChangedMachine:

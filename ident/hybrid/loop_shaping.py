@@ -36,6 +36,8 @@ Array = NDArray[np.float64]
 STRUCTURES = ("feedback", "two-degree")
 FACTOR = 1.03
 """γ over γmin: at 1 a pole of K∞ goes to infinity; 1.1 would cost a tenth of the margin."""
+LATEST = 64
+"""Samples: the longest delay that is designed for; each is a state of the loop, and of a hundred drawn ones."""
 _NONE = np.zeros(0, complex)
 
 
@@ -75,6 +77,9 @@ def design(
         raise Unusable(
             "unknown-structure", f"no structure {structure!r}", "structure", f"use {' or '.join(STRUCTURES)}"
         )
+    if delay > LATEST:
+        raise Unusable("too-late", f"the command acts {delay:g} samples after the measurement", "delay",
+                       f"design for at most {LATEST} samples, at a lower rate")  # fmt: skip
     outer, through = factored(Rational.of_model(plant))
     rolled = target.rational.times(_roll_off(target, outer))
     stabilised = robust_stabilisation(rolled.times(through).realised(), FACTOR)
