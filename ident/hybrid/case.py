@@ -90,6 +90,8 @@ class Case:
                  self.piston_area or 0.0)  # fmt: skip
         if not all(np.all(np.abs(part) <= _HUGE) for part in parts):
             raise Unusable("bad-case", f"a number is larger than {_HUGE:g}", "case", "correct it")
+        if self.piston_area is not None and not self.piston_area * _HUGE >= 1:
+            raise Unusable("bad-case", f"a piston of {self.piston_area:g} m^2", "piston_area", "correct it")
         if not 0 <= self.place < n:
             raise Unusable("bad-case", f"storey {self.place + 1} of {n}", "physical", f"give a storey from 1 to {n}")
         # A substructure without mass has no motion of its own to integrate.

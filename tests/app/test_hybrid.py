@@ -176,7 +176,7 @@ def test_a_result_is_stored_once_and_one_that_cannot_be_ends_its_job(service, si
     assert service.get(f"{API}/hybrid-simulations/unstored").status_code == 404
 
 
-def test_what_if_scales_what_is_resized(service, fitted):
+def test_what_if_scales_what_is_resized_and_finds_a_peak(service, fitted):
     before = service.post(f"{API}/fits/{fitted}/what-if", json={}).json()
     body = {"set": {"area": "239 mm^2", "volume": 1e-4}, "fitted": {"volume": "0.2 L"}, "gain": [2, 3],
             "specimen": {"mass": "2.06 kg", "stiffness": 30650}}  # fmt: skip
@@ -189,6 +189,11 @@ def test_what_if_scales_what_is_resized(service, fitted):
     assert [one["gain"] for one in after["responses"]] == [2.0, 3.0]
     assert before["parameters"]["Z0"]["after"] == before["parameters"]["Z0"]["before"]
     assert after["peak"] is None
+    found = service.post(f"{API}/fits/{fitted}/what-if", json=body | {"peak": "45 Hz"}).json()
+    assert (found["peak"]["target"]["frequency"], len(found["with_peak"])) == (45.0, 2)
+    for each in found["with_peak"]:
+        assert each["stable"]
+        assert any(abs(peak["frequency"] - 45) <= 2 for peak in each["peaks"])
 
 
 def test_a_run_is_followed(service, matrix):
@@ -208,6 +213,7 @@ BAD_CASES = [
     (OWN | {"delay": 10**30}, "bad-case"),
     (OWN | {"structure": STRUCTURE | {"mass": "-1 kg", "damping": {"ratio": "5 %"}}}, "bad-case"),
     (OWN | {"gain": 1e300}, "bad-case"),
+    (OWN | {"piston_area": "1e-300 m^2"}, "bad-case"),
     (OWN | {"surprise": 1}, "unknown-key"),
     ({"structure": {"mass": 1}, "physical": {}}, "missing-unit"),
 ]
