@@ -20,6 +20,7 @@ _IMAGES: dict[int | str, dict[str, Any]] = {200: {"content": {kind: {} for kind 
 _FILES: dict[int | str, dict[str, Any]] = {200: {"content": {kind: {} for kind in controllers.FILES.values()}}}
 Limit = Annotated[int, Query(ge=1, le=200)]
 Theme = Annotated[str, Query(max_length=20, description="light or dark")]
+Share = Annotated[float, Query(ge=0.2, le=4, description="Share of the usual width")]
 Run = Annotated[str | None, Query(max_length=200, description="Id of the run; without it the first")]
 Noise = Annotated[
     str | None,
@@ -65,9 +66,11 @@ def controller(here: Here, controller: str) -> ControllerView:
 
 
 @router.get("/controllers/{controller}/figures/{name}.{kind}", response_class=Response, responses=_IMAGES)
-def controller_drawn(here: Here, controller: str, name: str, kind: str, theme: Theme = "light") -> Response:
+def controller_drawn(
+    here: Here, controller: str, name: str, kind: str, theme: Theme = "light", share: Share = 1.0
+) -> Response:
     """The figure `closed-loop` of a controller as json (Vega-Lite), svg, png or pdf."""
-    content, media = drawing.of_controller(here, controller, name, kind, theme)
+    content, media = drawing.of_controller(here, controller, name, kind, (theme, share))
     return Response(content, media_type=media)
 
 
@@ -91,9 +94,11 @@ def simulation(here: Here, simulation: str) -> HybridView:
 
 
 @router.get("/hybrid-simulations/{simulation}/figures/{name}.{kind}", response_class=Response, responses=_IMAGES)
-def simulation_drawn(here: Here, simulation: str, name: str, kind: str, theme: Theme = "light") -> Response:
+def simulation_drawn(
+    here: Here, simulation: str, name: str, kind: str, theme: Theme = "light", share: Share = 1.0
+) -> Response:
     """The figures `displacement`, `response` and `map` of a simulation as json (Vega-Lite), svg, png or pdf."""
-    content, media = drawing.of_simulation(here, simulation, name, kind, theme)
+    content, media = drawing.of_simulation(here, simulation, name, kind, (theme, share))
     return Response(content, media_type=media)
 
 
@@ -104,9 +109,11 @@ def changed(here: Here, fit: str, request: WhatIfRequest) -> WhatIfView:
 
 
 @router.get("/fits/{fit}/what-if/figures/{name}.{kind}", response_class=Response, responses=_IMAGES)
-def changed_drawn(here: Here, fit: str, name: str, kind: str, asked: Asked = "{}", theme: Theme = "light") -> Response:
+def changed_drawn(
+    here: Here, fit: str, name: str, kind: str, asked: Asked = "{}", theme: Theme = "light", share: Share = 1.0
+) -> Response:
     """The figures `response` and `root-locus` of a change as json (Vega-Lite), svg, png or pdf."""
-    content, media = drawing.of_what_if(here, fit, what_if.asked(asked), name, kind, theme)
+    content, media = drawing.of_what_if(here, fit, what_if.asked(asked), name, kind, (theme, share))
     return Response(content, media_type=media)
 
 
@@ -118,8 +125,9 @@ def track(here: Here, matrix: str, run: Run = None, noise: Noise = None) -> Trac
 
 @router.get("/matrices/{matrix}/track/figures/{name}.{kind}", response_class=Response, responses=_IMAGES)
 def track_drawn(
-    here: Here, matrix: str, name: str, kind: str, run: Run = None, noise: Noise = None, theme: Theme = "light"
-) -> Response:
+    here: Here, matrix: str, name: str, kind: str, run: Run = None, noise: Noise = None, theme: Theme = "light",
+    share: Share = 1.0,
+) -> Response:  # fmt: skip
     """The figure `tracking` of a run as json (Vega-Lite), svg, png or pdf."""
-    content, media = drawing.of_track(here, matrix, run, noise, name, kind, theme)
+    content, media = drawing.of_track(here, matrix, run, noise, name, kind, (theme, share))
     return Response(content, media_type=media)

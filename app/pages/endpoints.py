@@ -6,7 +6,7 @@ from fastapi import APIRouter, HTTPException, Request
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 
 from app.context import Here
-from app.pages import assets, service
+from app.pages import assets, service, use_endpoints
 from app.pages.job_view import JobPageView
 from app.pages.problems import PageRoute, Unknown
 from app.pages.rendering import page
@@ -87,4 +87,6 @@ def unknown() -> None:
 
 
 router.include_router(assets.router)
+router.include_router(use_endpoints.pages)
+router.include_router(use_endpoints.parts)
 router.add_api_route("/{path:path}", unknown, route_class_override=Unknown)

@@ -9,7 +9,7 @@ from ident.words.titles import title
 from schemas.fit import JobProblem, JobView
 
 _OPEN = ("queued", "running")
-_PLACES = {"diagnosis": "#missing", "hybrid simulation": "#use"}
+_PLACES = {"diagnosis": "#missing", "hybrid simulation": "/use?simulation={job}#hybrid"}
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def job_page(job: JobView) -> JobPageView:
 def _at(job: JobView) -> str:
     """The page that shows a job: that of its fit where it makes none."""
     if job.parent is not None and job.kind in _PLACES:
-        return f"/fits/{job.parent}{_PLACES[job.kind]}"
+        return f"/fits/{job.parent}{_PLACES[job.kind].format(job=job.id)}"
     return f"/fits/{job.id}"
 
 

@@ -37,9 +37,9 @@ def _closed_loop(made: ControllerDesign, look: Look, name: str) -> Chart:
     named = list(curves)
     colours = [look.series[0], look.series[1], look.faint][: len(named)]
     dashes = [[1, 0], [1, 0], [6, 4]][: len(named)]
-    colour = alt.Color("s:N", title=None, scale=alt.Scale(domain=named, range=colours),
-                       legend=alt.Legend(orient="bottom", symbolType="stroke"))  # fmt: skip
-    dash = alt.StrokeDash("s:N", title=None, scale=alt.Scale(domain=named, range=dashes), legend=None)
+    legend = alt.Legend(orient="bottom", symbolType="stroke", labelLimit=400)  # one: two that differ are warned of
+    colour = alt.Color("s:N", title=None, scale=alt.Scale(domain=named, range=colours), legend=legend)
+    dash = alt.StrokeDash("s:N", title=None, scale=alt.Scale(domain=named, range=dashes), legend=legend)
     panels = [
         _panel(made, look, colour, dash, "a", "Magnitude (dB)", named=False),
         _panel(made, look, colour, dash, "p", "Phase (°)", named=True),

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.signal
 
 from ident.figures.frame import unchecked
-from ident.figures.hybrid_time import told
+from ident.figures.hybrid_time import legend_of, told
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, Row, datasets
 from ident.figures.thin import significant
@@ -57,14 +57,13 @@ def rows(name: str, one: HybridResult) -> list[Row]:
 
 
 def _panel(part: str, said: str, colours: Any, look: Look) -> Panel:
-    legend = alt.Legend(title=None, orient="top", symbolType="stroke", symbolSize=500) if part == "a" else None
     panel: Panel = (
         alt.Chart(alt.NamedData("curves"), width=look.across(720), height=180)
         .mark_line(strokeWidth=1.5)
         .encode(
             x=alt.X("f:Q", axis=alt.Axis(title="Frequency (Hz)"), scale=alt.Scale(domain=[0, HIGHEST], nice=False)),
             y=alt.Y(f"{part}:Q", axis=alt.Axis(title=said)),
-            color=alt.Color("s:N", scale=colours, legend=legend),
+            color=alt.Color("s:N", scale=colours, legend=legend_of(look)),
         )
     )
     return panel

@@ -17,6 +17,7 @@ from ident.hybrid.rig import HybridResult
 
 REFERENCE = "reference: the whole structure"
 _BINS, _NEAR = 350, 1.0  # stretches of the whole record; s shown near the peak
+_LINE = 95  # characters beside each other in the narrowest figure
 _DASHES = ([6, 3], [1, 0], [2, 2])
 
 
@@ -50,16 +51,18 @@ def _hybrid_time(shown: Mapping[str, HybridResult], look: Look) -> Chart:
 
 
 def told(shown: Mapping[str, HybridResult]) -> list[str]:
-    """A line of each simulation: its scores, or when it ran away."""
+    """A line of each simulation, two where it is long: its scores, or when it ran away."""
     lines = []
     for name, one in shown.items():
         found = one.scores
         if found is None:
             lines.append(f"{name}: unstable, ran away after {one.ended:.3g} s")
             continue
-        left = f"measured against reference {words.percent(found.reference_rms)}"
-        follows = f"against what was asked for {words.percent(found.tracking_rms)}, {1e3 * found.delay:.3g} ms late"
-        lines.append(f"{name}: {left}, {follows}{'' if one.stable else '; unstable'}")
+        left = f"{words.percent(found.reference_rms)} off the reference"
+        late = f"{round(1e3 * found.delay, 2) + 0.0:.2f} ms late"  # never a minus before nothing
+        follows = f"{words.percent(found.tracking_rms)} off what was asked for, {late}"
+        said = f"{left}, {follows}{'' if one.stable else '; unstable'}"
+        lines += [f"{name}: {said}"] if len(name) + len(said) < _LINE else [f"{name}:", said]
     return lines
 
 
@@ -83,8 +86,14 @@ def _rows(curves: Mapping[str, Real], factor: float, part: slice, rate: float) -
     return rows
 
 
+def legend_of(look: Look) -> alt.Legend:
+    """The legend of simulations: their labels are long, so that of narrow panels has one below the other."""
+    return alt.Legend(title=None, orient="top", symbolType="stroke", symbolSize=500, labelLimit=500,
+                      columns=1 if look.share < 1 else 3)  # fmt: skip
+
+
 def _panel(table: str, colours: Any, dashes: Any, across: str, look: Look) -> Panel:
-    legend = alt.Legend(title=None, orient="top", symbolType="stroke", symbolSize=500) if table == "whole" else None
+    legend = legend_of(look)
     panel: Panel = (
         alt.Chart(alt.NamedData(table), width=look.across(720), height=200)
         .mark_line(strokeWidth=1.3)

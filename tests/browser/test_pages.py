@@ -22,10 +22,11 @@ def addresses(matrix: str, fitted: str) -> dict[str, str]:
         "matrix": f"/matrices/{matrix}",
         "jobs": "/jobs",
         "fit": f"/fits/{fitted}",
+        "use": f"/fits/{fitted}/use",
     }
 
 
-@pytest.mark.parametrize("name", ["actuators", "actuator", "upload", "matrix", "jobs", "fit"])
+@pytest.mark.parametrize("name", ["actuators", "actuator", "upload", "matrix", "jobs", "fit", "use"])
 def test_a_page_fits_desk_and_tablet_in_both_themes_and_shuts_nobody_out(name, page, site, matrix, fitted, screenshots):
     """Every field has a label and every column of a table a heading."""
     page.goto(site.address + addresses(matrix, fitted)[name])

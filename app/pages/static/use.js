@@ -1,0 +1,133 @@
+// An identified machine put to use: forms that make a controller or queue a hybrid simulation, fields that come and go.
+
+import { guarded, send } from "./api.js";
+import "./progress.js";
+
+// What was chosen is there again on the page that shows what came of it; no browser lets a page choose a file.
+const named = ({ name, type }) => name && !["hidden", "file"].includes(type);
+const memory = (form) => `${location.pathname} ${form.dataset.make}`;
+
+function remember(form) {
+  const chosen = [...form.elements].filter(named).map(({ name, type, value, checked }) => [name, type === "checkbox" ? checked : value, value]);
+  sessionStorage.setItem(memory(form), JSON.stringify(chosen));
+}
+
+function recall(form) {
+  for (const [name, state, value] of JSON.parse(sessionStorage.getItem(memory(form)) ?? "[]")) {
+    const field = [...form.elements].find((one) => one.name === name && (typeof state !== "boolean" || one.value === value));
+    if (!field) continue;
+    if (typeof state === "boolean") field.checked = state;
+    else if (!field.options || [...field.options].some((option) => option.value === state)) field.value = state;
+  }
+}
+
+for (const form of document.querySelectorAll("form[data-make]")) recall(form);
+
+// Fields that belong to one choice are there, and sent, only while that is chosen.
+for (const form of document.querySelectorAll("form")) {
+  for (const choice of form.querySelectorAll("select[data-shows]")) {
+    const follow = () => {
+      for (const field of form.querySelectorAll(`[data-for="${choice.dataset.shows}"]`)) {
+        field.hidden = !field.dataset.of.split(" ").includes(choice.value);
+        for (const input of field.querySelectorAll("input, textarea")) {
+          input.disabled = input.closest("[data-for][hidden]") !== null;
+        }
+      }
+    };
+    choice.addEventListener("change", follow);
+    follow(); // a browser may have kept what was chosen before
+  }
+}
+
+// What is empty is not part of the address; the button says that something is under way.
+for (const form of document.querySelectorAll("form[data-sparse]")) {
+  form.addEventListener("formdata", ({ formData }) => {
+    for (const [name, value] of [...formData]) if (value.trim() === "") formData.delete(name);
+  });
+  form.addEventListener("submit", () => {
+    const button = form.querySelector("button[type=submit]");
+    const said = button.textContent;
+    button.textContent = form.dataset.wait;
+    addEventListener("pageshow", () => (button.textContent = said), { once: true }); // back again
+  });
+}
+
+const made = { controller: controller, simulation: simulation };
+
+for (const form of document.querySelectorAll("form[data-make]")) {
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    const button = form.querySelector("button[type=submit]"), said = button.textContent;
+    guarded(button, form.querySelector("[role=alert]"), async () => {
+      button.textContent = form.dataset.wait;
+      try {
+        const { data } = await send("POST", form.action, await made[form.dataset.make](form));
+        remember(form);
+        if (form.dataset.make === "controller") choose(data.id);
+        show(form.dataset.make, data.id, form.closest("section").id);
+      } finally {
+        button.textContent = said;
+      }
+    });
+  });
+}
+
+// The next simulation is under the controller that was made last.
+function choose(id) {
+  const form = document.querySelector("form[data-make=simulation]");
+  form.elements.controller.add(new Option("", id, true, true));
+  remember(form);
+}
+
+// The same page with what was made; what else it shows stays.
+function show(what, id, place) {
+  const wanted = new URLSearchParams(location.search);
+  wanted.set(what, id);
+  location.assign(`${location.pathname}?${wanted}#${place}`);
+}
+
+async function controller(form) {
+  const fields = new FormData(form);
+  const asked = { fit: fields.get("fit"), structure: fields.get("structure"), seed: Number(fields.get("seed")) };
+  asked.case = await caseOf(fields);
+  if (fields.get("target") === "own") {
+    const target = await read(fields.get("own-target"), "target");
+    for (const name of ["numerator", "denominator"]) target[name] = target[name]?.map?.(Number) ?? target[name];
+    asked.target = target;
+  }
+  return asked;
+}
+
+async function simulation(form) {
+  const fields = new FormData(form);
+  const asked = { fit: fields.get("fit"), controller: fields.get("controller"), case: await caseOf(fields) };
+  if (fields.get("ground")) asked.ground = await ground(fields);
+  asked.map = fields.has("map");
+  const effects = fields.getAll("effects");
+  asked.effects = effects.filter((name) => !fields.get(`strength.${name}`)?.trim());
+  const stated = effects.filter((name) => !asked.effects.includes(name));
+  asked.set = Object.fromEntries(stated.map((name) => [name, fields.get(`strength.${name}`).trim()]));
+  return asked;
+}
+
+async function caseOf(fields) {
+  return fields.get("case") === "own" ? read(fields.get("own-case"), "case") : fields.get("case");
+}
+
+// A description in YAML as the service reads it.
+async function read(text, where) {
+  return (await send("POST", "/use/reading", { text, where })).data;
+}
+
+async function ground(fields) {
+  const of = (name) => fields.get(`ground.${name}`)?.trim() || undefined;
+  const kind = fields.get("ground");
+  const asked = { kind, unit: of("unit"), step: of("step"), frequency: of("frequency"), amplitude: of("amplitude"), duration: of("duration") };
+  if (kind === "blwn") Object.assign(asked, { band: [of("from"), of("to")], seed: Number(of("seed") ?? 0) });
+  if (kind === "record") {
+    const file = fields.get("ground.file");
+    if (!file?.size) throw new Error("No record is chosen. Choose a text file of accelerations.");
+    Object.assign(asked, { text: await file.text(), name: file.name, scale: Number(of("scale") ?? 1) });
+  }
+  return asked;
+}
