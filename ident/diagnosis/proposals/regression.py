@@ -32,6 +32,7 @@ WIDE = 1.3  # of the command's band is looked at
 _DIGITS = 8  # of what a term explains: the rest is rounding
 _BLOCK = 128  # terms whose responses are worked out together
 _AT_ONCE = 8  # runs
+_WITHOUT_END = 1e60  # of the output, for a strength of one: no power of a signal comes near
 
 
 @dataclass(frozen=True)
@@ -99,7 +100,9 @@ def _rows(terms: Sequence[Term], runs: Sequence[Record], paths: Mapping[str, Seq
     def of_block(of: tuple[int, list[int]]) -> Array:
         run, here = of
         samples = np.column_stack([terms[i].samples(runs[run].signals, runs[run].rate) for i in here])
-        return _within(paths[terms[here[0]].at][run].to(samples)[:, :, 0], runs[run], band)
+        found = _within(paths[terms[here[0]].at][run].to(samples)[:, :, 0], runs[run], band)
+        # Where small signals are not stable an answer grows without end: it tells nothing of the run.
+        return np.where(np.max(np.abs(found), axis=0, initial=0.0) < _WITHOUT_END, found, 0.0)
 
     answers = iter(each(of_block, [(run, here) for run in range(len(runs)) for here in blocks]))
     every = []

@@ -13,6 +13,7 @@ from ident.custom.definition import read_effect
 from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.proposals import regression as regressions
 from ident.diagnosis.proposals.candidate import Candidate
+from ident.diagnosis.proposals.records import records
 from ident.diagnosis.proposals.search import Search
 from ident.diagnosis.proposals.sight import sight
 from ident.diagnosis.proposals.terms import Term
@@ -273,3 +274,26 @@ def test_a_term_that_closes_a_circle_with_those_before_is_not_tried():
     assert search._tried(models, base, "proposed_1", force, seen) is None
     speed = Candidate((Term("spool", "w", "x", "share", ("x",), {}),), (1.0,), 1e-9, 0.5)
     assert search._tried(models, base, "proposed_1", speed, seen) is not None
+
+
+def test_an_answer_that_grows_without_end_is_no_column():
+    """Where small signals are not stable: no number overflows, and the other terms are weighed as ever."""
+    matrix, _ = with_a_leak()
+    models = ModelFamily.of(matrix, Settings(model="qian2014"))
+    base = models.refit((), {p.in_equations: p.value for p in models.preset.parameters})
+    runs = records(base, ["w", "P"])
+    leak, flow = (Term("spool", "w", text, text, (name,), {}) for text, name in (("abs(P)", "P"), ("w * abs(w)", "w")))
+
+    class Answer:
+        def __init__(self, *growth: float) -> None:
+            self.growth = np.array(growth)
+
+        def to(self, samples):
+            return (samples * self.growth)[:, :, None]
+
+    alone = regressions.regression([leak], runs, {"w": [Answer(1.0)] * len(runs)}, models.band)
+    with np.errstate(all="raise"):
+        both = regressions.regression([leak, flow], runs, {"w": [Answer(1.0, 1e200)] * len(runs)}, models.band)
+    assert both.gains[0] == pytest.approx(alone.gains[0], rel=1e-9)
+    assert both.gains[1] == 0.0
+    assert both.classes() == [[0]]
