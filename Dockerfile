@@ -8,4 +8,6 @@ USER servoident
 VOLUME /data
 ENV PATH="/servoident/.venv/bin:$PATH"
 EXPOSE 8000
+HEALTHCHECK --start-period=60s --timeout=5s CMD ["python3", "-c", \
+    "from urllib.request import urlopen; urlopen('http://127.0.0.1:8000/api/v1/health', timeout=4)"]
 CMD ["servoident", "serve", "--host", "0.0.0.0", "--data", "/data"]

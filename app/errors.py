@@ -14,6 +14,8 @@ from sqlalchemy.exc import DataError, OperationalError
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
+from app.matrices.removed import Removed
+from app.storage import Unreachable
 from ident.errors import Unusable
 from schemas.problem import Problem
 
@@ -22,16 +24,17 @@ DISK_FULL = "53100"  # PostgreSQL's state
 _log = logging.getLogger("servoident")
 _TITLES = {
     400: "Bad request", 401: "Token needed", 403: "Not allowed", 404: "Not found", 405: "Method not allowed",
-    408: "Idle", 409: "Conflict", 411: "Length needed", 413: "Too large", 415: "Unsupported media type",
-    422: "Unusable input", 426: "WebSocket needed", 500: "A defect of the program", 503: "Not ready", 507: "Disk full",
+    408: "Idle", 409: "Conflict", 410: "Gone", 411: "Length needed", 413: "Too large", 415: "Unsupported media type",
+    422: "Unusable input", 426: "WebSocket needed", 429: "Too often", 500: "A defect of the program", 503: "Not ready",
+    507: "Disk full",
 }  # fmt: skip
 
 
 class Failure(HTTPException):
     """A refusal of the service, with its HTTP status; an HTTPException, which passes through whatever reads a body."""
 
-    def __init__(self, status: int, code: str, what: str, where: str, remedy: str) -> None:
-        super().__init__(status, what)
+    def __init__(self, status: int, code: str, what: str, where: str, remedy: str, **headers: str) -> None:
+        super().__init__(status, what, headers)
         self.status, self.code, self.what, self.where, self.remedy = status, code, what, where, remedy
 
 
@@ -51,15 +54,16 @@ def problem(status: int, code: str, what: str, where: str = "", remedy: str = ""
 
 def refusal(error: Failure, **headers: str) -> Response:
     """The response of a refusal."""
+    headers = {**(error.headers or {}), **headers}
     return problem(error.status, error.code, error.what, error.where, error.remedy, **headers)
 
 
 def _documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    schema = Problem.model_json_schema()
+    schema = {"$ref": "#/components/schemas/Problem"}
     return {status: {"description": _TITLES[status], "content": {MEDIA: {"schema": schema}}} for status in statuses}
 
 
-COMMON = _documented(400, 401, 403, 404, 405, 409, 413, 415, 422, 503, 507)
+COMMON = _documented(400, 401, 403, 404, 405, 409, 410, 413, 415, 422, 429, 503, 507)
 """Responses that every call may give, for the OpenAPI document."""
 
 
@@ -71,6 +75,11 @@ async def _failure(_: Request, error: Exception) -> Response:
 async def _unusable(_: Request, error: Exception) -> Response:
     assert isinstance(error, Unusable)
     return problem(422, error.code, error.what, error.where, error.remedy)
+
+
+async def _removed(_: Request, error: Exception) -> Response:
+    assert isinstance(error, Removed)
+    return problem(410, error.code, error.what, error.where, error.remedy)
 
 
 async def _invalid(_: Request, error: Exception) -> Response:
@@ -95,12 +104,16 @@ async def _unstorable(_: Request, __: Exception) -> Response:
     return problem(422, "unusable-text", "it holds text that cannot be stored", "request", "write plain text")
 
 
-async def _system(request: Request, error: Exception) -> Response:
+async def unavailable(request: Request, error: Exception) -> Response:
+    """Where the disk is full, or the database does not answer."""
     if is_full(error):
         return problem(507, "disk-full", "no space is left on the disk", "upload", "free some space and try again")
     if isinstance(error, OperationalError):
         _log.error("the database does not answer", exc_info=error)
         return problem(503, "no-database", "the database does not answer", "service", "try again in a moment")
+    if isinstance(error, Unreachable):
+        _log.error("the store of blobs does not answer", exc_info=error)
+        return problem(503, "no-blobs", "the store of raw uploads does not answer", "service", "try again in a moment")
     return await _unexpected(request, error)
 
 
@@ -111,14 +124,15 @@ async def _unexpected(request: Request, error: Exception) -> Response:
 
 _ANSWERS: Mapping[type[Exception], Callable[[Request, Exception], Awaitable[Response]]] = {
     Failure: _failure,
+    Removed: _removed,
     Unusable: _unusable,
     RequestValidationError: _invalid,
     HTTPException: _plain,
     ClientDisconnect: _gone,
     DataError: _unstorable,
     UnicodeEncodeError: _unstorable,
-    OSError: _system,
-    OperationalError: _system,
+    OSError: unavailable,
+    OperationalError: unavailable,
     Exception: _unexpected,
 }
 

@@ -26,6 +26,10 @@ class LRU(Generic[Item]):
                 return self._items[key]
         return self.put(key, make())
 
+    def __contains__(self, key: Hashable) -> bool:
+        with self._lock:
+            return key in self._items
+
     def put(self, key: Hashable, item: Item) -> Item:
         """Keep an item."""
         with self._lock:

@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from functools import cache, partial
 from importlib import import_module
 from importlib.metadata import version
 
 import uvicorn
-from fastapi import APIRouter, FastAPI
+from fastapi import APIRouter, Depends, FastAPI
 from fastapi.concurrency import run_in_threadpool
+from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
-from app import errors
+from app import errors, openapi
+from app.access.audit import Audited
+from app.access.gate import Gate
+from app.access.noting import carry
+from app.access.roles import refuse_undeclared
+from app.access.tries import Tries
+from app.blobs import open_storage
 from app.context import Context
 from app.database import connect, migrate, sessions
 from app.diagnoses.work import DIAGNOSIS
@@ -19,66 +29,131 @@ from app.fits.work import FIT
 from app.hybrid.work import HYBRID
 from app.jobs.engine import Jobs
 from app.jobs.service import resume
-from app.jobs.steps import GuardedSteps
+from app.jobs.steps import Runs
+from app.operation.logs import in_json
+from app.operation.metrics import Requests
+from app.operation.observed import Observed
 from app.pages import router as pages
+from app.pages.problems import sign_in
+from app.profiles.work import PROFILE
+from app.regress.work import RECHECK
+from app.request_id import RequestId
 from app.security import Guard
 from app.settings import Settings
-from app.storage import Storage
 from app.stream.service import LARGEST_MESSAGE
+from app.webhooks.courier import Courier
+from app.webhooks.hosts import origins
+from app.webhooks.told import told
+from app.workers.pulse import Pulse
 from ident.parallel import one_thread
 
 API = "/api/v1"
 FEATURES = (
+    "access",
     "matrices",
+    "drafts",
+    "limits",
     "actuators",
     "fits",
+    "profiles",
     "diagnoses",
     "jobs",
     "report",
     "parameters",
+    "statistics",
+    "regress",
+    "webhooks",
+    "retention",
+    "backup",
     "catalogue",
     "own_effects",
     "hybrid",
     "stream",
+    "workers",
     "operation",
 )
 """Folders whose endpoints.py has a `router` of the API."""
+_PATIENCE = 5  # s in which what is being answered ends, before the service does
+_TURN = (
+    1e-3  # s after which an upload that is read, or a fit, lets an answer take its turn: the interpreter's own are 5
+)
 
 
 def create_app(settings: Settings) -> FastAPI:
     """The application; its database is migrated and its queue runs while it is served."""
-
-    @asynccontextmanager
-    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        context: Context = app.state.context
-        with one_thread():  # for its life: a job's answer hangs on no page that is drawn meanwhile
-            await run_in_threadpool(_start, context)
-            yield
-            await run_in_threadpool(_stop, context)
-
-    app = FastAPI(
-        title="servoident", version=version("servoident"), lifespan=lifespan, docs_url=None, redoc_url=None,
-        openapi_url=f"{API}/openapi.json",
-    )  # fmt: skip
+    origins(settings.webhook_hosts)  # before anything is opened: what cannot be a host is refused
+    app = routed()
     app.state.context = make_context(settings)
+    app.state.tries = Tries(settings.failures)
+    app.state.requests = Requests()
     errors.install(app)
-    api = APIRouter(prefix=API)
-    for feature in FEATURES:
-        api.include_router(import_module(f"app.{feature}.endpoints").router)
-    app.include_router(api)
-    app.include_router(pages)
-    app.add_middleware(Guard, settings=settings)
+    _surround(app, settings)
     return app
 
 
-def _start(context: Context) -> None:
+def routed() -> FastAPI:
+    """The calls and the pages, of no service yet: enough for their document."""
+    app = FastAPI(
+        title="servoident", version=version("servoident"), lifespan=_lifespan, openapi_url=None,
+        generate_unique_id_function=openapi.named, dependencies=[Depends(refuse_undeclared)],
+        webhooks=told,
+    )  # fmt: skip
+    app.openapi = cache(partial(openapi.write, app))  # type: ignore[method-assign]
+    api = APIRouter(prefix=API)
+    for feature in FEATURES:
+        api.include_router(import_module(f"app.{feature}.endpoints").router)
+    api.include_router(openapi.router)
+    app.include_router(api)
+    app.include_router(pages)
+    return app
+
+
+@asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    context: Context = app.state.context
+    with one_thread():  # for its life: a job's answer hangs on no page that is drawn meanwhile
+        threads = await run_in_threadpool(start, context)
+        yield
+        await run_in_threadpool(stop, context, threads)
+
+
+def _surround(app: FastAPI, settings: Settings) -> None:
+    """What each request passes on its way in; the last one added is the first that it meets."""
+    context = app.state.context
+    app.add_middleware(Audited, context=context)
+    app.add_middleware(Gate, context=context, tries=app.state.tries, sign_in=sign_in)
+    app.add_middleware(Guard, settings=settings)
+    app.add_middleware(Observed, requests=app.state.requests)
+    app.add_middleware(RequestId)
+    if settings.proxies:
+        app.add_middleware(ProxyHeadersMiddleware, trusted_hosts=list(settings.proxies))
+
+
+@dataclass(frozen=True)
+class Threads:
+    """What goes on beside requests and jobs: the pulse, and the courier of webhooks."""
+
+    pulse: Pulse
+    courier: Courier
+
+
+def start(context: Context) -> Threads:
+    """Begin to work on jobs."""
     context.storage.tidy()
+    pulse = Pulse(context.sessions, context.settings.executor, context.jobs)
+    pulse.start()
     context.jobs.launch()
     resume(context)
+    courier = Courier(context.sessions, context.settings)
+    courier.start()
+    return Threads(pulse, courier)
 
 
-def _stop(context: Context) -> None:
+def stop(context: Context, threads: Threads) -> None:
+    """Let go of what runs, and end."""
     context.jobs.stop()
+    threads.courier.stop()
+    threads.pulse.stop()
     context.engine.dispose()
 
 
@@ -87,15 +162,20 @@ def make_context(settings: Settings) -> Context:
     settings.make_folders()
     migrate(settings.database)
     engine = connect(settings.database)
-    makers, storage = sessions(engine), Storage(settings.data / "blobs")
-    steps = GuardedSteps(makers, storage, FIT, DIAGNOSIS, HYBRID)
-    return Context(settings, engine, makers, storage, Jobs(settings, steps))
+    makers, storage = sessions(engine), open_storage(settings)
+    carry(makers)
+    runs = Runs(makers, storage, settings.executor, FIT, DIAGNOSIS, HYBRID, RECHECK, PROFILE)
+    return Context(settings, engine, makers, storage, Jobs(settings, runs))
 
 
 def run(settings: Settings) -> None:
     """Serve until interrupted."""
+    sys.setswitchinterval(_TURN)
+    if settings.log == "json":
+        in_json()
     app = create_app(settings)
     uvicorn.run(
-        app, host=settings.host, port=settings.port, log_level="warning", timeout_graceful_shutdown=2,
-        ws_max_size=LARGEST_MESSAGE, ws_per_message_deflate=False,
+        app, host=settings.host, port=settings.port, log_level="warning", timeout_graceful_shutdown=_PATIENCE,
+        log_config=None if settings.log == "json" else uvicorn.config.LOGGING_CONFIG,
+        ws_max_size=LARGEST_MESSAGE, ws_per_message_deflate=False, proxy_headers=False,
     )  # fmt: skip

@@ -5,13 +5,38 @@ from __future__ import annotations
 import base64
 import binascii
 import json
+from collections.abc import Callable, Iterator, Sequence
+from typing import Protocol, TypeVar
 
 from app.errors import Failure
+
+Item_co = TypeVar("Item_co", covariant=True)
 
 
 def cursor(*keys: str) -> str:
     """The cursor after a row with these keys."""
     return base64.urlsafe_b64encode(json.dumps(keys).encode()).decode()
+
+
+class Page(Protocol[Item_co]):
+    """A page of a list, and the cursor of the next one, if any."""
+
+    @property
+    def items(self) -> Sequence[Item_co]:
+        """What is on it."""
+
+    @property
+    def next(self) -> str | None:
+        """Where the next one begins."""
+
+
+def every(page: Callable[[str | None], Page[Item_co]]) -> Iterator[Item_co]:
+    """All items of a list, page after page."""
+    found = page(None)
+    yield from found.items
+    while found.next is not None:
+        found = page(found.next)
+        yield from found.items
 
 
 def keys_of(text: str | None, count: int) -> tuple[str, ...] | None:

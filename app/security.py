@@ -1,34 +1,21 @@
-"""Who may speak to the service: known hosts, own origin, the start token; and what every answer carries."""
+"""Who may speak to the service: known hosts, own origin; how much; and what every answer carries."""
 
 from __future__ import annotations
 
-import hmac
-from http.cookies import SimpleCookie
-from urllib.parse import parse_qsl, urlencode
-
 from starlette.datastructures import Headers, MutableHeaders
-from starlette.responses import HTMLResponse, RedirectResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.errors import Failure, problem, refusal
 from app.settings import Settings
 
-COOKIE = "servoident"
-OPEN = ("/api/v1/health", "/api/v1/ready")
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
     "font-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors 'none'"
 )
-_SIGN_IN = """<!doctype html>
-<html lang="en"><meta charset="utf-8"><title>servoident: token needed</title>
-<h1>This service asks for its token</h1>
-<p>Open the whole address that the service printed when it started; it ends with <code>?token=…</code></p>
-</html>
-"""
 _HEADERS = {
     "Content-Security-Policy": POLICY,
     "X-Content-Type-Options": "nosniff",
-    "Referrer-Policy": "no-referrer",
+    "Referrer-Policy": "same-origin",  # without any a browser sends a form with the origin "null"
     "Cross-Origin-Resource-Policy": "same-origin",
     "Cross-Origin-Opener-Policy": "same-origin",
 }
@@ -48,7 +35,7 @@ class Guard:
             await self.app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        answer = self._refusal(scope, headers)
+        answer = self._refusal(headers)
         if answer is None:
             await self.app(scope, self._limited(receive), self._marked(send, scope["path"]))
         elif scope["type"] == "websocket":
@@ -56,7 +43,7 @@ class Guard:
         else:
             await answer(scope, receive, self._marked(send, scope["path"]))
 
-    def _refusal(self, scope: Scope, headers: Headers) -> ASGIApp | None:
+    def _refusal(self, headers: Headers) -> ASGIApp | None:
         host = headers.get("host", "")
         if host not in self.hosts:
             return problem(403, "unknown-host", f"host {host[:80]!r} is not served", "Host", "use the printed address")
@@ -67,39 +54,13 @@ class Guard:
         length = headers.get("content-length", "0")
         if not length.isdecimal() or int(length) > self.settings.largest_upload:
             return refusal(self._too_large("declared", "Content-Length"), connection="close")
-        return None if scope["path"] in OPEN else self._token_refusal(scope, headers)
-
-    def _token_refusal(self, scope: Scope, headers: Headers) -> ASGIApp | None:
-        query = parse_qsl(scope.get("query_string", b"").decode("latin-1"), keep_blank_values=True)
-        given = dict(query).get("token")
-        if given is not None and self._right(given) and scope["type"] == "http" and scope["method"] == "GET":
-            rest = urlencode([(name, value) for name, value in query if name != "token"])
-            answer = RedirectResponse(scope["path"] + (f"?{rest}" if rest else ""), 303)
-            answer.set_cookie(COOKIE, given, httponly=True, samesite="strict", path="/")
-            return answer
-        bearer = headers.get("authorization", "").removeprefix("Bearer ")
-        cookies = SimpleCookie()
-        try:
-            cookies.load(headers.get("cookie", ""))
-        except Exception:  # a malformed cookie is no cookie
-            cookies.clear()
-        cookie = cookies[COOKIE].value if COOKIE in cookies else ""
-        if self._right(bearer) or self._right(cookie):
-            return None
-        if "text/html" in headers.get("accept", "") and not scope["path"].startswith("/api/"):
-            return HTMLResponse(_SIGN_IN, 401)
-        return problem(401, "token-needed", "this request carries no valid token", "Authorization",
-                       "open the address that the service printed, or send Authorization: Bearer TOKEN",
-                       **{"WWW-Authenticate": "Bearer"})  # fmt: skip
+        return None
 
     def _too_large(self, how: str, where: str) -> Failure:
         most = self.settings.largest_upload >> 20
         return Failure(
             413, "too-large", f"more than {most} MB are {how}", where, "upload fewer or shorter runs at a time"
         )
-
-    def _right(self, token: str) -> bool:
-        return hmac.compare_digest(token.encode(), self.settings.token.encode())
 
     def _limited(self, receive: Receive) -> Receive:
         """Count a body that declared no length; it is refused past the limit."""

@@ -4,21 +4,38 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
+import secrets
 import shutil
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
 _CHUNK = 1 << 20
+PART = ".part"  # end of the names of files that are being written
 _STAGED = "staged-"  # beginning of the names of folders that wait for a verdict
 _FORGOTTEN = 86_400  # s after which such a folder belongs to a process that was killed
 
 
+class Unreachable(OSError):
+    """The store of blobs does not answer; it may the next moment."""
+
+
+@dataclass(frozen=True)
+class Blob:
+    """A stored blob: its name, its bytes, and when it was stored, in seconds since 1970."""
+
+    sha256: str
+    size: int
+    changed: float
+
+
 class Storage:
-    """A folder of blobs that only grows. A blob is there whole or not at all."""
+    """A folder of blobs. A blob is there whole or not at all."""
 
     def __init__(self, folder: Path, behind: Storage | None = None) -> None:
         self.folder, self.behind = folder, behind
@@ -30,10 +47,20 @@ class Storage:
         with tempfile.TemporaryDirectory(dir=self.folder, prefix=_STAGED) as folder:
             yield Storage(Path(folder), self)
 
+    def begun(self) -> tuple[str, Storage]:
+        """A store in front of this one that stays until it is resumed by its name and taken away, or forgotten."""
+        name = secrets.token_hex(16)
+        return name, Storage(self.folder / f"{_STAGED}{name}", self)
+
+    def resumed(self, name: str) -> Storage | None:
+        """The store that was begun under a name; None where there is none."""
+        folder = self.folder / f"{_STAGED}{name}"
+        return Storage(folder, self) if re.fullmatch("[0-9a-f]{32}", name) and folder.is_dir() else None
+
     def put(self, content: BinaryIO) -> str:
         """Store a stream and return its SHA-256. Raises OSError where the disk is full; then nothing is left."""
         digest = hashlib.sha256()
-        handle, temporary = tempfile.mkstemp(dir=self.folder, suffix=".part")
+        handle, temporary = tempfile.mkstemp(dir=self.folder, suffix=PART)
         try:
             with os.fdopen(handle, "wb") as file:
                 while chunk := content.read(_CHUNK):
@@ -58,11 +85,23 @@ class Storage:
         own = self._place(sha256)
         return own if self.behind is None or own.exists() else self.behind.path(sha256)
 
+    def blobs(self) -> Iterator[Blob]:
+        """Every blob."""
+        for file in self.folder.glob("[0-9a-f][0-9a-f]/*"):
+            with suppress(FileNotFoundError):  # another has removed it
+                status = file.stat()
+                yield Blob(file.name, status.st_size, status.st_mtime)
+
+    def remove(self, sha256: str) -> None:
+        """Remove a blob."""
+        self._place(sha256).unlink(missing_ok=True)
+
     def tidy(self) -> None:
-        """Remove what processes that were killed in the middle of an upload have left."""
-        for folder in self.folder.glob(f"{_STAGED}*"):
-            if time.time() - folder.stat().st_mtime > _FORGOTTEN:
-                shutil.rmtree(folder, ignore_errors=True)
+        """Remove what processes that were killed in the middle of an upload have left, and what nobody came back to."""
+        for left in (*self.folder.glob(f"{_STAGED}*"), *self.folder.glob(f"*{PART}")):
+            with suppress(FileNotFoundError):  # another tidies too
+                if time.time() - left.stat().st_mtime > _FORGOTTEN:
+                    shutil.rmtree(left, ignore_errors=True) if left.is_dir() else left.unlink()
 
     def _place(self, sha256: str) -> Path:
         return self.folder / sha256[:2] / sha256

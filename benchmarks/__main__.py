@@ -9,14 +9,18 @@ from pathlib import Path
 
 from benchmarks import (
     bench,
+    cost,
     diagnosis,
     fitness,
     hybrid,
     identification,
     kernel,
+    line,
+    load,
     machine,
     memory,
     pages,
+    regress,
     scaling,
     simulation,
     start,
@@ -35,6 +39,10 @@ ALL: dict[str, Callable[[], Table | tuple[Table, ...]]] = {
     "pages": pages.measure,
     "scaling": scaling.measure,
     "hybrid": hybrid.measure,
+    "line": line.measure,
+    "load": load.measure,
+    "cost": cost.measure,
+    "regress": regress.measure,
 }
 PAGE = Path(__file__).parents[1] / "docs" / "benchmarks.md"
 HEAD = """# Benchmarks

@@ -27,7 +27,7 @@ from tests.running import TOKEN, process
 
 SAMPLES, PLAIN = 400_000, 20_000
 BLOCK_GOAL, SINGLE_GOAL = 2e6, 2e5  # samples a second
-STREAMS, BATCH, STREAMED = 4, 64, 10.0  # at once, samples a message, s
+STREAMS, BATCH, STREAMED = 4, 64, 60.0  # at once, samples a message, s
 RUN, FLAT = 30.0, 2.0  # s of a hybrid simulation, and of the flat one
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ast
 import inspect
+import json
+import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
@@ -11,6 +13,7 @@ from typing import Any
 import typer
 
 from app.cli.program import program
+from app.main import routed
 from ident.effects import CATALOGUE
 from ident.equations.equation import Equation
 from ident.parameter import Parameter
@@ -24,7 +27,47 @@ NOTE = "<!-- written by docs/generate.py -->"
 
 def pages() -> dict[str, str]:
     """Every generated page by file name."""
-    return {"cli.md": command_line(), "models.md": models(), "errors.md": errors()}
+    return {
+        "cli.md": command_line(), "models.md": models(), "errors.md": errors(), "http.md": over_http(),
+        "openapi.json": document(),
+    }  # fmt: skip
+
+
+def document() -> str:
+    """The OpenAPI document of the service."""
+    return json.dumps(routed().openapi(), indent=1, ensure_ascii=False) + "\n"
+
+
+HTTP_HEAD = (
+    "Every request has the header `Authorization: Bearer TOKEN`, but those for health and the forms of sign-in. The",
+    "service sends its own description as `/api/v1/openapi.json`; the same is [openapi.json](openapi.json), from which",
+    "clients can be generated. [The service by example](service.md) shows requests and answers; a refusal is",
+    "problem+json with one of [these codes](errors.md).",
+)
+
+
+def over_http() -> str:
+    """Every operation of the service, with what it takes beside its path."""
+    found = routed().openapi()
+    lines = ["# The service over HTTP", NOTE, "", *HTTP_HEAD, ""]
+    rows: dict[str, list[tuple[str, str, str]]] = {}
+    for path, operations in found["paths"].items():
+        for method, operation in operations.items():
+            said = operation.get("description") or operation.get("summary", "")
+            taken = [f"`{one['name']}`" for one in operation.get("parameters", ()) if one["in"] == "query"]
+            body = "".join(part.rpartition("/")[2] for part in bodies(operation))
+            entry = (f"`{method.upper()} {path}`", said, ", ".join([*taken, *([f"body {body}"] if body else [])]))
+            rows.setdefault(operation.get("tags", ["others"])[0], []).append(entry)
+    for tag, entries in rows.items():
+        lines += [f"## {tag.capitalize()}", "", *table(("operation", "what it does", "takes"), entries), ""]
+    return "\n".join(lines)
+
+
+def bodies(operation: dict[str, Any]) -> Iterator[str]:
+    """The name of the model that a request has as its body, or its media type."""
+    for media, content in operation.get("requestBody", {}).get("content", {}).items():
+        named = content.get("schema", {})
+        yield named.get("$ref") or next((one["$ref"] for one in named.get("anyOf", ()) if "$ref" in one), media)
 
 
 def command_line() -> str:
@@ -135,6 +178,8 @@ def codes(file: Path) -> Iterator[tuple[str, str, str, str]]:
         match node:
             case ast.Call(ast.Name("Unusable"), [code, what, _, remedy]):
                 yield from ((f"`{name}`", "422", words(what), words(remedy)) for name in alternatives(code))
+            case ast.Call(ast.Name("Removed"), [code, what, _, remedy]):
+                yield f"`{words(code)}`", "410", words(what), words(remedy)
             case ast.Call(ast.Name("Failure" | "problem"), [ast.Constant(status), code, what, _, remedy]):
                 yield f"`{words(code)}`", str(status), words(what), words(remedy)
 
@@ -167,6 +212,17 @@ def line(cells: Iterable[str]) -> str:
     return f"| {' | '.join(cells)} |"
 
 
+def broken(text: str) -> list[str]:
+    """What in a document would break a client of the one that is kept."""
+    sys.path.insert(0, str(DOCS.parent))
+    from tests.contract.breaking import breaks  # noqa: PLC0415  the tests are no part of what is installed
+
+    kept = DOCS / "openapi.json"
+    return list(breaks(json.loads(kept.read_text(encoding="utf-8")), json.loads(text))) if kept.exists() else []
+
+
 if __name__ == "__main__":
+    if "--break" not in sys.argv and (lines := broken(document())):
+        sys.exit("\n".join(["this would break clients of the API; --break writes it nevertheless:", *lines]))
     for name, text in pages().items():
         (DOCS / name).write_text(text, encoding="utf-8")

@@ -2,12 +2,12 @@
 
 The face for notebooks; what it names is imported when it is first used.
 
-    from ident import compare, diagnose, figure, identify, read_matrix
+    import ident
 
-    matrix = read_matrix(Path("bench/SW-117"))
-    fit = identify(matrix)                     # parameters, standard errors, error
-    found = diagnose(matrix, fit)              # what the model lacks
-    figure("bode", matrix, fit).save("bode.svg")
+    matrix = ident.read_matrix("bench/SW-117")
+    fit = ident.identify(matrix)               # parameters, standard errors, error
+    found = ident.diagnose(matrix, fit)        # what the model lacks
+    ident.figure(fit, "bode")                  # shows itself
 """
 
 from __future__ import annotations
@@ -17,17 +17,46 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ident.checks.check import check
+    from ident.errors import Unusable
     from ident.fit.settings import Settings
+    from ident.matrix import Matrix
     from ident.readers import read_matrix
-    from ident.workflows import compare, diagnose, figure, identify
+    from ident.workflows import (
+        compare,
+        diagnose,
+        figure,
+        identify,
+        load,
+        next_run,
+        propose,
+        save,
+        simulate,
+    )
 
 _ROOMS = {
-    "Settings": "ident.fit.settings", "check": "ident.checks.check", "compare": "ident.workflows",
-    "diagnose": "ident.workflows", "figure": "ident.workflows", "identify": "ident.workflows",
-    "read_matrix": "ident.readers",
+    "Matrix": "ident.matrix", "Settings": "ident.fit.settings", "Unusable": "ident.errors",
+    "check": "ident.checks.check", "compare": "ident.workflows", "diagnose": "ident.workflows",
+    "figure": "ident.workflows", "identify": "ident.workflows", "load": "ident.workflows",
+    "next_run": "ident.workflows", "propose": "ident.workflows", "read_matrix": "ident.readers",
+    "save": "ident.workflows", "simulate": "ident.workflows",
 }  # fmt: skip
 
-__all__ = ["Settings", "check", "compare", "diagnose", "figure", "identify", "read_matrix"]
+__all__ = [
+    "Matrix",
+    "Settings",
+    "Unusable",
+    "check",
+    "compare",
+    "diagnose",
+    "figure",
+    "identify",
+    "load",
+    "next_run",
+    "propose",
+    "read_matrix",
+    "save",
+    "simulate",
+]
 
 
 def __getattr__(name: str) -> Any:

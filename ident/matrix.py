@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
-from typing import Literal, Protocol
+from importlib import import_module
+from typing import Any, Literal, Protocol, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from ident.cached import cached_property
+from ident.errors import Unusable
+from ident.words.shown import Listing, Shown
+from ident.words.stated import Stated
 
 Samples = NDArray[np.float64]
 
@@ -100,6 +106,7 @@ class Run:
     past: Samples | None = None  # the command up to the first sample, where the record is cut out of a longer file
     record: str = ""
     share: float = 1.0
+    closed_loop: bool | None = None  # whether a controller made the command of the output; None: nobody said
 
     @property
     def command(self) -> Samples:
@@ -110,6 +117,12 @@ class Run:
     def stepped(self) -> bool:
         """Whether the command is held from the first sample to the last: a step from nothing, before the record."""
         return bool(np.all(self.command == self.command[0]))
+
+    @cached_property
+    def dwell(self) -> float:
+        """The lower quartile of the times between changes of the command, s; 0 of one that changes less than thrice."""
+        changes = np.flatnonzero(np.diff(self.command))
+        return float(np.quantile(np.diff(changes), 0.25)) / self.sample_rate if len(changes) > 2 else 0.0
 
     @property
     def drive(self) -> float:
@@ -261,7 +274,7 @@ def over_runs(values: ArrayLike, runs: Sequence[Shared]) -> Samples:
 
 
 @dataclass(frozen=True, eq=False)
-class Matrix:
+class Matrix(Shown):
     """All runs of one actuator. `data_hash` is the SHA-256 of the description and every raw file, in order."""
 
     actuator: Actuator
@@ -273,6 +286,65 @@ class Matrix:
     notices: tuple[str, ...] = ()  # what reading changed or assumed, in words
     machine: str = ""  # the name of the model that the description puts together from stages
 
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, ArrayLike], **stated: Unpack[Stated]) -> Matrix:
+        """The matrix of one record: arrays (n,) by name, and what is known of them, in the words of matrix.yaml.
+
+        Units are always stated: ``Matrix.from_arrays({"command": u, "displacement": x}, sample_rate="4096 Hz",
+        units={"command": "mm", "displacement": "mm"}, gain=7)``. Records of one actuator add up: ``first + second``.
+        Raises Unusable as reading a file does.
+        """
+        return _stated("of_arrays", arrays, stated)
+
+    @classmethod
+    def from_table(cls, table: Any, **stated: Unpack[Stated]) -> Matrix:
+        """The same of a table of pandas, polars, pyarrow or whatever else speaks ``__arrow_c_stream__``."""
+        return _stated("of_table", table, stated)
+
+    def __add__(self, other: Matrix) -> Matrix:
+        """The runs of both. Raises Unusable where they are of two actuators, or a run's id is in both."""
+        if self.actuator != other.actuator:
+            serials = f"{self.actuator.serial} and {other.actuator.serial}"
+            raise Unusable("two-actuators", f"what is stated of the actuators {serials} differs", "matrix + matrix",
+                           "state the same of both: a matrix is of one actuator")  # fmt: skip
+        twice = {run.id for run in self.runs} & {run.id for run in other.runs}
+        if twice:
+            what = f"two runs are called {min(twice)!r}"
+            raise Unusable("duplicate-id", what, "matrix + matrix", 'give each its own, as id="kp7"')
+        both = hashlib.sha256(f"{self.data_hash} {other.data_hash}".encode()).hexdigest()
+        notices = tuple(dict.fromkeys((*self.notices, *other.notices)))
+        return replace(self, runs=(*self.runs, *other.runs), data_hash=both, notices=notices)
+
+    def listings(self) -> Sequence[Listing | str]:
+        """What it holds, as a notebook shows it."""
+        header = ("run", "use", "kind", "length", "Kp", "channels")
+        rows = [
+            (run.id, run.use, run.kind, f"{run.duration:.4g} {run.time_unit}",
+             "–" if run.gain is None else f"{run.gain:g}",
+             ", ".join(f"{name} ({run.units.get(name, '?')})" for name in run.channels))
+            for run in self.runs
+        ]  # fmt: skip
+        title = " ".join(("Actuator", self.actuator.serial, self.actuator.name)).rstrip()
+        return [Listing(title, header, rows, ("length", "Kp")), *self.notices]
+
+    def records(self) -> list[dict[str, Any]]:
+        """A record a run, SI, for a data frame."""
+        return [
+            {
+                "run": run.id, "use": run.use, "kind": run.kind, "gain": run.gain, "amplitude": run.amplitude,
+                "mass": run.specimen and run.specimen.mass, "stiffness": run.specimen and run.specimen.stiffness,
+                "damping": run.specimen and run.specimen.damping, "samples": run.length,
+                "sample_rate": run.sample_rate, "duration": run.duration,
+            }
+            for run in self.runs
+        ]  # fmt: skip
+
     def of_use(self, use: str) -> tuple[Run, ...]:
         """The runs of one use, "fit" or "verify"."""
         return tuple(run for run in self.runs if run.use == use)
+
+
+def _stated(function: str, record: Any, stated: Stated) -> Matrix:
+    """A record of the caller's as a matrix; the readers, who stand above this file, are asked when it is called."""
+    made: Matrix = getattr(import_module("ident.readers.stated"), function)(record, stated)
+    return made

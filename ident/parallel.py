@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import lru_cache
-from typing import Any, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 import scipy.linalg  # noqa: F401  its library is held too, and only what is loaded is found
@@ -16,7 +16,6 @@ from threadpoolctl import ThreadpoolController
 
 Item = TypeVar("Item")
 Outcome = TypeVar("Outcome")
-_NAME = "servoident"
 
 
 def cores() -> int:
@@ -82,12 +81,55 @@ def one_thread() -> Iterator[None]:
 
 @lru_cache
 def _pool() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(cores(), thread_name_prefix=_NAME)
+    return ThreadPoolExecutor(max(cores() - 1, 1), thread_name_prefix="servoident")
+
+
+@lru_cache
+def _idle() -> threading.Semaphore:
+    """The threads of the pool that wait for work: nobody queues for one that is busy."""
+    return threading.Semaphore(cores() - 1)
+
+
+class _Work(Generic[Item, Outcome]):
+    """Items that whoever has time takes one by one: the caller, and threads that were idle when it began."""
+
+    def __init__(self, function: Callable[[Item], Outcome], items: Sequence[Item]) -> None:
+        self._function, self._items = function, items
+        self._outcomes: dict[int, Outcome] = {}
+        self._failures: dict[int, BaseException] = {}
+        self._next = iter(range(len(items)))  # taking from it is atomic
+
+    def outcomes(self) -> list[Outcome]:
+        """All of them in order; after a failure nothing more is begun, and the first in order is raised."""
+        helpers = [_pool().submit(self._help) for _ in self._items[1:] if _idle().acquire(blocking=False)]
+        try:
+            self._carry_out()
+        finally:
+            self._next = iter(())
+            for helper in helpers:
+                helper.result()
+        if self._failures:
+            raise self._failures[min(self._failures)]
+        return [self._outcomes[i] for i in range(len(self._items))]
+
+    def _help(self) -> None:
+        try:
+            self._carry_out()
+        finally:
+            _idle().release()
+
+    def _carry_out(self) -> None:
+        while (i := next(self._next, None)) is not None and not self._failures:
+            try:
+                self._outcomes[i] = self._function(self._items[i])
+            except BaseException as failure:
+                self._failures[i] = failure
 
 
 def each(function: Callable[[Item], Outcome], items: Iterable[Item]) -> list[Outcome]:
     """`function` of every item, in order; the compiled parts run side by side, linear algebra in :func:`one_thread`.
 
+    Work inside of work is shared out too, where a core is idle: the last of many items is not waited for by the others.
     Values that overflow are what a model that runs away gives: they are judged as such, and not warned of.
     """
     todo = list(items)
@@ -96,9 +138,5 @@ def each(function: Callable[[Item], Outcome], items: Iterable[Item]) -> list[Out
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             return function(item)
 
-    if threading.current_thread().name.startswith(_NAME):  # already side by side with others, and they hold the pool
-        return [of(item) for item in todo]
     with one_thread():
-        if cores() == 1 or len(todo) < 2:
-            return [of(item) for item in todo]
-        return list(_pool().map(of, todo))
+        return _Work(of, todo).outcomes()

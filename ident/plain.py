@@ -7,12 +7,14 @@ field's default; a key that is not known is passed over; an empty object stands 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import MISSING, fields, is_dataclass
+from dataclasses import MISSING, Field, fields, is_dataclass
 from functools import cache
 from types import NoneType, UnionType
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 T = TypeVar("T")
+UNWRITTEN: Mapping[str, bool] = {"written": False}
+"""Metadata of a field that belongs to this process alone, such as the data that a result was made of."""
 _HUGE = 10**300  # no float reaches whole numbers much beyond
 Reader = Callable[[Any], Any]
 
@@ -41,7 +43,8 @@ def written(value: Any) -> Any:
     if value is None or isinstance(value, float | int | str):
         return value
     if is_dataclass(value):
-        return {field.name: written(getattr(value, field.name)) for field in fields(value)}
+        kind: Any = type(value)
+        return {field.name: written(getattr(value, field.name)) for field in _written(kind)}
     if isinstance(value, Mapping):
         return {name: written(entry) for name, entry in value.items()}
     if isinstance(value, list | tuple):
@@ -50,10 +53,16 @@ def written(value: Any) -> Any:
 
 
 @cache
+def _written(kind: Any) -> tuple[Field[Any], ...]:
+    """The fields that stand in the data."""
+    return tuple(field for field in fields(kind) if field.metadata.get("written", True))
+
+
+@cache
 def _dataclass(kind: Any) -> Reader:
     """A reader of one dataclass: its annotations are looked up once."""
     hints = get_type_hints(kind)
-    known = [(field, _reader(hints[field.name])) for field in fields(kind)]
+    known = [(field, _reader(hints[field.name])) for field in _written(kind)]
 
     def made(data: Any) -> Any:
         if not isinstance(data, Mapping):

@@ -5,27 +5,29 @@ Who serves which kind of model stands in one table here; the rooms below take a 
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Unpack
 
-from ident import figures
 from ident.bench.diagnosis import diagnose_bench
 from ident.bench.identification import BenchIdentification
 from ident.bench.outputs import outputs as bench_outputs
-from ident.checks.check import Finding, check
 from ident.comparison import compare as comparison
 from ident.comparison.compare import Comparison, Simulator
-from ident.custom.definition import preset_with
+from ident.custom.definition import preset_with, read_effect
+from ident.design import proposal as design
+from ident.design.experiment import Experiment
 from ident.diagnosis import diagnose as diagnosis
 from ident.diagnosis.course import Course
 from ident.diagnosis.result import Diagnosis
+from ident.diagnosis.rivals import rivals
 from ident.diagnosis.stepwise import MOST, USUAL
 from ident.diagnosis.structures import ChosenFit, Made, chosen
 from ident.effects.effect import Effect
 from ident.errors import Unusable
-from ident.figures import Chart, Study
+from ident.fit.choices import Choices, settings_of
 from ident.fit.identification import Identification, StepwiseFit, check_settings, completed
 from ident.fit.regressed import RegressedIdentification
 from ident.fit.result import FitResult
@@ -34,7 +36,10 @@ from ident.hybrid.kalman_identification import KalmanIdentification
 from ident.matrix import Matrix
 from ident.presets.preset import Kind
 from ident.progress import Report, silent
-from ident.readers import read_matrix
+from ident.synthesis.matrix import Simulation, simulated
+
+if TYPE_CHECKING:
+    from ident.figures import AltairChart, Study
 
 Fitter = Callable[[Matrix, Settings, Report], StepwiseFit]
 Diagnoser = Callable[[Matrix, FitResult, Sequence[Effect], Course], Diagnosis]
@@ -86,9 +91,15 @@ def identification(matrix: Matrix, settings: Settings, report: Report = silent) 
     return served.by_method.get(settings.method, served.fitter)(matrix, settings, report)
 
 
-def identify(matrix: Matrix, settings: Settings | None = None, report: Report = silent) -> FitResult:
-    """The whole fit in one call. Raises Unusable as :func:`identification`."""
-    return completed(identification(matrix, settings or Settings(), report))
+def identify(
+    matrix: Matrix, settings: Settings | None = None, report: Report = silent, **choices: Unpack[Choices]
+) -> FitResult:  # fmt: skip
+    """The whole fit in one call; `choices` stand over the settings, as effects=["dead_zone"], fixed={"tau": "1 ms"}.
+
+    Raises Unusable as :func:`identification`.
+    """
+    chosen = settings_of(choices, settings) if choices else settings or Settings()
+    return replace(completed(identification(matrix, chosen, report)), matrix=matrix)
 
 
 def compare(matrix: Matrix, fit: FitResult) -> Comparison:
@@ -98,28 +109,44 @@ def compare(matrix: Matrix, fit: FitResult) -> Comparison:
 
 def study(matrix: Matrix, fit: FitResult) -> Study:
     """A fit beside its data, for figures one after the other."""
+    from ident.figures import Study  # noqa: PLC0415 - altair, which a fit does not need
+
     return Study(matrix, fit, _served(fit.model).simulator)
 
 
 def figure(
-    name: str, matrix: Matrix, fit: FitResult, theme: str = "light", share: float = 1.0, **options: Any
-) -> Chart:  # fmt: skip
-    """The figure of that name: see :func:`ident.figures.figure` for its options, and :func:`study` for several."""
-    return figures.figure(name, study(matrix, fit), theme, share, **options)
+    result: FitResult | Comparison | Diagnosis, name: str, matrix: Matrix | None = None, theme: str = "light",
+    share: float = 1.0, **options: Any,
+) -> AltairChart:  # fmt: skip
+    """The Altair chart of that name: see :func:`ident.figures.figure` for its options, and :func:`study` for several.
+
+    A result that was made here knows its data; beside one that was read from a file the `matrix` is given. Of a
+    diagnosis it is the ladder. Raises Unusable for a name that the result has no figure of, and where data are missing.
+    """
+    from ident import figures  # noqa: PLC0415
+
+    matrix = matrix or result.matrix
+    if matrix is None:
+        raise Unusable("no-data", "the result does not hold the data that it was made of", f"figure {name}",
+                       "give matrix=read_matrix(…)")  # fmt: skip
+    if isinstance(result, Diagnosis):
+        return figures.shown(figures.of_diagnosis(result, name, matrix.actuator, theme, share, **options))
+    fit = result.fit if isinstance(result, Comparison) else result
+    return figures.shown(figures.figure(name, study(matrix, fit), theme, share, **options))
 
 
 def diagnose(
     matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None, most: int = USUAL,
-    custom: Sequence[Effect] = (), report: Report = silent, seconds: float | None = None,
+    custom: Sequence[Effect | Mapping[str, Any] | str] = (), report: Report = silent, seconds: float | None = None,
     found: Callable[[Diagnosis], None] | None = None, propose: bool | None = None,
 ) -> Diagnosis:  # fmt: skip
     """Rank what the fitted model lacks, add what helps beyond chance, and say what is left.
 
     Without a `fit` the model of `settings` is fitted first. `most` is the largest number of effects to add, `custom`
-    are effects beside the catalogue's. Verify runs only report. After `seconds`, that of a fit included, nothing more
-    is tried; `found` is told of the diagnosis as it stands after each effect. Terms that no list holds are searched for
-    where the catalogue leaves the error unexplained; with `propose` true also where nobody knows the noise, with false
-    never. Raises Unusable where matrix, fit or settings do not go together.
+    are effects beside the catalogue's, or their definitions. Verify runs only report. After `seconds`, that of a fit
+    included, nothing more is tried; `found` is told of the diagnosis as it stands after each effect. Terms that no list
+    holds are searched for where the catalogue leaves the error unexplained; with `propose` true also where nobody
+    knows the noise, with false never. Raises Unusable where matrix, fit or settings do not go together.
     """
     if not 0 <= most <= MOST:
         raise Unusable("bad-option", f"{most} effects", "max-effects", f"give 0 to {MOST}")
@@ -131,21 +158,60 @@ def diagnose(
     if propose and not served.proposes:
         raise Unusable("bad-option", f"the model {fit.model} has no signals inside that a term could be of", "propose",
                        "leave it out")  # fmt: skip
-    return served.diagnoser(matrix, fit, custom, course)
+    own = tuple(one if isinstance(one, Effect) else read_effect(one, model=fit.model) for one in custom)
+    return replace(served.diagnoser(matrix, fit, own, course), matrix=matrix)
 
 
-@dataclass(frozen=True)
-class Story:
-    """What came out, in the order in which a user asks."""
+def propose(
+    matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None, report: Report = silent,
+    seconds: float | None = None,
+) -> Diagnosis:  # fmt: skip
+    """The terms that no list holds, found beside the fitted model as it is, in `proposals` of what is returned.
 
-    findings: tuple[Finding, ...]  # can I trust the data?
-    fit: FitResult  # what are the parameters, and how sure are they?
-    comparison: Comparison  # how good is it, and where?
+    The effect that each of them is, `proposals[0].effect`, goes into ``identify(matrix, custom=[…])``. Raises Unusable
+    as :func:`diagnose`.
+    """
+    return diagnose(matrix, fit, settings, most=0, report=report, seconds=seconds, propose=True)
 
 
-def run(path: Path, settings: Settings | None = None, report: Report = silent) -> Story:
-    """Read, check, fit and compare. Raises Unusable where the input cannot be used."""
-    matrix = read_matrix(path)
-    findings = check(matrix)
-    fit = identify(matrix, settings, report)
-    return Story(findings, fit, compare(matrix, fit))
+def next_run(found: Diagnosis, matrix: Matrix | None = None, seed: int = 0) -> Experiment:
+    """The run that best tells apart what a diagnosis leaves in question; ``.command()`` is its signal.
+
+    Raises Unusable where none can be proposed, or the data of a diagnosis that was read from a file are not given.
+    """
+    matrix = matrix or found.matrix
+    if matrix is None:
+        raise Unusable("no-data", "the diagnosis does not hold the data that it was made of", "next run",
+                       "give matrix=read_matrix(…)")  # fmt: skip
+    return design.propose(rivals(found), matrix, seed)
+
+
+def simulate(
+    preset: str = "qian2014", seconds: float = 30.0, seed: int = 0, noise: float = 0.005,
+    effects: Mapping[str, float] | None = None, small: bool = False, report: Report = silent,
+) -> Matrix:  # fmt: skip
+    """A simulated test matrix: a paper's model with `effects`, SI, as {"dead_zone": 4e-4}, hidden in it.
+
+    It holds 63 runs to fit and 21 to verify, each of `seconds`; a `small` one 18 and 9. `noise` is white, its standard
+    deviation relative to each run's output. Raises Unusable for a model that has no test matrix of its own.
+    """
+    return simulated(Simulation(preset, seconds, seed, noise, effects or {}, small), report)
+
+
+def save(result: FitResult | Diagnosis, path: Path | str) -> None:
+    """Write a fit or a diagnosis as JSON: the file that `servoident fit --json` or `diagnose --json` writes."""
+    text = json.dumps(result.to_json(), indent=2, allow_nan=False, ensure_ascii=False) + "\n"
+    Path(path).write_text(text, encoding="utf-8")
+
+
+def load(path: Path | str, matrix: Matrix | None = None) -> FitResult | Diagnosis:
+    """The fit or the diagnosis in a JSON file, of any version; with its `matrix`, figures can be drawn of it.
+
+    Raises Unusable where it is neither.
+    """
+    try:
+        data = json.loads(Path(path).read_bytes())
+    except (ValueError, RecursionError):
+        data = None
+    kind = Diagnosis if isinstance(data, dict) and "candidates" in data else FitResult
+    return replace(kind.from_json(data), matrix=matrix)

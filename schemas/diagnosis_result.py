@@ -72,11 +72,24 @@ class SuspectView(BaseModel):
     evidence: str
 
 
+class ExplanationView(BaseModel):
+    """Another model of the machine that explains as well as what was found, with these effects, and its errors.
+
+    `better`: beyond chance.
+    """
+
+    machine: str
+    effects: list[str]
+    error: Errors
+    better: bool = False
+
+
 class VerdictView(BaseModel):
     """What to add, what the data cannot tell apart, whose label is doubted, whether something is left.
 
     `standing` is found where the error is at the noise floor, stand_in where something is left, contradicted where
-    the error rises with an effect (`contradicted_by`) on runs to verify, nothing where no effect helps.
+    the error rises with an effect (`contradicted_by`) on runs to verify, nothing where no effect helps. `at_bound` are
+    effects whose strength ended at a bound that the search set, `elsewhere` what other models explain as well.
     """
 
     effects: list[str]
@@ -86,6 +99,8 @@ class VerdictView(BaseModel):
     suspects: list[SuspectView]
     unexplained: bool
     text: str
+    at_bound: list[str] = Field(default_factory=list)
+    elsewhere: list[ExplanationView] = Field(default_factory=list)
 
 
 class SpecimenView(BaseModel):

@@ -13,8 +13,8 @@ class Chosen(BaseModel):
     """What may be chosen about a fit; `bounds` and `set` may carry units ("1 ms"), plain numbers are SI.
 
     Without a `model` that which fits is taken, of those that the channels allow; with effects, bounds or values the
-    likeliest. `custom` adds effects of one's own: definitions as `POST /custom-effects` takes them, or names of those
-    at `/own-effects`, which `effects` takes, too.
+    likeliest. The search ends with the generation that goes beyond `budget`, s. `custom` adds effects of one's own:
+    definitions as `POST /custom-effects` takes them, or names of those at `/own-effects`, which `effects` takes, too.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -27,6 +27,7 @@ class Chosen(BaseModel):
     set: dict[str, Finite | str] = Field(default_factory=dict)
     options: dict[str, Finite] = Field(default_factory=dict)
     load: str = "none"
+    budget: float | None = Field(default=None, gt=0)
 
 
 class FitRequest(Chosen):
@@ -74,7 +75,7 @@ class ProgressView(BaseModel):
 class JobSettings(SettingsView):
     """What a job was asked for: the fit, and of a diagnosis what to add at most, its time, and a search made anew.
 
-    Of a hybrid simulation the names of its case, controller and ground motion.
+    Of a hybrid simulation the names of its case, controller and ground motion, of a profile its parameter.
     """
 
     max_effects: int | None = None
@@ -83,6 +84,7 @@ class JobSettings(SettingsView):
     case: str | None = None
     controller: str | None = None
     ground: str | None = None
+    parameter: str | None = None
 
 
 class JobProblem(BaseModel):
@@ -168,12 +170,81 @@ class FitPage(BaseModel):
 
 
 class ComparedRun(BaseModel):
-    """Eq. (17) and offset of a run."""
+    """Eq. (17) and offset of a run; root mean square and mean size of its residual in `unit`."""
 
     id: str
     use: str
     error: float
     offset: float
+    rmse: float
+    mae: float
+    unit: str
+
+
+class ErrorSize(BaseModel):
+    """Root mean square and mean size of what is left, in `unit`, and as they are printed."""
+
+    rmse: float
+    mae: float
+    unit: str
+    rmse_in_print: str
+    mae_in_print: str
+
+
+class ErrorSizesView(BaseModel):
+    """That of each run, and the means over the runs of a use that have one unit."""
+
+    uses: dict[str, ErrorSize]
+    runs: dict[str, ErrorSize]
+
+
+class ProfileRequest(BaseModel):
+    """The parameter whose profile is asked for."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    parameter: str = Field(min_length=1, max_length=200)
+
+
+class ProfileView(BaseModel):
+    """The profile likelihood of a parameter, SI: least error (eq. 17) and deviance at each value, 95 % interval.
+
+    An end is null where the data set no limit to that side.
+    """
+
+    parameter: str
+    unit: str
+    values: list[float]
+    errors: list[float]
+    deviance: list[float]
+    lower: float | None
+    upper: float | None
+
+
+class FitColumn(BaseModel):
+    """One of several fits, under the letter that the runs name it by."""
+
+    fit: str
+    name: str
+    model: str
+    effects: list[str]
+    error: Errors
+    parameters: dict[str, EstimateView]
+
+
+class RunBeside(BaseModel):
+    """A run, and its eq. (17) in each of the fits by their letters; null where a fit has not seen it."""
+
+    id: str
+    use: str
+    error: dict[str, float | None]
+
+
+class SideBySideView(BaseModel):
+    """Several fits side by side, in the order in which they were asked for."""
+
+    fits: list[FitColumn]
+    runs: list[RunBeside]
 
 
 class GroupError(BaseModel):

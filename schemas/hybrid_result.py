@@ -1,6 +1,9 @@
-"""What came of controllers, hybrid simulations, what-if and tracking, in the contract's words; SI where no unit is."""
+"""What came of controllers, hybrid simulations and what-if, in the contract's words; SI where no unit is."""
 
 from pydantic import BaseModel
+
+from schemas.diagnosis_result import SpecimenView
+from schemas.feedforward_result import FeedforwardView
 
 Matrix = list[list[float]]
 
@@ -150,7 +153,8 @@ class HybridView(HybridResultView):
     """A stored hybrid simulation; its id is that of its job.
 
     `without` is the same without a controller, `controller_id` the stored controller, `map` there where it was asked
-    for. Figures at `…/figures/NAME.{json,svg,png,pdf}` have the names in `figures`.
+    for, `feedforward` under that controller. Figures at `…/figures/NAME.{json,svg,png,pdf}` have the names in
+    `figures`.
     """
 
     id: str
@@ -161,17 +165,18 @@ class HybridView(HybridResultView):
     controller_id: str | None
     without: HybridResultView | None
     map: ShareMapView | None
+    feedforward: FeedforwardView | None = None
     figures: list[str]
 
 
 class HybridPage(BaseModel):
-    """A page of hybrid simulations, newest first, without their maps."""
+    """A page of hybrid simulations, newest first, without their maps and curves."""
 
     items: list[HybridView]
     next: str | None = None
 
 
-class MachineView(BaseModel):
+class SizesView(BaseModel):
     """Sizes of a machine, null where unknown; `volume` is the oil on both sides of the piston."""
 
     serial: str
@@ -183,14 +188,6 @@ class MachineView(BaseModel):
     servo_valve: str
     notes: str
     volume: float | None
-
-
-class SpecimenView(BaseModel):
-    """What the machine moves: kg, N/m, N·s/m."""
-
-    mass: float
-    stiffness: float
-    damping: float
 
 
 class CarriedView(BaseModel):
@@ -280,7 +277,7 @@ class PeakTargetView(BaseModel):
     up_to: float
 
 
-class StartsView(BaseModel):
+class JointStartsView(BaseModel):
     """Starts of the search, and how many ended at the smallest change."""
 
     tried: int
@@ -295,7 +292,7 @@ class PeakSearchView(BaseModel):
     singles: dict[str, float | None]
     smallest: JointChangeView | None
     others: dict[str, FactorRangeView]
-    starts: StartsView | None
+    starts: JointStartsView | None
     seed: int
     text: list[str]
 
@@ -309,7 +306,7 @@ class WhatIfView(BaseModel):
 
     model: str
     output: str
-    actuator: MachineView
+    actuator: SizesView
     specimen: SpecimenView
     parameters: dict[str, CarriedView]
     responses: list[ResponseView]
@@ -319,31 +316,3 @@ class WhatIfView(BaseModel):
     notes: list[str]
     peak: PeakSearchView | None
     with_peak: list[ResponseView]
-
-
-class TrackNoise(BaseModel):
-    """Standard deviations assumed of the sensor (m) and of the drift of τ (s/√s) and k (1/√s)."""
-
-    measurement: float
-    tau: float
-    gain: float
-
-
-class TrackView(BaseModel):
-    """A run followed as if it came in now, as `servoident track --json` writes it; at most 4,096 rows.
-
-    `tau` in s (in samples where the clock of the run is unknown), `gain` and their standard deviations over `t`.
-    """
-
-    run: str
-    nis_mean: float | None
-    holds: bool
-    reason: str
-    outliers: int
-    changes: int
-    noise: TrackNoise
-    t: list[float]
-    tau: list[float]
-    gain: list[float]
-    std_tau: list[float]
-    std_gain: list[float]

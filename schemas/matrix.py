@@ -35,17 +35,24 @@ class RunView(BaseModel):
 
 
 class MatrixView(BaseModel):
-    """A stored matrix; `machine` is the model that its description puts together from stages, where it does."""
+    """A stored matrix; batch and area are what it states of its actuator.
+
+    `machine` is the model that its description puts together from stages, where it does. Raw runs that the rule removed
+    are gone since `removed_at`.
+    """
 
     id: str
     serial: str
     parent: str | None
     created_at: str
+    batch: str = ""
+    piston_area: float | None = None
     data_hash: str
     runs: list[RunView]
     findings: list[FindingView]
     notices: list[str]
     machine: str = ""
+    removed_at: str | None = None
 
 
 class MatrixPage(BaseModel):

@@ -1,6 +1,6 @@
 """Parameter sets, as the production line asks for them."""
 
-from pydantic import BaseModel
+from pydantic import BaseModel, ConfigDict, Field
 
 
 class ValueView(BaseModel):
@@ -11,8 +11,25 @@ class ValueView(BaseModel):
     std_error: float | None
 
 
+class LineageView(BaseModel):
+    """Where a set comes from: the hash of its data, the effects of its model, the seed of its search, the program.
+
+    `equations` is a hash of the model's equations; earlier versions did not keep it, nor `who` asked for the fit.
+    """
+
+    data_hash: str
+    effects: list[str]
+    seed: int | None
+    version: str
+    equations: str
+    who: str
+
+
 class ParameterSetView(BaseModel):
-    """A parameter set of an actuator; `current` is the approved one in force."""
+    """A parameter set of an actuator; `current` is the approved one in force, `approved_at` when it was last made so.
+
+    The batch is that of the matrix from which it was identified.
+    """
 
     id: str
     serial: str
@@ -24,6 +41,7 @@ class ParameterSetView(BaseModel):
     error_fit: float | None
     error_verify: float | None
     parameters: dict[str, ValueView]
+    lineage: LineageView | None = None
 
 
 class ParameterSetPage(BaseModel):
@@ -53,8 +71,27 @@ class ActuatorPage(BaseModel):
     next: str | None = None
 
 
+class ApprovalView(BaseModel):
+    """From when until when a fit was in force for the actuator; without a fit, what was before it was withdrawn."""
+
+    model_config = ConfigDict(populate_by_name=True)
+    fit: str | None
+    since: str = Field(serialization_alias="from", validation_alias="from")
+    until: str | None = Field(serialization_alias="to", validation_alias="to")
+    who: str
+    why: str
+
+
 class ActuatorDetail(ActuatorView):
-    """One actuator with its history."""
+    """One actuator with its history: every set and matrix, and who approved what, the newest first."""
 
     sets: list[ParameterSetView]
     matrix_ids: list[str]
+    approvals: list[ApprovalView] = []
+
+
+class Reason(BaseModel):
+    """Why an approval is given or withdrawn."""
+
+    model_config = ConfigDict(extra="forbid")
+    why: str = Field(default="", max_length=2000)

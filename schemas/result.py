@@ -26,6 +26,7 @@ class DefinitionView(BaseModel):
     equation: Entry | list[Entry] = None
     strength: Entries = Field(default_factory=dict)
     shape: Entry | list[Entry | Entries] | dict[str, Entry | Entries] = None
+    curve: dict[str, Entry | list[Entry]] = Field(default_factory=dict)
     state: Entries = Field(default_factory=dict)
     meaning: Entry = None
     looks: Entry = None
@@ -44,6 +45,7 @@ class SettingsView(BaseModel):
     seed: int = 0
     options: dict[str, Number] = Field(default_factory=dict)
     custom: list[DefinitionView] = Field(default_factory=list)
+    budget: Number | None = None
 
 
 class ErrorBudget(BaseModel):
@@ -106,12 +108,16 @@ class GenerationView(BaseModel):
 
 
 class StructureView(BaseModel):
-    """A model that the channels allow, fitted where none was named; `parameters` is how many were searched."""
+    """A model that the channels allow, fitted where none was named; `parameters` is how many were searched.
+
+    `values` are those of its parameters, SI.
+    """
 
     machine: str
     error: Errors
     parameters: int
     why: str
+    values: dict[str, float] = Field(default_factory=dict)
 
 
 class MachineView(BaseModel):
@@ -129,22 +135,25 @@ class MachineView(BaseModel):
 
 
 class StartsView(BaseModel):
-    """From how many points the polish started, and how many ended at the error of the fit."""
+    """From how many points the polish started, and how many ended at the error of the fit; error and values of each."""
 
     tried: int
     agree: int
+    errors: list[float] = Field(default_factory=list)
+    values: dict[str, list[float]] = Field(default_factory=dict)
 
 
 class WindowView(BaseModel):
     """What a machine that integrates is fitted over, s, and the errors of a model that begins each where it was.
 
     `free_run`: by use, the ends of the interval that has 95 % of the free run's errors of parameters within their
-    standard errors.
+    standard errors. `memory`: of the filter (s) that tells the speed with which each begins, where that is begun anew.
     """
 
     horizon: float
     error: Errors
     free_run: dict[str, list[float]] = Field(default_factory=dict)
+    memory: float | None = None
 
 
 class ActuatorStated(BaseModel):
@@ -193,3 +202,4 @@ class FitResultView(BaseModel):
     machine: MachineView | None = None
     structures: list[StructureView] = Field(default_factory=list)
     actuator: ActuatorStated | None = None
+    ended_early: bool = False

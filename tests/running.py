@@ -9,10 +9,10 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import httpx
 
@@ -25,7 +25,8 @@ import sys
 from pathlib import Path
 from app.main import run
 from app.settings import Settings
-run(Settings(data=Path(sys.argv[1]), port=int(sys.argv[2]), token=sys.argv[3]))
+named = dict(webhook_hosts=("127.0.0.1:9",), keep_raw=30)
+run(Settings(data=Path(sys.argv[1]), port=int(sys.argv[2]), token=sys.argv[3], **named))
 """
 
 
@@ -102,6 +103,26 @@ def process(data: Path) -> Iterator[Process]:
     finally:
         service.kill()
         service.client.close()
+
+
+@contextmanager
+def started(
+    *arguments: object, until: str, within: Sequence[str] = (), stderr: IO[str] | None = None, **environment: str
+) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """A command that has said `until`, in a process that may be stopped, continued and killed, and what it said.
+
+    `within` is a command that runs another: with another clock, in another network.
+    """
+    called = [*within, sys.executable, "-m", "app.cli", *map(str, arguments)]
+    process = subprocess.Popen(called, stdout=subprocess.PIPE, stderr=stderr, text=True, env=os.environ | environment)
+    try:
+        assert process.stdout is not None
+        line = next((line for line in process.stdout if until in line), "")
+        assert line, f"{arguments} did not say {until!r}"
+        yield process, line
+    finally:
+        process.kill()
+        process.wait()
 
 
 @contextmanager

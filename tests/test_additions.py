@@ -127,12 +127,12 @@ from ident.readers.table import Table
 
 
 def read_columns(data: bytes, where: str, limits: Limits) -> Table:
-    """The columns of a .json."""
+    """The columns of a .columns."""
     columns = json.loads(data)
     names = tuple(columns)
     return Table(names, lambda numbers: [np.array(columns[names[number]]) for number in numbers])
 ''',
-        "ident/readers/__init__.py", '    ".tdms": "tdms",', '    ".json": "columns",',
+        "ident/readers/__init__.py", '    ".tdms": "tdms",', '    ".columns": "columns",',
     ),
     "endpoint": Addition(
         "app/greeting/endpoints.py",
@@ -140,12 +140,13 @@ def read_columns(data: bytes, where: str, limits: Limits) -> Table:
 
 from fastapi import APIRouter
 
+from app.access.roles import READERS
 from app.errors import COMMON
 
 router = APIRouter(tags=["greeting"], responses=COMMON)
 
 
-@router.get("/greeting")
+@router.get("/greeting", dependencies=[READERS])
 def greeting() -> dict[str, str]:
     """A word."""
     return {"greeting": "hello"}
@@ -195,7 +196,7 @@ print(json.dumps({
     "moved": float(np.std(plain.runs[0].measured - bypassed.runs[0].measured) / np.std(plain.runs[0].measured)),
     "same": all(np.array_equal(a.measured, b.measured) for a, b in zip(plain.runs, columns.runs)),
     "errors": {name: fit.error["fit"] for name, fit in fits.items()},
-    "figure": json.loads(render(figure("error-bars", plain, fits["plain"]), "json")),
+    "figure": json.loads(render(figure(fits["plain"], "error-bars"), "json")),
     "parameters": [parameter.name for parameter in model.parameters],
     "scales": [scale.name for scale in model.scales],
     "models": client.get("/api/v1/models").json(),

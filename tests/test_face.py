@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import os
 import subprocess
 import sys
 
@@ -19,7 +20,7 @@ def test_the_face_has_what_it_names(name):
 
 
 def test_the_face_says_what_it_has():
-    with pytest.raises(AttributeError, match="it has Settings, check"):
+    with pytest.raises(AttributeError, match="it has Matrix, Settings"):
         ident.simulator  # noqa: B018
     assert dir(ident) == sorted(ident.__all__)
 
@@ -27,6 +28,23 @@ def test_the_face_says_what_it_has():
 def test_nothing_is_imported_before_it_is_used():
     code = "import ident, sys; assert 'numpy' not in sys.modules; ident.identify; assert 'numpy' in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT)
+
+
+READ = """
+import sys, ident
+matrix = ident.read_matrix("run.csv", units={"command": "mm", "force": "kN"}, sample_rate="1 kHz", output="force")
+assert matrix.runs[0].units == {"command": "m", "force": "N"}
+heavy = {"altair", "h5py", "pint", "fastapi", "sqlalchemy", "scipy", "numba", "pandas"} & set(sys.modules)
+assert not heavy, heavy
+ident.identify
+assert "altair" not in sys.modules
+"""
+
+
+def test_a_record_is_read_without_what_only_figures_and_the_service_need(tmp_path):
+    """Also not the library of units: a notebook has its data before its user looks up."""
+    (tmp_path / "run.csv").write_text("command,force\n" + "".join(f"{n % 7},{n % 5}\n" for n in range(64)))
+    subprocess.run([sys.executable, "-c", READ], check=True, cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)})
 
 
 @pytest.mark.parametrize("room", [room for room in ROOMS if (ROOT / "ident" / room).is_dir()])

@@ -73,9 +73,10 @@ def test_what_a_benchmark_or_a_picture_imports_is_there(file):
 
 
 ROOMS = (
-    "errors", "plain", "progress", "parallel", "matrix", "parameter", "linear", "equations", "units", "words", "stages",
-    "effects", "chain", "presets", "readers", "custom", "noise", "checks", "simulation", "fit", "comparison",
-    "residuals", "design", "diagnosis", "bench", "hybrid", "figures", "synthesis", "workflows",
+    "errors", "plain", "cached", "progress", "parallel", "words", "matrix", "parameter", "linear", "statistics",
+    "equations", "units", "stages", "effects", "chain", "presets", "foreign", "readers", "custom", "noise", "checks",
+    "drafts", "simulation", "fit", "comparison", "residuals", "design", "diagnosis", "bench", "hybrid", "export",
+    "figures", "synthesis", "workflows",
 )  # fmt: skip
 """The files and folders of `ident`; each may use those before it."""
 
@@ -160,7 +161,7 @@ def chosen_by_name(tree: ast.Module, names: set[str]) -> Iterator[int]:
 def test_there_is_no_loose_file_but_the_basic_words_and_the_workflows():
     """What belongs together stands in a folder."""
     loose = {file.stem for file in files("ident/*.py")} - {"__init__"}
-    assert loose == {"errors", "plain", "progress", "parallel", "matrix", "parameter", "linear", "workflows"}
+    assert loose == {"errors", "plain", "cached", "progress", "parallel", "matrix", "parameter", "linear", "workflows"}
 
 
 def test_effects_never_import_each_other():
@@ -181,8 +182,15 @@ def test_schemas_import_pydantic_only():
         assert not foreign, f"{file.relative_to(ROOT)} imports {sorted(foreign)}"
 
 
-FRAME = {"app.context", "app.errors", "app.idempotency"}
-"""What every endpoint may use beside its service: the running service, its refusals, answers given once."""
+def test_the_client_needs_httpx_and_the_contract_only():
+    """It can be copied beside `schemas` to a machine that has nothing else of the program."""
+    (file,) = files("app/client.py")
+    assert {m.split(".")[0] for m in imports(file)} - STANDARD == {"httpx", "schemas"}
+
+
+FRAME = {"app.access.roles", "app.access.who", "app.context", "app.errors", "app.form", "app.idempotency"}
+"""What every endpoint may use beside its service: who may and who asks, the running service, its refusals, answers
+given once."""
 
 
 @pytest.mark.parametrize("file", files("app/**/*endpoints.py"), ids=lambda file: f"{file.parent.name}.{file.stem}")
@@ -198,8 +206,8 @@ def test_endpoints_import_only_their_service_and_schemas(file):
 def test_only_a_repository_builds_a_query():
     """Elsewhere SQLAlchemy is its errors, and the types of what is handed to a repository; tables only declare."""
     allowed = {"sqlalchemy.exc", "sqlalchemy.orm.Session", "sqlalchemy.orm.sessionmaker", "sqlalchemy.Engine"}
-    apart = {"repository.py", "tables.py", "database.py"}
-    others = [file for file in files("app/**/*.py") if file.name not in apart]
+    apart = {"repository.py", "database.py"}
+    others = [file for file in files("app/**/*.py") if file.name not in apart and file.parent.name != "tables"]
     assert not list(offences(others, {"sqlalchemy"}, allowed))
 
 

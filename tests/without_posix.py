@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio  # noqa: F401  in its form for this system it needs what is deleted, as do the next
 import os
+import shutil
 import signal
 import subprocess  # noqa: F401
 import sys
@@ -27,6 +28,8 @@ OF_OS = (
 OF_SIGNAL = ("SIGALRM", "SIGHUP", "SIGKILL", "SIGPIPE", "SIGQUIT", "SIGUSR1", "SIGUSR2", "alarm", "pause", "setitimer")
 MODULES = ("fcntl", "grp", "pty", "pwd", "readline", "resource", "syslog", "termios", "tty")
 
+room = shutil._ntuple_diskusage(1 << 40, 0, 1 << 40)  # type: ignore[attr-defined]
+shutil.disk_usage = lambda _: room  # type: ignore[assignment]  here by statvfs, which Windows does without
 for name in OF_OS:
     delattr(os, name)
 for name in OF_SIGNAL:

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
+from app.access.roles import READERS
 from app.actuators import service
 from app.context import Here
 from app.errors import COMMON
@@ -14,8 +15,8 @@ from schemas.parameters import ActuatorDetail, ActuatorPage
 router = APIRouter(prefix="/actuators", tags=["actuators"], responses=COMMON)
 
 
-@router.get("")
-def listed(
+@router.get("", dependencies=[READERS])
+def list_actuators(
     here: Here, q: str | None = None, batch: str | None = None, cursor: str | None = None,
     limit: Annotated[int, Query(ge=1, le=200)] = 50,
 ) -> ActuatorPage:  # fmt: skip
@@ -23,7 +24,7 @@ def listed(
     return service.listed(here, q, batch, cursor, limit)
 
 
-@router.get("/{serial:path}")
-def one(here: Here, serial: str) -> ActuatorDetail:
+@router.get("/{serial:path}", dependencies=[READERS])
+def get_actuator(here: Here, serial: str) -> ActuatorDetail:
     """An actuator, its sets and matrices."""
     return service.get(here, serial)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sqlalchemy import func, or_, select
-from sqlalchemy.orm import Session, defer
+from sqlalchemy.orm import Session
 
-from app.tables import ActuatorRow, FitRow, MatrixRow
+from app.tables import ActuatorRow, FitRow, MatrixRow, SetRow
 
 
 def find(session: Session, serial: str) -> ActuatorRow | None:
@@ -34,16 +34,9 @@ def matrices(session: Session, serial: str) -> Sequence[str]:
     return session.scalars(query).all()
 
 
-def fits(session: Session, serial: str) -> Sequence[FitRow]:
-    """An actuator's fits without their results, newest first."""
-    query = select(FitRow).where(FitRow.serial == serial).order_by(FitRow.created_at.desc())
-    return session.scalars(query.options(defer(FitRow.result))).all()
-
-
-def current(session: Session, serials: Sequence[str]) -> dict[str, FitRow]:
-    """The approved parameter sets in force, without the fits' results, by serial number."""
-    query = select(FitRow).where(FitRow.serial.in_(serials), FitRow.current.is_(True))
-    return {row.serial: row for row in session.scalars(query.options(defer(FitRow.result)))}
+def sets(session: Session, serial: str) -> Sequence[SetRow]:
+    """An actuator's parameter sets, newest first."""
+    return session.scalars(select(SetRow).where(SetRow.serial == serial).order_by(SetRow.number.desc())).all()
 
 
 def counts(session: Session, serials: Sequence[str]) -> tuple[dict[str, int], dict[str, int]]:

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from sqlalchemy.orm import Session
 
 from app.actuators import repository
+from app.approvals import service as approvals
+from app.approvals.repository import in_force
 from app.context import Context
 from app.errors import missing
 from app.paging import cursor, keys_of
@@ -34,9 +36,10 @@ def get(context: Context, serial: str) -> ActuatorDetail:
     """One actuator with every set and matrix; raises Failure 404."""
     with context.sessions() as session:
         row = _find(session, serial)
-        sets = [set_view(fit, row) for fit in repository.fits(session, serial)]
+        sets = [set_view(one) for one in repository.sets(session, serial)]
         matrices = list(repository.matrices(session, serial))
-        return ActuatorDetail(**_views(session, [row])[0].model_dump(), sets=sets, matrix_ids=matrices)
+        brief = _views(session, [row])[0].model_dump()
+        return ActuatorDetail(**brief, sets=sets, matrix_ids=matrices, approvals=approvals.history(session, serial))
 
 
 def _find(session: Session, serial: str) -> ActuatorRow:
@@ -48,13 +51,13 @@ def _find(session: Session, serial: str) -> ActuatorRow:
 
 def _views(session: Session, rows: Sequence[ActuatorRow]) -> list[ActuatorView]:
     serials = [row.serial for row in rows]
-    current = repository.current(session, serials)
+    current = in_force(session, serials)
     matrices, fits = repository.counts(session, serials)
     return [
         ActuatorView(
             serial=row.serial, name=row.name, batch=row.batch, piston_area=row.piston_area, created_at=row.created_at,
             matrices=matrices.get(row.serial, 0), fits=fits.get(row.serial, 0),
-            current=set_view(current[row.serial], row) if row.serial in current else None,
+            current=set_view(current[row.serial]) if row.serial in current else None,
         )
         for row in rows
     ]  # fmt: skip

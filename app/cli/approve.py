@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from app.cli.remote import DEFAULT, Server, Token, request
+from app.cli.remote import DEFAULT, Server, Token, request, segment
+
+Why = Annotated[str, typer.Option(help="Kept with who did it and when.")]
 
 
 def approve(
     fit: Annotated[str, typer.Argument(metavar="FIT", help="Id of a finished fit.")],
+    why: Why = "",
     server: Server = DEFAULT,
     token: Token = "",
 ) -> None:
     """Make a fit the current parameter set of its serial number. Older sets stay."""
-    from urllib.parse import quote
-
-    stored = request(server, token, "POST", f"/fits/{quote(fit, safe='', errors='surrogateescape')}/approve").json()
+    stored = decided(server, token, fit, "approve", why)
     print(f"fit {stored['id']} is the current parameter set of {stored['serial']}")
+
+
+def decided(server: str, token: str, fit: str, what: str, why: str) -> dict[str, Any]:
+    """The fit after what was decided about it."""
+    path = f"/fits/{segment(fit)}/{what}"
+    stored: dict[str, Any] = request(server, token, "POST", path, json={"why": why}).json()
+    return stored

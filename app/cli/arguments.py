@@ -61,14 +61,17 @@ def in_si(text: str, name: str, model: Preset, where: str) -> float:
     return parameter_value(text, model.parameter(name).unit, where)
 
 
-def definitions(files: Sequence[Path]) -> tuple[dict[str, Any], ...]:
+def definitions(files: Sequence[Path], terms: int | None = None) -> tuple[dict[str, Any], ...]:
     """The definitions of own effects in these files, each called like its file where it gives no name.
 
-    Of a diagnosis, as JSON, those of the terms that it proposes. A name without a file is that of a kept effect.
+    Of a diagnosis, as JSON, those of the terms that it proposes, or of the first `terms` of them. A name without a file
+    is that of a kept effect.
     """
     from ident.custom.definition import read_effect
 
-    found = [(file, definition) for file in files for definition in _defined(file)]
+    if terms is not None and not any(file.exists() and is_diagnosis(file) for file in files):
+        raise Unusable("bad-option", "no diagnosis that proposes terms", "--terms", "give one as --custom D.json")
+    found = [(file, definition) for file in files for definition in _defined(file, terms)]
     for file, definition in found:
         try:
             read_effect(definition)
@@ -77,7 +80,7 @@ def definitions(files: Sequence[Path]) -> tuple[dict[str, Any], ...]:
     return tuple(definition for _, definition in found)
 
 
-def _defined(file: Path) -> list[dict[str, Any]]:
+def _defined(file: Path, terms: int | None) -> list[dict[str, Any]]:
     """What a file defines: one effect, or, a diagnosis, what that proposes; what is kept under a name."""
     from app.cli.given import read_diagnosis
     from app.cli.kept_here import find
@@ -90,7 +93,9 @@ def _defined(file: Path) -> list[dict[str, Any]]:
     proposals = read_diagnosis(file).proposals
     if not proposals:
         raise Unusable("not-an-effect", "the diagnosis proposes no term", str(file), "its notes say why")
-    return [definition_of(proposal.effect) for proposal in proposals]
+    if terms is not None and not 1 <= terms <= len(proposals):
+        raise Unusable("bad-option", f"{terms} of {len(proposals)}", "--terms", f"give 1 to {len(proposals)}")
+    return [definition_of(proposal.effect) for proposal in proposals[:terms]]
 
 
 def is_diagnosis(file: Path) -> bool:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
+from ident.words.number import count
 
 if TYPE_CHECKING:
     from ident.matrix import Actuator, Matrix, Run
@@ -70,8 +71,3 @@ def runs_line(runs: tuple[Run, ...]) -> str:
 def summary(severities: list[str]) -> str:
     """How many findings of each severity."""
     return ", ".join(count(severities.count(severity), severity) for severity in ("fault", "doubt", "note"))
-
-
-def count(number: int, thing: str) -> str:
-    """A number with its noun."""
-    return f"{number} {thing}{'' if number == 1 else 's'}"

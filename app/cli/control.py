@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from ident.hybrid.controller_design import ControllerDesign
     from ident.hybrid.target import Target
 
-FILES = ("controller.json", "controller.mat", "controller.h", "closed-loop.svg")
+FORMATS = ("svg", "png", "pdf", "json")
+FILES = ("controller.json", "controller.mat", "controller.h", *(f"closed-loop.{kind}" for kind in FORMATS))
 
 
 def control(
@@ -68,7 +69,9 @@ def _write(made: ControllerDesign, out: Path, case: str) -> None:
     write_json(made.to_json(), out / FILES[0])
     write_bytes(as_mat(controller), out / FILES[1])
     write_bytes(as_header(controller).encode(), out / FILES[2])
-    write_bytes(render(closed_loop(made, look("light"), f"case {case}"), "svg"), out / FILES[3])
+    chart = closed_loop(made, look("light"), f"case {case}")
+    for kind in FORMATS:
+        write_bytes(render(chart, kind), out / f"closed-loop.{kind}")
 
 
 def _show(made: ControllerDesign) -> None:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ident.errors import Unusable
+
 if TYPE_CHECKING:
     from app.settings import Settings
 
@@ -18,11 +20,29 @@ Database = Annotated[
     str,
     typer.Option(metavar="URL", envvar="SERVOIDENT_DATABASE", help="PostgreSQL instead of SQLite in the data folder."),
 ]
+Blobs = Annotated[
+    str,
+    typer.Option(
+        metavar="PLACE",
+        envvar="SERVOIDENT_BLOBS",
+        help="Where raw uploads lie: s3://BUCKET/PREFIX, or a folder, which machines may share (SERVOIDENT_BLOBS).",
+        show_envvar=False,
+    ),
+]
+Log = Annotated[
+    str,
+    typer.Option(metavar="text|json", envvar="SERVOIDENT_LOG", help="Form of the log on standard error.",
+                 show_envvar=False),
+]  # fmt: skip
 
 
 def settings(data: Path | None, database: str, **others: Any) -> Settings:
     """The service's settings with what the command line gives."""
     from app.settings import Settings
 
+    if others.get("log", "text") not in ("text", "json"):
+        raise Unusable(
+            "bad-option", f"{others['log']!r} is no form of a log", "--log", "write --log text or --log json"
+        )
     given: dict[str, Any] = {} if data is None else {"data": data}
     return Settings(**given, database_url=database, **others)

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from app.cli.effects import Where
-from app.cli.remote import Token, request
+from app.cli.remote import Token, request, segment
 
 
 def drop(
@@ -17,9 +17,7 @@ def drop(
 ) -> None:
     """Remove an own effect from the list. Fits carry the effects that they were made with."""
     if server:
-        from urllib.parse import quote
-
-        request(server, token, "DELETE", f"/own-effects/{quote(name, safe='', errors='surrogateescape')}")
+        request(server, token, "DELETE", f"/own-effects/{segment(name)}")
     else:
         from app.cli.kept_here import drop as drop_here
 

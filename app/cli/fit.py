@@ -1,15 +1,17 @@
-"""`servoident fit`: identify the parameters of a model from a matrix."""
+"""`servoident fit`: identify the parameters of a model from a matrix, or from each matrix of a folder."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from app.cli.fit_options import (
     Bounds,
+    Budget,
     Custom,
     Effects,
     Load,
@@ -17,13 +19,21 @@ from app.cli.fit_options import (
     Method,
     Model,
     Options,
+    Profiled,
     Seed,
+    Terms,
     Values,
     modelled,
     settings,
 )
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
+from ident.errors import Unusable
+
+if TYPE_CHECKING:
+    from ident.comparison.profile import Profile
+    from ident.fit.result import FitResult
+    from ident.progress import Report
 
 
 def fit(
@@ -31,27 +41,64 @@ def fit(
     model: Model = None,
     effect: Effects = None,
     custom: Custom = None,
+    terms: Terms = None,
     method: Method = "ga",
     bounds: Bounds = None,
     set_: Values = None,
     load: Load = "none",
     seed: Seed = 0,
     option: Options = None,
+    budget: Budget = None,
+    profile: Profiled = None,
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the fit as JSON; - is stdout.")] = None,
 ) -> None:
-    """Identify the parameters of a model. With standard errors, and the error on runs that no fit saw."""
+    """Identify the parameters of a model. With standard errors, and the error on runs that no fit saw.
+
+    Of a folder of matrices each is fitted, and a table has them all.
+    """
     from ident.readers import read_matrix
     from ident.workflows import identify
 
     check_target(json)
-    with shown() as report:
-        named, choice = modelled(read_matrix(matrix), model, report)
-        chosen = settings(named, effect, method, bounds, set_, load, seed, option, custom)
-        result = choice.made(chosen) or identify(choice.matrix, chosen, report)
-        result = replace(result, structures=choice.structures)
-    if json is not None:
-        write_json(result.to_json(), json)
-    if json != STANDARD_OUTPUT:
-        from app.cli.tables import show_fit
 
+    def fitted(path: Path, report: Report) -> FitResult:
+        named, choice = modelled(read_matrix(path), model, report)
+        chosen = settings(named, effect, method, bounds, set_, load, seed, option, custom, budget, terms)
+        result = choice.made(chosen) or identify(choice.matrix, chosen, report)
+        return replace(result, structures=choice.structures)
+
+    from app.cli.fit_folder import fit_each, matrices_in
+
+    several = matrices_in(matrix)
+    if several and profile:
+        raise Unusable("bad-option", "a folder of matrices has no profile", "--profile", "name one matrix")
+    if several:
+        fit_each(several, fitted, json)
+    else:
+        _fit_one(matrix, fitted, profile or [], json)
+
+
+def _fit_one(
+    matrix: Path, fitted: Callable[[Path, Report], FitResult], profiled: Sequence[str], json: Path | None
+) -> None:
+    """The fit of one matrix, with the profiles that are asked for."""
+    from ident.comparison.profile import profile
+    from ident.readers import read_matrix
+
+    with shown() as report:
+        result = fitted(matrix, report)
+        profiles = [profile(read_matrix(matrix), result, name, report=report) for name in profiled]
+    _tell(result, profiles, json)
+
+
+def _tell(result: FitResult, profiles: Sequence[Profile], json: Path | None) -> None:
+    """Write the fit, its profiles beside it, and show them."""
+    from app.cli.tables import show, show_fit
+    from ident.plain import written
+
+    if json is not None:
+        write_json(result.to_json() | ({"profiles": written(profiles)} if profiles else {}), json)
+    if json != STANDARD_OUTPUT:
         show_fit(result)
+        for one in profiles:
+            show(one.listings())

@@ -38,6 +38,10 @@ Custom = Annotated[
         help="Own effect to add, defined in a file or kept, or what a diagnosis (D.json) proposes; may be repeated.",
     ),
 ]
+Terms = Annotated[
+    int | None,
+    typer.Option("--terms", metavar="N", help="Of the terms that a diagnosis proposes take the first N only."),
+]
 Ranked = Annotated[
     list[Path] | None,
     typer.Option(
@@ -58,6 +62,16 @@ Values = Annotated[
 Load = Annotated[str, typer.Option(help="force: drive the load by the measured force; none: do not.")]
 Seed = Annotated[
     int, typer.Option(min=0, max=2**31 - 1, help="Seed of the search: the same seed gives the same result.")
+]
+Budget = Annotated[
+    float | None,
+    typer.Option(metavar="SECONDS", help="End the search with the generation that goes beyond; such a fit is no set."),
+]
+Profiled = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--profile", metavar="NAME", help="Profile likelihood of a parameter, as for one at a bound; may be repeated."
+    ),
 ]
 Options = Annotated[
     list[str] | None,
@@ -94,13 +108,14 @@ def _named(model: str) -> str:
 
 def settings(
     model: str, effect: list[str] | None, method: str, bounds: list[str] | None, set_: list[str] | None, load: str,
-    seed: int, option: list[str] | None, custom: list[Path] | None = None,
+    seed: int, option: list[str] | None, custom: list[Path] | None = None, budget: float | None = None,
+    terms: int | None = None,
 ) -> Settings:  # fmt: skip
     """The library's settings from what the command line gives. Raises Unusable."""
     from ident.custom.definition import preset_with
     from ident.fit.settings import Settings
 
-    own = definitions(custom or [])
+    own = definitions(custom or [], terms)
     effects = (*(effect or []), *(definition["name"] for definition in own))
     preset = preset_with(model, effects, own)
     return Settings(
@@ -113,4 +128,5 @@ def settings(
         seed=seed,
         options=method_options(option or []),
         custom=own,
+        budget=budget,
     )

@@ -15,6 +15,7 @@ from app.cli.progress import shown
 if TYPE_CHECKING:
     from ident.figures import Chart
     from ident.hybrid.case import Case
+    from ident.hybrid.followed import Followed
     from ident.hybrid.rig import HybridResult
     from ident.hybrid.share_map import ShareMap
 
@@ -42,6 +43,7 @@ def hybrid(
     """Simulate a real-time hybrid simulation: a numerical substructure, a controller, the actuator, a specimen."""
     from ident.hybrid.acting import controller_called
     from ident.hybrid.case import read_case
+    from ident.hybrid.followed import followed_in
     from ident.hybrid.rig import name_of, simulate_hybrid
 
     check_target(json)
@@ -54,13 +56,15 @@ def hybrid(
         if controller != "none" and out is not None:
             runs["no controller"] = simulate_hybrid(result, of, None, effects, report)
         found = _map(shares, acting, result, of, effects, report)
+    worth = followed_in(result, of) if controller == "feedforward" else None
     main = next(iter(runs.values()))
     if json is not None:
-        write_json({**main.to_json(), **({"map": found.to_json()} if found else {})}, json)
+        beside = {"map": found, "feedforward": worth}
+        write_json({**main.to_json(), **{name: one.to_json() for name, one in beside.items() if one}}, json)
     if json != STANDARD_OUTPUT:
-        show(main)
+        show(main, worth)
     if out is not None:
-        draw(runs, found, of, out)
+        draw(runs, found, worth, of, out)
 
 
 def _map(asked: bool, acting: Any, *rest: Any) -> ShareMap | None:
@@ -77,8 +81,8 @@ def _map(asked: bool, acting: Any, *rest: Any) -> ShareMap | None:
     return share_map(fit, case, acting, effects, report=report)
 
 
-def show(found: HybridResult) -> None:
-    """Print the verdict and the scores."""
+def show(found: HybridResult, worth: Followed | None = None) -> None:
+    """Print the verdict and the scores, and what the feedforward is worth."""
     from app.cli.tables import output, table
     from ident.words.engineering import quantity
     from ident.words.percent import percent
@@ -102,13 +106,17 @@ def show(found: HybridResult) -> None:
     if found.ended is not None:
         said += f": ran away after {quantity(found.ended, 's')}"
     print(f"{said}; controller {found.controller}; {found.case.ground.name}; {found.seconds:.2f} s of computing")
+    if worth is not None:
+        for line in worth.said:
+            print(f"feedforward: {line}")
     for note in found.notes:
         print(f"note: {note}")
 
 
-def draw(runs: dict[str, HybridResult], found: ShareMap | None, case: Case, out: Path) -> None:
+def draw(runs: dict[str, HybridResult], found: ShareMap | None, worth: Followed | None, case: Case, out: Path) -> None:
     """Write the figures in every format to the folder `out`."""
     from ident.figures import look, render
+    from ident.figures.feedforward import feedforward_figure
     from ident.figures.hybrid_response import hybrid_response
     from ident.figures.hybrid_time import hybrid_time
     from ident.figures.share_map import share_map_chart
@@ -118,6 +126,8 @@ def draw(runs: dict[str, HybridResult], found: ShareMap | None, case: Case, out:
     charts: dict[str, Chart] = {"displacement": hybrid_time(runs, of), "response": hybrid_response(runs, of)}
     if found is not None:
         charts["map"] = share_map_chart(found, case, next(iter(runs)), of)
+    if worth is not None:
+        charts["feedforward"] = feedforward_figure(worth, of)
     for name, chart in charts.items():
         for format_ in FORMATS:
             write_bytes(render(chart, format_), out / f"{name}.{format_}")

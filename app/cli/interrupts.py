@@ -25,6 +25,12 @@ def heard() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
+def ended_as_by_ctrl_c() -> None:
+    """From now on SIGTERM, by which a system ends its services, is heard as Ctrl-C is."""
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, _press)
+
+
 def heed() -> None:
     """Raise KeyboardInterrupt where Ctrl-C was pressed."""
     if _pressed.is_set():

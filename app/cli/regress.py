@@ -1,64 +1,96 @@
-"""`servoident regress`: recheck every approved actuator of this machine."""
+"""`servoident regress`: recheck approved actuators, here or over the workers of a service."""
 
 from __future__ import annotations
 
 import math
+import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Any
 
 import typer
 
 from app.cli.data_options import Data, Database, settings
 from app.cli.output import check_target, write_bytes
 from app.cli.progress import shown
+from app.cli.remote import Token, request
 from ident.errors import Unusable
 
-if TYPE_CHECKING:
-    from app.regress.recheck import Recheck
+_LOOK = 1.0  # s between two looks at a regression that runs elsewhere
 
 
 def regress(
+    serial: Annotated[str | None, typer.Option(help="Serial number; without it, all.")] = None,
+    batch: Annotated[str | None, typer.Option(help="Batch; without it, all.")] = None,
+    model: Annotated[str | None, typer.Option(help="Model; without it, all.")] = None,
     data: Data = None,
     database: Database = "",
+    server: Annotated[
+        str | None, typer.Option(metavar="URL", help="Over the workers of this service, instead of here.")
+    ] = None,
+    token: Token = "",
     tolerance: Annotated[float, typer.Option(help="Largest relative change of an error or a parameter.")] = 1e-3,
     junit: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the outcome for a build server.")] = None,
 ) -> None:
-    """Recheck every approved actuator. Exit status 1 where an error or a parameter moved.
+    """Recheck approved actuators. Exit status 1 where an error or a parameter moved.
 
-    The stored error is computed again, the fit is repeated with the stored settings, and both are compared with what
-    was approved.
+    The stored error is computed again, the stored runs are fitted from scratch with the stored settings, and both are
+    compared with what was approved. A parameter moved where it differs by more than the tolerance and by more than a
+    tenth of its standard error.
     """
-    from app.regress.junit import junit as as_junit
-    from app.regress.service import regress as rechecks_of
-
     check_target(junit)
     if not 0 <= tolerance < math.inf:
         raise Unusable("bad-number", f"{tolerance:g} is no tolerance", "--tolerance", "give 0 or a number above")
-    with shown() as report:
-        rechecks = list(rechecks_of(settings(data, database), tolerance, report))
-    if junit is not None:
-        write_bytes(as_junit(rechecks), junit)
-    show(rechecks)
-    if not all(one.passed for one in rechecks):
+    asked = {"serial": serial, "batch": batch, "model": model}
+    if server is None:
+        rows = _here(data, database, asked, tolerance, junit)
+    else:
+        rows = _there(server, token, {**asked, "tolerance": tolerance}, junit)
+    show(rows)
+    if any(outcome != "same" for _, outcome, _ in rows):
         raise typer.Exit(1)
 
 
-def show(rechecks: list[Recheck]) -> None:
+Row = tuple[str, str, str]
+"""Serial number, outcome, what is told of it."""
+
+
+def _here(
+    data: Path | None, database: str, asked: dict[str, str | None], tolerance: float, junit: Path | None
+) -> list[Row]:
+    """One after the other, in this process."""
+    from app.regress.junit import junit as as_junit
+    from app.regress.repository import Asked
+    from app.regress.service import regress as rechecks_of
+    from app.regress.words import as_view, told
+
+    with shown() as report:
+        rechecks = list(rechecks_of(settings(data, database), Asked(**asked), tolerance, report))
+    if junit is not None:
+        write_bytes(as_junit(rechecks), junit)
+    return [(one.serial, one.outcome, told(one)) for one in map(as_view, rechecks)]
+
+
+def _there(server: str, token: str, asked: dict[str, Any], junit: Path | None) -> list[Row]:
+    """A job an actuator, over all workers of a service."""
+    from app.regress import words
+    from schemas.regression import RegressionView
+
+    body = {name: value for name, value in asked.items() if value is not None}
+    found = RegressionView(**request(server, token, "POST", "/regressions", json=body).json())
+    at = f"/regressions/{found.id}"
+    while found.state == "running":
+        time.sleep(_LOOK)
+        found = RegressionView(**request(server, token, "GET", at).json())
+    if junit is not None:
+        write_bytes(request(server, token, "GET", at, params={"format": "junit"}).content, junit)
+    return [(one.serial, one.outcome, text) for one, _, text in words.rows(found.rechecks)]
+
+
+def show(rows: list[Row]) -> None:
     """Print one line an actuator."""
     from app.cli.tables import output, table
 
-    if not rechecks:
+    if not rows:
         print("no parameter set is approved yet: nothing to recheck")
         return
-    rows = [(one.serial, "same" if one.passed else "failed" if one.failure else "moved", told(one)) for one in rechecks]
     output().print(table(("serial", "outcome", ""), rows, numbers=()))
-
-
-def told(one: Recheck) -> str:
-    """What moved, or the largest change."""
-    if one.failure:
-        return one.failure
-    if one.moved:
-        return "; ".join(f"{c.quantity} {c.before:.5g} → {c.after:.5g}" for c in one.moved)
-    largest = one.largest
-    return f"largest change {largest.relative:.1e} ({largest.quantity})" if largest else ""

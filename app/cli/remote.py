@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
+from urllib.parse import quote
 from uuid import uuid4
 
 import typer
@@ -44,6 +46,31 @@ def request(server: str, token: str, method: str, path: str, **content: Any) -> 
     if answer.is_error:
         raise refusal(answer)
     return answer
+
+
+def receive(server: str, token: str, path: str, file: Path) -> int:
+    """The file that a POST is answered by, whole or not at all; its size in bytes. Raises Unusable."""
+    import httpx
+
+    from app.client import received
+
+    headers = {"Authorization": f"Bearer {token}"} if token else {}
+    patience = httpx.Timeout(PATIENCE, read=None)  # it is made before the first byte comes
+    try:
+        with httpx.stream("POST", f"{server.rstrip('/')}/api/v1{path}", headers=headers, timeout=patience) as answer:
+            if answer.is_error:
+                answer.read()
+                raise refusal(answer)
+            return received(answer, file)
+    except (httpx.HTTPError, httpx.InvalidURL) as error:
+        raise Unusable(
+            "no-service", f"no answer from the service ({error})", server, "start it, or give its address"
+        ) from None
+
+
+def segment(name: str) -> str:
+    """A name as one part of a path, whatever signs it holds."""
+    return quote(name, safe="", errors="surrogateescape")
 
 
 def refusal(answer: httpx.Response) -> Unusable:

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from app.cli.remote import DEFAULT, Server, Token, request
+from app.cli.remote import DEFAULT, Server, Token, request, segment
 
 
 def revise(
@@ -19,12 +19,8 @@ def revise(
     token: Token = "",
 ) -> None:
     """Mend labels, units or signs of a stored matrix. The raw bytes stay; the result is a new matrix."""
-    from urllib.parse import quote
-
     body = read_changes(changes)
-    stored = request(
-        server, token, "POST", f"/matrices/{quote(matrix, safe='', errors='surrogateescape')}/revisions", json=body
-    ).json()
+    stored = request(server, token, "POST", f"/matrices/{segment(matrix)}/revisions", json=body).json()
     print(f"matrix {stored['id']} of {stored['serial']}: a revision of {stored['parent']}")
 
 

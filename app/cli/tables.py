@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from ident.fit.result import Estimate, FitResult
-from ident.words.percent import percent
-from ident.words.plus_minus import plus_minus_si
+from ident.words.shown import Listing
 
 if TYPE_CHECKING:
     from ident.bench.acceptance import Line
+    from ident.fit.result import FitResult
 
 
 def output() -> Console:
@@ -23,23 +22,22 @@ def output() -> Console:
     return Console(soft_wrap=True, highlight=False, width=None if sys.stdout.isatty() else 1000)
 
 
+def show(listings: Iterable[Listing | str]) -> None:
+    """Print tables and sentences as the library lists them."""
+    console = output()
+    for one in listings:
+        if isinstance(one, str):
+            console.print(one, markup=False)
+        else:
+            console.print(table(one.header, one.rows, one.numbers))
+
+
 def show_fit(result: FitResult) -> None:
     """Print a fit: parameters, errors, what the data determine and what they do not, notes."""
-    console = output()
-    header = ("parameter", "value", "std error", "unit", "")
-    console.print(table(header, parameter_rows(result.parameters), numbers=("value", "std error")))
-    uses = ("fit", "held out", "verify")
-    console.print(table(("error (eq. 17)", *uses), error_rows(result), numbers=uses))
-    for combination in result.determined:
-        value = plus_minus_si(combination.value, combination.std_error, combination.unit)
-        console.print(f"determined: {combination.expression} = {value}", markup=False)
-    for entry in result.undetermined:
-        console.print(f"not determined: {entry.name}: {entry.reason}", markup=False)
-    for note in result.notes:
-        console.print(f"note: {note}", markup=False)
+    show(result.listings())
     starts = f", {result.starts}" if result.starts else ""
     made = f"{result.method}, seed {result.seed}: {result.evaluations} evaluations in {result.seconds:.2f} s{starts}"
-    console.print(made, soft_wrap=True)
+    output().print(made, soft_wrap=True)
 
 
 def table(header: Sequence[str], rows: Iterable[Sequence[str]], numbers: Container[str]) -> Table:
@@ -50,28 +48,6 @@ def table(header: Sequence[str], rows: Iterable[Sequence[str]], numbers: Contain
     for row in rows:
         made.add_row(*map(escape, row))
     return made
-
-
-def parameter_rows(parameters: Mapping[str, Estimate]) -> Iterator[tuple[str, ...]]:
-    """One row a parameter."""
-    for name, estimate in parameters.items():
-        remark = "held" if estimate.fixed else "at its bound" if estimate.at_bound else ""
-        std_error = "–" if estimate.std_error is None else f"{estimate.std_error:.2g}"
-        yield name, f"{estimate.value:.5g}", std_error, estimate.unit, remark
-
-
-def error_rows(result: FitResult) -> Iterator[tuple[str, ...]]:
-    """Error, offset and noise floor by use, in per cent."""
-    uses = ("fit", "held_out", "verify")
-    yield "model", *(percent(result.error.get(use)) for use in uses)
-    if result.window:
-        over = result.window.error
-        between = {use: " to ".join(map(percent, ends)) for use, ends in result.window.free_run.items()}
-        if between:
-            yield "95 % interval", *(between.get(use, "–") for use in uses)
-        yield f"over {result.window.horizon:.3g} s", *(percent(over.get(use)) for use in uses)
-    yield "noise floor", *(percent(result.noise_floor.get(use)) for use in uses)
-    yield "offset", *(percent(result.offset.get(use)) for use in uses)
 
 
 def sheet_rows(lines: Iterable[Line]) -> Iterator[tuple[str, ...]]:

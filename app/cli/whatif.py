@@ -101,12 +101,12 @@ def _change(fit: FitResult, set_: list[str], fitted: list[str], specimen: str | 
     return Change(
         sizes={name: quantity(value, SIZES[name], f"--set {name}") for name, value in pairs if name in SIZES},
         values={name: in_si(value, name, model, f"--set {name}") for name, value in pairs if name not in SIZES},
-        specimen=_specimen(specimen),
+        specimen=specimen_of(specimen),
         known={name: quantity(value, SIZES[name], f"--fitted {name}") for name, value in known},
     )
 
 
-def _specimen(text: str | None) -> Specimen:
+def specimen_of(text: str | None) -> Specimen:
     """A specimen from `mass=2.06 kg, stiffness=30.65 kN/m`. Raises Unusable."""
     from ident.errors import Unusable
     from ident.matrix import Specimen

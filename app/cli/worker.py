@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from app.cli.data_options import Data, Database, settings
+from app.cli.data_options import Blobs, Data, Database, Log, settings
+from app.cli.interrupts import ended_as_by_ctrl_c
 from ident.errors import Unusable
 
 _PULSE = 0.5  # s, after which Ctrl-C is heard even where another thread has taken the signal
@@ -17,22 +18,30 @@ def worker(
     executor: Annotated[str, typer.Option(metavar="NAME", help="Its own name, kept over restarts.")],
     database: Database = "",
     data: Data = None,
+    blobs: Blobs = "",
+    log: Log = "text",
 ) -> None:
-    """Work on queued fits, beside a service that uses the same PostgreSQL and data folder."""
+    """Work on queued jobs, beside a service that uses the same PostgreSQL and the same place for raw uploads."""
     if not database.startswith("postgres"):
         what = "a queue in SQLite is worked on by the service's own process only"
         raise Unusable("needs-postgresql", what, "--database", "give a PostgreSQL URL here and to the service")
-    from app.main import make_context
+    from app.main import make_context, start, stop
+    from app.operation.logs import in_json
     from ident.parallel import one_thread
 
-    context = make_context(settings(data, database, executor=executor))
+    if log == "json":
+        in_json()
+    ended_as_by_ctrl_c()
+    context = make_context(settings(data, database, blobs=blobs, executor=executor, log=log))
     with one_thread():
-        context.jobs.launch()
+        threads = start(context)
         print(f"worker {executor} is waiting for jobs  (Ctrl-C stops it)", flush=True)
         try:
-            while True:
+            while context.jobs.running:
                 time.sleep(_PULSE)
+            remedy = "give each worker a name of its own"
+            raise Unusable("name-taken", "another process works under this name", f"--executor {executor}", remedy)
         except KeyboardInterrupt:
-            print("stopped; its unfinished jobs go on when it starts again")
+            print("stopped; its unfinished jobs go on elsewhere, or when it starts again")
         finally:
-            context.jobs.stop()
+            stop(context, threads)

@@ -6,6 +6,8 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
 
+from app.access.roles import LAB, READERS
+from app.access.who import Me
 from app.context import Here
 from app.diagnoses import proposal, service
 from app.errors import COMMON
@@ -18,36 +20,36 @@ router = APIRouter(prefix="/diagnoses", tags=["diagnoses"], responses=COMMON)
 Seed = Annotated[int, Query(ge=0, lt=2**31)]
 
 
-@router.post("", status_code=202, response_model=JobView)
-def submit(here: Here, request: DiagnosisRequest, key: Key = None) -> Response:
+@router.post("", dependencies=[LAB], status_code=202, response_model=JobView)
+def start_diagnosis(here: Here, me: Me, request: DiagnosisRequest, key: Key = None) -> Response:
     """Queue the diagnosis of a fit, or of a matrix whose fit is made first; Location is its job."""
     asked = fingerprint("diagnosis", request.model_dump(exclude_unset=True))
-    return queued_once(here, key, asked, lambda job: service.submit(here, request, job))
+    return queued_once(here, key, asked, lambda job: service.submit(here, request, job, me.name))
 
 
-@router.get("", response_model_exclude_unset=True)
-def listed(
+@router.get("", dependencies=[READERS], response_model_exclude_unset=True)
+def list_diagnoses(
     here: Here, fit: str | None = None, cursor: str | None = None, limit: Annotated[int, Query(ge=1, le=200)] = 50
 ) -> DiagnosisPage:
     """Diagnoses, newest first: all, or those of a fit."""
     return service.listed(here, fit, cursor, limit)
 
 
-@router.get("/{diagnosis}", response_model_exclude_unset=True)
-def one(here: Here, diagnosis: str) -> DiagnosisView:
+@router.get("/{diagnosis}", dependencies=[READERS], response_model_exclude_unset=True)
+def get_diagnosis(here: Here, diagnosis: str) -> DiagnosisView:
     """A diagnosis: what the fit lacks, ranked, with the ladder and the verdict."""
     return service.get(here, diagnosis)
 
 
-@router.get("/{diagnosis}/proposal")
-def proposed(here: Here, diagnosis: str, seed: Seed = 0) -> ProposalView:
+@router.get("/{diagnosis}/proposal", dependencies=[READERS])
+def get_proposal(here: Here, diagnosis: str, seed: Seed = 0) -> ProposalView:
     """The run that best tells apart what the diagnosis leaves in question, in words and numbers."""
     return proposal.proposal(here, diagnosis, seed)
 
 
-@router.get("/{diagnosis}/next-experiment", response_class=Response,
+@router.get("/{diagnosis}/next-experiment", dependencies=[READERS], response_class=Response,
             responses={200: {"content": {"application/zip": {}}}})  # fmt: skip
-def next_experiment(here: Here, diagnosis: str, seed: Seed = 0) -> Response:
+def get_next_experiment(here: Here, diagnosis: str, seed: Seed = 0) -> Response:
     """The same run as a .zip: its command as CSV and MAT, and experiment.json."""
     name = f'attachment; filename="next-experiment-{diagnosis[:12]}.zip"'
     content = proposal.archive(here, diagnosis, seed)

@@ -48,7 +48,7 @@ class Search:
     job: str | None = None
 
 
-def submit(context: Context, request: DiagnosisRequest, job: str) -> JobView:
+def submit(context: Context, request: DiagnosisRequest, job: str, who: str) -> JobView:
     """Queue a diagnosis under the id decided for its job. It is recorded before this returns: nothing can lose it."""
     most = USUAL if request.max_effects is None else request.max_effects
     if most > MOST:
@@ -58,7 +58,7 @@ def submit(context: Context, request: DiagnosisRequest, job: str) -> JobView:
     reseed = request.seed if request.fit is not None and "seed" in request.model_fields_set else None
     settings |= {"max_effects": most, "time": request.time, "reseed": reseed, "propose": request.propose}
     settings["own"] = [written(kept) for kept in every(context)] if request.own else []
-    return jobs.record(context, job, matrix.id, settings, request.fit, "diagnosis")
+    return jobs.record(context, job, matrix.id, settings, request.fit, "diagnosis", who)
 
 
 def _wanted(context: Context, request: DiagnosisRequest) -> tuple[str, dict[str, object]]:

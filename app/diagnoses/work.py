@@ -11,6 +11,7 @@ from sqlalchemy.orm import Session
 
 from app.diagnoses import repository
 from app.fits import repository as fits
+from app.fits.history import put_apart
 from app.jobs.work import Kind, State, Task, Work
 from app.own_effects.kept import Kept, suited
 from app.tables import JobRow
@@ -52,7 +53,7 @@ class DiagnosisWork(Work):
             matrix, fit, most=chosen["max_effects"], custom=own, report=report, seconds=seconds,
             propose=chosen.get("propose", False),
         )  # fmt: skip
-        return {"diagnosis": found.to_json(), "fit": None if given else made.to_json()}
+        return {"diagnosis": found.to_json(), "fit": None if given else put_apart(self.task.storage, made.to_json())}
 
     def _given(self) -> FitResult | None:
         """The fit that the job starts from, None where it makes its own. Raises Unusable."""
@@ -83,7 +84,7 @@ def _keep(session: Session, job: JobRow, serial: str, made: State) -> None:
     if repository.diagnosis(session, job.id) is not None:
         return
     if made["fit"] is not None:
-        fits.add_fit(session, job, serial, made["fit"])
+        fits.add_fit(session, job, made["fit"])
     repository.add(session, job, serial, made["diagnosis"])
 
 

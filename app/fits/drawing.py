@@ -12,9 +12,10 @@ from app.errors import Failure
 from app.fits import lineage, service
 from app.lru import LRU
 from app.matrices import service as matrices
+from app.profiles import service as profiles
 from ident import workflows
 from ident.errors import Unusable
-from ident.figures import MEDIA, Study, figure, ladder, look, render
+from ident.figures import MEDIA, Study, figure, ladder, look, profile_likelihood, render, side_by_side
 from ident.figures.ladder import Step
 from ident.figures.selection import number
 from ident.fit.result import FitResult
@@ -37,13 +38,22 @@ def drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str
 
 
 def _drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str, Any]) -> bytes:
-    study = _study(context, fit_id)
-    fit, matrix = study.fit, study.matrix
+    studied = study(context, fit_id)
+    fit, matrix = studied.fit, studied.matrix
     theme, share = options.pop("theme", "light"), number(options, "share") or 1.0
     live = bool(options.pop("live", ""))
     options.pop("share", None)
     if not 0.2 <= share <= 4:
         raise Unusable("out-of-range", f"share is {share:g}", "figure option share", "give 0.2 to 4")
+    if name == "side-by-side":
+        wanted = options.get("other", [])
+        found = service.beside(context, fit_id, [wanted] if isinstance(wanted, str) else wanted)
+        return render(side_by_side(found, matrix.actuator, look(theme, share)), kind)
+    if name == "profile":
+        known = profiles.found(context, fit_id, str(options.pop("parameter", "") or fit.searched[0]))
+        if options:
+            raise Unusable("unknown-option", f"no option {next(iter(options))!r}", "figure profile", "use parameter")
+        return render(profile_likelihood(known, matrix.actuator, fit, look(theme, share)), kind)
     if name == "ladder":
         if options:
             raise Unusable("unknown-option", f"no option {next(iter(options))!r}", "figure ladder", "use theme")
@@ -53,10 +63,10 @@ def _drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[st
         options["candidate"] = _candidate(context, fit, str(options["candidate"]))
     else:
         options.pop("candidate", None)
-    return render(figure(name, study, theme, share, **options), kind, live=live)
+    return render(figure(name, studied, theme, share, **options), kind, live=live)
 
 
-def _study(context: Context, fit_id: str) -> Study:
+def study(context: Context, fit_id: str) -> Study:
     """A fit beside its data, from memory where it was drawn lately; raises Failure 404."""
 
     def made() -> Study:

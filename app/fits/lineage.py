@@ -17,7 +17,7 @@ from schemas.fit import EffectsRequest, JobView, LadderRung, LadderView
 from schemas.result import EstimateView
 
 
-def add(context: Context, fit_id: str, request: EffectsRequest, job: str) -> JobView:
+def add(context: Context, fit_id: str, request: EffectsRequest, job: str, who: str) -> JobView:
     """Queue the refit of a fit with more effects and otherwise its own settings, under the id decided for its job."""
     parent = service.find(context, fit_id)
     fit = FitResult.from_json(parent.result)
@@ -37,7 +37,7 @@ def add(context: Context, fit_id: str, request: EffectsRequest, job: str) -> Job
         raise Failure(409, "effect-there", f"the fit has {', '.join(there)} already", "effect",
                       "add another one, or start from the fit before it")  # fmt: skip
     settings = replace(settings, effects=(*fit.effects, *wanted))
-    return service.queue(context, job, parent.matrix, settings, parent.id)
+    return service.queue(context, job, parent.matrix, settings, parent.id, who)
 
 
 def ladder(context: Context, fit_id: str) -> LadderView:
@@ -57,8 +57,8 @@ def _rung(row: FitRow, found: FitResult, before: tuple[str, ...]) -> LadderRung:
     return LadderRung(
         fit=row.id, parent=row.parent, matrix=row.matrix,
         added=[name for name in found.effects if name not in before],
-        error={"fit": row.error_fit, "verify": row.error_verify},
+        error={"fit": row.set.error_fit, "verify": row.set.error_verify},
         parameters={name: EstimateView(**vars(entry)) for name, entry in found.parameters.items()},
         seed=found.seed, version=found.version, data_hash=found.data_hash,
-        created_at=row.created_at, approved_at=row.approved_at, current=row.current,
+        created_at=row.created_at, approved_at=row.set.approved_at, current=row.set.current,
     )  # fmt: skip

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from sqlalchemy import select, update
+from sqlalchemy import select
 from sqlalchemy.orm import Session, aliased
 
-from app.fits.history import packed, unpacked
-from app.tables import EvolutionRow, FitRow, JobRow, ValueRow, now
+from app.fits.equations import equations_of
+from app.fits.history import read, taken_apart
+from app.storage import Storage
+from app.tables import EvolutionRow, FitRow, JobRow, MatrixRow, SetRow, ValueRow
 
 
 def fit(session: Session, fit_id: str) -> FitRow | None:
@@ -31,38 +33,42 @@ def lineage(session: Session, row: FitRow) -> Sequence[FitRow]:
 
 def floors(session: Session, fits: Sequence[str]) -> Sequence[tuple[str, str | None, float | None, Any]]:
     """Of each of these fits: its id, the fit before it, that one's error on runs to fit, and its own noise floors."""
-    earlier = aliased(FitRow)
+    earlier = aliased(SetRow)
     query = select(FitRow.id, FitRow.parent, earlier.error_fit, FitRow.result["noise_floor"])
-    query = query.join(earlier, earlier.id == FitRow.parent, isouter=True).where(FitRow.id.in_(fits))
+    query = query.join(earlier, earlier.fit == FitRow.parent, isouter=True).where(FitRow.id.in_(fits))
     return [(fit, parent, before, floor) for fit, parent, before, floor in session.execute(query)]
 
 
-def add_fit(session: Session, job_row: JobRow, serial: str, result: dict[str, Any]) -> FitRow:
-    """The fit that a job made, with its parameters in rows of their own, and the history of its search."""
-    evolution = result.get("evolution", [])
-    result = {name: value for name, value in result.items() if name != "evolution"}
+def add_fit(session: Session, job: JobRow, result: dict[str, Any]) -> FitRow:
+    """The fit that a job made, with its parameter set, and the history of its search."""
+    result, blob, content = taken_apart(result)
+    matrix = session.get_one(MatrixRow, job.matrix)
     row = FitRow(
-        id=job_row.id, matrix=job_row.matrix, serial=serial, parent=job_row.parent, model=result["model"],
-        error_fit=result["error"]["fit"], error_verify=result["error"]["verify"], result=result,
-    )  # fmt: skip
-    row.values = [
-        ValueRow(name=name, value=entry["value"], unit=entry["unit"], std_error=entry["std_error"])
-        for name, entry in result["parameters"].items()
-    ]
+        id=job.id, matrix=matrix.id, serial=matrix.serial, parent=job.parent, model=result["model"], result=result
+    )
+    row.set = _set(matrix, result, job.who)
     session.add(row)
     session.flush()  # before what refers to it
-    session.add(EvolutionRow(fit=row.id, content=packed(evolution)))
+    session.add(EvolutionRow(fit=row.id, blob=blob, content=content))
     return row
 
 
-def whole_result(session: Session, row: FitRow) -> dict[str, Any]:
+def _set(matrix: MatrixRow, result: dict[str, Any], who: str) -> SetRow:
+    """What a result says of its actuator, and where it comes from."""
+    row = SetRow(
+        serial=matrix.serial, batch=matrix.batch, model=result["model"],
+        error_fit=result["error"]["fit"], error_verify=result["error"]["verify"],
+        **{name: result[name] for name in ("effects", "data_hash", "seed", "version")},
+        equations=equations_of(result), who=who,
+    )  # fmt: skip
+    row.values = [
+        ValueRow(name=name, place=place, value=entry["value"], unit=entry["unit"], std_error=entry["std_error"])
+        for place, (name, entry) in enumerate(result["parameters"].items())
+    ]
+    return row
+
+
+def whole_result(session: Session, storage: Storage, row: FitRow) -> dict[str, Any]:
     """The result of a fit with the history of its search."""
-    kept = session.get(EvolutionRow, row.id)
-    return row.result if kept is None else {**row.result, "evolution": unpacked(kept.content)}
-
-
-def approve(session: Session, row: FitRow) -> None:
-    """Make a fit the current set of its serial number; the one before stays, but is not current."""
-    session.execute(update(FitRow).where(FitRow.serial == row.serial).values(current=False))
-    row.current, row.approved_at = True, row.approved_at or now()
-    session.add(row)
+    found = session.get(EvolutionRow, row.id)
+    return row.result if found is None else {**row.result, "evolution": read(storage, found.blob, found.content)}

@@ -40,7 +40,7 @@ class ParameterRow:
 
 @dataclass(frozen=True)
 class ErrorRow:
-    """Errors of one use of runs."""
+    """Errors of one use of runs; `sized` is the use under which their sizes in the output's unit are told."""
 
     use: str
     runs: int
@@ -48,6 +48,7 @@ class ErrorRow:
     floor: str
     ratio: str
     offset: str
+    sized: str = ""
 
 
 @dataclass(frozen=True)
@@ -115,6 +116,7 @@ def _errors(
             floor="unknown" if floor is None else percent_in_print(floor),
             ratio=f"{error / floor:.2f} ×" if floor else "–",
             offset=percent_in_print(offset.get(use), 2) if offset else "–",
+            sized="" if over else use,
         )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from app.approvals import service as approvals
 from app.context import Context
 from app.errors import missing
 from app.fits import repository
@@ -13,25 +14,30 @@ from app.jobs import service as jobs
 from app.matrices import service as matrices
 from app.own_effects.naming import with_kept
 from app.tables import FitRow
-from ident.custom.definition import definition_of, preset_with
+from ident.comparison.side_by_side import SideBySide, of_fits
+from ident.fit.choices import Choices
+from ident.fit.choices import settings_of as chosen_settings
 from ident.fit.identification import check_settings
 from ident.fit.result import FitResult
 from ident.fit.settings import GENERAL, Settings
+from ident.plain import written
 from ident.presets.suited import in_question
 from ident.residuals.budget import budget
 from ident.residuals.survey import survey
-from ident.units.quantity import parameter_value
 from ident.workflows import compare
 from schemas.fit import (
     Chosen,
     ComparedRun,
     ComparisonView,
+    FitColumn,
     FitRequest,
     FitView,
     JobView,
+    RunBeside,
+    SideBySideView,
 )
 from schemas.matrix import MatrixView
-from schemas.result import ErrorBudget, FitResultView
+from schemas.result import ErrorBudget, EstimateView, FitResultView
 
 
 @dataclass(frozen=True)
@@ -57,41 +63,31 @@ class Yardstick:
     floor: float | None = None
 
 
-def submit(context: Context, request: FitRequest, job: str) -> JobView:
+def submit(context: Context, request: FitRequest, job: str, who: str) -> JobView:
     """Queue a fit under the id decided for its job. It is recorded before this returns: nothing can lose it."""
     matrix = matrices.find(context, request.matrix)
     if request.parent is not None:
         find(context, request.parent)
     settings = settings_of(with_kept(context, request), matrices.view(matrix))
-    return queue(context, job, matrix.id, settings, request.parent)
+    return queue(context, job, matrix.id, settings, request.parent, who)
 
 
-def queue(context: Context, job: str, matrix: str, settings: Settings, parent: str | None) -> JobView:
+def queue(context: Context, job: str, matrix: str, settings: Settings, parent: str | None, who: str) -> JobView:
     """Record and queue the job of a fit. Raises Unusable where its settings cannot be."""
     check_settings(settings)
-    return jobs.record(context, job, matrix, settings.to_json(), parent, "fit")
+    return jobs.record(context, job, matrix, settings.to_json(), parent, "fit", who)
 
 
 def settings_of(request: Chosen, matrix: MatrixView | None) -> Settings:
     """The library's settings: numbers are SI, text may carry a unit. Raises Unusable."""
     named = request.model or _model(request, matrix)
     if not named:
-        return Settings(model="", method=request.method, seed=request.seed, load=request.load, options=request.options)
-    own = tuple(definition_of(definition) for definition in request.custom)
-    effects = tuple(dict.fromkeys((*request.effects, *(str(definition["name"]) for definition in own))))
-    model = preset_with(named, effects, own)
-
-    def si(name: str, value: float | str) -> float:
-        return parameter_value(value, model.parameter(name).unit, name)
-
-    bounds = {name: (si(name, lower), si(name, upper)) for name, (lower, upper) in request.bounds.items()}
-    for name, (lower, upper) in bounds.items():
-        model.parameter(name).within(lower, upper)
-    return Settings(
-        model=named, effects=effects, custom=own, method=request.method, seed=request.seed, bounds=bounds,
-        fixed={name: si(name, value) for name, value in request.set.items()}, load=request.load,
-        options=request.options,
-    )  # fmt: skip
+        return Settings(model="", method=request.method, seed=request.seed, load=request.load, options=request.options,
+                        budget=request.budget)  # fmt: skip
+    return chosen_settings(Choices(
+        model=named, effects=request.effects, custom=request.custom, method=request.method, seed=request.seed,
+        bounds=request.bounds, fixed=request.set, load=request.load, options=request.options, budget=request.budget,
+    ))  # fmt: skip
 
 
 def _model(request: Chosen, matrix: MatrixView | None) -> str:
@@ -126,7 +122,7 @@ def get(context: Context, fit_id: str) -> FitView:
     row, result = _whole(context, fit_id)
     return FitView(
         id=row.id, matrix=row.matrix, serial=row.serial, parent=row.parent, created_at=row.created_at,
-        approved_at=row.approved_at, current=row.current, result=FitResultView(**result),
+        approved_at=row.set.approved_at, current=row.set.current, result=FitResultView(**result),
     )  # fmt: skip
 
 
@@ -135,7 +131,7 @@ def stored(context: Context, fit_id: str) -> Stored:
     row, result = _whole(context, fit_id)
     return Stored(
         id=row.id, matrix=row.matrix, serial=row.serial, parent=row.parent, created_at=row.created_at,
-        approved_at=row.approved_at, current=row.current, found=FitResult.from_json(result),
+        approved_at=row.set.approved_at, current=row.set.current, found=FitResult.from_json(result),
     )  # fmt: skip
 
 
@@ -143,16 +139,18 @@ def _whole(context: Context, fit_id: str) -> tuple[FitRow, dict[str, Any]]:
     """The record of a fit, and its result with the history of its search; raises Failure 404."""
     row = find(context, fit_id)
     with context.sessions() as session:
-        return row, repository.whole_result(session, row)
+        return row, repository.whole_result(session, context.storage, row)
 
 
-def approve(context: Context, fit_id: str) -> FitView:
-    """Make a fit the current parameter set of its actuator."""
-    with context.sessions.begin() as session:
-        row = repository.fit(session, fit_id)
-        if row is None:
-            raise missing("fit", fit_id)
-        repository.approve(session, row)
+def approve(context: Context, fit_id: str, who: str, why: str) -> FitView:
+    """Make a fit the set in force of its actuator."""
+    approvals.approve(context, fit_id, who, why)
+    return get(context, fit_id)
+
+
+def withdraw(context: Context, fit_id: str, who: str, why: str) -> FitView:
+    """Let a fit be in force no longer, so that its actuator has no set in force."""
+    approvals.withdraw(context, fit_id, who, why)
     return get(context, fit_id)
 
 
@@ -160,8 +158,28 @@ def comparison(context: Context, fit_id: str) -> ComparisonView:
     """The fit against every run of its matrix, recomputed from the samples."""
     row = find(context, fit_id)
     found = compare(matrices.load(context, row.matrix), FitResult.from_json(row.result))
-    runs = [ComparedRun(id=r.run.id, use=r.run.use, error=r.error, offset=r.offset) for r in found.runs]
+    runs = [ComparedRun(**record) for record in found.records()]
     return ComparisonView(fit=fit_id, error=found.error, offset=found.offset, runs=runs, **survey(found).to_json())
+
+
+def beside(context: Context, fit_id: str, others: Sequence[str]) -> SideBySide:
+    """A fit and others, with the errors that they were stored with. Raises Failure 404, Unusable."""
+    return of_fits([FitResult.from_json(find(context, one).result) for one in (fit_id, *others)])
+
+
+def side_by_side(context: Context, fit_id: str, others: Sequence[str]) -> SideBySideView:
+    """The same as it is sent."""
+    found = beside(context, fit_id, others)
+    fits = [
+        FitColumn(fit=name, name=one.name, model=one.fit.model, effects=list(one.fit.effects), error=dict(one.error),
+                  parameters={key: EstimateView(**entry) for key, entry in written(one.fit.parameters).items()})
+        for name, one in zip((fit_id, *others), found.columns, strict=True)
+    ]  # fmt: skip
+    runs = [
+        RunBeside(id=run, use=use, error={one.name: one.runs.get(run) for one in found.columns})
+        for run, use in found.uses.items()
+    ]
+    return SideBySideView(fits=fits, runs=runs)
 
 
 def budget_of(context: Context, fit_id: str) -> ErrorBudget:

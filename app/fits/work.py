@@ -5,6 +5,7 @@ from __future__ import annotations
 from sqlalchemy.orm import Session
 
 from app.fits import repository
+from app.fits.history import put_apart
 from app.jobs.work import Kind, Search, State, Task
 from app.tables import JobRow
 from ident.fit.settings import Settings
@@ -17,6 +18,7 @@ class FitWork(Search):
     """The fit of a matrix, whose runs are prepared once."""
 
     def __init__(self, task: Task) -> None:
+        self._storage = task.storage
         self._fit = identification(task.matrix, Settings.from_json(task.settings), task.report)
 
     def begin(self) -> State:
@@ -28,13 +30,13 @@ class FitWork(Search):
         return self._fit.advance(state, GENERATIONS)
 
     def finish(self, state: State) -> State:
-        """Polish and uncertainty."""
-        return self._fit.finish(state).to_json()
+        """Polish and uncertainty; the history of the search is kept apart."""
+        return put_apart(self._storage, self._fit.finish(state).to_json())
 
 
-def _keep(session: Session, job: JobRow, serial: str, result: State) -> None:
+def _keep(session: Session, job: JobRow, _serial: str, result: State) -> None:
     if repository.fit(session, job.id) is None:
-        repository.add_fit(session, job, serial, result)
+        repository.add_fit(session, job, result)
 
 
 FIT = Kind("fit", FitWork, _keep)

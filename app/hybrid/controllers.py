@@ -7,6 +7,7 @@ from typing import Any
 
 from sqlalchemy.exc import IntegrityError
 
+from app.access.noting import about
 from app.context import Context
 from app.errors import Failure, missing
 from app.fits import service as fits
@@ -34,6 +35,7 @@ def design(context: Context, request: ControllerRequest, controller: str) -> Con
     case = asked_case(request.case)
     asked = request.model_dump(exclude_none=True) | {"case": case.case, "case_name": case.read().name}
     made = _designed(context, asked)
+    about(f"controllers/{controller}")
     with context.sessions() as session:
         try:
             repository.add_controller(session, controller, request.fit, asked, made.to_json())

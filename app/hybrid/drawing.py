@@ -15,6 +15,7 @@ from app.hybrid.work import WITHOUT
 from app.lru import LRU
 from ident.figures import MEDIA, Chart, look, render
 from ident.figures.closed_loop import closed_loop
+from ident.figures.feedforward import feedforward_figure
 from ident.figures.hybrid_response import hybrid_response
 from ident.figures.hybrid_time import hybrid_time
 from ident.figures.look import Look
@@ -22,6 +23,7 @@ from ident.figures.root_locus import root_locus
 from ident.figures.share_map import share_map_chart
 from ident.figures.tracking import tracking as tracking_chart
 from ident.figures.what_if_response import what_if_response
+from ident.hybrid.followed import Followed
 from ident.hybrid.share_map import ShareMap
 from schemas.hybrid import WhatIfRequest
 
@@ -43,7 +45,7 @@ def of_controller(context: Context, controller: str, name: str, kind: str, style
 
 
 def of_simulation(context: Context, simulation: str, name: str, kind: str, style: Style) -> tuple[bytes, str]:
-    """A figure of a hybrid simulation: `displacement`, `response`, and `map` where it has one."""
+    """A figure of a hybrid simulation: `displacement`, `response`, and `map` and `feedforward` where it has them."""
     row = service.with_records(context, simulation)
     case, held = service.case_of_row(row), row.result
     results = {held["result"]["controller"]: held["result"]} | ({WITHOUT: held["without"]} if held["without"] else {})
@@ -54,6 +56,8 @@ def of_simulation(context: Context, simulation: str, name: str, kind: str, style
     }
     if held["map"]:
         charts["map"] = lambda style: share_map_chart(_map(held["map"]), case, held["result"]["controller"], style)
+    if worth := held.get("feedforward"):
+        charts["feedforward"] = lambda style: feedforward_figure(Followed.from_json(worth), style)
     return _drawn(context, ("hybrid", simulation), charts, name, kind, style)
 
 

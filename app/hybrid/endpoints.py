@@ -6,13 +6,15 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Response
 
+from app.access.roles import LAB, READERS
 from app.context import Here
 from app.errors import COMMON
 from app.hybrid import controllers, drawing, service, tracking, what_if
 from app.idempotency import Answer, Key, fingerprint, once, queued_once
 from schemas.fit import JobView
 from schemas.hybrid import ControllerRequest, HybridRequest, WhatIfRequest
-from schemas.hybrid_result import ControllerPage, ControllerView, HybridPage, HybridView, TrackView, WhatIfView
+from schemas.hybrid_result import ControllerPage, ControllerView, HybridPage, HybridView, WhatIfView
+from schemas.track_result import TrackView
 
 router = APIRouter(tags=["hybrid"], responses=COMMON)
 _MEDIA = ("application/json", "image/svg+xml", "image/png", "application/pdf")
@@ -29,8 +31,8 @@ Noise = Annotated[
 Asked = Annotated[str, Query(max_length=8000, description="The body of POST /fits/ID/what-if, as JSON text")]
 
 
-@router.post("/controllers", status_code=201, response_model=ControllerView)
-def design(here: Here, request: ControllerRequest, key: Key = None) -> Response:
+@router.post("/controllers", dependencies=[LAB], status_code=201, response_model=ControllerView)
+def design_controller(here: Here, request: ControllerRequest, key: Key = None) -> Response:
     """Design a controller for a fit and keep it: it makes the measured displacement follow the wanted one."""
 
     def answer(made: ControllerView) -> Answer:
@@ -45,28 +47,35 @@ def design(here: Here, request: ControllerRequest, key: Key = None) -> Response:
                 find)  # fmt: skip
 
 
-@router.get("/controllers", response_model_exclude_unset=True)
-def designed(here: Here, fit: str | None = None, cursor: str | None = None, limit: Limit = 50) -> ControllerPage:
+@router.get("/controllers", dependencies=[READERS], response_model_exclude_unset=True)
+def list_controllers(
+    here: Here, fit: str | None = None, cursor: str | None = None, limit: Limit = 50
+) -> ControllerPage:
     """Controllers, newest first: all, or those of a fit."""
     return controllers.listed(here, fit, cursor, limit)
 
 
-@router.get("/controllers/{controller}.{kind}", response_class=Response, responses=_FILES)
-def controller_file(here: Here, controller: str, kind: str) -> Response:
+@router.get("/controllers/{controller}.{kind}", dependencies=[READERS], response_class=Response, responses=_FILES)
+def get_controller_file(here: Here, controller: str, kind: str) -> Response:
     """A controller as json (what `servoident control` writes), mat (MATLAB, Octave) or h (a C header)."""
     content, media = controllers.file(here, controller, kind)
     name = f'attachment; filename="controller.{kind}"'
     return Response(content, media_type=media, headers={"Content-Disposition": name})
 
 
-@router.get("/controllers/{controller}", response_model_exclude_unset=True)
-def controller(here: Here, controller: str) -> ControllerView:
+@router.get("/controllers/{controller}", dependencies=[READERS], response_model_exclude_unset=True)
+def get_controller(here: Here, controller: str) -> ControllerView:
     """A controller: the fit and case it is for, margins and robustness."""
     return controllers.get(here, controller)
 
 
-@router.get("/controllers/{controller}/figures/{name}.{kind}", response_class=Response, responses=_IMAGES)
-def controller_drawn(
+@router.get(
+    "/controllers/{controller}/figures/{name}.{kind}",
+    dependencies=[READERS],
+    response_class=Response,
+    responses=_IMAGES,
+)
+def draw_controller(
     here: Here, controller: str, name: str, kind: str, theme: Theme = "light", share: Share = 1.0
 ) -> Response:
     """The figure `closed-loop` of a controller as json (Vega-Lite), svg, png or pdf."""
@@ -74,42 +83,51 @@ def controller_drawn(
     return Response(content, media_type=media)
 
 
-@router.post("/hybrid-simulations", status_code=202, response_model=JobView)
-def simulate(here: Here, request: HybridRequest, key: Key = None) -> Response:
+@router.post("/hybrid-simulations", dependencies=[LAB], status_code=202, response_model=JobView)
+def start_hybrid_simulation(here: Here, request: HybridRequest, key: Key = None) -> Response:
     """Queue a hybrid simulation on the machine of a fit; Location is its job."""
     asked = fingerprint("hybrid", request.model_dump())
     return queued_once(here, key, asked, lambda job: service.submit(here, request, job))
 
 
-@router.get("/hybrid-simulations")
-def simulated(here: Here, fit: str | None = None, cursor: str | None = None, limit: Limit = 50) -> HybridPage:
+@router.get("/hybrid-simulations", dependencies=[READERS])
+def list_hybrid_simulations(
+    here: Here, fit: str | None = None, cursor: str | None = None, limit: Limit = 50
+) -> HybridPage:
     """Hybrid simulations, newest first: all, or those of a fit."""
     return service.listed(here, fit, cursor, limit)
 
 
-@router.get("/hybrid-simulations/{simulation}")
-def simulation(here: Here, simulation: str) -> HybridView:
+@router.get("/hybrid-simulations/{simulation}", dependencies=[READERS])
+def get_hybrid_simulation(here: Here, simulation: str) -> HybridView:
     """A hybrid simulation: whether it is stable, its scores, and the same without a controller."""
     return service.get(here, simulation)
 
 
-@router.get("/hybrid-simulations/{simulation}/figures/{name}.{kind}", response_class=Response, responses=_IMAGES)
-def simulation_drawn(
+@router.get(
+    "/hybrid-simulations/{simulation}/figures/{name}.{kind}",
+    dependencies=[READERS],
+    response_class=Response,
+    responses=_IMAGES,
+)
+def draw_hybrid_simulation(
     here: Here, simulation: str, name: str, kind: str, theme: Theme = "light", share: Share = 1.0
 ) -> Response:
-    """The figures `displacement`, `response` and `map` of a simulation as json (Vega-Lite), svg, png or pdf."""
+    """The figures `displacement`, `response`, `map` and `feedforward` of a simulation as Vega-Lite, svg, png, pdf."""
     content, media = drawing.of_simulation(here, simulation, name, kind, (theme, share))
     return Response(content, media_type=media)
 
 
-@router.post("/fits/{fit}/what-if")
-def changed(here: Here, fit: str, request: WhatIfRequest) -> WhatIfView:
+@router.post("/fits/{fit}/what-if", dependencies=[READERS])
+def ask_what_if(here: Here, fit: str, request: WhatIfRequest) -> WhatIfView:
     """What a change of size, specimen or parameters would do to the machine of a fit. Nothing is stored."""
     return what_if.answer(here, fit, request)
 
 
-@router.get("/fits/{fit}/what-if/figures/{name}.{kind}", response_class=Response, responses=_IMAGES)
-def changed_drawn(
+@router.get(
+    "/fits/{fit}/what-if/figures/{name}.{kind}", dependencies=[READERS], response_class=Response, responses=_IMAGES
+)
+def draw_what_if(
     here: Here, fit: str, name: str, kind: str, asked: Asked = "{}", theme: Theme = "light", share: Share = 1.0
 ) -> Response:
     """The figures `response` and `root-locus` of a change as json (Vega-Lite), svg, png or pdf."""
@@ -117,14 +135,16 @@ def changed_drawn(
     return Response(content, media_type=media)
 
 
-@router.get("/matrices/{matrix}/track")
-def track(here: Here, matrix: str, run: Run = None, noise: Noise = None) -> TrackView:
+@router.get("/matrices/{matrix}/track", dependencies=[READERS])
+def track_run(here: Here, matrix: str, run: Run = None, noise: Noise = None) -> TrackView:
     """Time constant and gain of a first-order loop over a run, by a Kalman filter, and whether it holds."""
     return tracking.answer(here, matrix, run, noise)
 
 
-@router.get("/matrices/{matrix}/track/figures/{name}.{kind}", response_class=Response, responses=_IMAGES)
-def track_drawn(
+@router.get(
+    "/matrices/{matrix}/track/figures/{name}.{kind}", dependencies=[READERS], response_class=Response, responses=_IMAGES
+)
+def draw_track(
     here: Here, matrix: str, name: str, kind: str, run: Run = None, noise: Noise = None, theme: Theme = "light",
     share: Share = 1.0,
 ) -> Response:  # fmt: skip

@@ -93,20 +93,23 @@ def get(context: Context, simulation: str) -> HybridView:
 
 
 def listed(context: Context, fit: str | None, after: str | None, limit: int) -> HybridPage:
-    """A page of hybrid simulations, without their maps."""
+    """A page of hybrid simulations, without their maps and curves."""
     with context.sessions() as session:
         rows = repository.simulations(session, fit, keys_of(after, 2), limit)
     following = cursor(rows[-1].created_at, rows[-1].id) if len(rows) == limit else None
-    return HybridPage(items=[view(row).model_copy(update={"map": None}) for row in rows], next=following)
+    return HybridPage(
+        items=[view(row).model_copy(update={"map": None, "feedforward": None}) for row in rows], next=following
+    )
 
 
 def view(row: HybridRow) -> HybridView:
     """A hybrid simulation as it is sent."""
     held = row.result
-    names = [*FIGURES, *(["map"] if held["map"] else [])]
+    names = [*FIGURES, *(name for name in ("map", "feedforward") if held.get(name))]
     return HybridView(
         **held["result"], id=row.id, fit=row.fit, matrix=row.matrix, serial=row.serial, created_at=row.created_at,
-        controller_id=row.controller, without=held["without"], map=held["map"], figures=names,
+        controller_id=row.controller, without=held["without"], map=held["map"],
+        feedforward=held.get("feedforward"), figures=names,
     )  # fmt: skip
 
 

@@ -9,7 +9,7 @@ from ident.hybrid.tracked_run import Track, chosen
 from ident.hybrid.tracked_run import track as tracked
 from ident.matrix import Actuator
 from ident.units.quantity import parameter_value
-from schemas.hybrid_result import TrackView
+from schemas.track_result import TrackView
 
 _MOST = 4  # tracks in memory
 _tracks: LRU[tuple[Track, Actuator]] = LRU(_MOST)

@@ -19,6 +19,7 @@ from app.tables import JobRow
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.controller import SampledController
+from ident.hybrid.followed import followed_in
 from ident.hybrid.rig import simulate_hybrid
 from ident.hybrid.share_map import share_map
 
@@ -26,7 +27,7 @@ WITHOUT = "no controller"
 
 
 class HybridWork(Work):
-    """A simulation, the same without a controller, and the map over physical shares where it is asked for."""
+    """A simulation, the same without a controller, the map where it is asked for, a feedforward's worth."""
 
     def __init__(self, task: Task) -> None:
         self.task = task
@@ -42,11 +43,13 @@ class HybridWork(Work):
         mapped = None
         if asked["map"] and isinstance(chosen, SampledController):
             mapped = share_map(fit, case, chosen, effects, report=report)
+        worth = followed_in(fit, case) if given == "feedforward" else None
         runs = {main.controller: main} | ({WITHOUT: alone} if alone else {})
         return {
             "result": main.to_json(),
             "without": alone.to_json() if alone else None,
             "map": mapped.to_json() if mapped else None,
+            "feedforward": worth.to_json() if worth else None,
             "records": base64.b85encode(packed(runs)).decode(),
         }
 
@@ -64,7 +67,7 @@ class HybridWork(Work):
 
 def _keep(session: Session, job: JobRow, serial: str, made: State) -> None:
     if repository.simulation(session, job.id) is None:
-        result = {name: made[name] for name in ("result", "without", "map")}
+        result = {name: made[name] for name in ("result", "without", "map", "feedforward")}
         repository.add_simulation(session, job, serial, result, base64.b85decode(made["records"]))
 
 

@@ -19,6 +19,7 @@ from fastapi.responses import JSONResponse
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session, sessionmaker
 
+from app.access.noting import APART
 from app.errors import Failure
 from app.idempotency import repository
 from app.tables import AnswerRow, before
@@ -62,7 +63,7 @@ def once(sessions: sessionmaker[Session], key: str | None, asked: str, act: Act,
 
 def _claimed(sessions: sessionmaker[Session], key: str, asked: str) -> tuple[AnswerRow, bool]:
     """The claim or answer of a key, and whether it is this request that has to act."""
-    with sessions() as session:
+    with sessions(info=APART) as session:
         while (row := repository.known(session, key)) is None:
             try:
                 row = repository.claim(session, key, asked, uuid4().hex)
@@ -85,14 +86,14 @@ def _acted(sessions: sessionmaker[Session], row: AnswerRow, act: Act, find: Find
         return act(row.subject)
     except BaseException:
         if find(row.subject) is None:
-            with sessions.begin() as session:
+            with sessions(info=APART) as session, session.begin():
                 repository.release(session, row)
         raise
 
 
 def _answered(sessions: sessionmaker[Session], key: str, answer: Answer) -> Answer:
     """Record an answer; the one that counts, which is the first."""
-    with sessions.begin() as session:
+    with sessions(info=APART) as session, session.begin():
         repository.answer(session, key, *answer)
         repository.forget(session)
         row = repository.known(session, key)

@@ -10,6 +10,7 @@ from fastapi import APIRouter, Header, Query
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
 
+from app.access.roles import LAB, READERS
 from app.context import Context, Here
 from app.errors import COMMON
 from app.jobs import service
@@ -20,35 +21,35 @@ _LOOK, _HEARTBEAT = 0.2, 15.0  # s
 _ENDED = ("succeeded", "failed", "cancelled")
 
 
-@router.get("")
-def listed(
+@router.get("", dependencies=[READERS])
+def list_jobs(
     here: Here, state: str | None = None, cursor: str | None = None, limit: Annotated[int, Query(ge=1, le=200)] = 50
 ) -> JobPage:
     """Jobs, newest first."""
     return service.listed(here, cursor, limit, state=state)
 
 
-@router.get("/{job}")
-def one(here: Here, job: str) -> JobView:
+@router.get("/{job}", dependencies=[READERS])
+def get_job(here: Here, job: str) -> JobView:
     """A job and its progress."""
     return service.get(here, job)
 
 
-@router.delete("/{job}")
-def cancel(here: Here, job: str) -> JobView:
+@router.delete("/{job}", dependencies=[LAB])
+def cancel_job(here: Here, job: str) -> JobView:
     """Cancel a job: at once while it waits, at its next step of progress while it runs."""
     return service.cancel(here, job)
 
 
-@router.post("/{job}/conclude")
-def conclude(here: Here, job: str) -> JobView:
+@router.post("/{job}/conclude", dependencies=[LAB])
+def conclude_job(here: Here, job: str) -> JobView:
     """End a diagnosis with what it has found: at its next step of progress. 409 for a job of another kind."""
     return service.conclude(here, job)
 
 
-@router.get("/{job}/events", response_class=StreamingResponse,
+@router.get("/{job}/events", dependencies=[READERS], response_class=StreamingResponse,
             responses={200: {"content": {"text/event-stream": {}}}})  # fmt: skip
-async def events(
+async def follow_job(
     here: Here, job: str, last: Annotated[str | None, Header(alias="Last-Event-ID")] = None
 ) -> StreamingResponse:
     """Server-sent events until the job ends: each is the job, its id counts the changes, so a stream can be resumed."""

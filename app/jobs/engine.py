@@ -14,9 +14,11 @@ from queue import SimpleQueue
 from typing import Any, Protocol
 
 from dbos import DBOS, DBOSConfig, Serializer, SetWorkflowID
+from dbos import error as failures
 
-from app.database import connect
+from app.database import HEEDFUL, connect
 from app.jobs.generations import added, whole
+from app.jobs.lease import Superseded
 from app.jobs.work import State
 from app.settings import Settings
 
@@ -33,22 +35,32 @@ _log = logging.getLogger("servoident")
 
 
 class Steps(Protocol):
-    """What a job is cut into; each returns {"outcome": None or how it ended, "state": ...}."""
+    """What a turn at a job is cut into; each returns {"outcome": None or how it ended, "state": ...}."""
 
-    def begin(self, job: str) -> State:
+    def begin(self) -> State:
         """Start; the state says whether it is `done` but for the finish."""
         ...
 
-    def advance(self, job: str, state: State) -> State:
+    def advance(self, state: State) -> State:
         """A block of the search."""
         ...
 
-    def finish(self, job: str, state: State) -> State:
+    def finish(self, state: State) -> State:
         """All that follows the search; the state is the result."""
         ...
 
-    def store(self, job: str, last: State) -> None:
+    def store(self, last: State) -> None:
         """Keep what came out, in one transaction; a second call changes nothing."""
+        ...
+
+
+class Runs(Protocol):
+    """Who works: `stopping` is set when what runs is to be let go."""
+
+    stopping: threading.Event
+
+    def take(self, job: str) -> Steps:
+        """A turn at a job, each time that this process begins or takes it up."""
         ...
 
 
@@ -71,9 +83,11 @@ class JsonSerializer(Serializer):
 class Jobs:
     """The engine of one process; `launch` before use, `stop` at the end."""
 
-    def __init__(self, settings: Settings, steps: Steps) -> None:
-        self.settings, self.running = settings, False
+    def __init__(self, settings: Settings, runs: Runs) -> None:
+        self.settings, self.runs, self.running = settings, runs, False
         self._ended: SimpleQueue[str | None] = SimpleQueue()
+        self._under_way: set[str] = set()
+        self._stranded = False
         self._tidying = threading.Thread(target=self._tidy, name="tidy", daemon=True)
         url = settings.queue_database
         config: DBOSConfig = {
@@ -84,13 +98,18 @@ class Jobs:
             "serializer": JsonSerializer(),
             "log_level": "WARNING",
             "notification_listener_polling_interval_sec": 0.1,
+            # A process that is frozen within a transaction holds up the others no longer.
+            "sys_db_idle_transaction_timeout_sec": 8.0,
         }
         if url.startswith("sqlite"):
             config["system_database_engine"] = connect(url)
+        else:
+            config["db_engine_kwargs"] = {"connect_args": dict(HEEDFUL)}
         logging.getLogger("dbos").setLevel(logging.WARNING)
+        logging.getLogger("dbos").addFilter(_matters)
         DBOS.destroy(destroy_registry=True)
         DBOS(config=config)
-        self.workflow = _workflow(steps, self._ended)
+        self.workflow = _workflow(runs, self._under_way, self._ended)
 
     def launch(self) -> None:
         """Start the engine; it takes up this executor's unfinished jobs by itself."""
@@ -104,8 +123,29 @@ class Jobs:
         with SetWorkflowID(job):
             DBOS.enqueue_workflow(QUEUE, self.workflow, job)
 
+    def give_back(self, executor: str) -> None:
+        """Queue again what a process had under way that will not go on with it."""
+        DBOS._recover_pending_workflows([executor])
+
+    def mend(self) -> None:
+        """Queue again what has come to a stop through no fault of its own: where the engine's disk was full, say.
+
+        A job that this process is said to run, and does not, is given back when it is found so twice.
+        """
+        if not self.running or self._under_way:
+            self._stranded = False
+            return
+        for one in _listed("ERROR"):  # the workflow itself never raises
+            DBOS.delete_workflow(one.workflow_id)
+            self.submit(one.workflow_id)
+        stranded = bool(_listed("PENDING", executor_id=self.settings.executor))
+        if stranded and self._stranded:
+            self.give_back(self.settings.executor)
+        self._stranded = stranded
+
     def stop(self) -> None:
-        """Stop the engine; what runs is taken up at the next start, as after a kill."""
+        """Stop the engine: what runs is let go, and goes on elsewhere or at the next start, as after a kill."""
+        self.runs.stopping.set()
         if self.running:
             self.running = False
             self._ended.put(None)
@@ -128,6 +168,13 @@ class Jobs:
             job = self._ended.get()
 
 
+def _matters(record: logging.LogRecord) -> bool:
+    """Whether a user needs to read it: a turn that is over waits in vain for the outcome of a job that was removed."""
+    raised = record.exc_info[0] if isinstance(record.exc_info, tuple) else None
+    over = isinstance(raised, type) and issubclass(raised, (failures.DBOSNonExistentWorkflowError, Superseded))
+    return not over and "no longer owned by this execution" not in record.getMessage()
+
+
 def _has_ended(job: str) -> bool:
     status = DBOS.get_workflow_status(job)
     return status is None or status.status not in _OPEN
@@ -135,45 +182,55 @@ def _has_ended(job: str) -> bool:
 
 def _remove_some() -> bool:
     """Remove some jobs that are done from the engine's store; False where there is none."""
-    found = DBOS.list_workflows(
-        name=NAME, queue_name=QUEUE, status=_DONE, limit=_AT_A_TIME, load_input=False, load_output=False
-    )
+    found = _listed(_DONE)
     if found:
         DBOS.delete_workflows([one.workflow_id for one in found])
     return bool(found)
 
 
-def _workflow(steps: Steps, ended: SimpleQueue[str | None]) -> Any:
+def _listed(status: str, **others: Any) -> list[Any]:
+    """Some jobs as the engine knows them."""
+    return DBOS.list_workflows(
+        name=NAME, queue_name=QUEUE, status=status, limit=_AT_A_TIME, load_input=False, load_output=False, **others
+    )
+
+
+def _workflow(runs: Runs, under_way: set[str], ended: SimpleQueue[str | None]) -> Any:
     """The durable workflow around the steps; functions, because the engine cannot mark methods.
 
-    `ended` is told each job whose last step is done. Steps and their order are those of every version before: a job
-    that one of them began is ended by this one.
+    `under_way` holds the jobs that run; `ended` is told each job whose last step is done. Steps and their order are
+    those of every version before: a job that one of them began is ended by this one.
     """
 
     @DBOS.step(name="begin")
-    def begin(job: str) -> State:
-        return steps.begin(job)
+    def begin(turn: Steps) -> State:
+        return turn.begin()
 
     @DBOS.step(name="advance")
-    def advance(job: str, state: State) -> State:
-        return added(state, steps.advance(job, state))
+    def advance(turn: Steps, state: State) -> State:
+        return added(state, turn.advance(state))
 
     @DBOS.step(name="finish")
-    def finish(job: str, state: State) -> State:
-        return steps.finish(job, state)
+    def finish(turn: Steps, state: State) -> State:
+        return turn.finish(state)
 
     @DBOS.step(name="store")
-    def store(job: str, last: State) -> None:
-        steps.store(job, last)
+    def store(turn: Steps, last: State) -> None:
+        turn.store(last)
 
     @DBOS.workflow(name=NAME, max_recovery_attempts=1000)
     def fit(job: str) -> None:
-        now = begin(job)
-        while now["outcome"] is None and not now["state"]["done"]:
-            now = whole(now["state"], advance(job, now["state"]))
-        if now["outcome"] is None:
-            now = finish(job, now["state"])
-        store(job, now)
+        under_way.add(job)
+        try:
+            turn = runs.take(job)
+            now = begin(turn)
+            while now["outcome"] is None and not now["state"]["done"]:
+                now = whole(now["state"], advance(turn, now["state"]))
+            if now["outcome"] is None:
+                now = finish(turn, now["state"])
+            store(turn, now)
+        finally:
+            under_way.discard(job)
         ended.put(job)
 
     return fit

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from datetime import datetime
 from typing import Any
 
-from sqlalchemy import ColumnElement, Select, func, or_, select, tuple_, update
+from sqlalchemy import ColumnElement, Select, or_, select, text, tuple_, update
+from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
-from app.tables import JobRow, MatrixRow
+from app.tables import JobRow, MatrixRow, TallyRow, now
 
 OPEN = ("queued", "running")
 ENDED = ("succeeded", "failed", "cancelled")
@@ -17,10 +19,11 @@ JobOf = tuple[JobRow, str]
 
 
 def add(
-    session: Session, job: str, matrix: str, settings: dict[str, Any], parent: str | None, kind: str = "fit"
-) -> JobRow:
+    session: Session, job: str, matrix: str, settings: dict[str, Any], parent: str | None, kind: str = "fit",
+    who: str = "",
+) -> JobRow:  # fmt: skip
     """A queued job."""
-    row = JobRow(id=job, kind=kind, matrix=matrix, settings=settings, parent=parent, progress={})
+    row = JobRow(id=job, kind=kind, matrix=matrix, settings=settings, parent=parent, progress={}, who=who)
     session.add(row)
     return row
 
@@ -28,6 +31,11 @@ def add(
 def find(session: Session, job_id: str) -> JobRow | None:
     """A job by id."""
     return session.get(JobRow, job_id)
+
+
+def matrix(session: Session, matrix_id: str) -> MatrixRow | None:
+    """The matrix that a job is to work on."""
+    return session.get(MatrixRow, matrix_id)
 
 
 def matrix_of(session: Session, job_id: str) -> MatrixRow | None:
@@ -78,11 +86,44 @@ def unfinished(session: Session) -> Sequence[str]:
     return session.scalars(select(JobRow.id).where(JobRow.state.in_(OPEN)).order_by(JobRow.created_at)).all()
 
 
+def take(session: Session, job_id: str, worker: str) -> int | None:
+    """Make a job that has not ended this worker's; the number of its turn."""
+    one = update(JobRow).where(JobRow.id == job_id, JobRow.state.not_in(ENDED))
+    turn = {"state": "running", "worker": worker, "fence": JobRow.fence + 1, "sequence": JobRow.sequence + 1}
+    return session.scalar(one.values(turn).returning(JobRow.fence))
+
+
+def held(session: Session, job_id: str) -> JobRow | None:
+    """A job that no other transaction changes before this one ends: where its process is frozen, for 8 s at most."""
+    if session.get_bind().dialect.name == "postgresql":
+        session.execute(text("SET LOCAL idle_in_transaction_session_timeout = '8s'"))
+    return session.scalar(select(JobRow).where(JobRow.id == job_id).with_for_update())
+
+
+def give_back(session: Session, worker: str) -> Sequence[str]:
+    """Queue again what a worker has under way; the jobs."""
+    theirs = update(JobRow).where(JobRow.worker == worker, JobRow.state == "running")
+    queued = {"state": "queued", "worker": None, "fence": JobRow.fence + 1, "sequence": JobRow.sequence + 1}
+    return session.scalars(theirs.values(queued).returning(JobRow.id)).all()
+
+
 def change(session: Session, job_id: str, **values: Any) -> bool:
     """Change a job that has not ended and count the change; False where it has ended."""
     one = update(JobRow).where(JobRow.id == job_id, JobRow.state.not_in(ENDED))
     result = session.execute(one.values(sequence=JobRow.sequence + 1, **values))
     return bool(result.rowcount)  # type: ignore[attr-defined]
+
+
+def end(session: Session, row: JobRow, state: str, problem: dict[str, Any] | None = None) -> bool:
+    """End a job that has not ended, and tally it; False where it has."""
+    if not change(session, row.id, state=state, problem=problem, ended_at=now(), worker=None):
+        return False
+    seconds = (datetime.fromisoformat(now()) - datetime.fromisoformat(row.created_at)).total_seconds()
+    dialect = postgresql if session.get_bind().dialect.name == "postgresql" else sqlite
+    one = dialect.insert(TallyRow).values(kind=row.kind, state=state, jobs=1, seconds=max(seconds, 0.0))
+    more = {"jobs": TallyRow.jobs + 1, "seconds": TallyRow.seconds + one.excluded.seconds}
+    session.execute(one.on_conflict_do_update(index_elements=["kind", "state"], set_=more))
+    return True
 
 
 def last_diagnosing(session: Session, fit: str) -> JobRow | None:
@@ -95,9 +136,3 @@ def diagnosing(session: Session, fits: Sequence[str]) -> dict[str, str]:
     """The job of each of these fits that diagnoses it and has not ended."""
     query = select(JobRow).where(JobRow.kind == "diagnosis", JobRow.parent.in_(fits), JobRow.state.in_(OPEN))
     return {job.parent: job.id for job in session.scalars(query) if job.parent is not None}
-
-
-def by_state(session: Session) -> dict[str, int]:
-    """Number of jobs in each state."""
-    rows = session.execute(select(JobRow.state, func.count()).group_by(JobRow.state)).all()
-    return {row.state: row[1] for row in rows}

@@ -2,29 +2,45 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from typing import Any
 
 from sqlalchemy.exc import IntegrityError
 
+from app.access.noting import about
 from app.context import Context
 from app.errors import Failure, missing
 from app.jobs import repository
+from app.jobs.ending import end
+from app.matrices.removed import check_there
 from app.paging import cursor, keys_of
-from app.tables import JobRow, now
+from app.tables import JobRow
 from schemas.fit import JobPage, JobProblem, JobSettings, JobView, ProgressView
 
+_log = logging.getLogger("servoident.jobs")
 
-def record(context: Context, job: str, matrix: str, settings: dict[str, Any], parent: str | None, kind: str) -> JobView:
-    """Record and queue a job; one that is recorded under this id already is taken for it."""
+
+def record(
+    context: Context, job: str, matrix: str, settings: dict[str, Any], parent: str | None, kind: str, who: str = ""
+) -> JobView:
+    """Record and queue a job; one that is recorded under this id already is taken for it.
+
+    Raises Removed where the raw runs that it is to work on are gone.
+    """
+    about(f"jobs/{job}")
     with context.sessions() as session:
+        of = repository.matrix(session, matrix)
+        if of is not None:
+            check_there(of)
         try:
-            repository.add(session, job, matrix, settings, parent, kind)
+            repository.add(session, job, matrix, settings, parent, kind, who)
             session.commit()
         except IntegrityError:  # by the process before, which did not live to answer
             session.rollback()
     queued = requeued(context, job)
     assert queued is not None
+    _log.info("%s %s is queued", kind, job, extra={"job": job, "kind": kind})
     return queued
 
 
@@ -82,10 +98,12 @@ def open_of_actuators(context: Context, serials: Sequence[str]) -> dict[str, Job
 def cancel(context: Context, job_id: str) -> JobView:
     """Ask a job to stop: at once where it waits, at its next report where it runs. An ended job stays as it is."""
     get(context, job_id)
+    _log.info("job %s is to stop", job_id, extra={"job": job_id})
     with context.sessions.begin() as session:
-        row = repository.find(session, job_id)
+        row = repository.held(session, job_id)
         if row is not None and row.state == "queued":
-            repository.change(session, job_id, state="cancelled", cancel=True, ended_at=now())
+            row.cancel = True
+            end(session, row, "cancelled")
         else:
             repository.change(session, job_id, cancel=True)
     return get(context, job_id)

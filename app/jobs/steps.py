@@ -1,117 +1,161 @@
-"""The steps of every kind of job: errors become outcomes, progress is recorded, a result is stored once."""
+"""A process's turn at a job: errors become outcomes, progress is recorded, a result is stored once."""
 
 from __future__ import annotations
 
 import logging
+import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import asdict
 from functools import partial
 from typing import Any
 
 from sqlalchemy.orm import Session, sessionmaker
 
+from app.errors import is_full
 from app.jobs import repository
+from app.jobs.ending import end
+from app.jobs.lease import AWAY, Lease, Superseded, patiently
 from app.jobs.work import Kind, Search, State, Task, Work
 from app.matrices.service import load_row
-from app.storage import Storage
-from app.tables import now
+from app.storage import Storage, Unreachable
+from app.tables import JobRow
 from ident.errors import Cancelled, TimeIsUp, Unusable
 from ident.progress import Progress, Report
 
 _EVERY = 0.2  # s between two reports to the database
-_log = logging.getLogger("servoident")
+_PATIENCE = 600.0  # s for a database or a store of blobs to answer again
+_log = logging.getLogger("servoident.jobs")
 
 
-class GuardedSteps:
-    """What the queue calls, one after the other. A step never raises: its outcome says how it ended."""
+class Runs:
+    """Takes jobs for this process, of every kind that there is."""
 
-    def __init__(self, sessions: sessionmaker[Session], storage: Storage, *kinds: Kind) -> None:
-        self.sessions, self.storage = sessions, storage
+    def __init__(self, sessions: sessionmaker[Session], storage: Storage, worker: str, *kinds: Kind) -> None:
+        self.sessions, self.storage, self.worker = sessions, storage, worker
+        self.stopping = threading.Event()
         self._kinds = {kind.name: kind for kind in kinds}
-        self._under_way: tuple[str, Work] | None = None
 
-    def begin(self, job: str) -> State:
-        """Mark the job as running; work without a search is done but for its finish."""
-        return self._step(job, lambda work: work.begin() if isinstance(work, Search) else {"done": True}, first=True)
+    def take(self, job: str) -> Run:
+        """Take a job: from now on nothing is written about it but by this turn, or by whoever takes it next."""
+        if self.stopping.is_set():
+            raise Superseded
+        number, kind = patiently(lambda: self._taken(job), self.stopping)
+        run = Run(self, Lease(job, self.worker, number), kind)
+        _log.info("%s %s is taken by %s", kind.name, job, self.worker, extra=run.told())
+        return run
 
-    def advance(self, job: str, state: State) -> State:
+    def _taken(self, job: str) -> tuple[int | None, Kind]:
+        with self.sessions.begin() as session:
+            number = repository.take(session, job, self.worker)
+            row = repository.find(session, job)
+        return number, next(iter(self._kinds.values())) if row is None else self._kinds[row.kind]
+
+
+class Run:
+    """A turn at a job: what the queue calls, one after the other. A step never raises: its outcome says how it ended.
+
+    But for Superseded, which means that nothing of this turn counts any more.
+    """
+
+    def __init__(self, runs: Runs, lease: Lease, kind: Kind) -> None:
+        self.runs, self.lease, self.kind = runs, lease, kind
+        self._work: Work | None = None
+
+    def told(self) -> dict[str, Any]:
+        """What a line of the log says of it."""
+        return {"job": self.lease.job, "kind": self.kind.name, "worker": self.lease.worker, "lease": self.lease.number}
+
+    def begin(self) -> State:
+        """Begin; work without a search is done but for its finish."""
+        return self._step(lambda work: work.begin() if isinstance(work, Search) else {"done": True})
+
+    def advance(self, state: State) -> State:
         """A block of the search."""
 
         def block(work: Work) -> State:
             assert isinstance(work, Search)
             return work.advance(state)
 
-        return self._step(job, block)
+        return self._step(block)
 
-    def finish(self, job: str, state: State) -> State:
+    def finish(self, state: State) -> State:
         """All that follows the search; the state is the result."""
-        return self._step(job, lambda work: work.finish(state))
+        return self._step(lambda work: work.finish(state))
 
-    def store(self, job: str, last: State) -> None:
+    def store(self, last: State) -> None:
         """Record the result, or how the job ended; in one transaction, once."""
-        self._under_way = None
-        kind = self._kind(job)
+        self._work = None
         try:
-            self._store(job, kind, last)
+            patiently(lambda: self._store(last), self.runs.stopping)
         except Exception:
-            _log.exception("the result of %s %s cannot be stored", kind.name, job)
-            what = f"the result of the {kind.name} cannot be stored"
-            self._store(job, kind, _failed("not-stored", what, kind.name, "see the service's log"))
+            _log.exception("the result of %s %s cannot be stored", self.kind.name, self.lease.job, extra=self.told())
+            what = f"the result of the {self.kind.name} cannot be stored"
+            failed = _failed("not-stored", what, self.kind.name, "see the service's log")
+            patiently(lambda: self._store(failed), self.runs.stopping)
 
-    def _step(self, job: str, act: Callable[[Work], State], first: bool = False) -> State:
+    def _step(self, act: Callable[[Work], State]) -> State:
         """What `act` makes of the job's work, or how the job ended in it."""
-        kind = self._kind(job)
         try:
-            self._note(job, {"state": "running"} if first else {})
-            return {"outcome": None, "state": act(self._work(job, kind))}
+            return {"outcome": None, "state": patiently(lambda: self._acted(act), self.runs.stopping, _PATIENCE)}
         except Cancelled:
             return {"outcome": "cancelled", "state": {}}
         except Unusable as error:
             return _failed(error.code, error.what, error.where, error.remedy)
         except MemoryError:
-            what = f"the {kind.name} needs more memory than there is"
-            return _failed("out-of-memory", what, kind.name, "use shorter runs")
-        except Exception:
-            _log.exception("%s %s failed", kind.name, job)
-            what = f"the {kind.name} failed by a defect of the program"
-            return _failed("defect", what, kind.name, "see the service's log")
+            what = f"the {self.kind.name} needs more memory than there is"
+            return _failed("out-of-memory", what, self.kind.name, "use shorter runs")
+        except Unreachable:
+            what = "the store of raw uploads has not answered for ten minutes"
+            return _failed("no-blobs", what, "blobs", "see to it, and start the job again")
+        except Exception as error:
+            if is_full(error):
+                return _failed("disk-full", "no space is left on the disk", "data", "free some and start the job again")
+            _log.exception("%s %s failed", self.kind.name, self.lease.job, extra=self.told())
+            what = f"the {self.kind.name} failed by a defect of the program"
+            return _failed("defect", what, self.kind.name, "see the service's log")
 
-    def _store(self, job: str, kind: Kind, last: State) -> None:
-        with self.sessions.begin() as session:
-            row = repository.find(session, job)
-            if row is None or row.state in repository.ENDED:
+    def _acted(self, act: Callable[[Work], State]) -> State:
+        self._note({})
+        if self._work is None:
+            self._work = self.kind.work(self._task())
+        return act(self._work)
+
+    def _store(self, last: State) -> None:
+        job = self.lease.job
+        with self.runs.sessions.begin() as session:
+            row = self._held(session)
+            if row is None:
                 return
             if last["outcome"] is None:
                 matrix = repository.matrix_of(session, job)
-                kind.keep(session, row, matrix.serial if matrix else "", last["state"])
+                self.kind.keep(session, row, matrix.serial if matrix else "", last["state"])
             state = last["outcome"] or "succeeded"
             problem = last["state"] if state == "failed" else None
-            repository.change(session, job, state=state, problem=problem, ended_at=now())
+            end(session, row, state, problem)
+        _log.info("%s %s %s", self.kind.name, job, state, extra=self.told() | {"state": state})
 
-    def _kind(self, job: str) -> Kind:
-        """That of the record; any for a job without one, which its first step ends."""
-        with self.sessions() as session:
-            row = repository.find(session, job)
-        return next(iter(self._kinds.values())) if row is None else self._kinds[row.kind]
+    def _held(self, session: Session) -> JobRow | None:
+        """The job's record, held for this transaction; None where it has ended. Raises Superseded."""
+        row = repository.held(session, self.lease.job)
+        if row is None or row.state in repository.ENDED:
+            return None
+        if self.runs.stopping.is_set() or row.fence != self.lease.number:
+            raise Superseded
+        return row
 
-    def _work(self, job: str, kind: Kind) -> Work:
-        """The work of a job, prepared at its first step in this process: a process has one job at a time."""
-        under_way = self._under_way
-        if under_way is None or under_way[0] != job:
-            under_way = self._under_way = (job, kind.work(self._task(job)))
-        return under_way[1]
-
-    def _task(self, job: str) -> Task:
-        """The job's record, and where the samples of its matrix are read. Raises Unusable."""
-        with self.sessions() as session:
+    def _task(self) -> Task:
+        """What the job is asked, and where the samples of its matrix are read. Raises Unusable."""
+        job, storage = self.lease.job, self.runs.storage
+        with self.runs.sessions() as session:
             row, matrix = repository.find(session, job), repository.matrix_of(session, job)
         if row is None or matrix is None:
             raise Unusable("no-such-job", "the job is not recorded", job, "start it again")
-        load = partial(load_row, self.storage, matrix)
-        return Task(row.settings, row.parent, load, self._reporter(job), self.sessions, self.storage)
+        load = partial(load_row, storage, matrix)
+        return Task(row.settings, row.parent, load, self._reporter(), self.runs.sessions, storage)
 
-    def _reporter(self, job: str) -> Report:
+    def _reporter(self) -> Report:
         """A report that is recorded for those who watch the job.
 
         It raises Cancelled when the job is to stop, TimeIsUp when it is to keep what it found.
@@ -122,18 +166,20 @@ class GuardedSteps:
             nonlocal last
             if time.monotonic() - last >= _EVERY or progress.done == progress.total:
                 last = time.monotonic()
-                if self._note(job, {"progress": asdict(progress)}):
-                    raise TimeIsUp
+                with suppress(*AWAY):  # progress can wait
+                    if self._note({"progress": asdict(progress)}):
+                        raise TimeIsUp
 
         return report
 
-    def _note(self, job: str, values: dict[str, Any]) -> bool:
-        """Write progress; whether the job is to keep what it found and end. Raises Cancelled."""
-        with self.sessions.begin() as session:
-            alive = repository.change(session, job, **values) if values else True
-            row = repository.find(session, job)
-            if not alive or row is None or row.cancel:
+    def _note(self, values: dict[str, Any]) -> bool:
+        """Write progress; whether the job is to keep what it found and end. Raises Cancelled, Superseded."""
+        with self.runs.sessions.begin() as session:
+            row = self._held(session)
+            if row is None or row.cancel:
                 raise Cancelled
+            if values:
+                repository.change(session, self.lease.job, **values)
             return row.conclude
 
 

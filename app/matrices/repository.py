@@ -48,7 +48,10 @@ def add(
     row.name, row.batch, row.piston_area = actuator.name, actuator.batch, actuator.piston_area
     session.add(row)
     session.flush()
-    added = MatrixRow(id=matrix, serial=actuator.serial, parent=parent, source=source, summary=summary)
+    added = MatrixRow(
+        id=matrix, serial=actuator.serial, parent=parent, source=source, summary=summary, batch=actuator.batch,
+        piston_area=actuator.piston_area,
+    )  # fmt: skip
     session.add(added)
     session.flush()
     return added

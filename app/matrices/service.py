@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
 import io
+import threading
 from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any, BinaryIO
@@ -11,11 +11,14 @@ from typing import Any, BinaryIO
 import yaml
 from sqlalchemy.exc import IntegrityError
 
+from app.access.noting import about
 from app.context import Context
 from app.errors import missing
 from app.lru import LRU
 from app.matrices import repository
+from app.matrices.removed import check_there
 from app.matrices.stored import opened, read_stored
+from app.operation.reserve import check_reserve
 from app.paging import cursor, keys_of
 from app.storage import Storage
 from app.tables import MatrixRow
@@ -29,6 +32,7 @@ from schemas.matrix import FindingView, MatrixPage, MatrixView, Revision, RunVie
 
 LONGEST = 200  # characters of a serial number or batch
 _MOST = 2  # matrices in memory: one may take 130 MB
+_READERS = threading.BoundedSemaphore(2)  # uploads that are read at once; the others' turn comes, and so do all answers
 _loaded: LRU[Matrix] = LRU(_MOST)
 
 
@@ -42,21 +46,18 @@ def upload(context: Context, files: Mapping[str, BinaryIO]) -> tuple[MatrixView,
             source: dict[str, Any] = {"zip": staged.put(next(iter(files.values())))}
         else:
             source = {"files": {inside(name, "upload"): staged.put(content) for name, content in files.items()}}
-        return _record(context, staged, source, None)
+        return record(context, staged, source, None)
 
 
-def digests(files: Mapping[str, BinaryIO]) -> dict[str, str]:
-    """The SHA-256 of each file, which is left at its beginning."""
-    found = {}
-    for name, content in files.items():
-        found[name] = hashlib.file_digest(content, "sha256").hexdigest()  # type: ignore[arg-type]
-        content.seek(0)
-    return found
+def check_room(context: Context) -> None:
+    """Raise Failure 507 where an upload would go at the reserve of the disk: before it is read."""
+    check_reserve(context)
 
 
-def _record(context: Context, staged: Storage, source: dict[str, Any], parent: str | None) -> tuple[MatrixView, bool]:
+def record(context: Context, staged: Storage, source: dict[str, Any], parent: str | None) -> tuple[MatrixView, bool]:
     """Read and check a source; keep its blobs and record it where it is new."""
-    matrix = read_stored(staged, source)
+    with _READERS:
+        matrix = read_stored(staged, source)
     for name in ("serial", "batch"):
         length = len(getattr(matrix.actuator, name))
         if length > LONGEST:
@@ -64,10 +65,19 @@ def _record(context: Context, staged: Storage, source: dict[str, Any], parent: s
     identity = matrix.data_hash[:32]
     with context.sessions() as session:
         known = repository.find(session, identity)
-        if known is not None:
+        if known is not None and known.removed_at is None:
             return view(known), False
+        about(f"matrices/{identity}")
+        if known is not None:  # its raw runs are back
+            known.source, known.removed_at = source, None
+            staged.keep()
+            session.commit()
+            return view(known), False
+    with _READERS:
+        shown = summary(matrix)
+    with context.sessions() as session:
         try:
-            row = repository.add(session, identity, matrix.actuator, source, summary(matrix), parent)
+            row = repository.add(session, identity, matrix.actuator, source, shown, parent)
             staged.keep()
             session.commit()
         except IntegrityError:  # the same upload twice at the same moment
@@ -92,7 +102,7 @@ def revise(context: Context, matrix: str, revision: Revision) -> tuple[MatrixVie
         _merge(runs[name], changes)
     with context.storage.staged() as staged:
         sha256 = staged.put(io.BytesIO(_yaml(description)))
-        return _record(context, staged, {**row.source, "description": sha256}, matrix)
+        return record(context, staged, {**row.source, "description": sha256}, matrix)
 
 
 def _record_of(run: str, records: Mapping[str, Mapping[str, Any]]) -> str:
@@ -112,7 +122,8 @@ def description(context: Context, matrix: str) -> dict[str, Any]:
 
 
 def _described(context: Context, row: MatrixRow) -> dict[str, Any]:
-    """The description of a recorded matrix."""
+    """The description of a recorded matrix. Raises Removed."""
+    check_there(row)
     with opened(context.storage, row.source) as files:
         found: dict[str, Any] = read_yaml(files.read(DESCRIPTION, LIMITS.description), DESCRIPTION)
     return found
@@ -139,7 +150,7 @@ def _merge(target: dict[str, Any], changes: Mapping[str, Any]) -> None:
 
 
 def find(context: Context, matrix: str) -> MatrixRow:
-    """The record of a matrix; raises Failure 404."""
+    """The record of a matrix, also of one whose raw runs are gone; raises Failure 404."""
     with context.sessions() as session:
         row = repository.find(session, matrix)
     if row is None:
@@ -173,7 +184,8 @@ def load(context: Context, matrix: str) -> Matrix:
 
 
 def load_row(storage: Storage, row: MatrixRow) -> Matrix:
-    """The samples of a recorded matrix."""
+    """The samples of a recorded matrix. Raises Removed, Unusable."""
+    check_there(row)
     return _loaded.get((str(storage.folder), row.id), lambda: read_stored(storage, row.source))
 
 
@@ -205,6 +217,7 @@ def view(row: MatrixRow) -> MatrixView:
     shown = row.summary
     return MatrixView(
         id=row.id, serial=row.serial, parent=row.parent, created_at=row.created_at, data_hash=shown["data_hash"],
+        batch=row.batch, piston_area=row.piston_area,
         runs=[RunView(**run) for run in shown["runs"]], findings=[FindingView(**f) for f in shown["findings"]],
-        notices=shown["notices"], machine=shown.get("machine", ""),
+        notices=shown["notices"], machine=shown.get("machine", ""), removed_at=row.removed_at,
     )  # fmt: skip

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
 
+from app.access.roles import LAB, READERS
 from app.context import Here
 from app.errors import COMMON
 from app.idempotency import Answer, Key, fingerprint, once
@@ -15,22 +16,24 @@ from schemas.catalogue import OwnEffectPage, OwnEffectRequest, OwnEffectView
 router = APIRouter(prefix="/own-effects", tags=["own effects"], responses=COMMON)
 
 
-@router.get("")
-def listed(
+@router.get("", dependencies=[READERS])
+def list_own_effects(
     here: Here, model: str | None = None, cursor: str | None = None, limit: Annotated[int, Query(ge=1, le=200)] = 50
 ) -> OwnEffectPage:
     """Own effects by name: all, or those that a model can take, of which a page may hold fewer than `limit`."""
     return service.listed(here, model, cursor, limit)
 
 
-@router.get("/{name}")
-def one(here: Here, name: str) -> OwnEffectView:
+@router.get("/{name}", dependencies=[READERS])
+def get_own_effect(here: Here, name: str) -> OwnEffectView:
     """An own effect: equations, parameters, definition, and where it comes from."""
     return service.get(here, name)
 
 
-@router.post("", status_code=201, response_model=OwnEffectView, responses={200: {"model": OwnEffectView}})
-def keep(here: Here, request: OwnEffectRequest, key: Key = None) -> Response:
+@router.post(
+    "", dependencies=[LAB], status_code=201, response_model=OwnEffectView, responses={200: {"model": OwnEffectView}}
+)
+def keep_own_effect(here: Here, request: OwnEffectRequest, key: Key = None) -> Response:
     """Keep a definition, or a term that a diagnosis proposes; 200 where the same is kept under the name already."""
 
     def find(effect: str) -> Answer | None:
@@ -45,8 +48,8 @@ def _answer(kept: OwnEffectView, new: bool) -> Answer:
     return 201 if new else 200, kept.model_dump(by_alias=True), f"/api/v1/own-effects/{kept.name}"
 
 
-@router.delete("/{name}", status_code=204, response_class=Response)
-def drop(here: Here, name: str) -> Response:
+@router.delete("/{name}", dependencies=[LAB], status_code=204, response_class=Response)
+def drop_own_effect(here: Here, name: str) -> Response:
     """Remove an own effect from the list; fits and diagnoses carry the definitions that they were made with."""
     service.drop(here, name)
     return Response(status_code=204)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from sqlalchemy.exc import IntegrityError
 
+from app.access.noting import about
 from app.context import Context
 from app.diagnoses import service as diagnoses
 from app.errors import Failure, missing
@@ -44,11 +45,12 @@ def kept_as(context: Context, effect_id: str) -> OwnEffectView | None:
 def keep(context: Context, request: OwnEffectRequest, effect_id: str) -> tuple[OwnEffectView, bool]:
     """Keep an effect under a name; and whether it is new. Raises Unusable, and Failure 404, 409."""
     wanted = _wanted(context, request)
+    about(f"own-effects/{wanted.name}")
     try:
-        with context.sessions.begin() as session:
-            before = repository.find(session, wanted.name)
-            if before is None:
-                before = repository.add(session, effect_id, wanted)
+        with context.sessions() as session:
+            if repository.find(session, wanted.name) is None:
+                repository.add(session, effect_id, wanted)
+                session.commit()
     except IntegrityError:  # by a request that was quicker
         pass
     there = _find(context, wanted.name)

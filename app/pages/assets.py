@@ -6,6 +6,7 @@ from fastapi import APIRouter, HTTPException
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import FileResponse, Response
 
+from app.access.roles import ANYONE
 from app.pages import vega
 from app.pages.rendering import EDITION, STATIC
 
@@ -19,13 +20,13 @@ _FILES = {path.name: path for path in STATIC.iterdir() if path.suffix in _TYPES}
 VEGA = f"/static/vega-{vega.version()}.js"
 
 
-@router.get(VEGA)
+@router.get(VEGA, dependencies=[ANYONE])
 async def vega_bundle() -> Response:
     """Vega, Vega-Lite and Vega-Embed as one module."""
     return Response(await run_in_threadpool(vega.bundle), media_type="text/javascript", headers=_KEEP)
 
 
-@router.get("/static/{edition}/{name}")
+@router.get("/static/{edition}/{name}", dependencies=[ANYONE])
 async def static_file(edition: str, name: str) -> FileResponse:
     """One of the files in static."""
     if edition != EDITION or name not in _FILES:

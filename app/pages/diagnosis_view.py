@@ -12,6 +12,7 @@ from app.pages.effect_view import Member, member
 from app.pages.evidence_view import evidence, known_effect
 from app.pages.job_view import JobPageView, job_page
 from app.pages.proposed_view import ProposedCard, proposed
+from ident.diagnosis.proposals.choice import Choice, choices
 from ident.diagnosis.result import Diagnosis, Ranked, Suspect
 from ident.words.engineering import quantity
 from ident.words.number import plain
@@ -93,6 +94,7 @@ class MissingView:
     ladder: tuple[Rung, ...] = ()
     left: str = ""
     proposed: tuple[ProposedCard, ...] = ()
+    choices: tuple[Choice, ...] = ()
     refused: tuple[str, ...] = ()
 
 
@@ -118,6 +120,7 @@ def missing(stored: Stored | None, job: JobView | None, run: RunView | None = No
         ladder=tuple(_ladder(found)),
         left=_left(found) if found.verdict.unexplained else "",
         proposed=tuple(proposed(stored, run)),
+        choices=choices(found.proposals or (), found.ladder),
         refused=found.notes,
     )
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 from fastapi import APIRouter, HTTPException, Request
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 
+from app.access.roles import ADMIN, LAB, READERS
 from app.context import Here
-from app.pages import assets, service, use_endpoints
+from app.pages import access_endpoints, admin_endpoints, assets, line_endpoints, service, use_endpoints
+from app.pages.draft_view import column_picture, draft_page
 from app.pages.job_view import JobPageView
 from app.pages.problems import PageRoute, Unknown
 from app.pages.rendering import page
@@ -14,7 +16,7 @@ from app.pages.rendering import page
 router = APIRouter(include_in_schema=False, route_class=PageRoute)
 
 
-@router.get("/")
+@router.get("/", dependencies=[READERS])
 def actuators(
     request: Request, here: Here, q: str = "", drift: str = "error", cursor: str | None = None
 ) -> HTMLResponse:
@@ -22,43 +24,61 @@ def actuators(
     return page(request, "actuators.html", **service.actuator_list(here, q.strip(), drift, cursor))
 
 
-@router.get("/actuators/{serial:path}")
+@router.get("/actuators/{serial:path}", dependencies=[READERS])
 def actuator(request: Request, here: Here, serial: str, cursor: str | None = None) -> HTMLResponse:
     """One actuator: the set in force, its fits and its matrices."""
     return page(request, "actuator.html", **service.actuator(here, serial, cursor))
 
 
-@router.get("/upload")
+@router.get("/upload", dependencies=[LAB])
 def upload(request: Request) -> HTMLResponse:
     """The form that takes a test matrix."""
     return page(request, "upload.html")
 
 
-@router.get("/matrices/{matrix}")
+@router.get("/drafts/{draft}", dependencies=[LAB])
+def draft(request: Request, here: Here, draft: str) -> HTMLResponse:
+    """Raw files: their columns, and the form that makes a matrix of them."""
+    return page(request, "draft.html", **draft_page(here, draft))
+
+
+@router.get("/drafts/{draft}/{file}/{column}.svg", dependencies=[LAB])
+def draft_column(here: Here, draft: str, file: int, column: int) -> Response:
+    """A column of a raw file at a glance."""
+    return Response(column_picture(here, draft, file, column), media_type="image/svg+xml", headers=assets.OWN)
+
+
+@router.get("/matrices/{matrix}", dependencies=[READERS])
 def matrix(request: Request, here: Here, matrix: str, cursor: str | None = None) -> HTMLResponse:
     """A matrix: findings, runs, and the form that starts a fit."""
     return page(request, "matrix.html", **service.matrix(here, matrix, cursor))
 
 
-@router.get("/matrices/{matrix}/thumbnails/{place}.svg")
+@router.get("/matrices/{matrix}/thumbnails/{place}.svg", dependencies=[READERS])
 def thumbnail(here: Here, matrix: str, place: int) -> Response:
     """A run at a glance; the samples of a matrix never change, so that a browser may keep it."""
     return Response(service.thumbnail(here, matrix, place), media_type="image/svg+xml", headers=assets.OWN)
 
 
-@router.get("/jobs")
+@router.get("/jobs", dependencies=[READERS])
 def jobs(request: Request, here: Here, cursor: str | None = None) -> HTMLResponse:
     """Jobs, newest first."""
     return page(request, "jobs.html", **service.job_list(here, cursor))
 
 
-@router.get("/jobs/{job}")
+@router.get("/workers", dependencies=[ADMIN])
+def workers(request: Request, here: Here) -> HTMLResponse:
+    """Who works on the queue."""
+    return page(request, "workers.html", **service.worker_list(here))
+
+
+@router.get("/jobs/{job}", dependencies=[READERS])
 def job(job: str) -> RedirectResponse:
     """A job is shown by the fit that it makes or looks at."""
     return RedirectResponse(f"/fits/{job}", 303)
 
 
-@router.get("/fits/{fit}", response_model=None)
+@router.get("/fits/{fit}", dependencies=[READERS], response_model=None)
 def fit(request: Request, here: Here, fit: str) -> Response:
     """A fit: live while it is made, and everything known about it afterwards."""
     shown = service.fit(here, fit)
@@ -69,16 +89,17 @@ def fit(request: Request, here: Here, fit: str) -> Response:
     return page(request, "fit.html", fit=shown, vega=assets.VEGA)
 
 
-@router.get("/effects")
+@router.get("/effects", dependencies=[READERS])
 def effects(request: Request, here: Here) -> HTMLResponse:
     """The lab's own effects, each with a button that deletes it."""
     return page(request, "effects.html", **service.own_list(here))
 
 
-@router.get("/compare")
+@router.get("/compare", dependencies=[READERS])
 def compare(request: Request, here: Here, fits: str) -> HTMLResponse:
-    """Two fits side by side."""
-    return page(request, "compare.html", both=service.compared(here, fits), vega=assets.VEGA)
+    """Two fits side by side, or more in one table and plot."""
+    template, shown = service.compared(here, fits)
+    return page(request, template, **shown, vega=assets.VEGA)
 
 
 def unknown() -> None:
@@ -87,6 +108,9 @@ def unknown() -> None:
 
 
 router.include_router(assets.router)
+router.include_router(access_endpoints.pages)
+router.include_router(line_endpoints.pages)
+router.include_router(admin_endpoints.pages)
 router.include_router(use_endpoints.pages)
 router.include_router(use_endpoints.parts)
-router.add_api_route("/{path:path}", unknown, route_class_override=Unknown)
+router.add_api_route("/{path:path}", unknown, route_class_override=Unknown, dependencies=[READERS])

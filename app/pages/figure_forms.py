@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from app.pages.run_view import specimen_of
 from ident.bench.smoothing import METHODS as SMOOTHINGS
+from ident.custom.definition import preset_with
 from ident.figures import FIGURES, figures_of, words
 from ident.fit.result import FitResult
 from ident.presets import preset
@@ -14,7 +15,7 @@ from ident.residuals.views import views
 from schemas.matrix import RunView
 
 Choices = tuple[tuple[str, str], ...]
-MAP = "residual-map"
+MAP, PROFILE = "residual-map", "profile"
 PICKED = ("run", "low", "high")
 
 
@@ -31,7 +32,7 @@ class Field:
 class FigureForm:
     """One figure with its options; `picked` are those that it takes from what is picked out for all figures.
 
-    `share` of its usual width is as wide as its place beside the map.
+    `share` of its usual width is as wide as its place beside the map. `by_job` says that a job has to make it first.
     """
 
     name: str
@@ -39,6 +40,7 @@ class FigureForm:
     fields: tuple[Field, ...]
     picked: tuple[str, ...] = ()
     share: float = 0.76
+    by_job: bool = False
 
 
 _SHARES = {MAP: 0.66, "bode": 0.79, "time": 0.69, "residual-curve": 0.63, "sensitivity": 0.62, "evolution": 0.63}
@@ -64,6 +66,16 @@ def forms(runs: Sequence[RunView], fit: FitResult) -> tuple[FigureForm, ...]:
         )
         for drawing in drawings
     )  # fmt: skip
+
+
+def profile_form(fit: FitResult) -> FigureForm | None:
+    """The profile likelihood of each parameter that was searched; None where there is none."""
+    searched = tuple(name for name in fit.searched if name in fit.parameters and not fit.parameters[name].fixed)
+    if preset(fit.model).kind != "chain" or fit.window is not None or not searched:
+        return None
+    choices = tuple((name, f"{name}: {fit.parameters[name].meaning}") for name in searched)
+    by_job = not preset_with(fit.model, fit.effects, fit.settings.get("custom", ())).is_linear
+    return FigureForm(PROFILE, "Profile likelihood", (Field("parameter", "Parameter", choices),), by_job=by_job)
 
 
 def _bode(runs: Sequence[RunView]) -> tuple[Field, ...]:

@@ -14,7 +14,7 @@ from app.fits.service import Stored
 from app.own_effects.kept import Kept, suited
 from app.pages.chain_view import Drawing, drawing
 from app.pages.diagnosis_view import MissingView
-from app.pages.figure_forms import MAP, FigureForm, forms
+from app.pages.figure_forms import MAP, FigureForm, forms, profile_form
 from app.pages.job_view import settings_facts
 from app.pages.kept_view import Keeping, KeptRow, keeping, kept_rows
 from app.pages.ladder_view import Step, steps
@@ -70,6 +70,8 @@ class FitPageView:
     chain: Drawing
     map: FigureForm | None
     figures: tuple[FigureForm, ...]
+    profile: FigureForm | None
+    ended_early: bool
     equations: tuple[tuple[str, str, Markup], ...]
     facts: tuple[tuple[str, str], ...]
     missing: MissingView
@@ -91,8 +93,7 @@ def fit_page(
 ) -> FitPageView:  # fmt: skip
     """The page of a fit of this matrix; `others` are fits of the same actuator, to compare it with.
 
-    `newer` is the newest revision of the matrix, None where that is the matrix itself, and `kept` are the lab's own
-    effects.
+    `newer` is the newest revision of the matrix, None where it is this one; `kept` are the lab's own effects.
     """
     fit = stored.found
     model = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
@@ -120,6 +121,8 @@ def fit_page(
         chain=drawing(fit),
         map=next((figure for figure in figures if figure.name == MAP), None),
         figures=tuple(figure for figure in figures if figure.name != MAP),
+        profile=profile_form(fit),
+        ended_early=fit.ended_early,
         equations=tuple((line.place, line.meaning, Markup(mathml(line.text))) for line in _equations(model)),
         facts=_facts(fit),
         missing=lacks,
@@ -127,7 +130,7 @@ def fit_page(
         places=tuple(_places(model)),
         findings=counted(serious := [entry for entry in matrix.findings if entry.severity != "note"]),
         worst="fault" if any(entry.severity == "fault" for entry in serious) else "doubt",
-        others=tuple((other.id, _other(other)) for other in others if other.id != stored.id),
+        others=tuple((other.id, other_fit(other)) for other in others if other.id != stored.id),
         again=json.dumps(fit_request(fit, stored.id)),
         on_bench=preset(fit.model).kind == "bench",
         free_run=_free_run(fit),
@@ -154,7 +157,7 @@ def _places(model: Preset) -> Iterator[tuple[str, str]]:
         yield place, signal if signal in model.chain.units else ""
 
 
-def _other(fit: ParameterSetView) -> str:
+def other_fit(fit: ParameterSetView) -> str:
     """Another fit in a line: when, which model, how good."""
     effects = dict.fromkeys(name.partition(".")[0] for name in fit.parameters if "." in name)
     made = fit.created_at[:16].replace("T", " ")

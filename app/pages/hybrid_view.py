@@ -13,6 +13,7 @@ from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
 from ident.fit.result import FitResult
 from ident.hybrid.acting import NAMED
+from ident.hybrid.followed import Followed
 from ident.presets import preset
 from ident.presets.strano import STRANO
 from ident.stages import PLACES
@@ -31,6 +32,7 @@ _FIGURES = {
     "displacement": "Displacements over time",
     "response": "Wanted to measured displacement",
     "map": "Stability over what is physical",
+    "feedforward": "What the feedforward is worth",
 }
 _COMPARED = {
     "tracking_rms": ("Tracking, RMS", "measured against numerical"),
@@ -212,4 +214,6 @@ def _facts(found: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     yield "Computing delay", f"{found['delay']} sample{'s' if found['delay'] > 1 else ''}"
     if found["effects"]:
         yield "Effects switched on", ", ".join(title(name.partition(".")[0]) for name in found["effects"])
+    if one := found.get("feedforward"):
+        yield "Feedforward", "; ".join(Followed.from_json(one).said)
     yield "Computing time", quantity(found["seconds"], "s")

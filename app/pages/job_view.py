@@ -9,7 +9,7 @@ from ident.words.titles import title
 from schemas.fit import JobProblem, JobView
 
 _OPEN = ("queued", "running")
-_PLACES = {"diagnosis": "#missing", "hybrid simulation": "/use?simulation={job}#hybrid"}
+_PLACES = {"diagnosis": "#missing", "profile": "#profile", "hybrid simulation": "/use?simulation={job}#hybrid"}
 
 
 @dataclass(frozen=True)
@@ -67,8 +67,8 @@ def _at(job: JobView) -> str:
 
 def settings_facts(settings: dict[str, Any]) -> tuple[tuple[str, str], ...]:
     """What the user chose, as far as it is not empty."""
-    names = ("model", "effects", "method", "seed", "bounds", "fixed", "load", "options", "max_effects", "time",
-             "case", "controller", "ground")  # fmt: skip
+    names = ("model", "effects", "method", "seed", "budget", "bounds", "fixed", "load", "options", "max_effects",
+             "time", "parameter", "case", "controller", "ground")  # fmt: skip
     chosen = ((name, settings.get(name)) for name in names)
     return tuple(
         (title(name).capitalize(), _words(value)) for name, value in chosen if value not in (None, [], {}, "none")

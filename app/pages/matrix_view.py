@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass
 
 from app.pages.run_view import Conditions, conditions
-from ident.words.number import plain
+from ident.words.number import count, plain
 from ident.words.titles import title
 from schemas.matrix import FindingView, MatrixView
 
@@ -47,6 +47,7 @@ class MatrixPageView:
     remarks: tuple[FindingView, ...]
     notices: tuple[str, ...]
     runs: tuple[RunRow, ...]
+    removed: str | None
 
 
 def matrix_view(matrix: MatrixView) -> MatrixPageView:
@@ -58,6 +59,7 @@ def matrix_view(matrix: MatrixView) -> MatrixPageView:
         id=matrix.id,
         serial=matrix.serial,
         parent=matrix.parent,
+        removed=matrix.removed_at,
         summary=_summary(matrix),
         facts=_facts(matrix),
         general=tuple(entry for entry in general if entry.severity != "note"),
@@ -71,7 +73,7 @@ def matrix_view(matrix: MatrixView) -> MatrixPageView:
 def counted(findings: list[FindingView] | tuple[FindingView, ...]) -> str:
     """ "1 fault, 2 doubts", the worst first; "" for none."""
     counts = Counter(entry.severity for entry in findings)
-    return ", ".join(f"{counts[name]} {name}{'s' if counts[name] > 1 else ''}" for name in _WORST if counts[name])
+    return ", ".join(count(counts[name], name) for name in _WORST if counts[name])
 
 
 def _flags(runs: tuple[RunRow, ...]) -> tuple[Flag, ...]:

@@ -13,7 +13,8 @@ from starlette.routing import Match
 from starlette.types import Scope
 
 from app.errors import Failure
-from app.pages.rendering import problem
+from app.matrices.removed import Removed
+from app.pages.rendering import page, problem
 from ident.errors import Unusable
 
 Handler = Callable[[Request], Coroutine[Any, Any, Response]]
@@ -32,6 +33,8 @@ class PageRoute(APIRoute):
             except Failure as error:
                 title = "Not found" if error.status == 404 else "That did not work"
                 return problem(request, error.status, title, error.what, error.remedy)
+            except Removed as error:
+                return problem(request, 410, "Removed", error.what, error.remedy)
             except Unusable as error:
                 return problem(request, 422, "That cannot be used", f"{error.where}: {error.what}", error.remedy)
             except RequestValidationError as error:
@@ -50,6 +53,15 @@ class Unknown(PageRoute):
     def matches(self, scope: Scope) -> tuple[Match, Scope]:
         """No match under /api."""
         return (Match.NONE, {}) if str(scope.get("path", "")).startswith("/api/") else super().matches(scope)
+
+
+def sign_in(request: Request, error: Failure) -> Response:
+    """The page that asks for a token, in place of the one that was asked for; after it that one is shown."""
+    tried = "" if error.code == "token-needed" else f"{error.what}: {error.remedy}"
+    after = request.url.path + (f"?{request.url.query}" if request.url.query else "")
+    shown = page(request, "sign_in.html", error.status, problem=tried, after=after)
+    shown.headers.update(error.headers or {})
+    return shown
 
 
 def _unknown(request: Request, status: int) -> Response:

@@ -51,8 +51,9 @@ _TEMPLATES = _environment()
 
 
 def page(request: Request, template: str, status: int = 200, **data: Any) -> HTMLResponse:
-    """The page of a template."""
-    text = _TEMPLATES.get_template(template).render(here=request.url.path, **data)
+    """The page of a template, for who asks; who is not known is shown no way on."""
+    who = getattr(request.state, "who", None)
+    text = _TEMPLATES.get_template(template).render(here=request.url.path, who=who, **data)
     return HTMLResponse(text, status_code=status)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from app.actuators import service as actuators
+from app.approvals import service as approvals
 from app.context import Context
 from app.diagnoses import service as diagnoses
 from app.errors import Failure
@@ -12,10 +13,11 @@ from app.fits import lineage
 from app.fits import service as fits
 from app.fits.rows import parameter_rows
 from app.jobs import service as jobs
+from app.limits.judging import judge
 from app.matrices import service as matrices
 from app.own_effects import service as own_effects
 from app.pages.actuator_view import actuator_row, drifts, fit_rows, followed
-from app.pages.compare_view import CompareView, compare_view
+from app.pages.compare_view import compare_view
 from app.pages.diagnosis_view import missing
 from app.pages.evidence_view import telling_run
 from app.pages.fit_page import FitPageView, fit_page
@@ -23,12 +25,16 @@ from app.pages.job_view import JobPageView, job_page
 from app.pages.kept_view import kept_rows
 from app.pages.matrix_view import counted, matrix_view
 from app.pages.next_steps import next_steps
+from app.pages.side_view import further, side_view
 from app.pages.start_view import start_view
 from app.pages.thumbnails import thumbnail
 from app.parameters import service as parameters
-from app.parameters.repository import Wanted
+from app.parameters.wanted import Wanted
+from app.workers import service as workers
+from ident.comparison.side_by_side import MOST
 from ident.synthesis.matrix import SIMULATED
 from ident.words.engineering import quantity
+from ident.words.number import count
 from schemas.parameters import ActuatorPage, ActuatorView
 
 __all__ = ["actuator", "actuator_list", "fit", "job_list", "matrix", "thumbnail"]
@@ -69,6 +75,8 @@ def actuator(context: Context, serial: str, cursor: str | None) -> Shown:
         "facts": _facts(found),
         "approved": _approved(context, found),
         "drifts": _drifts(context, found),
+        "verdict": judge(context, serial),
+        "approvals": approvals.of_actuator(context, serial),
         **_fits(context, cursor, serial=serial),
         "matrices": [(entry, counted(entry.findings) or "none") for entry in stored],
     }
@@ -118,18 +126,33 @@ def job_list(context: Context, cursor: str | None) -> Shown:
     return {"jobs": [job_page(job) for job in found.items], "more": found.next}
 
 
+def worker_list(context: Context) -> Shown:
+    """The processes that work on jobs, each with the sign of its state, and the lengths of the queue."""
+    found = workers.listed(context)
+    signs = {"at work": "running", "waiting": "queued", "silent": "failed"}
+    shown = [{**worker.model_dump(), "sign": signs[worker.state]} for worker in found.workers]
+    return {"workers": shown, "queue": found.queue}
+
+
 def own_list(context: Context) -> Shown:
     """The lab's own effects by name."""
     return {"rows": tuple(kept_rows(own_effects.every(context)))}
 
 
-def compared(context: Context, wanted: str) -> CompareView:
-    """Two fits, by their ids with a comma between; raises Failure 404, 422."""
+def compared(context: Context, wanted: str) -> tuple[str, Shown]:
+    """The page of two fits or more, by their ids with commas between, and what it shows; raises Failure 404, 422."""
     names = [name for name in wanted.split(",") if name]
-    if len(names) != 2:
-        raise Failure(422, "bad-request", f"{len(names)} fits are given", "fits", "give two: /compare?fits=A,B")
-    first, second = (fits.stored(context, name) for name in names)
-    return compare_view(first, second, matrices.get(context, first.matrix))
+    if not 2 <= len(names) <= MOST:
+        what, remedy = f"{count(len(names), 'fit')} to compare", f"give 2 to {MOST}: /compare?fits=A,B"
+        raise Failure(422, "bad-request", what, "fits", remedy)
+    stored = [fits.stored(context, name) for name in names]
+    known = parameters.page(context, Wanted(serial=stored[0].serial), None, _ROWS).items if len(names) < MOST else []
+    others = further(known, names)
+    if len(names) > 2:
+        found = fits.beside(context, names[0], names[1:])
+        return "side_by_side.html", {"of": side_view(stored, found), "others": others}
+    first, second = stored
+    return "compare.html", {"both": compare_view(first, second, matrices.get(context, first.matrix)), "others": others}
 
 
 def fit(context: Context, fit_id: str) -> FitPageView | JobPageView:

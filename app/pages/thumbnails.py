@@ -45,7 +45,16 @@ def picture(run: Run) -> str:
     else:
         ranges = [(b[0].min(), b[1].max()) for b in bands]
     colours = (_INPUT, _OUTPUT)[-len(bands) :]
-    paths = "".join(_path(*parts) for parts in zip(bands, ranges, colours, strict=True))
+    return _svg("".join(_path(*parts) for parts in zip(bands, ranges, colours, strict=True)))
+
+
+def curve(samples: NDArray[np.float64]) -> str:
+    """One column of a raw file, blue."""
+    band = _band(samples)
+    return _svg(_path(band, (float(band[0].min()), float(band[1].max())), _OUTPUT))
+
+
+def _svg(paths: str) -> str:
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT}" '
         f'viewBox="0 0 {WIDTH} {HEIGHT}" stroke-linejoin="round">{paths}</svg>'

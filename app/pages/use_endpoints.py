@@ -8,6 +8,7 @@ from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.access.roles import READERS
 from app.context import Here
 from app.pages import assets, use_page
 from app.pages.problems import PageRoute
@@ -28,20 +29,20 @@ class Description(BaseModel):
     where: str = Field(max_length=40)
 
 
-@pages.get("/fits/{fit}/use")
+@pages.get("/fits/{fit}/use", dependencies=[READERS])
 def use(request: Request, here: Here, fit: str) -> HTMLResponse:
     """What the identified machine is good for; the query says what is asked and what is shown."""
     shown, status = use_page.use(here, fit, dict(request.query_params))
     return page(request, "use.html", status, use=shown, vega=assets.VEGA)
 
 
-@parts.get("/fits/{fit}/use/what-if.json")
+@parts.get("/fits/{fit}/use/what-if.json", dependencies=[READERS])
 def what_if(request: Request, here: Here, fit: str) -> WhatIfView:
     """All numbers of a what-if, as the API answers it."""
     return use_page.numbers(here, fit, dict(request.query_params))
 
 
-@parts.post("/use/reading")
+@parts.post("/use/reading", dependencies=[READERS])
 def reading(description: Description) -> Any:
     """A description in YAML as plain data, for a request that takes an object."""
     return use_page.read(description.text, description.where)

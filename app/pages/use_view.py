@@ -11,6 +11,7 @@ from app.pages.hybrid_view import HybridSection
 from app.pages.tracking_view import TrackingView
 from app.pages.what_if_view import WhatIfView
 from ident.custom.definition import preset_with
+from ident.export import FORMATS, Format
 from ident.words.titles import with_effects
 
 CASES = (
@@ -47,6 +48,7 @@ class UseView:
     tracking: TrackingView
     cases: tuple[tuple[str, str], ...] = CASES
     example: str = OWN_CASE
+    exports: tuple[Format, ...] = tuple(FORMATS.values())
 
 
 def use_view(

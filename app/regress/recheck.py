@@ -14,14 +14,17 @@ from ident.matrix import Matrix
 from ident.progress import Report
 from ident.workflows import compare, identify
 
+SHARE = 0.1  # of its standard error: what a parameter may differ by, however exactly the same minimum is found
+
 
 @dataclass(frozen=True)
 class Change:
-    """A quantity that was approved as `before` and is now `after`."""
+    """A quantity that was approved as `before`, give or take its standard error if it has one, and is now `after`."""
 
     quantity: str
     before: float
     after: float
+    std_error: float | None = None
 
     @property
     def relative(self) -> float:
@@ -31,6 +34,11 @@ class Change:
         if math.isnan(self.after) or not self.before:
             return math.inf
         return abs(self.after - self.before) / abs(self.before)
+
+    def moved(self, tolerance: float) -> bool:
+        """Whether it differs by more than the tolerance, and by more than a tenth of its standard error."""
+        told = self.std_error is None or not abs(self.after - self.before) <= SHARE * self.std_error
+        return self.relative > tolerance and told
 
 
 @dataclass(frozen=True)
@@ -46,8 +54,8 @@ class Recheck:
 
     @property
     def moved(self) -> tuple[Change, ...]:
-        """The changes beyond the tolerance."""
-        return tuple(change for change in self.changes if change.relative > self.tolerance)
+        """What moved."""
+        return tuple(change for change in self.changes if change.moved(self.tolerance))
 
     @property
     def passed(self) -> bool:
@@ -66,10 +74,18 @@ def recheck(serial: str, fit: str, stored: FitResult, matrix: Matrix, tolerance:
     changes: tuple[Change, ...] = ()
     failure = ""
     try:
-        changes = (*recomputed(stored, matrix), *refitted(stored, matrix, report))
+        if stored.ended_early:
+            raise Unusable("ended-early", "the search of this fit ran out of its time", f"fit {fit}",
+                           "fit again without a budget, and approve that")  # fmt: skip
+        changes = found(stored, matrix, report)
     except Unusable as error:
         failure = str(error)
     return Recheck(serial, fit, changes, tolerance, time.monotonic() - began, failure)
+
+
+def found(stored: FitResult, matrix: Matrix, report: Report) -> tuple[Change, ...]:
+    """What is computed and fitted again, beside what was approved. Raises Unusable."""
+    return (*recomputed(stored, matrix), *refitted(stored, matrix, report))
 
 
 def recomputed(stored: FitResult, matrix: Matrix) -> Iterator[Change]:
@@ -83,7 +99,7 @@ def refitted(stored: FitResult, matrix: Matrix, report: Report) -> Iterator[Chan
     yield from errors("refit error", stored, new.error)
     for name, estimate in stored.parameters.items():
         if estimate.std_error is not None and not estimate.fixed:
-            yield Change(name, estimate.value, new.values.get(name, math.nan))
+            yield Change(name, estimate.value, new.values.get(name, math.nan), estimate.std_error)
 
 
 def errors(name: str, stored: FitResult, after: Mapping[str, float | None]) -> Iterator[Change]:

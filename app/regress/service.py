@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from app.blobs import open_storage
 from app.database import connect, reachable, sessions, shown
 from app.matrices.service import load_row
 from app.regress.recheck import Recheck, recheck
-from app.regress.repository import approved
+from app.regress.repository import Asked, approved
 from app.settings import Settings
-from app.storage import Storage
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.progress import Report
 
 
-def regress(settings: Settings, tolerance: float, report: Report) -> Iterator[Recheck]:
-    """Recheck the current approved parameter set of every actuator, by serial number.
+def regress(settings: Settings, asked: Asked, tolerance: float, report: Report) -> Iterator[Recheck]:
+    """Recheck the set in force of each actuator that is asked for, by serial number.
 
-    A change of more than `tolerance` (relative) of an error or a parameter counts as moved. Raises Unusable where the
-    data folder holds no database.
+    A change of more than `tolerance` (relative) and of more than a tenth of the standard error counts as moved.
+    Raises Unusable where the data folder holds no database.
     """
     if settings.database_url == "" and not (settings.data / "servoident.sqlite").is_file():
         raise Unusable("no-database", "no service has stored anything there", str(settings.data), "name it with --data")
@@ -30,8 +30,8 @@ def regress(settings: Settings, tolerance: float, report: Report) -> Iterator[Re
             "no-database", "the database does not answer or is not up to date", shown(settings.database), remedy
         )
     with sessions(engine)() as session:
-        sets = approved(session)
-    storage = Storage(settings.data / "blobs")
+        sets = approved(session, asked)
+    storage = open_storage(settings)
     for fit, row in sets:
         try:
             matrix = load_row(storage, row)

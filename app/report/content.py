@@ -11,7 +11,7 @@ from ident.checks.check import check
 from ident.custom.definition import preset_with
 from ident.diagnosis.result import Diagnosis
 from ident.errors import Unusable
-from ident.figures import ladder, look
+from ident.figures import figure, ladder, look
 from ident.fit.result import FitResult
 from ident.matrix import Matrix
 from ident.residuals.budget import Budget
@@ -19,7 +19,7 @@ from ident.residuals.survey import Survey, survey
 from ident.words.engineering import printed_unit, quantity
 from ident.words.percent import percent_in_print
 from ident.words.titles import title, with_effects
-from ident.workflows import compare, figure
+from ident.workflows import compare, study
 
 CAPTIONS = {
     "bode": "Frequency response, measured and model",
@@ -157,6 +157,6 @@ def _provenance(fit: FitResult, citation: str) -> tuple[tuple[str, str], ...]:
 def _drawn(name: str, matrix: Matrix, fit: FitResult) -> Figure:
     """A figure; where the model or the data do not allow it, what that is."""
     try:
-        return Figure(name, figure(name, matrix, fit), CAPTIONS[name])
+        return Figure(name, figure(name, study(matrix, fit)), CAPTIONS[name])
     except Unusable as error:
         return Figure(name, str(error), CAPTIONS[name])

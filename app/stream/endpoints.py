@@ -9,6 +9,7 @@ from fastapi import APIRouter, Response, WebSocket
 from fastapi.concurrency import run_in_threadpool
 from starlette.websockets import WebSocketDisconnect
 
+from app.access.roles import READERS
 from app.errors import COMMON, Failure
 from app.stream import service
 from schemas.stream import StreamEstimates, StreamSamples, StreamStart
@@ -24,10 +25,11 @@ _MESSAGES = {
 
 
 @router.get(
-    "/stream/ekf", status_code=101, response_class=Response, openapi_extra={"x-messages": _MESSAGES},
+    "/stream/ekf", dependencies=[READERS], status_code=101, response_class=Response,
+    openapi_extra={"x-messages": _MESSAGES},
     responses={101: {"description": "The stream begins"}, 426: {**COMMON[400], "description": "Not a WebSocket"}},
 )  # fmt: skip
-def stream() -> None:
+def describe_stream() -> None:
     """Track τyr and kyr of a first-order loop in real time, over a WebSocket.
 
     The first message is JSON, `{"sample_rate": 4096, "hold": "linear", "tau0": 0.02, "gain0": 1, "noise":
@@ -40,7 +42,7 @@ def stream() -> None:
     raise service.no_socket()
 
 
-@router.websocket("/stream/ekf")
+@router.websocket("/stream/ekf", dependencies=[READERS])
 async def ekf(socket: WebSocket) -> None:
     """The stream itself, until either side ends it."""
     await socket.accept()

@@ -8,10 +8,12 @@ from __future__ import annotations
 import tempfile
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 from PIL import Image
 
 from ident.figures import render
+from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.readers import read_matrix
 from ident.synthesis.matrix import simulate_matrix
@@ -33,7 +35,14 @@ def main() -> None:
         matrix = read_matrix(Path(folder) / "matrix")
     fit = identify(matrix, Settings(seed=1))
     for name, options in PICTURES.items():
-        (HERE / f"{name}.png").write_bytes(packed(render(figure(name, matrix, fit, "light", **options), "png")))
+        draw(name, fit, name, **options)
+
+
+def draw(picture: str, fit: FitResult, name: str, **options: Any) -> None:
+    """A figure as a picture for light pages, and one for dark ones."""
+    for theme, behind in (("light", ""), ("dark", "-dark")):
+        chart = figure(fit, name, theme=theme, **options)
+        (HERE / f"{picture}{behind}.png").write_bytes(packed(render(chart, "png")))
 
 
 def packed(png: bytes) -> bytes:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.bench.model import Model
 from ident.bench.residual import Normal, Residual
+from ident.cached import cached_property
 from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
 from ident.fit.uncertainty import Covariance, covariance
 

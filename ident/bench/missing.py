@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +17,7 @@ from ident.bench.model import CONSTANTS, FAST, Model, beyond_fast
 from ident.bench.observed import Observed, observe
 from ident.bench.records import Record
 from ident.bench.residual import Residual
+from ident.cached import cached_property
 from ident.diagnosis.cross_validation import FOLDS, CrossValidation
 from ident.diagnosis.significance import Improvement, improvement
 from ident.effects import CATALOGUE

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 from ident.bench.chain_response import SHOWN, chain_response
 from ident.bench.response import respond
 from ident.bench.speed_table import SpeedTable
+from ident.cached import cached_property
 from ident.chain.chain import Chain
 from ident.effects.command_delay import COMMAND_DELAY
 from ident.effects.second_lag import SECOND_LAG

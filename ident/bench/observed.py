@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +17,7 @@ from numpy.typing import NDArray
 from ident.bench.model import Model, Models, by_chain
 from ident.bench.records import Record
 from ident.bench.response import residuals, rest
+from ident.cached import cached_property
 from ident.noise.effective_sample_size import independent_samples
 
 Array = NDArray[np.float64]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.bench.sine_fit import dominant
+from ident.cached import cached_property
 from ident.errors import Unusable
 from ident.matrix import BENCH, Matrix, Run
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +11,7 @@ from ident.bench.model import FAST, Model, Models
 from ident.bench.observed import Observed
 from ident.bench.response import products
 from ident.bench.speed_table import SpeedTable
+from ident.cached import cached_property
 from ident.effects.effect import Effect
 from ident.parallel import cores, each
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.cached import cached_property
 from ident.equations.interpolation import piece_coefficients
 from ident.errors import Unusable
 from ident.stages.bench import FRACTIONS, node_names

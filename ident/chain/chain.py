@@ -12,13 +12,14 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
-from functools import cached_property
 from graphlib import CycleError, TopologicalSorter
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.cached import cached_property
+from ident.chain.channels import BESIDE_MEAN, read_whole
 from ident.chain.conditions import conditions, zeros
 from ident.chain.dry_friction import dry_friction
 from ident.chain.linearity import LINEAR, OTHER, ZERO, degree
@@ -36,7 +37,7 @@ INPUT, INPUT_RATE, FORCE, DISTURBANCE, STEP = "u", "du", "fm", "dm", "dt"
 """What drives a chain: the command, its rate, a measured force or disturbance; and the step of the simulation."""
 SUPPLY, VERTICAL = "dPs", "dNv"
 """What a measured supply pressure (Pa) and vertical load (N) are beside their mean, which is a condition of the run."""
-MEASURED = (FORCE, DISTURBANCE, SUPPLY, VERTICAL)
+MEASURED = (FORCE, DISTURBANCE, SUPPLY, VERTICAL, *BESIDE_MEAN)
 """The inputs beside the command."""
 _SMALL, _SHARE = 1e-9, 1e-7  # of a unit, and of what stands there: the step of slopes
 
@@ -99,12 +100,13 @@ class Chain:
         def version(target: str, number: int) -> str:
             return target if number == total[target] - 1 else f"{target}__{number}"
 
-        for effect, equation in entries:
-            target, names = equation.target, {}
+        for effect, written in entries:
+            equation, target, names = written, written.target, {}
             if effect is not None:
                 names = _local_names(effect, equation, self._core)
                 redefined = {e.target for e in effect.equations} & self._core
                 names |= {name: version(name, so_far[name] - 1) for name in redefined & equation.names}
+                equation = read_whole(written, self._core | names.keys())
             if target in self._core:
                 if so_far[target] and (equation.is_rate or equation.is_memory):
                     raise unfit(effect) if effect else AssertionError(target)

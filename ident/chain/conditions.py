@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-
+from ident.chain.channels import means
 from ident.matrix import Actuator, Run, Specimen
 from ident.stages import Quantity
 
@@ -23,7 +22,7 @@ NEVER = 1e12
 
 
 def conditions(run: Run, actuator: Actuator) -> dict[str, float]:
-    """The values of :data:`CONDITIONS` for a run.
+    """The values of :data:`CONDITIONS` for a run, and the means of its channels.
 
     Without a stated area A = 1 m²: every parameter that is divided by A² in the model is then that ratio. Without a
     stated rated current 1, without a supply pressure, measured or stated, one that never limits.
@@ -32,13 +31,13 @@ def conditions(run: Run, actuator: Actuator) -> dict[str, float]:
     area = 1.0 if actuator.piston_area is None else actuator.piston_area
     supply = _mean(run, "supply_pressure", "Pa") or actuator.supply_pressure or NEVER
     return {"Kp": run.Kp, "mL": specimen.mass, "k": specimen.stiffness, "cL": specimen.damping, "A": area,
-            "Ir": run.rated_current or 1.0, "Ps": supply, "Nv": _mean(run, "vertical_load", "N")}  # fmt: skip
+            "Ir": run.rated_current or 1.0, "Ps": supply, "Nv": _mean(run, "vertical_load", "N"),
+            **means(run)}  # fmt: skip
 
 
 def _mean(run: Run, channel: str, unit: str) -> float:
     """Of a channel in its unit; 0 where it was not measured."""
-    known = channel in run.channels and run.units.get(channel) == unit
-    return float(np.mean(run.channels[channel])) if known else 0.0
+    return means(run)[channel] if run.units.get(channel) == unit else 0.0
 
 
 def zeros(run: Run, actuator: Actuator) -> frozenset[str]:

@@ -8,7 +8,8 @@ from ident.checks.amplitude import amplitude
 from ident.checks.band import band
 from ident.checks.clipping import clipping
 from ident.checks.delay import delays
-from ident.checks.finding import Finding
+from ident.checks.feedback import feedback
+from ident.checks.finding import Finding, Findings
 from ident.checks.flat import flat
 from ident.checks.gain import force_sign, gain
 from ident.checks.offset import offset
@@ -16,22 +17,23 @@ from ident.checks.passivity import turned_sign
 from ident.checks.ranges import ranges
 from ident.checks.repeats import repeats
 from ident.checks.response import Response, respond
+from ident.checks.scale import scale
 from ident.checks.statements import statements
 from ident.checks.summary import RunSummary, Summary, describe
 from ident.checks.timing import timing
 from ident.matrix import Actuator, Matrix, Run
 
-__all__ = ["Finding", "RunSummary", "Summary", "check", "describe"]
+__all__ = ["Finding", "Findings", "RunSummary", "Summary", "check", "describe"]
 
 ORDER = ("fault", "doubt", "note")
 
 
-def check(matrix: Matrix) -> tuple[Finding, ...]:
+def check(matrix: Matrix) -> Findings:
     """Everything that a person should know about the data: faults first, then doubts, then notes."""
     measured = [(run, respond(run)) for run in matrix.runs]
     found = [finding for run, response in measured for finding in one_run(run, response, matrix.actuator)]
-    found += [*delays(measured), *repeats(matrix), *statements(matrix)]
-    return tuple(sorted(_once(found, matrix), key=lambda finding: ORDER.index(finding.severity)))
+    found += [*delays(measured), *scale(measured), *repeats(matrix), *statements(matrix)]
+    return Findings(sorted(_once(found, matrix), key=lambda finding: ORDER.index(finding.severity)))
 
 
 def _once(found: Sequence[Finding], matrix: Matrix) -> Iterator[Finding]:
@@ -57,4 +59,5 @@ def one_run(run: Run, response: Response | None, actuator: Actuator) -> Iterator
     yield from force_sign(run)
     yield from turned_sign(run)
     yield from offset(run)
+    yield from feedback(run)
     yield from ranges(run, actuator)

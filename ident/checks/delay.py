@@ -23,6 +23,8 @@ FLOOR = 0.002  # misfit, relative: below, differences are those of the method
 WIDEST = 3.0  # samples between the first and the last delay that fit
 LEAST = 0.75  # samples; the scatter of the estimate at 5 % noise is below 0.3
 APART = 0.75  # samples between one run and the middle of all
+EXPLAINED = 0.1  # misfit, relative: a run on which the best delay leaves more is no matter of a delay
+_OUTLIER = 6.0  # times the median deviation from it: the delay of what is limited in speed is another in every run
 
 
 @dataclass(frozen=True)
@@ -32,11 +34,16 @@ class Delay:
     samples: float
     shortest: float
     longest: float
+    misfit: float
 
     @property
     def told(self) -> bool:
         """True where the run determines its delay."""
-        return self.longest - self.shortest <= WIDEST
+        return self.longest - self.shortest <= WIDEST and self.misfit <= EXPLAINED
+
+    def apart(self, middle: float, least: float) -> bool:
+        """Whether it is another delay than that of the other runs, and theirs does not fit as well."""
+        return abs(self.samples - middle) >= least and not self.shortest <= middle <= self.longest
 
 
 def delays(measured: list[tuple[Run, Response | None]]) -> Iterator[Finding]:
@@ -44,10 +51,11 @@ def delays(measured: list[tuple[Run, Response | None]]) -> Iterator[Finding]:
     found = [(run, estimate) for run, response in measured if (estimate := delay(run, response)) is not None]
     told = [estimate.samples for _, estimate in found if estimate.told]
     middle = float(np.median(told)) if told else 0.0
+    apart = max(APART, _OUTLIER * float(np.median(np.abs(np.array(told) - middle)))) if told else APART
     if abs(middle) >= LEAST and len(told) > 1:
         yield Finding(None, "doubt", "delay", f"displacement {lags(middle)} in {len(told)} runs alike{remedy(middle)}")
     for run, estimate in found:
-        if estimate.told and len(told) > 2 and abs(estimate.samples - middle) >= APART:
+        if estimate.told and len(told) > 2 and estimate.apart(middle, apart):
             text = (
                 f"displacement of run {run.id} {lags(estimate.samples)} where the runs in common show {middle:.1f}; "
                 "look for a shift between the channels of this run (rows, other recorder) or a wrong label"
@@ -93,7 +101,7 @@ def delay(run: Run, response: Response | None) -> Delay | None:
     cost = misfits(measured, trial / run.sample_rate)
     best = int(np.argmin(cost))
     near = np.flatnonzero(cost <= NEAR * cost[best] + FLOOR)
-    return Delay(lowest(trial, cost, best), float(trial[near[0]]), float(trial[near[-1]]))
+    return Delay(lowest(trial, cost, best), float(trial[near[0]]), float(trial[near[-1]]), float(cost[best]))
 
 
 def lowest(trial: Samples, cost: Samples, best: int) -> float:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+from ident.words.shown import Listing, Shown
 
 Severity = Literal["note", "doubt", "fault"]
 
@@ -20,3 +23,19 @@ class Finding:
     severity: Severity
     code: str
     text: str
+
+
+class Findings(tuple[Finding, ...], Shown):
+    """All that a check says, faults first."""
+
+    def listings(self) -> Iterable[Listing | str]:
+        """A row a finding."""
+        if not self:
+            yield "Nothing doubtful was found."
+            return
+        rows = [(one.severity, one.run or "all", one.text) for one in self]
+        yield Listing("", ("severity", "run", "finding"), rows)
+
+    def records(self) -> list[dict[str, Any]]:
+        """A record a finding, for a data frame."""
+        return [asdict(one) for one in self]

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import ShortTimeFFT, get_window
 
+from ident.cached import cached_property
 from ident.matrix import Run, Samples
 
 LONGEST_FRAME = 8192

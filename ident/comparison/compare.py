@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.signal
 from numpy.typing import NDArray
 
+from ident.cached import cached_property
 from ident.chain.chain import linear_model
 from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.fit.normal_matrices import output
 from ident.fit.result import FitResult
-from ident.fit.simulated_runs import every_run
+from ident.fit.simulated_runs import every_run, is_simulated
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Matrix, Run, over_runs
 from ident.parallel import each
 from ident.presets import Preset
+from ident.words.engineering import quantity
+from ident.words.percent import percent
+from ident.words.shown import Listing, Shown
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -48,6 +52,21 @@ class RunComparison:
     def offset(self) -> float:
         """Difference of the means over the standard deviation."""
         return float(np.mean(self.run.measured - self.modelled) / np.std(self.run.measured))
+
+    @property
+    def unit(self) -> str:
+        """The unit of the residual, SI or the record's own."""
+        return self.run.units.get(self.run.output, "1")
+
+    @cached_property
+    def rmse(self) -> float:
+        """The residual's root mean square √(mean (x_m − x)²) in `unit`: it sees the offset, which eq. (17) does not."""
+        return float(np.sqrt(np.mean((self.run.measured - self.modelled) ** 2)))
+
+    @cached_property
+    def mae(self) -> float:
+        """The residual's mean size, mean |x_m − x|, in `unit`."""
+        return float(np.mean(np.abs(self.run.measured - self.modelled)))
 
     @cached_property
     def frequency(self) -> Array:
@@ -90,7 +109,7 @@ class RunComparison:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class Comparison(Shown):
     """All runs of a matrix against one fit."""
 
     matrix: Matrix
@@ -107,6 +126,25 @@ class Comparison:
         """The offset averaged over the runs of each use."""
         return {use: self._mean(use, "offset") for use in ("fit", "verify")}
 
+    def listings(self) -> Iterable[Listing | str]:
+        """The error of every run, in per cent and in its unit, and the means."""
+        rows = [
+            (one.run.id, one.run.use, percent(one.error), percent(one.offset), quantity(one.rmse, one.unit),
+             quantity(one.mae, one.unit))
+            for one in self.runs
+        ]  # fmt: skip
+        rows += [("mean", use, percent(mean), "", "", "") for use, mean in self.error.items() if mean is not None]
+        numbers = ("error", "offset", "RMSE", "MAE")
+        yield Listing("", ("run", "use", *numbers), rows, numbers)
+
+    def records(self) -> list[dict[str, Any]]:
+        """A record a run, for a data frame: eq. (17) and the offset as fractions, RMSE and MAE in `unit`."""
+        return [
+            {"id": one.run.id, "use": one.run.use, "error": one.error, "offset": one.offset,
+             "rmse": one.rmse, "mae": one.mae, "unit": one.unit}
+            for one in self.runs
+        ]  # fmt: skip
+
     def _mean(self, use: str, what: str) -> float | None:
         found = [run for run in self.runs if run.run.use == use]
         return float(over_runs([getattr(run, what) for run in found], [run.run for run in found])) if found else None
@@ -118,17 +156,18 @@ def modelled(preset: Preset, values: Mapping[str, float], matrix: Matrix) -> dic
 
 
 def compare(matrix: Matrix, fit: FitResult, simulator: Simulator = modelled) -> Comparison:
-    """Every run of the matrix against the fitted model; `simulator` runs a model that is not linear.
+    """Every run of the matrix against the fitted model; `simulator` runs a model whose fit simulates.
 
     Raises Unusable where the fit is of another model's data.
     """
     preset, matrix, values = fitted(fit, matrix)
-    if not preset.is_linear:
-        outputs = simulator(preset, values, matrix)
-        return Comparison(matrix, fit, tuple(RunComparison(run, None, outputs[run.id]) for run in matrix.runs))
+    outputs = simulator(preset, values, matrix) if is_simulated(preset, matrix) else None
 
     def one(run: Run) -> RunComparison:
-        model = linear_model(preset.core, values, run, matrix.actuator)
+        model = linear_model(preset.core, values, run, matrix.actuator) if preset.is_linear else None
+        if outputs is not None:
+            return RunComparison(run, model, outputs[run.id])
+        assert model is not None
         return RunComparison(run, model, output(run, model))
 
     return Comparison(matrix, fit, tuple(each(one, matrix.runs)))

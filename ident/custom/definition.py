@@ -5,6 +5,7 @@
     equation: w = w - clip(w, -h, h)                                 one line, or a list of lines
     strength: {symbol: h, unit: mm, lower: 0, upper: 1}              the effect is off at 0
     shape: {T: {unit: ms, lower: 1, upper: 100, value: 20}}          optional: other parameters
+    curve: {symbol: h, of: P, knots: [0 MPa, 5 MPa], …}              optional: see ident.custom.curves
     state: {symbol: z, rate: (Q - z) / T, initial: 0}                optional: one state of its own
     meaning: the lands overlap
 
@@ -21,6 +22,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
+from ident.custom.curves import curve_of
 from ident.custom.names import Line, check_names
 from ident.custom.off_at_zero import refuse_unless_off
 from ident.custom.parameters import shapes_of, strength_of, symbol_of
@@ -36,7 +38,7 @@ from ident.stages import PLACES
 from ident.units.quantity import shown
 
 Definition = Mapping[str, Any]
-KEYS = ("name", "place", "equation", "strength", "shape", "state", "meaning", "looks", "source")
+KEYS = ("name", "place", "equation", "strength", "shape", "curve", "state", "meaning", "looks", "source")
 HANDED_ON = {
     "controller": "e", "valve": "q", "spool": "w", "flow": "Q", "pressure": "D", "load": "R", "sensor": "y_fb",
 }  # fmt: skip
@@ -92,13 +94,16 @@ def _read(text: str, model: str) -> Effect:
     strength, shapes = strength_of(fields), shapes_of(fields)
     lines = tuple(_lines(fields, place))
     own = {"strength": strength.symbol, **{f"shape {p.name}": p.symbol for p in shapes}}
+    if curve := curve_of(fields):
+        lines, shapes = (curve[0], *lines), (*shapes, *curve[1])
+        own |= {f"curve value {p.name}": p.symbol for p in curve[1]}
     chosen = check_names(lines, place, own, _models(model))
     effect = Effect(
         name=name, place=place, meaning=fields.text("meaning", "an effect of the user"), strength=strength,
         texts=tuple(line.equation for line in lines), shape=shapes,
         units={line.target: chosen.chain.units[line.target] for line in lines if line.target in chosen.chain.units},
         looks=fields.text("looks"), source=fields.text("source", "defined by the user"),
-        steps=2 if any(_KINKS.search(line.right) for line in lines) else 1,
+        steps=2 if any(_KINKS.search(line.right) for line in lines) else 1, own=True,
     )  # fmt: skip
     refuse_unless_off(effect, chosen)
     return effect

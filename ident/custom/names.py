@@ -1,4 +1,4 @@
-"""The names in a user's equations: each is a signal of the model, a condition of the run, or the effect's own."""
+"""The names in a user's equations: each is a signal of the model, something of the run, or the effect's own."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 
 from ident.chain.chain import INPUT, INPUT_RATE, STEP
+from ident.chain.channels import READABLE
 from ident.chain.conditions import CONDITIONS
 from ident.equations.grammar import ALIASES, CONSTANTS, FUNCTIONS, TIME, parsed
 from ident.errors import Unusable
@@ -21,13 +22,17 @@ RESERVED = frozenset({*FUNCTIONS, *ALIASES, *CONSTANTS, TIME, STEP})
 
 @dataclass(frozen=True)
 class Line:
-    """One line of a definition: the field it stands in, its left and right side, where the right one begins."""
+    """One line of a definition: the field it stands in, its left and right side, where the right one begins.
+
+    A line that `is_written` by nobody stands for its field: no character of it is at fault.
+    """
 
     where: str
     left: str
     right: str
     first: int
     text: str
+    is_written: bool = True
 
     @property
     def equation(self) -> str:
@@ -49,6 +54,8 @@ class Line:
 
     def at(self, name: str) -> str:
         """Where a name stands, in words; a target is sought on the left."""
+        if not self.is_written:
+            return self.where
         first = 0 if name == self.target else self.first
         found = re.compile(rf"\b{re.escape(name)}\b").search(self.text, first)
         return f"{self.where}, character {found.start() + 1 if found else 1}"
@@ -68,7 +75,7 @@ def check_names(lines: Sequence[Line], place: str, own: Mapping[str, str], model
                        lines[-1].at(targets[-1]), f"redefine one of: {there or 'none in this model'}")  # fmt: skip
     known = _known(chosen)
     _refuse_shadows(lines, place, own, chosen, known)
-    allowed = known | set(own.values()) | set(targets) | {TIME}
+    allowed = known | set(own.values()) | set(targets) | {TIME, *READABLE}
     for line in lines:
         for name in sorted(line.names - allowed):
             near = get_close_matches(name, allowed, 1, 0.5)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.chain.chain import FORCE, INPUT, INPUT_RATE, STEP, Chain
+from ident.chain.channels import BESIDE_MEAN
 from ident.effects.effect import Effect
 from ident.equations.grammar import TIME
 from ident.errors import Unusable
@@ -57,6 +58,9 @@ def _drawn(preset: Preset, effect: Effect, chain: Chain, rng: np.random.Generato
     free = (*chain.states, *(f"{name}__old" for name in chain.memories), INPUT, INPUT_RATE, FORCE)
     values: dict[str, Any] = {name: signal(name) for name in free}
     values |= {name: np.exp(rng.uniform(-3, 3, _TRIALS)) for name in chain.symbols}
+    values |= {
+        rest: rng.uniform(-0.5, 0.5, _TRIALS) * values[mean] for rest, mean in BESIDE_MEAN.items() if mean in values
+    }
     values |= {p.name: np.full(_TRIALS, p.value) for p in preset.parameters}
     values |= {p.in_equations: np.full(_TRIALS, p.value) for p in effect.added}
     values |= {TIME: rng.uniform(0, 1e3, _TRIALS), STEP: np.full(_TRIALS, 1e-3)}

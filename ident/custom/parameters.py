@@ -21,7 +21,7 @@ def strength_of(fields: Fields) -> Parameter:
     """The strength: 0 where the effect is off, and 0 within its bounds. Raises Unusable."""
     data = fields.need("strength", "write strength: {symbol: h, unit: mm, lower: 0, upper: 1}")
     entry = Fields(data, "strength", tuple(key for key in _KEYS if key != "value"))
-    found = _parameter(entry, symbol_of(entry, entry.need("symbol", "write symbol: h")), default=0.0)
+    found = parameter_of(entry, symbol_of(entry, entry.need("symbol", "write symbol: h")), default=0.0)
     if not found.lower <= 0.0 <= found.upper:
         raise Unusable("bad-strength", "0 is not within the bounds", "strength", "let lower be 0, the effect off")
     return found
@@ -53,7 +53,7 @@ def symbol_of(entry: Fields, given: object) -> str:
 def _shape(name: str, data: Any) -> Parameter:
     if isinstance(data, Mapping):
         entry = Fields(data, f"shape {name}", _KEYS)
-        return _parameter(entry, symbol_of(entry, data.get("symbol") or name), name=name)
+        return parameter_of(entry, symbol_of(entry, data.get("symbol") or name), name=name)
     number, unit = split(data, f"shape {name}")
     scale = si_scale(unit or "1", f"shape {name}")
     value = number * scale.factor
@@ -62,7 +62,8 @@ def _shape(name: str, data: Any) -> Parameter:
     return Parameter(symbol, symbol, scale.unit, lower, upper, value, f"shape {name}")
 
 
-def _parameter(entry: Fields, symbol: str, default: float | None = None, name: str = "") -> Parameter:
+def parameter_of(entry: Fields, symbol: str, default: float | None = None, name: str = "") -> Parameter:
+    """A parameter from an entry with unit, bounds and value; without a value in the middle. Raises Unusable."""
     unit = entry.text("unit")
     if not unit:
         raise Unusable("missing-unit", "no unit", entry.where, "write unit: mm, or unit: 1 for a plain number")

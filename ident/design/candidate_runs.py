@@ -11,6 +11,7 @@ import numpy as np
 from ident.design.excitation import PERIODIC, SIGNALS
 from ident.design.experiment import Experiment
 from ident.matrix import Matrix, Run
+from ident.noise.floor import at_rest
 
 _LARGER = 1.5  # times the largest amplitude of the matrix is the most that is proposed
 _STROKE = 0.45  # of the stroke, to either side, is the most that a command may reach
@@ -18,6 +19,7 @@ _SPECIMENS, _GAINS, _AMPLITUDES = 4, 3, 3
 _SHARES = (1 / 30, 1 / 8, 1 / 3)  # of the band, where sines and saw-teeth are tried
 _LONGEST = {"s": 60.0, "sample": 65536.0}
 _SAMPLES = 1000
+_PEAKS = 3.0  # times its RMS are those of band-limited noise
 
 
 def candidate_runs(matrix: Matrix, band: float, seed: int = 0) -> Iterator[Experiment]:
@@ -32,7 +34,9 @@ def candidate_runs(matrix: Matrix, band: float, seed: int = 0) -> Iterator[Exper
     specimens = _spread([*dict.fromkeys(run.specimen for run in runs)], _SPECIMENS)
     stated = sorted({run.gain for run in runs if run.gain is not None})
     gains: list[float | None] = [*_between(stated, _GAINS)] or [None]
-    sizes = sorted(_rms(run) for run in runs)
+    sizes = sorted(size for run in runs if (size := _rms(run)) > 0)
+    if not sizes:  # nothing was ever commanded
+        return
     within = _between([float(f"{size:.3g}") for size in (sizes[0], sizes[-1])], _AMPLITUDES)
     amplitudes = [within[0] / 2, *within, _LARGER * sizes[-1]]
     edge = min(band / (2 * np.pi) / 1.25, 0.4 * first.sample_rate)  # the band has a margin that the command has not
@@ -45,7 +49,10 @@ def candidate_runs(matrix: Matrix, band: float, seed: int = 0) -> Iterator[Exper
 
 
 def _rms(run: Run) -> float:
-    return float(np.sqrt(np.mean((run.command - run.command.mean()) ** 2)))
+    """RMS of the command about its mean; of a step that lasts, that of a noise whose peaks go as far."""
+    if at_rest(run.command):
+        return float(np.abs(run.command).max()) / _PEAKS
+    return float(np.std(run.command))
 
 
 def _between(values: Sequence[float], count: int) -> list[float]:

@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.family import Refit
+from ident.diagnosis.refit import Refit
 from ident.effects.effect import Effect
 from ident.fit.space import Space
 from ident.matrix import Run

@@ -14,11 +14,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.cached import cached_property
 from ident.fit.bounded_step import bounded_step
 from ident.fit.fitness import Local, local
 from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
@@ -31,7 +31,7 @@ Mask = NDArray[np.bool_]
 CHUNKS, FOLDS = 8, 4
 _FINER = 32  # chunks of a record where there are fewer records than CHUNKS
 _FAR = 0.01  # of an axis: a longer step is beyond what one linearisation tells
-_CLOSE = Way(converged=1e-5, most=5)  # of a fit without a fold: it starts close by
+_CLOSE = Way(converged=1e-4, most=5)  # of a fit without a fold: it starts close by, and one linearisation ends it
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ def cross_validated(
 
 
 def _without(point: Array, here: Local, used: list[Mask], evaluate: Callable[[Array], Local]) -> tuple[Local, Array]:
-    """Where the fit of the used blocks ends: a linearisation, and the step from there."""
+    """Where the fit of the used blocks ends: a linearisation, and the step from there that is left."""
     step = _step(point, here, [_projected(run, of) for run, of in zip(here.runs, used, strict=True)])
     if not len(step) or np.abs(step).max() <= _FAR:
         return here, step
@@ -112,11 +112,13 @@ def _without(point: Array, here: Local, used: list[Mask], evaluate: Callable[[Ar
             seen[at] = evaluate(trial)
         return _partly(seen[at], used)
 
-    end, _ = levenberg_marquardt(of_used, point, _CLOSE)
+    end, last = levenberg_marquardt(of_used, point, _CLOSE)
     tried = [one.error for one in seen.values() if one is not here]
     if not any(map(np.isfinite, tried)):  # the point lies at the edge of what is stable: judged by its linearisation
         return here, step
-    return seen[end.tobytes()], np.zeros(len(point))
+    rest = bounded_step(end, last.curvature, last.gradient)
+    promised = -(last.gradient @ rest + 0.5 * rest @ last.curvature @ rest)
+    return seen[end.tobytes()], rest if promised <= _CLOSE.converged * last.error else np.zeros(len(point))
 
 
 def _partly(here: Local, used: list[Mask]) -> Local:

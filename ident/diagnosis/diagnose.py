@@ -12,16 +12,18 @@ from numpy.typing import NDArray
 
 from ident.diagnosis.advice import error_budget, next_run
 from ident.diagnosis.course import Course
-from ident.diagnosis.family import ModelFamily, Refit
+from ident.diagnosis.elsewhere import Other, elsewhere, others
+from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.proposals.outcome import Proposals
 from ident.diagnosis.proposals.search import Search
 from ident.diagnosis.ranking import Candidate
-from ident.diagnosis.result import Baseline, Diagnosis, Ranked, Rung, Suspect, Verdict
+from ident.diagnosis.refit import Refit
+from ident.diagnosis.result import Baseline, Diagnosis, Explanation, Ranked, Rung, Suspect, Verdict
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.standing import Contradiction, contradiction, standing
 from ident.diagnosis.stepwise import USUAL, StepwiseSelection
 from ident.diagnosis.suspects import suspects
-from ident.diagnosis.words import verdict_text, why
+from ident.diagnosis.words import as_well, verdict_text, why
 from ident.effects.effect import Effect
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.result import FitResult
@@ -42,8 +44,9 @@ def diagnose(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], course: C
     go together.
     """
     given = replace(Settings.from_json(dict(fit.settings)), effects=()) if fit.settings else Settings(model=fit.model)
-    models = ModelFamily.of(matrix, given, custom, fit.window.horizon if fit.window else None)
-    found = Diagnoser(models, fit, course).diagnosis()
+    over = (fit.window.horizon, fit.window.memory) if fit.window else (None, None)
+    models = ModelFamily.of(matrix, given, custom, *over)
+    found = Diagnoser(models, fit, course, others(matrix, fit, models, custom)).diagnosis()
     course.tell(Progress("next run", 0, 1))
     if found.complete:
         found = replace(found, next_experiment=next_run(matrix, found, custom))
@@ -53,8 +56,8 @@ def diagnose(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], course: C
 class Diagnoser:
     """One diagnosis: the additions, the suspects, and what is said of them."""
 
-    def __init__(self, models: ModelFamily, fit: FitResult, course: Course) -> None:
-        self.models, self.fit, self.course = models, fit, course
+    def __init__(self, models: ModelFamily, fit: FitResult, course: Course, known: Sequence[Other] = ()) -> None:
+        self.models, self.fit, self.course, self.known = models, fit, course, known
 
     def diagnosis(self) -> Diagnosis:
         """The whole of it, or what of it there was time for."""
@@ -63,13 +66,23 @@ class Diagnoser:
         if doubted:
             selection = self._added(self.models.without(suspect.run for suspect in doubted))
             doubted = self._doubted(selection)
+        told = self._elsewhere(selection)
         proposed = self._proposed(selection) if self._is_proposing(selection) else Proposals()
         self.course.conclude()
         found = self._said(selection, doubted)
+        verdict = replace(found.verdict, elsewhere=told, text=" ".join([found.verdict.text, *as_well(told)]))
         return replace(
-            found, proposals=proposed.found, complete=found.complete and proposed.complete,
+            found, verdict=verdict, proposals=proposed.found, complete=found.complete and proposed.complete,
             looked_at=proposed.looked_at, notes=(*found.notes, *_refused(proposed, self.course.propose)),
         )  # fmt: skip
+
+    def _elsewhere(self, selection: StepwiseSelection) -> tuple[Explanation, ...]:
+        """What other models explain as well, where there was time for all that comes before."""
+        try:
+            return elsewhere(self.known, selection, self.course.tell) if selection.complete else ()
+        except TimeIsUp:
+            selection.complete = False
+            return ()
 
     def _is_proposing(self, selection: StepwiseSelection) -> bool:
         """Whether terms that no list holds are to be searched for.
@@ -101,16 +114,8 @@ class Diagnoser:
     def _said(self, selection: StepwiseSelection, doubted: Sequence[Suspect]) -> Diagnosis:
         """What a search found so far."""
         steps = selection.ladder()
-        ladder = self._ladder(steps)
+        ladder, base = self._ladder(steps), selection.base
         floor = selection.models.floors.of_use(self.models.matrix)
-        unexplained = self._unexplained(selection)
-        groups = tuple(tuple(c.effect for c in group) for group in selection.groups.values() if len(group) > 1)
-        base = selection.base
-        against = tuple(self._contradictions(selection.models, steps))
-        text = verdict_text(selection.added, groups, doubted, unexplained, ladder[-1].error, base.error,
-                            selection.models.floors.measured, floor["fit"], against, selection.complete,
-                            selection.models.spoken)  # fmt: skip
-        stands = standing(selection.added, unexplained, against)
         return Diagnosis(
             model=self.fit.model,
             effects=base.effects,
@@ -119,15 +124,29 @@ class Diagnoser:
             horizon=self.models.horizon,
             candidates=tuple(self._ranked(selection, floor["fit"])),
             ladder=tuple(ladder),
-            verdict=Verdict(selection.added, stands, tuple(one.effect for one in against), groups, tuple(doubted),
-                            unexplained, text),
+            verdict=self._verdict(selection, steps, doubted, floor["fit"]),
             proposals=(),
             complete=selection.complete,
             seed=self.fit.seed,
             version=version("servoident"),
             data_hash=self.models.matrix.data_hash,
             settings=dict(self.fit.settings),
-        )  # fmt: skip
+        )
+
+    def _verdict(
+        self, selection: StepwiseSelection, steps: Steps, doubted: Sequence[Suspect], floor: float | None
+    ) -> Verdict:
+        """What is said of what was added."""
+        models, added, errors = selection.models, selection.added, steps[-1][1].errors
+        unexplained = self._unexplained(selection)
+        groups = tuple(tuple(c.effect for c in group) for group in selection.groups.values() if len(group) > 1)
+        against = tuple(self._contradictions(models, steps))
+        bounded = tuple(name for name in added if models.at_bound(selection.found, name))
+        text = verdict_text(added, groups, doubted, unexplained, errors, selection.base.error, models.floors.measured,
+                            floor, against, selection.complete, models.spoken, bounded)  # fmt: skip
+        stands = standing(added, unexplained, against, models.floor is not None or not bounded)
+        against_by = tuple(one.effect for one in against)
+        return Verdict(added, stands, against_by, groups, tuple(doubted), unexplained, text, bounded)
 
     def _added(self, models: ModelFamily) -> StepwiseSelection:
         preset = models.model(self.fit.effects)

@@ -4,27 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats.qmc import Sobol
 
-from ident.diagnosis.cross_validation import CrossValidation, cross_validated
-from ident.diagnosis.estimate import Found
+from ident.cached import cached_property
+from ident.chain.channels import unmeasured
+from ident.diagnosis.refit import Refit
 from ident.diagnosis.ties import first_least, in_order
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect, off_values
 from ident.errors import Unusable
-from ident.fit.fitness import Local
 from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
 from ident.fit.reduction import excited_band
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
-from ident.fit.space import Space, search_space
-from ident.fit.uncertainty import Covariance, covariance
-from ident.matrix import MOTIONS, Matrix, Run, over_runs
-from ident.noise.effective_sample_size import independent_samples
+from ident.fit.simulated_runs import SimulatedRuns
+from ident.fit.space import search_space
+from ident.matrix import MOTIONS, Matrix, Run
 from ident.noise.floor import Floors, noise_floors
 from ident.parallel import each
 from ident.presets import Preset
@@ -33,8 +31,8 @@ from ident.words.titles import title
 
 Array = NDArray[np.float64]
 _TRIAL = 131_072  # samples of a first refit; the finalists take every sample
-_FITTING, TRYING = Way(1e-7, 20), Way(1e-5, 10)  # of a refit, a first one
-_SETTING_OUT, _SEARCHING = Way(1e-5, 10), Way(1e-5, 20)  # of one far off, and where it is ahead of others
+_FITTING, TRYING = Way(1e-7, 20, rough=1e-5), Way(1e-5, 10, rough=1e-4)  # of a refit, a first one
+_SETTING_OUT, _SEARCHING = TRYING, Way(1e-5, 20, rough=1e-4)  # of one far off, and where it is ahead of others
 _SCATTERED, _LEADING = 128, 4  # points of a whole search space, and those of them from which a refit begins
 _FIRST_STEPS, _AHEAD = Way(1e-5, 3), 8  # of it, and how many go on
 _SIGHT = 32_768  # samples that they are judged by
@@ -43,109 +41,6 @@ _OFF = 0.01  # of the largest strength
 _BETTER = 0.99  # times the error: a new optimum, not the same one
 _AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be noise, beside
 _CHANCE = 3.0  # standard deviations
-_FOLLOWED = 1.2  # times the promised error that a simulation may leave
-_KNOWN = 1e3  # times its value: the standard error beyond which nothing is known of a parameter
-
-
-@dataclass(frozen=True)
-class Refit:
-    """A model with these effects at its optimum: `values` by the equations' names, SI."""
-
-    effects: tuple[str, ...]
-    values: Mapping[str, float]
-    space: Space
-    point: Array
-    here: Local
-    fitness: SimulatedFitness = field(repr=False)
-
-    @cached_property
-    def held_out(self) -> CrossValidation:
-        """Its errors on blocks that were left out in turn."""
-        outputs = self.fitness.outputs(self.point)
-        independent = sum(independent_samples(self.fitness.left(run, outputs[run.id])) for run in self.fitness.runs)
-        return cross_validated(self.point, self.here, self.fitness.exact, independent)
-
-    @property
-    def stable(self) -> bool:
-        """Whether the model is stable on every run."""
-        return bool(np.isfinite(self.here.error))
-
-    @property
-    def finite(self) -> bool:
-        """Whether the model is stable on every run, and leaves there what it promises."""
-        return self.stable and self._followed
-
-    @cached_property
-    def _followed(self) -> bool:
-        """Whether a simulation from the first states that were found leaves what their linear correction promises.
-
-        A model that is not linear in them may look good where no first state at all leads.
-        """
-        if all(run.begins != "moving" for run in self.fitness.runs):
-            return True
-        return _error_of(self.fitness, self.point, self.fitness.runs) < _FOLLOWED * self.error
-
-    @property
-    def error(self) -> float:
-        """Eq. (17) averaged over the runs."""
-        return float(over_runs([run.error for run in self.here.runs], self.here.runs))
-
-    @cached_property
-    def on_verify(self) -> float | None:
-        """Eq. (17) averaged over the runs to verify; None where there are none, or the model is unstable on one.
-
-        Of what it leaves there once their first states are found, as a comparison shows it: what is linear in these
-        would flatter a model that is not.
-        """
-        runs = self.fitness.matrix.of_use("verify")
-        if not runs:
-            return None
-        found = _error_of(self.fitness.fresh(runs), self.point, runs)
-        return found if np.isfinite(found) else None
-
-    @property
-    def errors(self) -> dict[str, float | None]:
-        """Its errors by what they are measured on."""
-        return {"fit": self.error, "held_out": self.held_out.error, "verify": self.on_verify}
-
-    def left(self, runs: Sequence[Run]) -> list[Array]:
-        """What it leaves of any runs of the matrix, (n,) each, less its mean or over windows."""
-        outputs = self.fitness.fresh(tuple(runs)).outputs(self.point)
-        return [self.fitness.left(run, outputs[run.id]) for run in runs]
-
-    @cached_property
-    def _known(self) -> Covariance:
-        return covariance(self.here, self.point)
-
-    def deviation(self, parameter: str) -> float | None:
-        """The standard error of a parameter by its name in the equations; None where it is held or not determined."""
-        if parameter not in self.space.names:
-            return None
-        error = self._known.deviation(lambda points: self.space.values(points)[parameter])
-        return error if np.isfinite(error) and error < _KNOWN * max(abs(self.values[parameter]), 1e-300) else None
-
-    @property
-    def parameters(self) -> dict[str, Found]:
-        """What it found of every parameter, by its name."""
-        preset, found = self.fitness.preset, {}
-        for one in preset.parameters:
-            name = one.in_equations
-            found[one.name] = Found(self.values[name], preset.unit(one), self.deviation(name), one.symbol)
-        return found
-
-    @property
-    def offset(self) -> float:
-        """The mean of the runs' offsets."""
-        return float(over_runs([run.offset for run in self.here.runs], self.here.runs))
-
-
-def _error_of(fitness: SimulatedFitness, point: Array, runs: Sequence[Run]) -> float:
-    """Eq. (17), averaged over runs, of what a simulation leaves of each."""
-    outputs = fitness.outputs(point)
-    left = [fitness.left(run, outputs[run.id]) for run in runs]
-    return float(
-        over_runs([np.sqrt(np.mean(r**2)) / np.std(run.measured) for r, run in zip(left, runs, strict=True)], runs)
-    )
 
 
 @dataclass
@@ -153,7 +48,7 @@ class ModelFamily:
     """The models of a preset for the fit runs of a matrix, with effects of the catalogue and of the user.
 
     `given` are what the user holds fixed or bounds; `left_out` the ids of runs that are not fitted; `horizon` (s) the
-    length of the windows over which a machine that integrates is fitted, None for whole runs.
+    length of the windows over which a machine that integrates is fitted, None for whole runs, `memory` (s) as there.
     """
 
     preset: Preset
@@ -163,18 +58,24 @@ class ModelFamily:
     effects: Mapping[str, Effect]
     left_out: frozenset[str] = frozenset()
     horizon: float | None = None
+    memory: float | None = None
     _known: dict[tuple[tuple[str, ...], int], SimulatedFitness] = field(default_factory=dict)
 
     @classmethod
     def of(
-        cls, matrix: Matrix, given: Settings, custom: Iterable[Effect] = (), horizon: float | None = None
-    ) -> ModelFamily:
+        cls, matrix: Matrix, given: Settings, custom: Iterable[Effect] = (), horizon: float | None = None,
+        memory: float | None = None,
+    ) -> ModelFamily:  # fmt: skip
         """The models of the settings' preset with every effect that it has a place for."""
         preset, matrix = preset_named(given.model).for_matrix(matrix, given.load)
         there = preset.driven_by in MOTIONS or any(run.specimen or "force" in run.channels for run in matrix.runs)
         listed = (*(effect for effect in CATALOGUE if there or not effect.of_specimen), *custom)
-        known = {effect.name: effect for effect in listed if preset.takes(effect)}
-        return cls(preset, matrix, given, excited_band(matrix.of_use("fit")), known, horizon=horizon)
+        known = {
+            effect.name: effect
+            for effect in listed
+            if preset.takes(effect) and not unmeasured(preset.with_effects((effect,)).chain.symbols, matrix.runs)
+        }
+        return cls(preset, matrix, given, excited_band(matrix.of_use("fit")), known, horizon=horizon, memory=memory)
 
     def spoken(self, name: str) -> str:
         """An effect in words; of one of a part that nobody described also what it does, and where."""
@@ -247,6 +148,16 @@ class ModelFamily:
         lower, upper = refit.space.bounds(refit.values)[strength]
         return abs(refit.values[strength]) < _OFF * max(-lower, upper)
 
+    def at_bound(self, refit: Refit, effect: str) -> bool:
+        """Whether the strength of an effect ended at a bound that the search set, and no user."""
+        strength, preset = self.strength(effect), refit.fitness.preset
+        own = [name for name in self.given.bounds if name.partition(".")[0] == effect]
+        if self.effects[effect].own or strength not in refit.space.names:
+            return False
+        if strength in {preset.parameter(name).in_equations for name in own}:
+            return False
+        return refit.values[strength] != 0 and refit.space.at_bound(strength, refit.point)
+
     def fitness(self, effects: tuple[str, ...], samples: int = 0) -> SimulatedFitness:
         """The objective of the model with these effects, on records of at most `samples` in all where that is given."""
         key = (effects, samples)
@@ -257,14 +168,20 @@ class ModelFamily:
             given = replace(self.given, bounds=bounds)
             space = search_space(model, self.matrix, given, self.band)
             runs = shortened(self.runs, samples) if samples else self.runs
-            self._known[key] = SimulatedFitness(model, self.matrix, runs, self.band, space, horizon=self.horizon)
+            self._known[key] = SimulatedFitness(
+                model, self.matrix, runs, self.band, space, horizon=self.horizon, memory=self.memory
+            )
         known = self._known[key]
         return known.fresh(known.runs)  # no search goes on from the first states in which another one ended
 
     @cached_property
     def floors(self) -> Floors:
-        """The noise floors of all runs of the matrix."""
-        return noise_floors(self.matrix.runs, self.band, self.left_out)
+        """The noise floors of all runs of the matrix; over windows with what the noise adds where each begins."""
+        floors = noise_floors(self.matrix.runs, self.band, self.left_out)
+        if self.horizon is None or floors.measured:
+            return floors
+        begun = SimulatedRuns(self.preset, self.matrix, (), self.band, horizon=self.horizon, memory=self.memory)
+        return floors.times({run.id: float(np.sqrt(begun.anchoring(run).noise)) for run in self.matrix.runs})
 
     @property
     def floor(self) -> float | None:
@@ -312,7 +229,11 @@ class ModelFamily:
 
     def ahead(self, refits: Iterable[Refit]) -> list[Refit]:
         """Those of first steps that left least, as first refits: the others cannot win."""
-        leading = in_order([one for one in refits if one.finite], lambda one: one.here.error)[:_AHEAD]
+        rest = in_order([one for one in refits if one.stable], lambda one: one.here.error)
+        leading: list[Refit] = []
+        while rest and len(leading) < _AHEAD:  # only of those that lead it is asked whether they keep their promise
+            asked, rest = rest[: _AHEAD - len(leading)], rest[_AHEAD - len(leading) :]
+            leading += [one for one, kept in zip(asked, each(lambda one: one.finite, asked), strict=True) if kept]
         return each(lambda one: self.refit(one.effects, one.values, _TRIAL), leading)
 
     def refit(

@@ -8,7 +8,8 @@ from functools import partial
 from itertools import groupby
 from typing import TypeVar
 
-from ident.diagnosis.family import ModelFamily, Refit
+from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.refit import Refit
 from ident.diagnosis.screening import Prediction, predict
 from ident.diagnosis.significance import VISIBLE, WORTHWHILE, Improvement, improvement
 from ident.diagnosis.ties import first_least, in_order

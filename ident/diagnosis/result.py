@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from ident.diagnosis.estimate import Found
+from ident.diagnosis.listings import listings
 from ident.diagnosis.proposals.proposal import Proposal, from_json
 from ident.diagnosis.standing import Standing
 from ident.errors import Unusable
-from ident.matrix import Specimen
-from ident.plain import Misfit, read, written
+from ident.matrix import Matrix, Specimen
+from ident.plain import UNWRITTEN, Misfit, read, written
 from ident.residuals.budget import Budget
+from ident.words.shown import Listing, Shown
 
 Errors = Mapping[str, float | None]
 """Eq. (17) averaged over the runs of a kind: fit, held_out, verify; None where there are none."""
@@ -41,6 +43,11 @@ class Ranked:
     group: tuple[str, ...] = ()
     evidence: Mapping[str, float | str | bool | None] = field(default_factory=dict)
     why: str = ""
+
+    @property
+    def strength(self) -> Found | None:
+        """What the refit found of its strength, the first of its parameters."""
+        return next((found for name, found in self.parameters.items() if name.startswith(f"{self.effect}.")), None)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,11 +87,25 @@ class Suspect:
 
 
 @dataclass(frozen=True)
+class Explanation:
+    """Another model of the machine that explains as well as what was found, with these effects, and its errors.
+
+    `better`: beyond chance.
+    """
+
+    machine: str
+    effects: tuple[str, ...] = ()
+    error: Errors = field(default_factory=dict)
+    better: bool = False
+
+
+@dataclass(frozen=True)
 class Verdict:
     """What to add, what the data cannot tell apart, whose label is doubted, and whether something is left.
 
     `standing` says how sure the effects are, see :data:`ident.diagnosis.standing.Standing`; None where it was not
-    asked. `contradicted_by` are those with which the error rises on runs to verify.
+    asked. `contradicted_by` are those with which the error rises on runs to verify, `at_bound` those whose strength
+    ended at a bound that the search set, `elsewhere` what other models explain as well.
     """
 
     effects: tuple[str, ...] = ()
@@ -94,6 +115,8 @@ class Verdict:
     suspects: tuple[Suspect, ...] = ()
     unexplained: bool = False
     text: str = ""
+    at_bound: tuple[str, ...] = ()
+    elsewhere: tuple[Explanation, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,13 +146,14 @@ class NextRun:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Diagnosis:
+class Diagnosis(Shown):
     """Everything that was found about one fit of one matrix; `effects` are those that the fit had.
 
     `budget` is None where the model is unstable at every run, `next_experiment` where no run can be proposed. With a
     `horizon` (s) every error is that over windows of this length, as `window` of the fit says it. Not `complete`, it is
     what had been found when the search was stopped, or goes on. `proposals` are terms that no list holds, of as many
-    that were `looked_at`: they are no part of the verdict. None is what an earlier version did not tell.
+    that were `looked_at`: they are no part of the verdict. None is what an earlier version did not tell. `matrix` holds
+    the data, where the diagnosis was made here.
     """
 
     model: str = "qian2014"
@@ -151,6 +175,22 @@ class Diagnosis:
     version: str = ""
     data_hash: str = ""
     notes: tuple[str, ...] = ()
+    matrix: Matrix | None = field(default=None, compare=False, repr=False, metadata=UNWRITTEN)
+
+    def listings(self) -> Iterable[Listing | str]:
+        """Errors, ranking, ladder, suspects, proposals, verdict."""
+        return listings(self)
+
+    def records(self) -> list[dict[str, Any]]:
+        """A record an effect that was ranked, best first, for a data frame."""
+        return [
+            {
+                "effect": one.effect, "predicted_error": one.predicted_error,
+                **{use: one.error.get(use) for use in ("fit", "held_out", "verify")},
+                "strength": strength.value if (strength := one.strength) else None, "why": one.why,
+            }
+            for one in self.candidates
+        ]  # fmt: skip
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data (no NaN, no infinity); what an earlier version did not tell is left out."""

@@ -10,15 +10,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from itertools import chain, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.cached import cached_property
 from ident.diagnosis.beginnings import beginnings
 from ident.diagnosis.cross_validation import scored, weight_of_offsets
-from ident.diagnosis.family import ModelFamily, Refit
+from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.refit import Refit
 from ident.fit.bounded_step import bounded_step
 from ident.fit.responses import Responses, Sensitivities
 from ident.fit.simulated_fitness import SimulatedFitness

@@ -20,7 +20,8 @@ from ident.words.titles import title
 
 Array = NDArray[np.float64]
 Standing = Literal["found", "stand_in", "contradicted", "nothing"]
-"""found: the error is at the floor; stand_in: it fell, something is left; contradicted: it rises on verify runs."""
+"""found: the error is at the floor; stand_in: it fell, something is left, or may be, for a strength ended at the bound
+of its search; contradicted: it rises on verify runs."""
 _SURE = 2.0  # standard errors
 _MEMORY = 10.0  # correlation times in a chunk
 _LEAST = 4  # chunks of a run
@@ -87,10 +88,10 @@ def _chunks(residual: Array) -> list[slice]:
     return [slice(first, min(first + length, n)) for first in range(0, n, length)]
 
 
-def standing(added: Sequence[str], unexplained: bool, against: Sequence[Contradiction]) -> Standing:
-    """How what was added stands."""
+def standing(added: Sequence[str], unexplained: bool, against: Sequence[Contradiction], sure: bool = True) -> Standing:
+    """How what was added stands; not `sure`, nobody can say that nothing is left."""
     if not added:
         return "nothing"
     if against:
         return "contradicted"
-    return "stand_in" if unexplained else "found"
+    return "found" if sure and not unexplained else "stand_in"

@@ -13,8 +13,9 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import combinations
 
-from ident.diagnosis.family import ModelFamily, Refit
+from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.ranking import Candidate, rank, rank_each, ranked
+from ident.diagnosis.refit import Refit
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.ties import first_least
 from ident.errors import TimeIsUp

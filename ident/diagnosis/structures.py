@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from ident.diagnosis.family import ModelFamily
+from ident.errors import Unusable
 from ident.fit.identification import Identification, StepwiseFit, completed
-from ident.fit.result import FitResult, Structure
+from ident.fit.result import FitResult, Structure, Window
 from ident.fit.search import State
 from ident.fit.settings import Settings
 from ident.fit.summary import noticed
@@ -53,18 +55,34 @@ def _compared(matrix: Matrix, report: Report) -> tuple[tuple[Structure, ...], Fi
         shown = f"{only.name} is driven by {only.driven_by} and shows what was recorded"
         why = "the matrix describes it" if matrix.machine else shown
         return (Structure(only.name, {"held_out": None}, len(only.parameters), why),), None
-    fitted = {model.name: _Fitted(model, matrix, report) for model in models}
+    fitted = _all_fitted(models, matrix, report)
     # One measure for all: over windows where one of them is fitted so, for what a machine integrated meanwhile is not
     # a matter of its structure.
-    horizon = max((one.horizon for one in fitted.values() if one.horizon is not None), default=None)
-    tried = [one.judged(horizon) for one in fitted.values()]
+    windows = [one.fit.window for one in fitted.values() if one.fit.window]
+    longest = max(windows, key=lambda window: window.horizon, default=None)
+    tried = [one.judged(longest) for one in fitted.values()]
     least = min(_error(one) for one in tried)
     good = [one for one in tried if _error(one) <= _WORSE * least]
     strange = {model.name for model in models if unusual(model, matrix.runs)}
     best = min(good, key=lambda one: (one.machine in strange, one.parameters))
-    over = "" if horizon is None else f" over {horizon:.3g} s"
+    over = "" if longest is None else f" over {longest.horizon:.3g} s"
     others = (_said(one, over, "") for one in tried if one is not best)
     return (_said(best, over, "the simplest that is not worse"), *others), fitted[best.machine].fit
+
+
+def _all_fitted(models: Sequence[Preset], matrix: Matrix, report: Report) -> dict[str, _Fitted]:
+    """The models in question, fitted, but for those that a command in closed loop does not allow while others do."""
+    fitted, refused = {}, None
+    for model in models:
+        try:
+            fitted[model.name] = _Fitted(model, matrix, report)
+        except Unusable as error:
+            if error.code != "closed-loop":
+                raise
+            refused = error
+    if refused and not fitted:
+        raise refused
+    return fitted
 
 
 def chosen(matrix: Matrix, report: Report = silent) -> Choice:
@@ -135,21 +153,21 @@ class ChosenFit:
 
 
 class _Fitted:
-    """A model in question, fitted; `horizon` (s) of the windows where it was fitted over such."""
+    """A model in question, fitted."""
 
     def __init__(self, model: Preset, matrix: Matrix, report: Report) -> None:
         self.matrix, self.settings = matrix, Settings(model=model.name)
         work = Identification(matrix, self.settings, report)
         self.fit, self.parameters = completed(work), len(work.objective.space.axes)
-        self.horizon = self.fit.window.horizon if self.fit.window else None
 
-    def judged(self, horizon: float | None) -> Structure:
-        """Its error on held-out data, over windows where a horizon is given."""
-        family = ModelFamily.of(self.matrix, self.settings, horizon=horizon)
+    def judged(self, window: Window | None) -> Structure:
+        """Its error on held-out data, over windows where such are given."""
+        over = (window.horizon, window.memory) if window else (None, None)
+        family = ModelFamily.of(self.matrix, self.settings, (), *over)
         start = {family.preset.parameter(name).in_equations: value for name, value in self.fit.values.items()}
         refit = family.refit((), start)
         held_out = refit.held_out.error if refit.finite else None
-        return Structure(self.settings.model, {"held_out": held_out}, self.parameters)
+        return Structure(self.settings.model, {"held_out": held_out}, self.parameters, values=self.fit.values)
 
 
 def _error(one: Structure) -> float:

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.chain.conditions import conditions
-from ident.diagnosis.family import ModelFamily, Refit
+from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.refit import Refit
 from ident.diagnosis.result import LabelErrors, Suspect
 from ident.matrix import Run
 from ident.parallel import each
@@ -140,12 +141,13 @@ def _outputs(models: ModelFamily, fitted: Refit, run: Run, changed: Mapping[str,
     """The model's outputs for a run with changed labels, (n, v)."""
     fitness = fitted.fitness
     known = {name: np.array([[value]]) for name, value in conditions(run, models.matrix.actuator).items()}
-    known |= {name: np.array([[value]]) for name, value in {**fitness.space.fixed, **fitted.values}.items()}
+    found = {**fitness.space.fixed, **fitted.values}
+    known |= {name: np.array([[value]]) for name, value in found.items()}
     known |= {name: np.asarray(values)[None] for name, values in changed.items()}
     vectors = max(np.shape(value)[1] for value in known.values())
     fresh = replace(fitness, runs=(run,), starts=dict(fitness.starts))
     fresh.begin(fitted.values)
-    steps = max((effect.steps for effect in fitness.preset.effects), default=1)
+    steps = int(fitness.steps({name: np.array([value]) for name, value in found.items()}).max())
     values = {name: np.broadcast_to(known[name], (1, vectors)) for name in fitness.chain.symbols}
     simulation = Simulation(fitness.chain, (run,), values, steps, fresh.first_states(run, values))
     return np.concatenate([rows[:, 0] for rows, _, _ in simulation.outputs()])

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.ranking import Candidate
-from ident.diagnosis.result import Suspect
+from ident.diagnosis.result import Explanation, Suspect
 from ident.diagnosis.significance import Improvement
 from ident.diagnosis.standing import Contradiction
 from ident.effects.effect import Effect
 from ident.words.percent import percent
 from ident.words.titles import title
+
+_BOUNDED = (
+    "The strength of {} ended at the bound of its search: it may be larger, or stand for something else. Bounds of "
+    "your own let it go farther."
+)
 
 
 def why(candidate: Candidate, effect: Effect, before: float, floor: float | None, best: bool) -> str:
@@ -42,11 +47,13 @@ def verdict_text(
     added: Sequence[str], groups: Sequence[tuple[str, ...]], suspects: Sequence[Suspect], unexplained: bool,
     errors: Mapping[str, float | None], before: float, repeats: bool = True, floor: float | None = None,
     against: Sequence[Contradiction] = (), complete: bool = True, spoken: Callable[[str], str] = title,
+    bounded: Sequence[str] = (),
 ) -> str:  # fmt: skip
     """The verdict in a few sentences, what speaks against it first.
 
     Without `repeats` nobody knows how much noise lies in the command's band. Not `complete`, the search was stopped.
-    `spoken` tells what an effect is the first time that it is named.
+    `spoken` tells what an effect is the first time that it is named; `bounded` are those whose strength ended at the
+    bound of its search.
     """
     named = _told_once(spoken)
     parts = [one.told(named(one.effect)) for one in against]
@@ -71,6 +78,7 @@ def verdict_text(
         parts.append(f"Nothing is missing: the error of {percent(before)} is the noise's.")
     else:
         parts.append(f"No effect of the catalogue lowers the error of {percent(before)} beyond chance.")
+    parts += [_BOUNDED.format(named(name)) for name in bounded]
     for group in groups:
         names = ", ".join(map(named, group))
         parts.append(f"This matrix cannot tell apart: {names}; their refits differ by less than chance.")
@@ -84,6 +92,20 @@ def verdict_text(
             parts.append("No command was measured twice: part of it may be noise in the command's band, "
                          "which a repeated run would tell.")  # fmt: skip
     return " ".join(parts)
+
+
+def as_well(elsewhere: Sequence[Explanation]) -> Iterator[str]:
+    """What other models explain better, or as well, in a sentence each; nothing where there is none."""
+    told = {better: [_told(one) for one in elsewhere if one.better is better] for better in (True, False)}
+    if told[True]:
+        yield f"Another model explains more: {', '.join(told[True])} (--model)."
+    if told[False]:
+        yield f"These data cannot tell it from other models: {', '.join(told[False])}."
+
+
+def _told(one: Explanation) -> str:
+    name = f"{one.machine} with {title(one.effects[-1])}" if one.effects else one.machine
+    return f"{name}, {percent(one.error['fit'])}" if one.better else name
 
 
 def proposed_text(terms: Sequence[Proposal]) -> str:

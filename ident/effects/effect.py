@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 
+from ident.cached import cached_property
 from ident.equations.equation import Equation
 from ident.errors import Unusable
 from ident.parameter import Parameter
@@ -26,6 +26,7 @@ class Effect:
     be divided so that its kinks are met closely enough, `stride` by which share of its range its strength is moved for
     a sensitivity: far where it acts in jumps. `does` says in a few words what it does where its name is of a part that
     a machine need not have. `of_specimen`: it is a specimen's, and no diagnosis names it where nothing is known of one.
+    `own`: its bounds were stated for this machine by who wrote it, of whatever size that is.
 
     Raises Unusable where place or strength are not of that form.
     """
@@ -43,6 +44,7 @@ class Effect:
     units: Mapping[str, str] = field(default_factory=dict, hash=False)
     does: str = ""
     of_specimen: bool = False
+    own: bool = False
 
     def __post_init__(self) -> None:
         _ = self.equations

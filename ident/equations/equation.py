@@ -16,10 +16,11 @@ from __future__ import annotations
 import ast
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from types import CodeType
 from typing import Any
 
+from ident.cached import cached_property
 from ident.equations.grammar import FUNCTIONS, parsed, reads, refused, tree_of
 
 

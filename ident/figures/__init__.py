@@ -6,25 +6,35 @@ from importlib import import_module
 from typing import Any
 
 from ident.custom.definition import preset_with
+from ident.diagnosis.result import Diagnosis
 from ident.errors import Unusable
 from ident.figures.drawing import Drawing
 from ident.figures.frame import unchecked
 from ident.figures.ladder import ladder
 from ident.figures.look import look
-from ident.figures.render import MEDIA, Chart, render
+from ident.figures.profile_likelihood import profile_likelihood
+from ident.figures.render import MEDIA, AltairChart, Chart, render, shown
+from ident.figures.side_by_side import side_by_side
 from ident.figures.study import Study
 from ident.fit.result import FitResult
+from ident.matrix import Actuator
 from ident.presets import Preset
+from ident.words.titles import title
 
-__all__ = ["FIGURES", "MEDIA", "Chart", "Study", "figure", "figures_for", "figures_of", "ladder", "look", "render"]
+__all__ = [
+    "FIGURES", "MEDIA", "AltairChart", "Chart", "Study", "figure", "figures_for", "figures_of", "ladder", "look",
+    "of_diagnosis", "profile_likelihood", "render", "shown", "side_by_side",
+]  # fmt: skip
 
 _FILES = (
     "residual_map",
     "bode",
     "time",
     "residual_curve",
+    "residual_correlation",
     "sensitivity",
     "evolution",
+    "starts",
     "pressure_loop",
     "frequency_characteristics",
     "speed_characteristic",
@@ -58,10 +68,25 @@ def figure(name: str, study: Study, theme: str = "light", share: float = 1.0, **
         return FIGURES[name].draw(study, look(theme, share), options)
 
 
+def of_diagnosis(
+    found: Diagnosis, name: str, actuator: Actuator, theme: str = "light", share: float = 1.0, **options: Any
+) -> Chart:  # fmt: skip
+    """The figure of a diagnosis: its ladder, the error with each effect added. Raises Unusable for any other."""
+    if name != "ladder" or options:
+        what = f"no option {next(iter(options))!r}" if options else f"no figure {name!r} of a diagnosis"
+        raise Unusable("unknown-figure", what, "figure", "use ladder, or give the fit")
+    steps = [
+        (title(rung.added or "") or found.model, rung.error.get("fit"), rung.error.get("verify"))
+        for rung in found.ladder
+    ]
+    return ladder(steps, found.noise_floor.get("fit"), actuator, look(theme, share))
+
+
 def figures_of(fit: FitResult) -> tuple[str, ...]:
-    """Names of the figures that a fit has: those of its model; a bench's evolution where there was a search."""
+    """Names of the figures that a fit has: those of its model, of a search as far as it kept them."""
     model = preset_with(fit.model)
-    return tuple(name for name in figures_for(model) if model.kind == "chain" or fit.evolution or name != "evolution")
+    kept = {"evolution": model.kind == "chain" or fit.evolution, "starts": fit.starts and fit.starts.errors}
+    return tuple(name for name in figures_for(model) if kept.get(name, True))
 
 
 def figures_for(model: Preset) -> tuple[str, ...]:

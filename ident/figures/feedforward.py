@@ -2,53 +2,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import altair as alt
-import numpy as np
-from numpy.typing import NDArray
 
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel
-from ident.hybrid.feedforward import Tracked
+from ident.hybrid.followed import Followed, rounded
 
-Array = NDArray[np.float64]
-_POINTS = 600
 REFERENCE, ALONE, BOTH, BAND = "reference", "feedback alone", "with feedforward", "band of 90 % of the draws"
 
 
-def feedforward_figure(tracked: Tracked, look: Look, title: str = "") -> Chart:
+def feedforward_figure(followed: Followed, look: Look, title: str = "") -> Chart:
     """Positions (mm) above, errors (mm) with feedforward and their band below, against time (s)."""
-    said = f"gain {tracked.gain:.3g} V/m, {tracked.margin:.2g} dB below the stability limit of {tracked.limit:.3g} V/m"
+    said = (
+        f"gain {followed.gain:.3g} V/m, {followed.margin:.2g} dB below the stability limit of {followed.limit:.3g} V/m"
+    )
+    if followed.drawn_ratio is not None:
+        said += f"; error 1/{rounded(followed.drawn_ratio)} of the feedback's, median of {followed.draws} draws"
     headed = alt.TitleParams(title or "Following a reference", subtitle=[said])
-    panels = alt.vconcat(_positions(tracked, look), _errors(tracked, look), title=headed)
+    panels = alt.vconcat(_positions(followed, look), _errors(followed, look), title=headed)
     chart: Chart = panels.configure(**look.config())
     return chart
 
 
-def _positions(tracked: Tracked, look: Look) -> Panel:
-    r = tracked.reference
-    return _lines(tracked, {REFERENCE: r, ALONE: r - tracked.feedback, BOTH: r - tracked.both}, look, "Position (mm)")
+def _positions(followed: Followed, look: Look) -> Panel:
+    r = followed.reference
+    alone, both = ([x - e for x, e in zip(r, error, strict=True)] for error in (followed.feedback, followed.both))
+    return _lines(followed, {REFERENCE: r, ALONE: alone, BOTH: both}, look, "Position (mm)")
 
 
-def _errors(tracked: Tracked, look: Look) -> Panel:
-    low, high = 1e3 * tracked.band()
-    rows = [
-        _rounded({"t": n / tracked.sample_rate, "low": low[n], "high": high[n]}, BAND) for n in _places(len(low))
-    ]  # fmt: skip
+def _errors(followed: Followed, look: Look) -> Panel:
+    edges = zip(followed.t, followed.low, followed.high, strict=True)
+    rows = [_rounded({"t": t, "low": 1e3 * low, "high": 1e3 * high}, BAND) for t, low, high in edges]
     x, y = alt.X("t:Q", title="Time (s)"), alt.Y("low:Q", title="Error (mm)")
     area = alt.Chart(alt.InlineData(values=rows)).mark_area(opacity=0.35)
     band = area.encode(x=x, y=y, y2="high:Q", color=_colour(look))
-    panel: Panel = alt.layer(band, _lines(tracked, {BOTH: tracked.both}, look, "Error (mm)"))
+    panel: Panel = alt.layer(band, _lines(followed, {BOTH: followed.both}, look, "Error (mm)"))
     return panel
 
 
-def _lines(tracked: Tracked, shown: Mapping[str, Array], look: Look, unit: str) -> Panel:
+def _lines(followed: Followed, shown: Mapping[str, Sequence[float]], look: Look, unit: str) -> Panel:
     rows = [
-        _rounded({"t": n / tracked.sample_rate, "y": 1e3 * signal[n]}, name)
+        _rounded({"t": t, "y": 1e3 * y}, name)
         for name, signal in shown.items()
-        for n in _places(len(signal))
+        for t, y in zip(followed.t, signal, strict=True)
     ]
     dashed = alt.condition(f"datum.n == '{REFERENCE}'", alt.value([6, 4]), alt.value([1, 0]))
     panel: Panel = (
@@ -71,10 +70,6 @@ def _colour(look: Look) -> alt.Color:
     colours = [look.ink, *look.series[:3]]
     scale = alt.Scale(domain=[REFERENCE, ALONE, BOTH, BAND], range=colours)
     return alt.Color("n:N", title=None, scale=scale, legend=alt.Legend(orient="bottom"))
-
-
-def _places(count: int) -> NDArray[np.intp]:
-    return np.unique(np.linspace(0, count - 1, min(count, _POINTS)).astype(np.intp))
 
 
 def _rounded(row: Mapping[str, float], name: str) -> dict[str, Any]:

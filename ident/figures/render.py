@@ -15,6 +15,11 @@ from ident.figures.frame import Filled, unchecked
 Panel = alt.Chart | alt.LayerChart | alt.FacetChart
 Chart = alt.LayerChart | alt.HConcatChart | alt.VConcatChart | alt.ConcatChart | Filled
 
+AltairChart = alt.LayerChart | alt.HConcatChart | alt.VConcatChart | alt.ConcatChart | alt.FacetChart | alt.Chart
+_KINDS: Mapping[str, type[AltairChart]] = {
+    "layer": alt.LayerChart, "hconcat": alt.HConcatChart, "vconcat": alt.VConcatChart, "concat": alt.ConcatChart,
+    "facet": alt.FacetChart,
+}  # fmt: skip
 Row = dict[str, Any]
 
 
@@ -33,6 +38,16 @@ class Rows:
 def datasets(tables: Mapping[str, list[Row]]) -> dict[str, Rows]:
     """Named tables as a chart's `datasets`."""
     return {name: Rows(rows) for name, rows in tables.items()}
+
+
+def shown(chart: Chart) -> AltairChart:
+    """A chart of Altair, which shows itself in a notebook, can be saved and worked on."""
+    if not isinstance(chart, Filled):
+        return chart
+    spec = chart.to_dict()
+    kind = next((kind for key, kind in _KINDS.items() if key in spec), alt.Chart)
+    made: AltairChart = kind.from_dict(spec, validate=False)
+    return made
 
 
 MEDIA: Mapping[str, str] = {

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from ident.cached import cached_property
 from ident.comparison.compare import RunComparison
 from ident.figures import words
 from ident.figures.thin import Places, excited_band, significant, spread

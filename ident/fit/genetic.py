@@ -19,9 +19,9 @@ State = dict[str, Any]
 PAPER = {"population": 200.0, "keep": 0.83, "mutation": 0.2, "survivors": 5.0}
 RANGES = {
     "population": (10.0, 100_000.0), "keep": (0.05, 0.99), "mutation": (0.0, 1.0), "survivors": (1.0, 1000.0),
-    "generations": (1.0, 10_000.0), "elite": (1.0, 10_000.0),
+    "generations": (1.0, 10_000.0), "elite": (1.0, 10_000.0), "starts": (0.0, 1000.0),
 }  # fmt: skip
-DEFAULT = {"population": 200.0, "generations": 30.0, "elite": 10.0, "mutation": 0.3}
+DEFAULT = {"population": 200.0, "generations": 30.0, "elite": 10.0, "mutation": 0.3, "starts": 0.0}
 WITH_EFFECTS = {**DEFAULT, "population": 64.0, "generations": 12.0, "elite": 6.0}
 _LEVELS = (0.03, 0.15, 0.5)  # of a strength's range, at which each effect is tried alone
 

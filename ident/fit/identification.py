@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Protocol
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.chain.chain import integrates
+from ident.checks.feedback import closed_loop
 from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.fit import genetic
@@ -24,10 +25,11 @@ from ident.fit.result import FitResult
 from ident.fit.search import Search, State, options_of
 from ident.fit.settings import GENERAL, Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
+from ident.fit.simulated_runs import is_simulated
 from ident.fit.space import search_space
-from ident.fit.summary import summarise
+from ident.fit.summary import noticed, summarise
 from ident.fit.windows import in_windows
-from ident.matrix import Matrix
+from ident.matrix import Matrix, Run
 from ident.noise.floor import noise_floors
 from ident.presets import PRESETS, Preset
 from ident.progress import Progress, Report, silent
@@ -35,6 +37,8 @@ from ident.progress import Progress, Report, silent
 Array = NDArray[np.float64]
 _SEARCHED = 65_536  # samples of a search with effects; the polish takes every sample
 _FURTHER = 16  # members of the first generation that it starts from, too, where those do not settle it
+_JUDGED = 8  # runs of a matrix that are looked at for a controller
+_WITH_NOISE = "windows begun anew where it was measured are fitted, for plain output error would be biased"
 _CANDIDATES = 5  # distinct vectors of the last generation from which the polish starts
 
 
@@ -56,11 +60,14 @@ class Identification:
         matrix = self.matrix
         _refuse_undriven(self.preset, matrix)
         self._runs = matrix.of_use("fit")
+        self._integrates = integrates(self.preset.chain, self._runs, matrix.actuator)
+        self._fed_back = _fed_back(self.preset, self._runs)
+        if self._fed_back and not self._integrates:
+            raise _biased(self._fed_back)
         band = excited_band(self._runs)
         space = search_space(self.preset, matrix, settings, band)
         self.objective: Fitness
-        self._integrates = integrates(self.preset.chain, self._runs, matrix.actuator)
-        if not self.preset.is_linear or self._integrates:
+        if is_simulated(self.preset, matrix):
             absolute = self.preset.absolute
             self.objective = SimulatedFitness(self.preset, matrix, self._runs, band, space, absolute=absolute)
             self.searched: Fitness = replace(self.objective, roughly=True).fresh(shortened(self._runs, _SEARCHED))
@@ -88,6 +95,7 @@ class Identification:
             values = {self.preset.parameter(name).in_equations: value for name, value in linear.values.items()}
             state["linear"] = {p.in_equations: 0.0 for p in self.preset.parameters if p.of} | values
             state["horizon"] = linear.window.horizon if linear.window else None
+            state["memory"] = linear.window.memory if linear.window else None
             if self.settings.method == "ga" and self.settings.load == "none":
                 centre = space.point({**space.fixed, **state["linear"]})
                 state = genetic.around(state, centre, self._of_effects)
@@ -109,7 +117,7 @@ class Identification:
             return {name: value for name, value in given.items() if not self.preset.parameter(name).of}
 
         settings = replace(
-            self.settings, effects=(), custom=(), method="ga", load="none", options={},
+            self.settings, effects=(), custom=(), method="ga", load="none", options={}, budget=None,
             bounds=own(self.settings.bounds), fixed=own(self.settings.fixed),
         )  # fmt: skip
         return completed(Identification(self.matrix, settings, self.report))
@@ -120,7 +128,7 @@ class Identification:
             return
         for fitness in (self.searched, self.objective):
             if isinstance(fitness, SimulatedFitness):
-                fitness.horizon = state.get("horizon")
+                fitness.horizon, fitness.memory = state.get("horizon"), state.get("memory")
         if isinstance(self.searched, SimulatedFitness):
             self.searched.begin(state["linear"])
 
@@ -131,7 +139,15 @@ class Identification:
     def advance(self, state: State, generations: int) -> State:
         """The state after at most `generations` more; the library searches run to their end at once."""
         self._take_up(state)
-        return self.search.advance(state, generations)
+        if self.settings.budget is None:
+            return self.search.advance(state, generations)
+        for _ in range(generations):
+            state = self.search.advance(state, 1)
+            if state["done"]:
+                break
+            if time.monotonic() - self._started > self.settings.budget:
+                return state | {"done": True, "ended_early": True}
+        return state
 
     def finish(self, state: State) -> FitResult:
         """Polish (all methods but the paper's), errors of every run, uncertainty."""
@@ -149,20 +165,37 @@ class Identification:
         else:
             members = np.concatenate([np.array(state["best"])[None], np.array(state["population"])])
             # The last of the first generation were drawn over the whole space.
-            drawn = np.array(state["history"][0]["population"])[: -_FURTHER - 1 : -1]
-            found = multistart(self.searched, objective, distinct(members, _CANDIDATES), self.report, drawn)
+            count = int(self.search.options.get("starts", 0))
+            drawn = np.array(state["history"][0]["population"])[: -max(_FURTHER, count) - 1 : -1]
+            found = multistart(self.searched, objective, distinct(members, _CANDIDATES), self.report, drawn, count)
             # A measured motion that a specimen integrates is known; only what a command drives is disturbed on its way.
             if self._integrates and self.preset.driven_by == "command" and not state.get("horizon"):
-                found = in_windows(found, self.report)
+                found = in_windows(found, self.report, whole=not self._fed_back)
         self.report(Progress("uncertainty", 0, 1, found.here.error))
         seconds = time.monotonic() - self._started
         result = with_bulk_modulus(summarise(self.settings, found, state, self.floors, seconds))
+        if self._fed_back and result.window:
+            result = noticed(
+                result, f"A controller made the command of run {', '.join(self._fed_back)}: {_WITH_NOISE}."
+            )
         self.report(Progress("uncertainty", 1, 1, found.here.error))
-        return result
+        return _ended_early(result, self.generations) if state.get("ended_early") else result
+
+
+def _ended_early(result: FitResult, generations: int) -> FitResult:
+    """The fit of a search that ran out of its time, which says so first of all."""
+    done, budget = len(result.evolution), result.settings["budget"]
+    note = (
+        f"The search ended at generation {done} of {generations}, when its {budget:g} s were over: made again, "
+        "the fit may be another. It can be neither approved nor rechecked."
+    )
+    return replace(result, ended_early=True, notes=(note, *result.notes))
 
 
 def check_settings(settings: Settings) -> None:
     """Raise Unusable for settings that no matrix could be fitted with."""
+    if settings.budget is not None:
+        _check_budget(settings)
     if not settings.model:
         _check_without_model(settings)
         return
@@ -176,6 +209,16 @@ def check_settings(settings: Settings) -> None:
     for name in (*settings.bounds, *settings.fixed):
         preset.parameter(name)
     options_of(settings, preset)
+
+
+def _check_budget(settings: Settings) -> None:
+    """Raise Unusable for a time that no search can end by."""
+    budget = settings.budget or 0.0
+    if not 0 < budget < np.inf:
+        raise Unusable("bad-option", f"{budget:g} s", "budget", "give the seconds that the search may take")
+    if settings.method not in ("ga", "paper-ga") or preset_with(settings.model or Settings().model).kind != "chain":
+        what = f"the search by {settings.method} has no generation to end at"
+        raise Unusable("bad-option", what, "budget", "use the method ga, or leave it out")
 
 
 def _check_without_model(settings: Settings) -> None:
@@ -208,6 +251,27 @@ def _refuse_undriven(preset: Preset, matrix: Matrix) -> None:
             what = f"no {preset.driven_by} channel, which drives the model {preset.name}"
             remedy = f"name its column, or use the model {' or '.join(others)}" if others else "name its column"
             raise Unusable("missing-channel", what, f"run {run.id}", remedy)
+
+
+def _fed_back(preset: Preset, runs: Sequence[Run]) -> tuple[str, ...]:
+    """The ids of the runs whose command, which drives the model, a controller made of the output.
+
+    Of many runs of which nobody said so every so-manieth is judged: one rig records them all alike.
+    """
+    if preset.driven_by != "command":
+        return ()
+    apart = -(-len(runs) // _JUDGED)
+    judged = (run for at, run in enumerate(runs) if run.closed_loop is not None or at % apart == 0)
+    return tuple(run.id for run in judged if closed_loop(run))
+
+
+def _biased(runs: Sequence[str]) -> Unusable:
+    """What is said of a fit by plain output error of records in closed loop."""
+    return Unusable(
+        "closed-loop", "a controller made this command of the output, by which a fit of the output error is biased",
+        f"run {', '.join(runs)}", "give the controller's reference as command, with gain or controller; or say "
+        "closed_loop: false where nothing feeds back",
+    )  # fmt: skip
 
 
 class StepwiseFit(Protocol):

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from itertools import chain
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.cached import cached_property
 from ident.chain.conditions import conditions, zeros
 from ident.fit.fitness import STEP, UNSTABLE, Local, local
 from ident.fit.modes import FOLLOWED, extreme, fastest

@@ -38,14 +38,16 @@ class Optimum:
 
 
 def multistart(
-    searched: Fitness, objective: Fitness, starts: Sequence[Array], report: Report, further: Iterable[Array] = ()
-) -> Optimum:
+    searched: Fitness, objective: Fitness, starts: Sequence[Array], report: Report, further: Iterable[Array] = (),
+    count: int = 0,
+) -> Optimum:  # fmt: skip
     """The optimum of `objective` near starts that the fitness `searched` chose.
 
     Where those do not end together, or end at a bound, `further` starts are tried until three of them agree with the
-    best: a search that narrowed has seen one basin, and the ones beside it lie where it did not look.
+    best: a search that narrowed has seen one basin, and the ones beside it lie where it did not look. With a `count`
+    so many are tried, whether they agree or not.
     """
-    ends = sorted(_all_ends(searched, starts, further, report), key=_error)
+    ends = sorted(_all_ends(searched, starts, further, report, count), key=_error)
     first, here = _end(objective, ends[0].point, report)
     others = [_elsewhere(objective, end, report) for end in rivals(ends)[:_RIVALS]]
     least = min([first, *others], key=_error)
@@ -57,22 +59,27 @@ def multistart(
         objective = replace(objective, runs=tuple(run for run in objective.runs if run.id not in left_out))
         again, here = _end(objective, point, report)
         point = again.point
-    starts_of = Starts(len(ends), agreeing(ends, ends[0]))
+    somewhere = [end for end in ends if np.isfinite(end.error)]
+    values = {name: tuple(end.values[name] for end in somewhere) for name in objective.space.names}
+    starts_of = Starts(len(ends), agreeing(ends, ends[0]), tuple(end.error for end in somewhere), values)
     return Optimum(objective, point, here, np.array(valley(ends)), (first, *others), starts_of, left_out)
 
 
-def _all_ends(searched: Fitness, starts: Sequence[Array], further: Iterable[Array], report: Report) -> Iterator[End]:
-    """Where every start ends that is worth a try."""
+def _all_ends(
+    searched: Fitness, starts: Sequence[Array], further: Iterable[Array], report: Report, count: int
+) -> Iterator[End]:
+    """Where every start ends that is worth a try, or so many, where a count is asked for."""
     ends = [_end(searched, start, report, searched.approximate)[0] for start in starts]
     yield from ends
     best = min(ends, key=_error)
-    if agreeing(ends, best) == len(ends) and not at_bound(best):
+    if not count and agreeing(ends, best) == len(ends) and not at_bound(best):
         return
     later: list[End] = []
     for start in further:
         later.append(_end(searched, start, report, searched.approximate)[0])
         yield later[-1]
-        if agreeing(later, min([best, *later], key=_error)) >= SETTLED:
+        enough = len(ends) + len(later) >= count
+        if enough and (count or agreeing(later, min([best, *later], key=_error)) >= SETTLED):
             return
 
 

@@ -20,7 +20,7 @@ from ident.simulation.recursion import Recursion, discretise, respond, responses
 
 Array = NDArray[np.float64]
 _BLOCKS = 32  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
-
+_SETTLED = 1e-6  # of a residual's power
 _ESCAPED = 1e12  # times the record's power: the model has run away, and its nuisances would explain anything
 
 
@@ -50,6 +50,16 @@ class NormalMatrices:
         """Eq. (17) of the run."""
         value = float(np.sqrt(max(self.gram[-1, -1], 0.0) / self.total))
         return value if np.isfinite(value) else np.inf
+
+    @property
+    def settled(self) -> bool:
+        """Whether better first states, if any are free, would explain next to nothing more of the residual."""
+        if not len(self.release):
+            return True
+        total = self.blocks.sum(axis=0)
+        constant, shared, power = total[-2, -2], total[-2, -1], total[-1, -1]
+        centred = power - shared**2 / constant if constant > 0 else power
+        return bool(self.gram[-1, -1] > (1.0 - _SETTLED) * centred)
 
     def errors_beside(self, steps: Array) -> Array:
         """Eq. (17) at steps (v, p) from the point where the model is as straight as here, |r − J s|/|x_m|, (v,)."""

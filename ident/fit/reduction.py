@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 import scipy.fft
@@ -22,6 +21,7 @@ import scipy.signal
 from numba import njit
 from numpy.typing import NDArray
 
+from ident.cached import cached_property
 from ident.linear import LinearModel
 from ident.matrix import Run
 from ident.noise.power_density import power_density

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ident.errors import Unusable
-from ident.matrix import Actuator
-from ident.plain import Misfit, read, written
+from ident.fit.listings import listings
+from ident.matrix import Actuator, Matrix
+from ident.plain import UNWRITTEN, Misfit, read, written
 from ident.presets.description import description
+from ident.words.shown import Listing, Shown
 
-_WHERE_KNOWN = ("structures", "window", "anchored_error", "starts", "machine", "actuator")
+_WHERE_KNOWN = ("structures", "window", "anchored_error", "starts", "machine", "actuator", "ended_early")
 
 
 @dataclass(frozen=True)
@@ -71,12 +73,16 @@ class Generation:
 
 @dataclass(frozen=True)
 class Structure:
-    """A model that the channels allow, fitted where none was named: its error, the parameters searched, what of it."""
+    """A model that the channels allow, fitted where none was named: its error, the parameters searched, what of it.
+
+    `values` are those of its parameters, SI.
+    """
 
     machine: str
     error: Mapping[str, float | None] = field(default_factory=dict)
     parameters: int = 0
     why: str = ""
+    values: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -85,32 +91,41 @@ class Window:
 
     The error is the root mean square of x_m − x, counted from the beginning of each window, over std(x_m). In
     `free_run` are the ends of the interval that has 95 % of the free run's errors, eq. (17), of parameters that lie
-    within their standard errors: what a machine integrates hangs on them for as long as the run takes.
+    within their standard errors: what a machine integrates hangs on them for as long as the run takes. With a `memory`
+    (s), that of the filter that tells it, the speed of each window is begun anew, too.
     """
 
     horizon: float
     error: Mapping[str, float | None] = field(default_factory=dict)
     free_run: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    memory: float | None = None
 
 
 @dataclass(frozen=True)
 class Starts:
-    """From how many points of the search the polish started, and how many ended at the error of the fit."""
+    """From how many points of the search the polish started, and how many ended at the error of the fit.
+
+    `errors` has the error of the search's samples at each end, the least first, `values` the parameters there, SI;
+    a start that ended nowhere, where no simulation follows, has neither.
+    """
 
     tried: int
     agree: int
+    errors: tuple[float, ...] = field(default=(), compare=False)
+    values: Mapping[str, tuple[float, ...]] = field(default_factory=dict, compare=False)
 
     def __str__(self) -> str:
         return f"{self.agree} of {self.tried} starts agree"
 
 
 @dataclass(frozen=True)
-class FitResult:
+class FitResult(Shown):
     """A finished fit. Errors are eq. (17) averaged over the runs of a use, from the time domain; fractions, not %.
 
     `anchored_error` is RMS(x − x_m)/std(x_m), which sees the means that eq. (17) does not; `window` is there where the
     fit was made over windows. `evolution` belongs to the parameters `searched`, in that order. `actuator` is what was
-    stated of the machine; earlier versions did not keep it.
+    stated of the machine; earlier versions did not keep it. The search of one that `ended_early` ran out of its time.
+    `matrix` holds the data, where the fit was made here.
     """
 
     model: str
@@ -135,9 +150,19 @@ class FitResult:
     window: Window | None = None
     starts: Starts | None = None
     structures: tuple[Structure, ...] = ()
+    ended_early: bool = False
     searched: tuple[str, ...] = ()
-    evolution: tuple[Generation, ...] = ()
+    evolution: tuple[Generation, ...] = field(default=(), repr=False)
     actuator: Actuator | None = None
+    matrix: Matrix | None = field(default=None, compare=False, repr=False, metadata=UNWRITTEN)
+
+    def listings(self) -> Iterable[Listing | str]:
+        """Parameters, errors, what the data determine and what they do not, notes."""
+        return listings(self)
+
+    def records(self) -> list[dict[str, Any]]:
+        """A record a parameter, SI, for a data frame."""
+        return [{"parameter": name, **written(estimate)} for name, estimate in self.parameters.items()]
 
     @property
     def values(self) -> dict[str, float]:

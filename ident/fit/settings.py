@@ -21,7 +21,8 @@ class Settings:
     `custom` holds the definitions of effects of the user, as plain JSON data: those that `effects` names are in the
     model, like those of the catalogue. `bounds` maps a parameter's name to (lower, upper), `fixed` to the value it is
     held at, all SI. With every parameter fixed nothing is searched and the result is the error of that model. Without a
-    `model` ("") that which fits is taken, of those that the channels allow.
+    `model` ("") that which fits is taken, of those that the channels allow. The search ends with the generation that
+    goes beyond `budget`, s; with one, two fits need not be the same.
     """
 
     model: str = "qian2014"
@@ -33,6 +34,7 @@ class Settings:
     seed: int = 0
     options: Mapping[str, float] = field(default_factory=dict)  # of the method: population, keep, mutation, ...
     custom: tuple[Mapping[str, Any], ...] = ()
+    budget: float | None = None
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.cached import cached_property
 from ident.effects.effect import Effect
 from ident.fit.fitness import STEP, UNSTABLE, Local, local
 from ident.fit.simulated_runs import SimulatedRuns

@@ -8,15 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain.chain import Chain, linear_model
+from ident.cached import cached_property
+from ident.chain.chain import Chain, integrates, linear_model
 from ident.chain.conditions import conditions
 from ident.effects.effect import Effect
+from ident.fit.anchoring import Anchoring
 from ident.fit.modes import extreme, fastest
 from ident.fit.normal_matrices import NormalMatrices, first_state, normal_matrices_of
 from ident.fit.products import add_products, completed
@@ -42,9 +43,9 @@ class SimulatedRuns:
 
     `band` (rad/s) is what the commands excite: see :func:`ident.fit.reduction.excited_band`. Values are by the
     equations' names, SI: numbers, or arrays of v parameter vectors side by side. With a `horizon` (s)
-    the moments are those of windows of that length, each begun where it was measured: see :mod:`ident.fit.windows`. Of
-    the outputs named in `absolute` the mean counts too, which eq. (17) does not see. A search follows the kinks of a
-    core `roughly`.
+    the moments are those of windows of that length, each begun where it was measured: see :mod:`ident.fit.windows`;
+    with a `memory` (s) at the speed, too, that was found before. Of the outputs named in `absolute` the mean counts
+    too, which eq. (17) does not see. A search follows the kinks of a core `roughly`.
     """
 
     preset: Preset
@@ -53,6 +54,7 @@ class SimulatedRuns:
     band: float
     starts: dict[str, Array] = field(default_factory=dict, kw_only=True)
     horizon: float | None = field(default=None, kw_only=True)
+    memory: float | None = field(default=None, kw_only=True)
     absolute: tuple[str, ...] = field(default=(), kw_only=True)
     roughly: bool = field(default=False, kw_only=True)
 
@@ -84,7 +86,7 @@ class SimulatedRuns:
         return vector, steps
 
     def settled(self, values: Mapping[str, Array], strides: Array, steps: int) -> dict[str, NormalMatrices]:
-        """The matrices of every run by its id; without sensitivities the first states are followed to their end.
+        """The matrices of every run by its id; without sensitivities the first states are followed until they hold.
 
         `strides` (p,) are those of the vectors behind the first.
         """
@@ -96,7 +98,7 @@ class SimulatedRuns:
             found = {
                 run.id: m for runs, part in zip(todo, parts, strict=True) for run, m in zip(runs, part, strict=True)
             }
-            if p or not any(len(moments.release) for moments in found.values()):
+            if p or all(moments.settled for moments in found.values()):
                 break
             for run in self.runs:
                 self._follow(run, found[run.id])
@@ -116,29 +118,34 @@ class SimulatedRuns:
         J are the differences of the vectors behind the first to it, over `strides`.
         """
         released = self.released(runs, values, steps)
-        length, window = max(16, -(-runs[0].length // _BLOCKS)), self.window(runs[0])
+        length, anchoring = max(16, -(-runs[0].length // _BLOCKS)), self.anchoring(runs[0])
         free = runs[0].output not in self.absolute
         records = np.column_stack([run.measured - (run.measured.mean() if free else 0.0) for run in runs])
-        if window:
-            length, records = -(-length // window) * window, anchored(records, window)
+        if window := anchoring.window:
+            length, records = -(-length // window) * window, anchoring(records)
         q = released.shape[1] + 1
         sums = np.zeros((-(-runs[0].length // length), len(runs), q, q))
+        anchored = anchoring.from_start()
         for block, (rows, first, last) in enumerate(released.outputs(length)):
-            add_products(anchored(rows, window), records[first:last], q - 2, sums[block])
+            add_products(anchored(rows), records[first:last], q - 2, sums[block])
         if window or not free:
             sums[..., -2, :] = sums[..., :, -2] = 0.0  # no mean is free: each window begins where it was measured
         return completed(sums, strides).transpose(1, 0, 2, 3)
 
-    def window(self, run: Run) -> int:
-        """The samples of a window, 0 for the whole run."""
-        return 0 if self.horizon is None else max(2, round(self.horizon * run.sample_rate))
+    def anchoring(self, run: Run, count: int = 1) -> Anchoring:
+        """How the windows of a run begin, of its samples or of means of `count` of them."""
+        if self.horizon is None:
+            return Anchoring(0)
+        window = max(2, round(self.horizon * run.sample_rate))
+        return Anchoring(window // count, (self.memory or 0.0) * run.sample_rate / count)
 
     def outputs_of(self, simulation: Simulation) -> Iterator[tuple[Array, int, int]]:
         """The outputs of a simulation in blocks, as its windows show them: see :meth:`Simulation.outputs`."""
-        window = self.window(simulation.runs[0])
+        anchoring = self.anchoring(simulation.runs[0])
+        anchored, window = anchoring.from_start(), anchoring.window
         length = max(_BLOCK // window, 1) * window if window else _BLOCK
         for rows, first, last in simulation.outputs(length):
-            yield anchored(rows, window), first, last
+            yield anchored(rows), first, last
 
     def left(self, run: Run, output: Array) -> Array:
         """What an output (n, …) leaves of a run: less its mean, which eq. (17) does not see, or over windows."""
@@ -147,11 +154,11 @@ class SimulatedRuns:
 
     def shown(self, run: Run, signal: Array) -> Array:
         """A signal of a run along its first axis, as its windows show it."""
-        return anchored(signal, self.window(run))
+        return self.anchoring(run)(signal)
 
     def whole(self) -> Self:
         """The same over whole runs, as eq. (17) sees them."""
-        return replace(self, horizon=None, absolute=(), starts=dict(self.starts))
+        return replace(self, horizon=None, memory=None, absolute=(), starts=dict(self.starts))
 
     def released(self, runs: tuple[Run, ...], values: Mapping[str, Array], steps: int) -> Simulation:
         """A simulation of vectors and, where runs start moving, of the first with each of its first states moved."""
@@ -262,11 +269,11 @@ class SimulatedRuns:
         return extreme(self.matrix.runs)
 
 
+def is_simulated(preset: Preset, matrix: Matrix) -> bool:
+    """Whether a fit simulates its runs: one of a linear model that settles reduces them instead."""
+    return not preset.is_linear or integrates(preset.chain, matrix.of_use("fit") or matrix.runs, matrix.actuator)
+
+
 def every_run(preset: Preset, matrix: Matrix) -> SimulatedRuns:
     """All runs of a matrix; those that fit it, where there are some, say what its commands excite."""
     return SimulatedRuns(preset, matrix, matrix.runs, excited_band(matrix.of_use("fit") or matrix.runs))
-
-
-def anchored(signal: Array, window: int) -> Array:
-    """A signal (n, …) counted from where each window of so many samples begins; as it is where there is none."""
-    return signal - signal[np.arange(len(signal)) // window * window] if window else signal

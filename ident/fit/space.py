@@ -21,6 +21,7 @@ from ident.simulation.steps import FASTEST
 Array = NDArray[np.float64]
 _OF_STEPS = 10.0  # times as far as where it says much reaches the power of a single step, which falls by 1/f² alone
 _SAME_AREA = 0.02  # relative difference of piston areas that still is the same machine
+_EDGE = 1e-6  # of an axis
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,10 @@ class Space:
             else:
                 point[i] = (ratio - axis.lower) / (axis.upper - axis.lower)
         return np.clip(point, 0.0, 1.0)
+
+    def at_bound(self, name: str, point: Array) -> bool:
+        """Whether a searched parameter ended at a bound of its axis."""
+        return not _EDGE < float(point[self.names.index(name)]) < 1 - _EDGE
 
     def bounds(self, values: Mapping[str, float]) -> dict[str, tuple[float, float]]:
         """Lower and upper SI bound of each searched parameter, the others being at `values`."""
@@ -185,6 +190,7 @@ def _typical(matrix: Matrix, runs: tuple[Run, ...], band: float) -> dict[str, fl
         "L": float(np.mean([run.motion for run in runs])),
         "M": max(float(np.max(np.abs(run.command))) for run in runs),
         "W": band,
+        "H": min(run.dwell for run in runs),
     }
     mean["V"] = _speed(runs) or band * mean["L"]
     return mean | {"mL": mean["mL"] or 1.0}

@@ -28,6 +28,8 @@ from ident.simulation.steps import FASTEST, MOST
 from ident.words.percent import percent
 
 _DRAWN = 100  # parameter vectors within their standard errors
+_AT_BOUND = "ended at its bound: the data ask for a value beyond it"
+_FELT = 1.001  # times the error: a strength that is not off by chance
 _HARDLY = 0.8  # of the output left: no fit to be trusted
 _HARDLY_SAID = "The model leaves"
 Array = NDArray[np.float64]
@@ -69,6 +71,8 @@ def summarise(
         ]
     for one in space.conventions:
         weak += [name for name in (*(n for n in one.shared if n in space.names), *one.held) if name not in weak]
+    bounded = [name for name in space.names if values[name] != 0 and name not in weak and space.at_bound(name, point)]
+    weak += bounded
     label = _labels(objective)
     known = {name: error for name, error in deviation.items() if name not in weak}
     told = parted(optimum.ends, known, {name: label[name][0] for name in known})
@@ -79,8 +83,11 @@ def summarise(
             label[name][0]: _estimate(objective, name, values, deviation, point, name in weak) for name in space.order
         },
         correlation=found.correlation({label[name][0]: _value(objective, name) for name in space.names}),
-        determined=tuple(_determined(objective, found, relative, values)) if weak else (),
-        undetermined=tuple(Undetermined(label[name][0], _reason(objective, name, relative)) for name in weak),
+        determined=tuple(_determined(objective, found, relative, values, bounded)) if weak else (),
+        undetermined=tuple(
+            Undetermined(label[name][0], _AT_BOUND if name in bounded else _reason(over_windows, name, relative, point))
+            for name in weak
+        ),
         error={
             "fit": _mean(fit_runs, fit_errors, "error"),
             "held_out": None,
@@ -92,7 +99,7 @@ def summarise(
         },
         anchored_error={"fit": _anchored(fit_runs, fit_errors), "verify": _anchored(verify_runs, verify_errors)},
         window=window,
-        starts=optimum.starts,
+        starts=_labelled(optimum.starts, label),
         noise_floor=floors.of_use(matrix),
         runs=(*fit_errors, *verify_errors),
         method=settings.method,
@@ -148,7 +155,7 @@ def _window(fitness: Fitness, point: Array, known: Covariance) -> Window | None:
             )
             if np.all(np.isfinite(free)):  # a free run that goes astray has no interval
                 free_run[use] = tuple(float(end) for end in np.quantile(free, (0.025, 0.975)))
-    return Window(fitness.horizon, error, free_run)
+    return Window(fitness.horizon, error, free_run, fitness.memory)
 
 
 def _labels(objective: Fitness) -> dict[str, tuple[str, str]]:
@@ -156,6 +163,11 @@ def _labels(objective: Fitness) -> dict[str, tuple[str, str]]:
     plain = {p.in_equations: (p.name, objective.preset.unit(p)) for p in objective.preset.parameters}
     known = objective.matrix.actuator.piston_area is not None
     return plain if known else plain | dict(objective.preset.without_area or {})
+
+
+def _labelled(starts: Starts | None, label: Mapping[str, tuple[str, str]]) -> Starts | None:
+    """The starts with their values under the names of the report."""
+    return starts and replace(starts, values={label[name][0]: found for name, found in starts.values.items()})
 
 
 def _value(objective: Fitness, name: str) -> Callable[[Array], Array]:
@@ -176,8 +188,7 @@ def _estimate(
         return Estimate(value, unit, None, value, value, False, parameter.symbol, parameter.meaning, fixed=True)
     lower, upper = objective.space.bounds(values)[name]
     error = None if weak else deviation[name]
-    place = float(point[objective.space.names.index(name)])
-    at_bound = not 1e-6 < place < 1 - 1e-6
+    at_bound = objective.space.at_bound(name, point)
     return Estimate(value, unit, error, lower, upper, at_bound, parameter.symbol, parameter.meaning)
 
 
@@ -186,14 +197,15 @@ def _determined(
     found: Covariance,
     relative: Mapping[str, float],
     values: Mapping[str, float],
+    bounded: Sequence[str],
 ) -> Iterator[Combination]:
-    """Where a parameter is not determined: the parameters and combinations that are."""
+    """Where a parameter is not determined: the parameters and combinations that are; none that ended at its bound."""
     label, space = _labels(objective), objective.space
     for name, error in relative.items():
         shared = {n for one in space.conventions for n in one.shared}
         if (
             error <= DETERMINED
-            and name not in shared
+            and name not in (*shared, *bounded)
             and not (space.convention and name in objective.preset.share_force)
         ):
             yield Combination(label[name][0], values[name], label[name][1], values[name] * error)
@@ -212,7 +224,7 @@ def _determined(
     yield from slow_lag(objective, found)
 
 
-def _reason(objective: Fitness, name: str, relative: Mapping[str, float]) -> str:
+def _reason(objective: Fitness, name: str, relative: Mapping[str, float], point: Array) -> str:
     if name == objective.space.convention:
         return "no specimen of known mass, stiffness or damping gives forces a scale; held by convention"
     if objective.space.convention and name in objective.preset.share_force:
@@ -223,9 +235,19 @@ def _reason(objective: Fitness, name: str, relative: Mapping[str, float]) -> str
         if name in one.shared:
             return f"known only with {' and '.join(one.held)}, held by convention"
     if name not in relative:
+        if objective.space.at_bound(name, point) and _felt(objective, name, point):
+            return _AT_BOUND
         return "any strength in its bounds explains these runs as well"
     size = "not seen by these runs" if relative[name] > 10 else f"standard error {relative[name]:.0%} of the value"
     return f"{size}; other parameters make up for it (see what is determined)"
+
+
+def _felt(objective: Fitness, name: str, point: Array) -> bool:
+    """Whether the error is larger where a strength is off."""
+    space = objective.space
+    off = space.point({n: 0.0 if n == name else float(value[0]) for n, value in space.values(point[None]).items()})
+    here, without = objective.errors(np.stack([point, off]))
+    return bool(without > _FELT * here)
 
 
 def _notes(objective: Fitness, floors: Floors, found: Sequence[RunError]) -> list[str]:

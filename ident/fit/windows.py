@@ -2,7 +2,9 @@
 
 An integrator sums up every disturbance: after minutes the record is where the disturbances took it, and a free run is
 judged by them. Over a window of h only those count that came since its beginning (multiple shooting; Bock 1983). The
-position at the beginning is the measured one; the other states, which do not hang on it, are those of the free run.
+position at the beginning is the measured one; the other states, which do not hang on it, are those of the free run. Of
+a machine that integrates twice, or whose speed lasts longer than any window, the speed at the beginning is begun anew,
+too, as it was found before: see :mod:`ident.fit.anchoring`.
 """
 
 from __future__ import annotations
@@ -15,6 +17,8 @@ from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 from ident.chain.chain import linear_model
+from ident.chain.conditions import zeros
+from ident.fit.anchoring import innovations
 from ident.fit.ends import End
 from ident.fit.levenberg_marquardt import STEPS, levenberg_marquardt
 from ident.fit.multistart import Optimum
@@ -28,26 +32,30 @@ _LEAST = 16  # samples of a window
 _PARTS = 4  # windows of a record at least
 _GAINS = np.logspace(-4.0, 0.0, 25)
 _STILL = 1e-6  # of the fastest mode: it integrates
+_BRIEFEST, _MEMORIES = 0.3, 25  # samples of the briefest memory of a speed's filter, and how many are tried
 
 
-def in_windows(optimum: Optimum, report: Report) -> Optimum:
-    """The optimum over the windows that explain the records best, or as it is where the whole run does.
+def in_windows(optimum: Optimum, report: Report, whole: bool = True) -> Optimum:
+    """The optimum over the windows that explain the records best, or as it is where the `whole` run may and does.
 
-    What explains best leaves least that could not be foretold: see :func:`unforeseen`.
+    What explains best leaves least that could not be foretold: see :func:`unforeseen`. A speed that is forgotten
+    within a window makes no whole run.
     """
     objective = optimum.fitness
     if not isinstance(objective, SimulatedFitness) or not len(optimum.point):
         return optimum
-    best, least = optimum, _left(objective, optimum.point)
-    for horizon in _horizons(objective, optimum.point):
-        trial = replace(objective, horizon=horizon, starts={}, evaluations=0, unstable=0)
+    memory, horizons = _begun_anew(objective, optimum.point)
+    whole = whole and (memory is None or memory > _longest(objective))
+    best, least = optimum, _left(objective, optimum.point, memory) if whole else np.inf
+    for horizon in horizons:
+        trial = replace(objective, horizon=horizon, memory=memory, starts={}, evaluations=0, unstable=0)
 
         def progress(count: int, error: float) -> None:
             report(Progress("windows", count, STEPS, error))
 
         point, here = levenberg_marquardt(trial.exact, optimum.point, report=progress, accept=trial.accept)
         trial.evaluations += best.fitness.evaluations
-        left = _left(trial, point)
+        left = _left(trial, point, memory)
         if left < least:
             values = {name: float(value[0]) for name, value in trial.space.values(point[None]).items()}
             ends = (End(here.error, values, point),)
@@ -67,27 +75,62 @@ def unforeseen(residual: Array) -> float:
     return min(float(np.var(residual)), *wander)
 
 
-def _left(fitness: SimulatedFitness, point: Array) -> float:
-    """The mean logarithm of what is unforeseen in the runs at a point: least for the most likely model."""
+def _left(fitness: SimulatedFitness, point: Array, memory: float | None) -> float:
+    """The mean logarithm of what is unforeseen in the runs at a point: least for the most likely model.
+
+    With a `memory` of a level whose speed wanders.
+    """
     outputs = fitness.outputs(point)
-    found = [unforeseen(run.measured - outputs[run.id]) for run in fitness.runs]
+    left = {run.id: run.measured - outputs[run.id] for run in fitness.runs}
+    if memory is not None:
+        return _most_likely(fitness, left)[1]
     with np.errstate(divide="ignore", invalid="ignore"):
-        score = float(np.mean(np.log(found)))
+        score = float(np.mean(np.log([unforeseen(residual) for residual in left.values()])))
     return score if np.isfinite(score) else np.inf
 
 
-def _horizons(fitness: SimulatedFitness, point: Array) -> Sequence[float]:
-    """Lengths of windows to try, s."""
+def _most_likely(fitness: SimulatedFitness, left: dict[str, Array]) -> tuple[float, float]:
+    """The memory (s) of the speed's filter by which least of residuals is unforeseen, and its mean logarithm."""
+    fastest, longest = max(run.sample_rate for run in fitness.runs), min(run.duration for run in fitness.runs)
+    tried = []
+    for memory in np.geomspace(_BRIEFEST / fastest, longest, _MEMORIES):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            found = [np.mean(innovations(left[r.id], memory * r.sample_rate) ** 2) for r in fitness.runs]
+            score = float(np.mean(np.log(found)))
+        tried.append((score if np.isfinite(score) else np.inf, float(memory)))
+    score, memory = min(tried)
+    return memory, score
+
+
+def _begun_anew(fitness: SimulatedFitness, point: Array) -> tuple[float | None, Sequence[float]]:
+    """The memory of the speed's filter where the speed is begun anew, too, and the lengths of windows to try, s.
+
+    It is where no window is as long as the slowest time constant that does not integrate, or two poles do.
+    """
     values = {name: float(value[0]) for name, value in fitness.space.values(point[None]).items()}
-    slowest = max((_slowest(fitness, values, run) for run in fitness.runs), default=0.0)
-    shortest = min(run.duration for run in fitness.runs) / _PARTS
+    longest = _longest(fitness)
     least = _LEAST / min(run.sample_rate for run in fitness.runs)
-    return sorted({h for times in _TIMES if (h := max(times * slowest, least)) <= shortest})
+    times = [_time_constants(fitness, values, run) for run in fitness.runs]
+    lasting = max(sum(t > longest for t in of) for of in times)
+    slowest = max((t for of in times for t in of if t <= longest), default=0.0)
+    memory = None
+    if lasting > 1:
+        outputs = fitness.outputs(point)
+        memory, _ = _most_likely(fitness, {run.id: run.measured - outputs[run.id] for run in fitness.runs})
+        slowest = max(slowest, memory)
+    return memory, sorted({h for share in _TIMES if (h := max(share * slowest, least)) <= longest})
 
 
-def _slowest(fitness: SimulatedFitness, values: dict[str, float], run: Run) -> float:
-    """The slowest time constant of the linear chain that does not integrate, s."""
-    poles = np.linalg.eigvals(linear_model(fitness.preset.core, values, run, fitness.matrix.actuator).A[0])
-    size = np.abs(poles)
-    slow = size[size > _STILL * size.max(initial=0.0)]
-    return float(1.0 / slow.min()) if len(slow) else 0.0
+def _longest(fitness: SimulatedFitness) -> float:
+    """The length of the longest window, s: what lasts longer lasts as long as a run."""
+    return min(run.duration for run in fitness.runs) / _PARTS
+
+
+def _time_constants(fitness: SimulatedFitness, values: dict[str, float], run: Run) -> list[float]:
+    """Those of the linear chain that the output shows, s; infinite of a pole that integrates."""
+    seen = fitness.preset.core.observed(run.output, zeros(run, fitness.matrix.actuator))
+    model = linear_model(fitness.preset.core, values, run, fitness.matrix.actuator).of_states(seen)
+    size = np.abs(np.linalg.eigvals(model.A[0]))
+    integrating = size <= _STILL * size.max(initial=0.0)
+    with np.errstate(divide="ignore"):
+        return list(np.where(integrating, np.inf, 1.0 / size))

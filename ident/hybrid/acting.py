@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from pathlib import Path
 
 from ident.errors import Unusable
@@ -12,8 +11,8 @@ from ident.fit.result import FitResult
 from ident.hybrid.case import Case
 from ident.hybrid.compensation import Compensation
 from ident.hybrid.controller import SampledController
-from ident.hybrid.feedforward import FeedforwardController, plant_of
-from ident.hybrid.machine import actuator
+from ident.hybrid.feedforward import FeedforwardController
+from ident.hybrid.followed import plant_in
 from ident.hybrid.rig import Controller, no_controller
 from ident.hybrid.substructure import reference
 from ident.units.quantity import shown
@@ -37,8 +36,7 @@ def _feedforward(fit: FitResult, case: Case) -> Controller:
     The motion of the whole structure is known ahead, as the ground is.
     """
     wanted = reference(case, case.ground.samples(case.sample_rate))
-    plant = replace(plant_of(fit, actuator(case), case.gain), specimen=case.physical)
-    return FeedforwardController(plant, wanted, case.sample_rate)
+    return FeedforwardController(plant_in(fit, case), wanted, case.sample_rate)
 
 
 NAMED: Mapping[str, Callable[[FitResult, Case], Controller]] = {

@@ -96,6 +96,9 @@ class Case:
             raise Unusable("bad-case", f"a piston of {self.piston_area:g} m^2", "piston_area", "correct it")
         if not 0 <= self.place < n:
             raise Unusable("bad-case", f"storey {self.place + 1} of {n}", "physical", f"give a storey from 1 to {n}")
+        if np.linalg.eigvalsh(self.stiffness).min() < -1e-9 * np.abs(self.stiffness).max():
+            raise Unusable("bad-case", "the structure does not stand by itself", "structure stiffness",
+                           "correct its stiffness")  # fmt: skip
         # A substructure without mass has no motion of its own to integrate.
         if np.linalg.eigvalsh(self.numerical_mass).min() <= 0:
             raise Unusable("bad-case", "no mass is left in the numerical part", "physical mass", "give less of it")

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.cached import cached_property
 from ident.chain.chain import Chain
 from ident.chain.conditions import conditions
 from ident.custom.definition import preset_with
@@ -185,6 +185,8 @@ def _scaled(fit: FitResult, preset: Preset, before: Actuator, after: Actuator, c
     for name, entry in fit.parameters.items():
         symbol = preset.parameter(name).in_equations
         if symbol in named:
+            if not np.isfinite(named[symbol]) or named[symbol] <= 0 < entry.lower:
+                raise Unusable("bad-number", f"{name} is {named[symbol]:g}", f"set {name}", "give a value above 0")
             found[name] = Carried(entry.unit, entry.value, named[symbol], "as set")
             continue
         factor, why = _factor(entry.unit, before, after, change.sizes)

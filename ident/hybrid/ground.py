@@ -68,6 +68,10 @@ class Ground:
             count = _count(seconds, sample_rate)
             return np.interp(np.arange(count) / sample_rate, np.arange(len(values)) * self.step, values)
         count = _count(30.0 if self.duration is None else self.duration, sample_rate)
+        fastest = self.frequency if self.kind == "sine" else self.band[1]
+        if fastest > sample_rate / 2:
+            raise Unusable("bad-ground", f"{fastest:g} Hz cannot be sampled at {sample_rate:g} Hz", "ground",
+                           f"let it have at most {sample_rate / 2:g} Hz")  # fmt: skip
         if self.kind == "sine":
             wave = np.sin(2 * np.pi * self.frequency * np.arange(count) / sample_rate)
             return np.asarray(self.amplitude * self.scale * wave)

@@ -16,11 +16,11 @@ with the one that the path forward is to bring, so that feedback acts only on wh
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.cached import cached_property
 from ident.errors import Unusable
 from ident.hybrid.controller import SampledController
 from ident.hybrid.glover_mcfarlane import Stabilised, robust_stabilisation

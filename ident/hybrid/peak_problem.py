@@ -12,12 +12,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.cached import cached_property
 from ident.errors import Unusable
 from ident.hybrid.changed_machine import ChangedMachine
 from ident.hybrid.peaks import PROMINENCE, Peak, peaks

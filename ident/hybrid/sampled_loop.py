@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.cached import cached_property
 from ident.hybrid.controller import SampledController
 from ident.hybrid.state_space import StateSpace, sampled_plant
 from ident.linear import LinearModel

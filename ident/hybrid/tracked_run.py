@@ -62,6 +62,8 @@ def track(run: Run, measurement: float | None = None) -> Track:
     speed of this command. Raises Unusable where the run has no command, or one that does not move.
     """
     r, y = _samples(run)
+    if measurement is not None and not 0 < measurement < np.inf:
+        raise Unusable("bad-noise", f"noise of {measurement:g}", "noise", "give a standard deviation above 0")
     noise = Noise.of_sensor(run.sample_rate, measurement or sensor_noise(y), *_motion(run, r))
     alike = run.units.get("command", "m") == run.units.get(run.output, "m")
     gain0 = GAIN if alike else float(np.std(y) / np.std(r))

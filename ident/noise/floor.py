@@ -7,7 +7,7 @@ command has no power.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -23,6 +23,8 @@ _CLEAR = 1.6  # times the band edge: beyond it a Hann window lets less than 1e-6
 _LEAST = 0.2  # of the Nyquist frequency must be left above that, to average over
 _UPPER_HALF = 0.5  # of the spectrum shows the noise
 _SAME = 1e-3  # relative difference of two commands that are one
+_SAME_START = 0.05  # of the way that a step goes
+_ROUNDING = 1e-9
 _GLANCE = 64  # samples that show most commands to be different
 _SETTLED = 0.1  # of a record, in which the states that it begins with die away
 _DRIVES = ("command", "drive_force", *MOTIONS)
@@ -63,6 +65,10 @@ class Floors:
     degrees_of_freedom: float
     independent_share: float = 1.0
     measured: bool = False
+
+    def times(self, factors: Mapping[str, float]) -> Floors:
+        """The floors of signals in which the noise of each run is so many times as large."""
+        return replace(self, by_run={run: f if f is None else f * factors[run] for run, f in self.by_run.items()})
 
     def of_use(self, matrix: Matrix) -> Mapping[str, float | None]:
         """Averaged over the runs of each use; None where it cannot be told of every run."""
@@ -145,11 +151,27 @@ def _same(a: Run, b: Run) -> bool:
     if abs(a.length - b.length) > 0.1 * a.length:
         return False
     u, v = _settled(_driven(a), b), _settled(_driven(b), a)
+    if at_rest(u) or at_rest(v):
+        return _same_step(a, b, u, v)
     thin = slice(None, None, 1 + len(u) // _GLANCE)
     if np.std(u[thin] - v[thin]) > 3.0 * _SAME * np.std(u[thin]):  # most pairs differ at a glance
         return False
     different = not np.array_equal(_settled(a.measured, b), _settled(b.measured, a))
     return different and bool(np.std(u - v) < _SAME * np.std(u))
+
+
+def at_rest(samples: Array) -> bool:
+    """Whether samples stand still, but for their rounding."""
+    return bool(np.ptp(samples) <= _ROUNDING * np.abs(samples).max())
+
+
+def _same_step(a: Run, b: Run, u: Array, v: Array) -> bool:
+    """Whether two runs whose drives `u` and `v` stand still are one step: to one level, from one place."""
+    level = max(np.abs(u).max(), np.abs(v).max())
+    size = max(np.ptp(a.measured), np.ptp(b.measured))
+    alike = at_rest(u) and at_rest(v) and abs(u[0] - v[0]) <= _SAME * level
+    different = not np.array_equal(_settled(a.measured, b), _settled(b.measured, a))
+    return bool(alike and different and abs(a.measured[0] - b.measured[0]) <= _SAME_START * size)
 
 
 def _driven(run: Run) -> Array:

@@ -13,7 +13,7 @@ MOTOR = Preset(
         outputs={"velocity": "v", "displacement": "y"},
     ),
     rescaled=(Scale("m0", "1", 1e-2, 1e6), Scale("c0", "m0 * W", 1e-4, 1e2)),
-    force_scale="m0*W*L*W",
+    force_scale="max(m0*W, c0)*W*L",
     share_force=("m0", "c0", "Kt"),
     drive_scale="U",
     turns=True,
@@ -21,5 +21,6 @@ MOTOR = Preset(
     combinations=(
         Combined("Kt / c0", "1/s", "speed for each unit of the command"),
         Combined("m0 / c0", "s", "time constant"),
+        Combined("Kt / m0", "1/s^2", "acceleration for each unit of the command"),
     ),
 )

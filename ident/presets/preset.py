@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import Literal, TypeVar
 
+from ident.cached import cached_property
 from ident.chain.chain import Chain
+from ident.chain.channels import READABLE, refuse_unmeasured
 from ident.chain.conditions import CONDITIONS
 from ident.chain.disturbance import disturbed
 from ident.chain.refusals import unfit
@@ -123,7 +124,7 @@ class Preset:
         if idle := stated - set(own):
             raise Unusable("bad-preset", f"no stage brings {', '.join(sorted(idle))}, which it states", where,
                            "leave it out, or let a stage bring it")  # fmt: skip
-        known = {parameter.in_equations for parameter in self.parameters} | CONDITIONS.keys()
+        known = {parameter.in_equations for parameter in self.parameters} | CONDITIONS.keys() | set(READABLE)
         if unknown := set(self.chain.symbols) - known:
             readers = ", ".join(stage.place for stage in self.chain.stages if stage.reads & unknown)
             raise Unusable("bad-preset", f"no stage brings {', '.join(sorted(unknown))}, read at {readers}",
@@ -156,10 +157,10 @@ class Preset:
 
     @property
     def _sizes(self) -> dict[str, str]:
-        """Of drive signal, its zones and force, in the words of a scale: see :func:`scale_of`."""
+        """Of drive signal, its zones, force and time, in the words of a scale: see :func:`scale_of`."""
         drive = self.drive_scale or "Kp*L"
         widest = "0.9*M" if OPENED_BY_COMMAND in self.chain.stages else f"0.5*{drive}"
-        return {"D": drive, "Z": widest, "F": self.force_scale}
+        return {"D": drive, "Z": widest, "F": self.force_scale, "T": _TIME}
 
     def with_effects(self, effects: tuple[Effect, ...]) -> Preset:
         """The model with effects added to its chain; their parameters are called effect__parameter in the equations.
@@ -169,7 +170,7 @@ class Preset:
         if not effects:
             return self
         added = {parameter.in_equations for effect in effects for parameter in effect.added}
-        known = {parameter.in_equations for parameter in self.parameters} | added | CONDITIONS.keys()
+        known = {parameter.in_equations for parameter in self.parameters} | added | CONDITIONS.keys() | set(READABLE)
         for effect in effects:
             if set(self.chain.with_effects((effect,)).symbols) - known:
                 raise unfit(effect)
@@ -190,6 +191,7 @@ class Preset:
         not measured, or the model has no specimen.
         """
         preset = self._driven_as(matrix)
+        refuse_unmeasured(preset.chain.symbols, matrix.runs)
         refuse_unstated(preset.needs, matrix)
         if matrix.controller is not None and self.under_control is not None:
             preset = self.under_control.with_effects(self.effects)
@@ -310,10 +312,11 @@ def _in_order(found: Mapping[str, T], first: Iterable[str]) -> tuple[T, ...]:
     return tuple(found[name] for name in dict.fromkeys((*first, *found)))
 
 
+_TIME = "max(1/W, H/6)"  # a step may be late by half the time that it is held
 _OWN = ("1", None)
 _SCALES = {
-    "1": _OWN, "Pa": _OWN, "m/s": _OWN, "s": ("1/W", 3.0), "1/s": ("W", 1.0), "m": ("Z", 1.0), "1/m": ("1/D", 3.0),
-    "s/m": ("1/(D*W)", 5.0), "N": ("F", 0.3), "N/m^3": ("F/L**3", 0.3), "N*s^2/m^2": ("F/V**2", 1.0),
+    "1": _OWN, "Pa": _OWN, "m/s": _OWN, "s": ("T", 3.0), "1/s": ("W", 1.0), "m": ("Z", 1.0), "1/m": ("1/D", 3.0),
+    "s/m": ("T/D", 5.0), "N": ("F", 0.3), "N/m^3": ("F/L**3", 0.3), "N*s^2/m^2": ("F/V**2", 1.0),
     "m/Pa": ("D*A/F", 1.0), "1/Pa": ("A/F", 1.0), "s/m^3": ("1/(A*V)", 1.0), "1/m^2": ("1/L**2", 1.0),
     "m^3/(s*Pa^0.5)": ("A*V/sqrt(F/A)", 1.0), "m/N": ("L/F", 1.0), "m^3/(s*Pa)": ("A*V/(F/A)", 1.0),
     "N/m^2": ("F/L**2", 1.0), "N/m": ("F/L", 1e3),
@@ -321,25 +324,24 @@ _SCALES = {
 """For a machine of unknown size: what a strength of each unit is measured by, and how much of it is searched.
 
 D and F stand for the sizes of its drive signal and its forces, Z for the widest zone that lets some of the drive signal
-through; L and V, as W, are typical of the runs: the deviations of motion and speed. `_OWN`: within its own bounds.
+through, T for the time of an answer; L and V, as W, are typical of the runs: the deviations of motion and speed.
+`_OWN`: within its own bounds.
 """
 
 
 def scale_of(effect: Effect, parameter: Parameter, sizes: Mapping[str, str]) -> Scale:
     """How to search an effect's parameter for a machine of another size than its bounds were stated for.
 
-    A user's effect may have a unit of its own: there its own bounds hold. So they do where the model has no force.
+    A user's effect states its own bounds, which hold. So they do where the model has no force.
     """
     text, reach = _SCALES.get(parameter.unit, _OWN)
     if effect.place not in ("valve", "spool") and parameter.unit == "m":
         text, reach = "L", 0.5
     if effect.place == "load" and parameter.unit == "1/m":
         text, reach = "1/L", 1.0
-    if "F" in text and not sizes["F"]:
-        reach = None
-    if reach is None:
+    if effect.own or reach is None or ("F" in text and not sizes["F"]):
         return Scale.by_bounds(parameter, logarithmic=False)
-    text = re.sub(r"\b[DZF]\b", lambda found: f"({sizes[found[0]]})", text)
+    text = re.sub(r"\b[DZFT]\b", lambda found: f"({sizes[found[0]]})", text)
     lower = -reach if parameter.lower < 0 else 0.0
     if parameter.searched:  # as many decades as between its bounds
         lower = reach * parameter.lower / parameter.upper

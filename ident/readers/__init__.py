@@ -6,17 +6,22 @@ import hashlib
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path, PurePosixPath
+from typing import Unpack
 
 from ident.errors import Unusable
 from ident.matrix import Matrix, Run
 from ident.readers.archive import Archive
+from ident.readers.dat import read_dat
 from ident.readers.description import Description, describe
+from ident.readers.gzipped import unpacked
 from ident.readers.limits import LIMITS, Limits, check_size
 from ident.readers.run import read_run
 from ident.readers.run_description import RunDescription
-from ident.readers.source import DESCRIPTION, Folder, Source
+from ident.readers.source import DESCRIPTION, Beside, Folder, Source, alone, beside
+from ident.readers.stated import of_file
 from ident.readers.table import Table
 from ident.readers.text import read_text
+from ident.words.stated import Stated
 
 Reader = Callable[[bytes, str, Limits], Table]
 
@@ -27,17 +32,37 @@ BINARY = {
     ".h5": "hdf5",
     ".hdf5": "hdf5",
     ".tdms": "tdms",
+    ".lvm": "lvm",
+    ".dat": "dat",
+    ".uff": "uff",
+    ".unv": "uff",
+    ".xlsx": "xlsx",
+    ".json": "records",
+    ".mf4": "mdf",
+    ".mdf": "mdf",
 }
 """Endings of names, each with the file that reads what ends so: `read_npz` in npz.py and the like."""
 TEXT = (".csv", ".tsv", ".txt")
+PACKED = ".gz"
+"""The ending behind that of a text that was compressed."""
+ENDINGS = (*TEXT, *(kind + PACKED for kind in TEXT), *BINARY)
+"""Every ending that is read."""
 
 
-def read_matrix(path: Path, limits: Limits = LIMITS) -> Matrix:
+def read_matrix(path: Path | str, limits: Limits = LIMITS, **stated: Unpack[Stated]) -> Matrix:
     """The matrix in a folder, beside its matrix.yaml, or in a .zip, nothing being unpacked to disk.
+
+    Of a bare record, as run.csv, the caller states what matrix.yaml would: the unit of each channel, the clock, and
+    what else is known, see :class:`ident.words.stated.Stated`.
 
     Raises Unusable for everything that is wrong with it; docs/matrix-format.md lists the codes.
     """
     path = Path(path)
+    if path.suffix.lower() in (*BINARY, *TEXT) and not path.is_dir():
+        return _read_file(path, limits, stated)
+    if stated:
+        what = f"{next(iter(stated))} is stated of a whole matrix"
+        raise Unusable("bad-option", what, str(path), "leave it to its matrix.yaml, or give one run's file")
     if path.is_dir():
         return read_source(Folder(path, limits), limits)
     if path.name == DESCRIPTION:
@@ -47,6 +72,14 @@ def read_matrix(path: Path, limits: Limits = LIMITS) -> Matrix:
         return read_source(archive, limits)
     finally:
         archive.close()
+
+
+def _read_file(path: Path, limits: Limits, stated: Stated) -> Matrix:
+    """One file of a record, of which all else is stated."""
+    folder = Folder(path.parent, limits)
+    parts = [folder.read(path.name, limits.file)]
+    near = beside(folder, path.name, limits, parts)
+    return of_file(path, parts, stated, lambda run: read_table(parts[0], path.name, run.skip_rows, limits, "", near))
 
 
 def read_source(source: Source, limits: Limits = LIMITS) -> Matrix:
@@ -71,24 +104,31 @@ def limits_text(source: Source, name: str, limits: Limits) -> str:
 def read_runs(
     source: Source, described: Description, text: bytes, limits: Limits
 ) -> tuple[tuple[Run, ...], tuple[str, ...], str]:
-    """Every run, what reading assumed, and the SHA-256 of matrix.yaml and each run file in order of first mention."""
+    """Every run, what reading assumed, and the SHA-256 of matrix.yaml and each run file in order of first mention.
+
+    Behind a run file stand the files beside it that it names.
+    """
     digest = hashlib.sha256(text)
     runs: dict[int, Run] = {}
     notices: list[str] = []
     read, held = 0, 0
     for name, wanted in by_file(described.runs).items():
-        data = source.read(name, limits.file)
-        digest.update(data)
-        read += len(data)
+        parts = [source.read(name, limits.file)]
+        near = beside(source, name, limits, parts)
+        read += len(parts[0])
         check_size(read, limits.total, "all run files together", name)
         tables: dict[int, Table] = {}
         for number, run in wanted:
             if run.skip_rows not in tables:
-                tables[run.skip_rows] = read_table(data, name, run, limits)
+                told = f"run {run.labels.id}"
+                tables[run.skip_rows] = read_table(parts[0], name, run.skip_rows, limits, told, near)
                 notices.extend(tables[run.skip_rows].notices)
             runs[number] = read_run(run, tables[run.skip_rows])
             held += sum(samples.nbytes for samples in runs[number].channels.values())
             check_size(held, limits.samples, "all samples together", name)
+        read += sum(map(len, parts[1:]))
+        for part in parts:
+            digest.update(part)
     outputs = (run for number in sorted(runs) for run in runs[number].of_outputs(described.runs[number].outputs))
     return tuple(outputs), tuple(notices), digest.hexdigest()
 
@@ -101,18 +141,33 @@ def by_file(runs: tuple[RunDescription, ...]) -> dict[str, list[tuple[int, RunDe
     return files
 
 
-def read_table(data: bytes, name: str, run: RunDescription, limits: Limits) -> Table:
-    """The table of a file by the ending of its name. Raises Unusable: ``unknown-type``, ``empty-file``."""
-    ending = PurePosixPath(name).suffix.lower()
-    if ending not in (*BINARY, *TEXT):
-        remedy = "use one of " + ", ".join((*TEXT, *BINARY))
+def read_table(
+    data: bytes, name: str, skip_rows: int, limits: Limits, where: str = "", near: Beside = alone
+) -> Table:  # fmt: skip
+    """The table of a file by the ending of its name; `where` is the run that asks for it, `near` has what lies beside.
+
+    Raises Unusable: ``unknown-type``, ``empty-file``, ``bad-rows``, and what the reader raises.
+    """
+    ending = ending_of(name)
+    if ending not in ENDINGS:
+        remedy = "use one of " + ", ".join(ENDINGS)
         raise Unusable("unknown-type", f"files ending in {ending or 'nothing'!r} cannot be read", name, remedy)
     if not data:
         raise Unusable("empty-file", "the file is empty", name, "give a record")
+    if ending.endswith(PACKED):
+        data, ending = unpacked(data, name, limits), ending.removesuffix(PACKED)
     if ending in TEXT:
-        return read_text(data, name, limits, run.skip_rows)
-    if run.skip_rows:
-        raise Unusable("bad-rows", "skip_rows is for text files", f"run {run.labels.id} skip_rows", "use rows")
+        return read_text(data, name, limits, skip_rows)
+    if skip_rows:
+        raise Unusable("bad-rows", "skip_rows is for text files", f"{where} skip_rows".strip(), "use rows")
     kind = BINARY[ending]
+    if kind == "dat":
+        return read_dat(data, name, limits, near)
     read: Reader = getattr(import_module(f"ident.readers.{kind}"), f"read_{kind}")
     return read(data, name, limits)
+
+
+def ending_of(name: str) -> str:
+    """The ending of a name in small letters, with the one before it where that was compressed."""
+    *_, before, last = ("", "", *PurePosixPath(name.lower()).suffixes)
+    return before + last if last == PACKED else last

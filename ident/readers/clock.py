@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import Akima1DInterpolator
 
 from ident.errors import Unusable
 from ident.matrix import Samples
@@ -84,6 +83,8 @@ def evened(time: Samples, values: Samples, rate: float, held: bool, where: str, 
         raise Unusable("bad-resample", what, where, "give a rate near that of the record, or correct its time")
     at = np.minimum(begin + np.arange(count + 1) / rate, time[-1])
     if not held:
+        from scipy.interpolate import Akima1DInterpolator  # noqa: PLC0415 - half a second, and few clocks are uneven
+
         return np.asarray(Akima1DInterpolator(time, values, method="makima")(at[:-1]), dtype=np.float64)
     summed = np.concatenate([[0.0], np.cumsum(values[:-1] * np.diff(time))])
     changes = np.concatenate([[0], np.cumsum(np.diff(values) != 0)])

@@ -22,6 +22,8 @@ class Limits:
     runs: int = 5000  # number of runs
     members: int = 20000  # number of files in an archive
     ratio: float = 300.0  # unpacked by packed size of one archive member; measured noise packs to 2-10
+    parser_memory: int = 3 << 30  # of the process of a parser from elsewhere
+    parser_seconds: float = 10.0  # that it may take
     ratio_from: int = 16 << 20  # the ratio counts from this unpacked size on: a constant channel packs well too
 
 

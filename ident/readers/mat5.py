@@ -1,4 +1,4 @@
-"""The variables of a v5 MAT file: arrays of numbers, and the fields of single structures.
+"""The variables of a v5 MAT file: arrays of numbers, and the fields of structures.
 
 Read here, byte by byte, because scipy's reader can end the whole process on a damaged file. A file is a row of
 elements, each a tag (type, size) and its data; a variable is an element of elements: flags, dimensions, name, values.
@@ -17,10 +17,15 @@ from ident.readers.table import Array
 
 MATRIX, INT8, INT32, UINT32, UTF8 = 14, 1, 5, 6, 16
 STORED = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
-STRUCT, OPAQUE = 2, 17
+STRUCT, CHARACTERS, OPAQUE = 2, 4, 17
+LONGEST_LABEL = 200
 NUMBERS = range(6, 16)
 COMPLEX, LOGICAL = 8, 2
 DEEPEST = 4
+MOST = 4096
+"""Elements of an array of structures."""
+LABELS = ("Name", "label", "blockName")
+"""Fields by which dSPACE and Simulink name the signal that an element holds."""
 
 Variable = tuple[str, Array | str]
 """Name, and its array or a word for what it is instead."""
@@ -91,8 +96,8 @@ def variable(elements: Elements, name: str, depth: int) -> Iterator[Variable]:
     shape = tuple(int(length) for length in elements.values(INT32))
     own = elements.text()  # empty in a field
     name = name or own
-    if kind == STRUCT and math.prod(shape) == 1 and depth:
-        yield from fields(elements, name, depth)
+    if kind == STRUCT and 0 <= math.prod(shape) <= MOST and depth:
+        yield from structures(elements, name, math.prod(shape), depth)
     elif kind in NUMBERS and not marks & (COMPLEX | LOGICAL):
         yield name, numbers(elements, shape)
     else:
@@ -107,17 +112,50 @@ def numbers(elements: Elements, shape: tuple[int, ...]) -> Array:
     return values.reshape(shape, order="F")
 
 
-def fields(elements: Elements, name: str, depth: int) -> Iterator[Variable]:
-    """The fields of one structure as ``name.field``."""
+def structures(elements: Elements, name: str, count: int, depth: int) -> Iterator[Variable]:
+    """The fields of a structure as ``name.field``; of an array of them as ``name.label.field``, or by their number."""
+    names = field_names(elements)
+    for number in range(count):
+        contents = [content_of(elements) for _ in names]
+        before = name
+        if count > 1:
+            told = (
+                label(content, elements.order)
+                for field, content in zip(names, contents, strict=True)
+                if field in LABELS
+            )
+            before = f"{name}.{next(filter(None, told), number)}"
+        for field, content in zip(names, contents, strict=True):
+            yield from variable(Elements(content, elements.order), f"{before}.{field}", depth - 1)
+
+
+def field_names(elements: Elements) -> list[str]:
+    """The names of the fields of a structure."""
     width = elements.values(INT32)
     if len(width) != 1 or width[0] < 1:
         raise Damaged("a structure without the length of its names")
     kind, packed = elements.following()
     if kind not in (INT8, UTF8) or len(packed) % int(width[0]):
         raise Damaged("a structure without names")
-    for start in range(0, len(packed), int(width[0])):
-        field = bytes(packed[start : start + int(width[0])]).partition(b"\0")[0].decode("utf-8", "replace")
-        kind, content = elements.following()
-        if kind != MATRIX:
-            raise Damaged("a field that is no variable")
-        yield from variable(Elements(content, elements.order), f"{name}.{field}", depth - 1)
+    starts = range(0, len(packed), int(width[0]))
+    return [bytes(packed[at : at + int(width[0])]).partition(b"\0")[0].decode("utf-8", "replace") for at in starts]
+
+
+def content_of(elements: Elements) -> memoryview:
+    """The bytes of the next field."""
+    kind, content = elements.following()
+    if kind != MATRIX:
+        raise Damaged("a field that is no variable")
+    return content
+
+
+def label(content: memoryview, order: str) -> str:
+    """The characters of a field that holds a line of text, nothing of any other."""
+    elements = Elements(content, order)
+    if not len(content) or int(elements.values(UINT32)[:1].sum()) & 0xFF != CHARACTERS:
+        return ""
+    elements.values(INT32)
+    elements.text()
+    kind, data = elements.following()
+    encoding = {4: "utf-16-le" if order == "<" else "utf-16-be"}.get(kind, "utf-8")
+    return " ".join(bytes(data).decode(encoding, "replace").split())[:LONGEST_LABEL]

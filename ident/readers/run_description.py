@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +16,12 @@ from ident.units.quantity import quantity, shown, split, unit_scale
 RUN = (
     "id", "file", "sample_rate", "time", "specimen", "gain", "amplitude", "kind", "hold", "output", "use", "skip_rows",
     "rows", "channels", "disturbance", "position_range", "frequency", "rated_current",
+    "closed_loop",
 )  # fmt: skip
+
+
+ANSWERS = ("displacement", "velocity", "force", "load_pressure")
+"""Channels of a machine's answer, of which one may be the output without a word."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +78,7 @@ def describe_run(data: Any, where: str) -> RunDescription:
         position_range=describe_range(fields, units.get("displacement", "m")),
         frequency=fields.positive("frequency", "frequency" if time_unit == "s" else "per sample"),
         rated_current=fields.positive("rated_current", units.get("current", "A")),
+        closed_loop=fields.truth("closed_loop") if "closed_loop" in fields else None,
     )
     return RunDescription(labels, outputs, channels, time, fields.whole("skip_rows"), describe_rows(fields))
 
@@ -95,7 +102,7 @@ def describe_id(fields: Fields) -> str:
 def describe_outputs(fields: Fields, kind: str, channels: dict[str, ChannelDescription]) -> tuple[str, ...]:
     """The channels that a model must reproduce; they and a command, or what else drives, must be described."""
     given = fields.data.get("output")
-    outputs = fields.names("output") if isinstance(given, list) else (fields.text("output", "displacement"),)
+    outputs = fields.names("output") if isinstance(given, list) else (fields.text("output", _usual(channels)),)
     for output in outputs:
         if output not in channels:
             what, remedy = f"{shown(output)!r} is not a channel of this run", f"choose from {', '.join(channels)}"
@@ -106,6 +113,12 @@ def describe_outputs(fields: Fields, kind: str, channels: dict[str, ChannelDescr
     if "command" in outputs:
         raise Unusable("unknown-output", "the command cannot be the output", fields.place("output"), "name a response")
     return outputs
+
+
+def _usual(channels: Collection[str]) -> str:
+    """The displacement, or what alone was recorded of the answer to a command."""
+    answers = [name for name in ANSWERS if name in channels]
+    return answers[0] if len(answers) == 1 and "command" in channels else "displacement"
 
 
 def describe_clock(fields: Fields) -> tuple[TimeColumn | None, float, str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import stat
+from collections.abc import Callable
 from pathlib import Path, PurePosixPath
 from typing import Protocol
 
@@ -19,6 +20,35 @@ class Source(Protocol):
     def read(self, name: str, limit: int) -> bytes:
         """The bytes of a file. Raises Unusable: ``missing-file``, ``too-large``, and what the source adds."""
         ...
+
+
+Beside = Callable[[str], bytes]
+"""Gives the bytes of a file that a record names as beside itself. Raises Unusable."""
+
+
+def alone(name: str) -> bytes:
+    """For a record that comes by itself. Raises Unusable: ``missing-file``."""
+    what = "the samples are in this file beside it, which was not given"
+    raise Unusable("missing-file", what, name, "give both files in a folder or a .zip with a matrix.yaml")
+
+
+def beside(source: Source, record: str, limits: Limits, parts: list[bytes]) -> Beside:
+    """The files beside a record, as they are named or in small or capital letters; `parts` gets what is read."""
+    folder = PurePosixPath(record).parent
+
+    def read(name: str) -> bytes:
+        for like in (name.lower(), name.upper(), name):
+            try:
+                parts.append(source.read(str(folder / inside(like, record)), limits.file))
+            except Unusable as error:
+                if error.code == "missing-file" and like != name:
+                    continue
+                raise
+            break
+        check_size(sum(map(len, parts)), limits.total, "the record with the files beside it", record)
+        return parts[-1]
+
+    return read
 
 
 def inside(name: str, where: str) -> str:

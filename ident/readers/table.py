@@ -23,12 +23,15 @@ _MINUS = " - "
 class Table:
     """The columns of one file. `load` returns the raw samples of the columns of the given numbers, each 1-D.
 
-    `notices` says in words what reading assumed. Loading checks declared sizes before it allocates.
+    `notices` says in words what reading assumed; `units`, where there are any, what the file says of each column, as it
+    is written there and for a suggestion alone: what counts is the unit that matrix.yaml states. Loading checks
+    declared sizes before it allocates.
     """
 
     names: tuple[str, ...]
     load: Callable[[Sequence[int]], list[Array]]
     notices: tuple[str, ...] = ()
+    units: tuple[str, ...] = ()
 
     def number(self, column: str | int, where: str) -> int:
         """The number of a column given by name or by 0-based number.

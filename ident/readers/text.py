@@ -39,6 +39,11 @@ def read_text(data: bytes, where: str, limits: Limits, skip_rows: int = 0) -> Ta
     if all(is_number(name, delimiter) for name in names):
         below, notices = start, (f"{where} has no line of column names: its first line was read as samples",)
         names = [str(number) for number in range(len(names))]
+    units = units_row(names, first, text, below, delimiter, where)
+    if units:
+        below = line_start(text, 1, below)
+        first = next_line(text, below, where)
+        notices = (f"{where}: the line below the column names was read as units: {', '.join(filter(None, units))}",)
     comma = delimiter != "," and any(DECIMAL_COMMA.fullmatch(field.strip()) for field in split_line(first, delimiter))
 
     def load(numbers: Sequence[int]) -> list[Array]:
@@ -50,7 +55,21 @@ def read_text(data: bytes, where: str, limits: Limits, skip_rows: int = 0) -> Ta
                 return quick
         return by_line(text[below:], numbers, delimiter, comma, where, text.count(b"\n", 0, below))
 
-    return Table(tuple(names), load, notices)
+    return Table(tuple(names), load, notices, units)
+
+
+def units_row(
+    names: Sequence[str], first: str, text: bytes, below: int, delimiter: str | None, where: str
+) -> tuple[str, ...]:
+    """The units in the line below the names: it has no number, and the line below it has one. Else nothing."""
+    fields = [field.strip().strip("\"'[]()").strip() for field in split_line(first, delimiter)]
+    after = line_start(text, 1, below)
+    if any(is_number(field, delimiter) for field in (*fields, *names)) or not any(fields) or after >= len(text):
+        return ()
+    following = split_line(next_line(text, after, where), delimiter)
+    if not any(is_number(field.strip(), delimiter) for field in following):
+        return ()
+    return tuple((*fields, *[""] * len(names))[: len(names)])
 
 
 def as_utf8(data: bytes) -> bytes:

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+
+from ident.cached import cached_property
 
 Array = NDArray[np.float64]
 STRETCHES = 8  # of a record; even ones and odd ones judge each other

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from ident.chain.chain import DISTURBANCE, FORCE, INPUT, MEASURED, STEP, Chain
-from ident.chain.varying import MEASURED_CONDITIONS, is_measured
+from ident.cached import cached_property
+from ident.chain.chain import INPUT, MEASURED, STEP, Chain
+from ident.chain.channels import READABLE
 from ident.equations.grammar import TIME
-from ident.matrix import DISTURBANCES, Run
-from ident.simulation.kernel import HELD, LANES, SHARE, Filter, Kernel, constant, kernel
+from ident.matrix import Run
+from ident.parallel import each
+from ident.simulation.inputs import fine, jump_share
+from ident.simulation.kernel import HELD, LANES, SHARE, WIDE, Filter, Kernel, constant, kernel
 
 Array = NDArray[np.float64]
 _CHUNK = 1 << 20  # outputs that are simulated in one go
@@ -84,14 +87,17 @@ class Simulation:
         for begin in range(0, samples, chunk):
             end = min(begin + chunk, samples)
             out = np.empty((end - begin) * lanes)
-            for i, buffer in enumerate(buffers):
-                group = slice(i * LANES, (i + 1) * LANES)
+
+            def advance(lane: int, begin: int = begin, end: int = end, out: Array = out) -> None:
+                buffer, group = buffers[lane // LANES][lane % LANES :], slice(lane, lane + WIDE)
                 driven = buffer, command.record, forces, command.begin[group], force_at[group]
                 ends = begin * self.steps, (end - 1) * self.steps + 1
-                built.advance(*driven, *ends, self.steps, out[i * LANES :], lanes)
+                built.advance(*driven, *ends, self.steps, out[lane:], lanes)
                 if end < samples:  # on to the first step of the next chunk
                     rest = ends[1], end * self.steps
                     built.advance(*driven, *rest, 1 << 40, np.empty(LANES), LANES)
+
+            each(advance, range(0, count * vectors, WIDE))
             rows = out.reshape(-1, lanes)[:, : count * vectors].reshape(-1, count, vectors)
             for first in range(begin, end, length):
                 last = min(first + length, end)
@@ -127,12 +133,12 @@ class Simulation:
             delay = np.broadcast_to(constant(built.shift, values) / values[STEP], (lanes,))
         whole = _whole(delay)
         before = int(whole.max()) + 2
-        records = [_fine(run, name, self.steps, before) for run in self.runs]
+        records = [fine(run, name, self.steps, before) for run in self.runs]
         starts = np.cumsum([0, *(len(record) for record in records[:-1])]) + before
         begin = _filled(np.repeat(starts, self.shape[1]).astype(float), lanes).astype(np.int64)
         past = [name == INPUT and run.past is not None for run in self.runs]
         known = _filled(np.repeat(past, self.shape[1]).astype(float), lanes) > 0
-        return _Input(np.concatenate(records), begin - whole, delay, known)
+        return _Input(np.concatenate(records) if records[1:] else records[0], begin - whole, delay, known)
 
     def _packed(
         self, built: Kernel, values: Mapping[str, Array], lanes: int, inputs: Mapping[str, _Input]
@@ -155,6 +161,8 @@ class Simulation:
             for i, name in enumerate(self.chain.states):
                 rows[built.states[name]] = _filled(self.start[..., i].ravel(), lanes)
             self._settle(rows, built, values, inputs[INPUT].first)
+        elif set(READABLE) & set(self.chain.symbols):  # what remembers a pressure begins with what it was
+            self._settle(rows, built, values, np.zeros(lanes))
         return [np.ascontiguousarray(rows[:, i : i + LANES]).ravel() for i in range(0, lanes, LANES)]
 
     def _settle(self, rows: Array, built: Kernel, values: Mapping[str, Array], command: Array) -> None:
@@ -194,68 +202,17 @@ def _filled(values: Array, lanes: int) -> Array:
     return np.concatenate([values, np.full(lanes - len(values), values[-1])])
 
 
-def _record(run: Run, name: str) -> Array:
-    """The samples of an input."""
-    if name == FORCE:
-        return run.channels["force"]
-    if name == DISTURBANCE:  # of a run that says nothing there was none
-        return next((run.channels[one] for one in DISTURBANCES if one in run.channels), np.zeros(run.length))
-    for beside, channel, unit in MEASURED_CONDITIONS.values():
-        if name == beside:  # of a run that did not measure it, it stays
-            known = is_measured(run, channel, unit)
-            return np.asarray(run.channels[channel] - run.channels[channel].mean()) if known else np.zeros(run.length)
-    return run.command
-
-
-def _fine(run: Run, channel: str, steps: int, before: int) -> Array:
-    """An input at the fine steps, with `before` steps in front and two behind.
-
-    Before the record a command is what it was, where that is known. Else it was zero where the run starts at rest, and
-    its first value where the run is cut out of a longer test.
-    """
-    samples = _record(run, channel)
-    past = samples[:0] if run.past is None or channel != INPUT else run.past[-(before // steps + 1) :]
-    samples = np.concatenate([past, samples])
-    held, first = run.hold == "zoh" and channel == INPUT, len(past) * steps
-    count = len(samples) * steps if held else (len(samples) - 1) * steps + 1
-    lead = max(before - first, 0)  # of the steps in front, those from before anything is known
-    whole = np.empty(lead + count + steps + 2)
-    whole[:lead], whole[lead + count :] = samples[0], samples[-1]
-    fine = whole[lead : lead + count]
-    if held:
-        fine.reshape(-1, steps)[:] = samples[:, None]
-    else:
-        between, slopes = fine[:-1].reshape(-1, steps), np.diff(samples) / steps
-        for step in range(steps):
-            between[:, step] = samples[:-1] + step * slopes
-        fine[-1] = samples[-1]
-    if not first and channel == INPUT and run.begins == "at rest":
-        whole[:lead] = 0.0
-    if not first and run.hold == "linear":
-        whole[lead - 1] -= _jump_share(np.array(2.0)) * (fine[0] - whole[lead - 1])
-    return whole[max(first - before, 0) :]
-
-
 def _begun_late(command: _Input, held: Array) -> Array:
     """A late command before and at the first fine step, (2, lanes)."""
     record, begin, whole = command.record, command.begin, _whole(command.delay)
     start = begin + whole
     front, jump = record[start - 2], record[start] - record[start - 2]
-    last = front - _jump_share(np.maximum(command.delay, 1e-9)) * jump
+    last = front - jump_share(np.maximum(command.delay, 1e-9)) * jump
     drawn = held == 0
     before = np.where(drawn & (whole == 0), last, record[begin - 1])
     return np.array(
         [np.where(drawn & (whole == 1), front, before), np.where(drawn & (whole == 1), last, record[begin])]
     )
-
-
-def _jump_share(delay: Array) -> Array:
-    """How far the value one step before a jump goes the other way, in jumps, (lanes,); `delay` in steps.
-
-    The record is drawn in lines: then those to and from it have, as far as the simulation sees them, which begins
-    `delay` before the jump, the area of the jump.
-    """
-    return np.where(delay < 1, 2 / delay - 1, 1 / (1 + (np.minimum(delay, 2) - 1) * (3 - np.minimum(delay, 2))))
 
 
 # Filters ----------------------------------------------------------------------------------------------------------

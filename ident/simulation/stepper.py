@@ -10,12 +10,10 @@ from numpy.typing import NDArray
 
 from ident.chain.chain import INPUT, STEP, Chain
 from ident.errors import Unusable
-from ident.simulation.kernel import HELD, LANES, SHARE, constant, kernel
+from ident.simulation.kernel import HELD, LANES, SHARE, WIDE, Kernel, constant, kernel
 from ident.simulation.simulate import pack_filter
 
 Array = NDArray[np.float64]
-WIDE = 8
-"""Lanes that are advanced at once: fewer cost as much."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,13 +38,27 @@ class Stepper:
     share: Array
 
 
-def stepper(
-    chain: Chain, values: Mapping[str, Array], sample_rate: float, steps: int, channels: tuple[str, ...]
-) -> Stepper:
-    """The stepper of a chain for `values` of every symbol, each (v,) with v at most 16, at `sample_rate` (Hz).
+@dataclass(frozen=True, eq=False)
+class PackedKernel:
+    """A kernel with its buffer, `rows` (n, 16), at rest under a held command: the lanes beyond those asked for repeat.
 
-    `channels` are those whose readings are shown at the begin of each step. Spare lanes repeat the last system. Raises
-    Unusable where something measured drives the chain beside its command: no loop knows it beforehand.
+    Each sample is divided into `steps`; a command acts `whole` steps later, (16,), and the fraction `share` of one.
+    """
+
+    kernel: Kernel
+    rows: Array
+    steps: int
+    whole: NDArray[np.int64]
+    share: Array
+
+
+def packed_kernel(
+    chain: Chain, values: Mapping[str, Array], sample_rate: float, steps: int, channels: tuple[str, ...]
+) -> PackedKernel:
+    """The kernel of a chain for `values` of every symbol, each (v,) with v at most 16, at `sample_rate` (Hz).
+
+    `channels` are those whose readings are shown at the begin of each step. Raises Unusable where something measured
+    drives the chain beside its command: no loop knows it beforehand.
     """
     count = max(np.size(value) for value in values.values())
     known = {name: np.array(values[name], dtype=np.float64) for name in chain.symbols}
@@ -68,10 +80,21 @@ def stepper(
         rows[row] = constant(node, lane)
     for known_filter in built.filters:
         pack_filter(rows, known_filter, lane)
+    return PackedKernel(built, rows, steps, whole, share)
+
+
+def stepper(
+    chain: Chain, values: Mapping[str, Array], sample_rate: float, steps: int, channels: tuple[str, ...]
+) -> Stepper:
+    """The stepper of a chain; arguments and refusals are those of :func:`packed_kernel`."""
+    packed = packed_kernel(chain, values, sample_rate, steps, channels)
+    built, count = packed.kernel, max(np.size(value) for value in values.values())
     lanes = WIDE * -(-count // WIDE)
     code, kept = built.address(lanes)
     shown = (built.shown, *(built.beside[channel] for channel in channels[1:]))
-    return Stepper(code, kept, lanes, rows.ravel(), built.inputs[INPUT], shown, steps, whole, share)
+    return Stepper(
+        code, kept, lanes, packed.rows.ravel(), built.inputs[INPUT], shown, steps, packed.whole, packed.share
+    )
 
 
 def _filled(values: Array) -> Array:

@@ -1,12 +1,13 @@
-"""A simulated test matrix on disk: a paper's, for demonstrations, planning and checks of a whole installation.
+"""A simulated test matrix, on disk or in memory: a paper's, for demonstrations, planning and whole installations.
 
 What it writes says that it is simulated. It is no judge of the program itself: data for that come from elsewhere.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+import hashlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ import yaml
 from numpy.typing import NDArray
 
 from ident.bench.synthesis import write_bench
+from ident.cached import cached_property
 from ident.chain.chain import linear_model
 from ident.comparison.compare import modelled
 from ident.errors import Unusable
@@ -80,24 +82,88 @@ def white_noise(length: int, rms: float, rng: np.random.Generator) -> Array:
     return np.asarray(u * (rms / np.sqrt(np.mean(u**2))))
 
 
+@dataclass(frozen=True)
+class Simulation:
+    """What is simulated: a model of a test matrix, the values of its effects, SI; each run lasts `seconds`.
+
+    `noise` is white, its standard deviation relative to each run's output. Raises Unusable where the model cannot
+    follow a test matrix, or a number makes no sense.
+    """
+
+    preset: str = "qian2014"
+    seconds: float = 30.0
+    seed: int = 0
+    noise: float = 0.005
+    effects: Mapping[str, float] = field(default_factory=dict)
+    small: bool = False
+    serial: str = "SIM-0001"
+
+    def __post_init__(self) -> None:
+        model = self.model
+        if model.bounds_hold_for != AREA and model.kind != "bench":
+            able = [name for name, p in PRESETS.items() if p.bounds_hold_for == AREA or p.kind == "bench"]
+            remedy = f"use {' or '.join(able)}"
+            raise Unusable("cannot-simulate", f"model {model.name} has no test matrix of its own", "simulate", remedy)
+        if not (1 / 16 <= self.seconds <= 600 and 0 <= self.noise < 1):
+            raise Unusable("bad-value", f"{self.seconds:g} s with noise {self.noise:g}", "simulate",
+                           "give 0.0625 to 600 seconds and noise from 0 to below 1")  # fmt: skip
+
+    @cached_property
+    def model(self) -> Preset:
+        """The model with its effects."""
+        return preset_called(self.preset, tuple(name.partition(".")[0] for name in self.effects))
+
+    @property
+    def actuator(self) -> Actuator:
+        """The machine, which says that it is simulated."""
+        hidden = "".join(f", {name} = {value:g}" for name, value in self.effects.items())
+        what = f"seed {self.seed}, noise {self.noise:g} of each output{hidden}"
+        notes = f"simulated with the model {self.preset}, {what}; not measured"
+        name = f"{SIMULATED}, with hidden effects" if self.effects else SIMULATED
+        return Actuator(self.serial, name, piston_area=AREA, notes=notes)
+
+    def runs(self, report: Report) -> Iterator[tuple[Plan, Run]]:
+        """Every run with its plan."""
+        model = self.model
+        values = {parameter.in_equations: parameter.value for parameter in model.parameters}
+        values |= {model.parameter(name).in_equations: value for name, value in self.effects.items()}
+        todo = plans(self.small)
+        for index, plan in enumerate(todo):
+            report(Progress("simulate", index, len(todo)))
+            rng = np.random.default_rng([self.seed, index])
+            u = white_noise(round(self.seconds * SAMPLE_RATE), plan.inches * _INCH, rng)
+            still = Run(plan.id, "", SAMPLE_RATE, {"command": u, "displacement": np.zeros_like(u)},
+                        {"command": "m", "displacement": "m"}, specimen=plan.specimen, gain=plan.gain,
+                        amplitude=plan.inches * _INCH, kind="blwn", use=plan.use)  # fmt: skip
+            x = _displacement(model, values, still, Actuator(self.serial, piston_area=AREA))
+            x = x + self.noise * np.std(x) * rng.standard_normal(len(x))
+            yield plan, replace(still, channels={"command": u, "displacement": x})
+        report(Progress("simulate", len(todo), len(todo)))
+
+
+def simulated(simulation: Simulation, report: Report = silent) -> Matrix:
+    """The matrix, in memory. Raises Unusable for the set of a bench, which is written to a folder."""
+    if simulation.model.kind == "bench":
+        raise Unusable("cannot-simulate", "the set of a bench is written to a folder", "simulate",
+                       "use `servoident simulate OUT` and read it")  # fmt: skip
+    runs = tuple(run for _, run in simulation.runs(report))
+    digest = hashlib.sha256(simulation.actuator.notes.encode())
+    for run in runs:
+        digest.update(run.measured.tobytes())
+    return Matrix(simulation.actuator, runs, digest.hexdigest())
+
+
 def simulate_matrix(
     out: Path, preset: str = "qian2014", seconds: float = 30.0, seed: int = 0, noise: float = 0.005,
     effects: Mapping[str, float] | None = None, report: Report = silent, serial: str = "SIM-0001",
     small: bool = False,
 ) -> None:  # fmt: skip
-    """Write the matrix to the folder `out`, which must not exist or be empty; `noise` is relative to each run's output.
+    """Write the matrix of a :class:`Simulation` to the folder `out`, which must not exist or be empty.
 
-    Raises Unusable where the folder is in use, the model cannot follow a test matrix, or a number makes no sense.
+    Raises Unusable where the folder is in use, or a bench is asked for what it has not.
     """
-    model = preset_called(preset, tuple(name.partition(".")[0] for name in effects or {}))
-    on_bench = model.kind == "bench"
-    if model.bounds_hold_for != AREA and not on_bench:
-        able = [name for name, p in PRESETS.items() if p.bounds_hold_for == AREA or p.kind == "bench"]
-        remedy = f"use {' or '.join(able)}"
-        raise Unusable("cannot-simulate", f"model {preset} has no test matrix of its own", "simulate", remedy)
-    if not (1 / 16 <= seconds <= 600 and 0 <= noise < 1):
-        raise Unusable("bad-value", f"{seconds:g} s with noise {noise:g}", "simulate",
-                       "give 0.0625 to 600 seconds and noise from 0 to below 1")  # fmt: skip
+    simulation = Simulation(preset, seconds, seed, noise, effects or {}, small, serial)
+    on_bench = simulation.model.kind == "bench"
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise Unusable("folder-in-use", "the folder is not empty", str(out), "name a new one")
     if on_bench and small:
@@ -106,33 +172,16 @@ def simulate_matrix(
         raise Unusable("effect-does-not-fit", f"the model {preset} takes no effect", "simulate", "leave --effect out")
     (out / "runs").mkdir(parents=True, exist_ok=True)
     if on_bench:
-        write_bench(out, model, seed, noise, report)
+        write_bench(out, simulation.model, seed, noise, report)
         return
-    values = {parameter.in_equations: parameter.value for parameter in model.parameters}
-    values |= {model.parameter(name).in_equations: value for name, value in (effects or {}).items()}
-    actuator, entries = Actuator(serial, piston_area=AREA), []
-    todo = plans(small)
-    for index, plan in enumerate(todo):
-        report(Progress("simulate", index, len(todo)))
-        rng = np.random.default_rng([seed, index])
-        u = white_noise(round(seconds * SAMPLE_RATE), plan.inches * _INCH, rng)
-        still = Run(plan.id, "", SAMPLE_RATE, {"command": u, "displacement": np.zeros_like(u)},
-                    specimen=plan.specimen, gain=plan.gain)  # fmt: skip
-        x = _displacement(model, values, still, actuator)
-        x = x + noise * np.std(x) * rng.standard_normal(len(x))
-        np.savez(out / "runs" / f"{plan.id}.npz", command=u, displacement=x)
+    entries = []
+    for plan, run in simulation.runs(report):
+        np.savez(out / "runs" / f"{plan.id}.npz", command=run.command, displacement=run.measured)
         entries.append(_entry(plan))
-    report(Progress("simulate", len(todo), len(todo)))
-    what = f"seed {seed}, noise {noise:g} of each output{_listed(effects)}"
-    notes = f"simulated with the model {preset}, {what}; not measured"
-    name = f"{SIMULATED}, with hidden effects" if effects else SIMULATED
-    machine = {"serial": serial, "name": name, "piston_area": "497 mm^2", "notes": notes}
+    actuator = simulation.actuator
+    machine = {"serial": serial, "name": actuator.name, "piston_area": "497 mm^2", "notes": actuator.notes}
     described = yaml.safe_dump({"actuator": machine, "runs": entries}, sort_keys=False)
     (out / "matrix.yaml").write_text(described, encoding="utf-8")
-
-
-def _listed(effects: Mapping[str, float] | None) -> str:
-    return "".join(f", {name} = {value:g}" for name, value in (effects or {}).items())
 
 
 def _displacement(model: Preset, values: Mapping[str, float], run: Run, actuator: Actuator) -> Array:

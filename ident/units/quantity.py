@@ -17,6 +17,7 @@ from typing import Any
 from ident.errors import Unusable
 from ident.units.grammar import Powers, powers_of
 from ident.units.names import ANGLES, BASE, DERIVED, PREFIXES
+from ident.units.usual import USUAL
 
 DIMENSIONS = {
     "length": "m", "area": "m^2", "volume": "m^3", "mass": "kg", "time": "s", "frequency": "1/s", "velocity": "m/s",
@@ -26,6 +27,8 @@ DIMENSIONS = {
     "angle": "rad", "torque": "N*m",
 }  # fmt: skip
 """Dimension by name to its SI unit; an SI unit (``m^4/s``) may stand wherever a dimension's name may."""
+
+_WRITTEN = {"frequency": "Hz"}  # what one writes where it is not the SI unit's own text
 
 PRINTED_Z0 = "m^3/(s*kPa) as printed"
 """The unit that Qian et al. 2014 print beside Z0, which is not its unit."""
@@ -83,7 +86,7 @@ def quantity(text: object, dimension: str, where: str) -> float:
     """
     number, unit = split(text, where)
     if not unit and si_unit(dimension) != "1":
-        example = f"add one, for example {shown(text)} {si_unit(dimension)}"
+        example = f"add one, for example {shown(text)} {_WRITTEN.get(dimension, si_unit(dimension))}"
         raise Unusable("missing-unit", f"{shown(text)} has no unit", where, example)
     scale = unit_scale(unit or "1", dimension, where)
     # Decimal, so that 497 mm^2 is exactly the float 4.97e-4 that a program would compare it with
@@ -224,9 +227,17 @@ def registry_names() -> set[str]:
     return {part[0].strip() for part in parts} | {name.strip() for part in parts for name in part[2:]} | {"mm", "kN"}
 
 
-@cache
 def known_atom(name: str) -> Atom | None:
-    """One unit name; None where pint does not know it."""
+    """One unit name; None where it is none."""
+    if name in USUAL:
+        factor, dimensions = USUAL[name]
+        return Atom(factor, 0.0, dimensions)
+    return atom_of_pint(name)
+
+
+@cache
+def atom_of_pint(name: str) -> Atom | None:
+    """One unit name as pint has it; None where it does not know it."""
     import pint  # noqa: PLC0415
 
     try:

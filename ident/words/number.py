@@ -8,6 +8,11 @@ UNKNOWN = "–"
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
+def count(number: int, thing: str) -> str:
+    """A number with its noun: 1 run, 2 runs."""
+    return f"{number} {thing}{'' if number == 1 else 's'}"
+
+
 def raised(power: int) -> str:
     """-6 → ⁻⁶."""
     return str(power).translate(_RAISED)

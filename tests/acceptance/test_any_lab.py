@@ -33,7 +33,7 @@ def test_rates_over_a_hundred_labs_of_each_kind(full):
     if not full:
         pytest.skip("hours long: run with --full")
     outcomes = [trial(seed, hidden, 120.0) for seed in range(100, 200) for hidden in (True, False)]
-    hidden, others = [o for o in outcomes if o.lab.hidden], [o for o in outcomes if not o.lab.hidden]
+    hidden, others = [o for o in outcomes if o.counts], [o for o in outcomes if not o.lab.hidden]
     assert np.mean([o.structure_right for o in outcomes]) >= 0.9, rates(outcomes)
     assert np.mean([o.named for o in hidden]) >= 0.9, rates(outcomes)
     assert np.mean([o.standing != "found" for o in others]) >= 0.97, rates(outcomes)

@@ -1,16 +1,18 @@
-"""Linear algebra is held to one thread while work runs side by side, and has all its threads back afterwards."""
+"""Work runs side by side, work inside of work too; linear algebra is held to one thread meanwhile, and let go after."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
-from threading import Event, Thread
+from threading import Barrier, Event, Thread
 
 import numpy as np
 import pytest
 import scipy.linalg  # noqa: F401  brings its own linear algebra, beside numpy's
 from threadpoolctl import ThreadpoolController
 
-from ident.parallel import each
+from ident.cached import cached_property
+from ident.parallel import cores, each
 
 OWN = 2  # threads that a notebook gave to linear algebra, also on a machine of one core
 
@@ -64,3 +66,79 @@ def test_a_notebooks_own_work_keeps_its_threads_also_after_a_failure() -> None:
     with pytest.raises(ZeroDivisionError):
         each(fail, [0, 1])
     assert threads() == {OWN}
+
+
+def test_nothing_goes_on_after_a_failure() -> None:
+    begun, ended = Event(), Event()
+
+    def work(number: int) -> None:
+        if number == 0:
+            assert begun.wait(30)
+            raise ZeroDivisionError
+        begun.set()
+        time.sleep(0.2)  # the failure is there by now
+        ended.set()
+
+    if cores() == 1:
+        pytest.skip("with one core the first failure ends it")
+    with pytest.raises(ZeroDivisionError):
+        each(work, [0, 1])
+    assert ended.is_set()
+
+
+class Worth:
+    """Something whose worth is worked out on all cores."""
+
+    def __init__(self, begun: Event, go: Event) -> None:
+        self.begun, self.go = begun, go
+
+    @cached_property
+    def value(self) -> int:
+        self.begun.set()
+        assert self.go.wait(30)
+        return sum(each(lambda number: number, range(5)))
+
+
+def test_two_that_ask_for_the_worth_of_different_things_do_not_wait_for_each_other() -> None:
+    """One holds a worth and needs the cores, the cores are at work on the worth of others: both come to an end."""
+    begun, go, at_once = Event(), Event(), Event()
+    at_once.set()
+    first, others = Worth(begun, go), [Worth(Event(), at_once) for _ in range(cores())]
+    one = Thread(target=lambda: first.value, daemon=True)
+    one.start()
+    assert begun.wait(30)
+    two = Thread(target=each, args=(lambda worth: worth.value, others), daemon=True)
+    two.start()
+    for other in others:
+        assert other.begun.wait(30)
+    go.set()
+    for thread in (one, two):
+        thread.join(30)
+        assert not thread.is_alive()
+    assert [worth.value for worth in (first, *others)] == [10] * (cores() + 1)
+
+
+def test_the_first_failure_in_order_is_raised_and_nothing_more_is_begun() -> None:
+    begun: list[int] = []
+
+    def fail(number: int) -> None:
+        begun.append(number)
+        raise KeyError(number)
+
+    with pytest.raises(KeyError, match="0"):
+        each(fail, range(50))
+    assert len(begun) <= cores()
+
+
+@pytest.mark.skipif(cores() < 2, reason="one core has nobody to help")
+def test_work_inside_of_the_only_item_is_shared_out() -> None:
+    met = Barrier(2, timeout=30)
+
+    def outer(_: int) -> list[int]:
+        return each(inner, range(2))
+
+    def inner(number: int) -> int:
+        met.wait()  # both at once, or never
+        return number
+
+    assert each(outer, [0]) == [[0, 1]]

@@ -20,10 +20,11 @@ __all__ = ["notebook"]
 @pytest.mark.usefixtures("notebook")
 def test_the_service_from_its_start_to_its_end(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     seen: list[set[int]] = []
-    for name in ("_start", "_stop"):
-        monkeypatch.setattr(main, name, lambda _: seen.append(threads()))
-    monkeypatch.setattr(main, "make_context", lambda _: None)
-    with TestClient(main.create_app(Settings(data=tmp_path))):
+    for name in ("start", "stop"):
+        monkeypatch.setattr(main, name, lambda *_: seen.append(threads()))
+    settings = Settings(data=tmp_path)
+    monkeypatch.setattr(main, "make_context", lambda _: SimpleNamespace(settings=settings))
+    with TestClient(main.create_app(settings)):
         seen.append(threads())
     assert seen == [{1}, {1}, {1}]
     assert threads() == {OWN}
@@ -33,15 +34,16 @@ def test_the_service_from_its_start_to_its_end(monkeypatch: pytest.MonkeyPatch, 
 def test_a_worker_from_its_start_to_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
     seen: list[set[int]] = []
 
-    def note(*_: float) -> None:
+    def note(*_: object) -> None:
         seen.append(threads())
 
     def interrupted(*_: float) -> None:
         seen.append(threads())
         raise KeyboardInterrupt
 
-    jobs = SimpleNamespace(launch=note, stop=note)
-    monkeypatch.setattr(main, "make_context", lambda _: SimpleNamespace(jobs=jobs))
+    monkeypatch.setattr(main, "make_context", lambda _: SimpleNamespace(jobs=SimpleNamespace(running=True)))
+    for name in ("start", "stop"):
+        monkeypatch.setattr(main, name, note)
     monkeypatch.setattr(sys.modules[worker.__module__], "time", SimpleNamespace(sleep=interrupted))
     worker("one", "postgresql://nobody@127.0.0.1:9/none")
     assert seen == [{1}, {1}, {1}]

@@ -83,7 +83,9 @@ def archived(contents: dict[str, bytes]) -> bytes:
 @pytest.fixture(scope="session")
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """A client of a service with a folder of its own."""
-    settings = Settings(data=Path(tmp_path_factory.mktemp("service")), token=TOKEN)
+    settings = Settings(
+        data=Path(tmp_path_factory.mktemp("service")), token=TOKEN, webhook_hosts=("127.0.0.1:9",), keep_raw=1
+    )
     app = create_app(settings)
     headers = {"Authorization": f"Bearer {TOKEN}"}
     with TestClient(app, "http://127.0.0.1:8000", raise_server_exceptions=False, headers=headers) as client:

@@ -1,7 +1,8 @@
-"""Whatever is asked within the served OpenAPI document: no 5xx, no undocumented status, no undocumented type."""
+"""Whatever is asked within the served OpenAPI document, by whomever: no 5xx, no undocumented status or type."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable
 
 import pytest
@@ -13,26 +14,48 @@ from schemathesis.checks import not_a_server_error
 from schemathesis.specs.openapi.checks import content_type_conformance, status_code_conformance
 
 CHECKS = [not_a_server_error, status_code_conformance, content_type_conformance]
-EXAMPLES, MORE = 10, 50  # of each operation; with --full
+EXAMPLES, MORE = 10, 70  # of each operation by the admin; with --full
+OTHERS, MORE_OTHERS = 1, 30  # by each of the other roles, and by nobody
+Headers = dict[str, str]
 
 
 def test_fuzzed_requests_stay_within_the_document(service: TestClient, matrix: str, full: bool) -> None:
+    """By the admin, who may do everything."""
+    tried = _tried(service, {"Authorization": service.headers["Authorization"]}, matrix, MORE if full else EXAMPLES)
+    assert set(tried) > {200, 404, 422}
+
+
+@pytest.mark.parametrize("role", ["lab", "line", "ci", ""])
+def test_fuzzed_requests_of_each_role_do_too(service: TestClient, matrix: str, full: bool, role: str) -> None:
+    """What a role may not is refused however it is asked; nobody gets anything but whether the service is well."""
+    asked = {"name": f"fuzzing {role}", "role": role}
+    headers = {"Authorization": f"Bearer {service.post('/api/v1/tokens', json=asked).json()['token']}"} if role else {}
+    tried = _tried(service, headers, matrix, MORE_OTHERS if full else OTHERS)
+    assert (tried[403] > 2) is bool(role)
+    assert (tried[401] > 50) is not role
+
+
+def _tried(service: TestClient, headers: Headers, matrix: str, examples: int) -> Counter[int]:
+    """How often each status was answered."""
     document = service.get("/api/v1/openapi.json").json()
     schema = schemathesis.openapi.from_dict(document)
-    tried = 0
+    statuses: Counter[int] = Counter()
+    operations = 0
     for found in schema.get_all_operations():
         operation = found.ok()
         if operation.path.endswith("/events"):
             continue  # a stream that lasts as long as its job; it has tests of its own
 
-        _attempts(service, operation, matrix, MORE if full else EXAMPLES)()
-        tried += 1
-    assert tried >= 18
+        _attempts(service, operation, headers, matrix, examples, statuses)()
+        operations += 1
+    assert operations >= 50
+    return statuses
 
 
 def _attempts(
-    service: TestClient, operation: schemathesis.APIOperation, matrix: str, examples: int
-) -> Callable[[], None]:
+    service: TestClient, operation: schemathesis.APIOperation, who: Headers, matrix: str, examples: int,
+    statuses: Counter[int],
+) -> Callable[[], None]:  # fmt: skip
     @settings(max_examples=examples, deadline=None, derandomize=True, database=None,
               suppress_health_check=list(HealthCheck))  # fmt: skip
     @given(st.data())
@@ -43,8 +66,10 @@ def _attempts(
         request = case.as_transport_kwargs(base_url="http://127.0.0.1:8000")
         request.pop("cookies", None)
         assume(_can_be_sent(request.get("files") or ()))
-        headers = {**(request.pop("headers", None) or {}), "Authorization": service.headers["Authorization"]}
+        headers = {**(request.pop("headers", None) or {}), "Authorization": "", **who}
         answer = service.request(**request, headers=headers)
+        statuses[answer.status_code] += 1
+        answer.request.read()  # it may have been refused before it was read, and the checks show it
         case.validate_response(answer, checks=CHECKS)
 
     return attempt

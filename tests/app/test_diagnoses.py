@@ -13,7 +13,7 @@ from fastapi.testclient import TestClient
 
 from app.diagnoses.work import DIAGNOSIS
 from app.jobs import repository
-from app.jobs.steps import GuardedSteps
+from app.jobs.steps import Runs
 from tests.app.conftest import reached
 from tests.hidden_dead_zone import HALF_WIDTH, zipped
 
@@ -183,16 +183,16 @@ def test_a_running_diagnosis_is_cancelled_and_leaves_nothing(service, linear):
 def test_a_result_is_stored_once_and_one_that_cannot_be_ends_its_job(service, diagnosis, linear, matrix):
     """As after a kill between the last step and its record; nothing is left half written."""
     context = service.app.state.context
-    steps = GuardedSteps(context.sessions, context.storage, DIAGNOSIS)
+    runs = Runs(context.sessions, context.storage, "here", DIAGNOSIS)
     made = {"outcome": None, "state": {"diagnosis": {**diagnosis, "seconds": 1.0}, "fit": None}}
-    steps.store(diagnosis["id"], made)
+    runs.take(diagnosis["id"]).store(made)
     assert service.get(f"{API}/diagnoses/{diagnosis['id']}").json() == diagnosis
     with context.sessions.begin() as session:
         repository.add(session, "twice", matrix, {}, linear, "diagnosis")
         repository.add(session, "broken", matrix, {}, linear, "diagnosis")
     for _ in range(2):
-        steps.store("twice", made)
-    steps.store("broken", {"outcome": None, "state": {"diagnosis": {"x": object()}, "fit": None}})
+        runs.take("twice").store(made)
+    runs.take("broken").store({"outcome": None, "state": {"diagnosis": {"x": object()}, "fit": None}})
     listed = service.get(f"{API}/diagnoses", params={"fit": linear}).json()["items"]
     assert sorted(one["id"] for one in listed) == sorted(["twice", diagnosis["id"]])
     assert service.get(f"{API}/jobs/broken").json()["problem"]["code"] == "not-stored"

@@ -13,14 +13,16 @@ from fastapi.testclient import TestClient
 
 from app.hybrid.work import HYBRID
 from app.jobs import repository
-from app.jobs.steps import GuardedSteps
+from app.jobs.steps import Runs
 from ident.fit.result import FitResult
 from ident.hybrid.case import qian
 from ident.hybrid.controller import SampledController
 from ident.hybrid.ground import Ground
 from ident.hybrid.rig import simulate_hybrid
+from tests.app.conftest import archived
 from tests.app.test_bad_inputs import kept, refused_by_service
 from tests.app.test_diagnoses import ended
+from tests.fit import rig
 
 API = "/api/v1"
 QUIET = "\n".join(["a header", *(f"{0.3 * np.sin(0.9 * k):.6f}" for k in range(120))])
@@ -68,9 +70,10 @@ def test_a_controller_is_kept_and_its_three_forms_are_one(service, controller, f
     for name in ("A", "B", "C", "D"):
         np.testing.assert_array_equal(held[name], getattr(read, name))
     assert f"{read.A[0, 0]:.17e}" in header
-    assert [one["id"] for one in service.get(f"{API}/controllers", params={"fit": fitted}).json()["items"]] == [
-        controller["id"]
-    ]
+    listed = service.get(f"{API}/controllers", params={"fit": fitted}).json()["items"]
+    assert [one["id"] for one in listed].count(controller["id"]) == 1
+    assert {one["fit"] for one in listed} == {fitted}
+    assert service.get(f"{API}/controllers", params={"fit": "none"}).json()["items"] == []
     for missing in (f"{controller['id']}.exe", "none.json", "none"):
         assert service.get(f"{API}/controllers/{missing}").status_code == 404
 
@@ -115,6 +118,38 @@ def test_every_figure_is_drawn(service, simulation, controller, fitted, matrix):
         assert service.get(f"{API}{place}/figures/none.svg").status_code == 404
         assert service.get(f"{API}{place}/figures/{name}.gif").status_code == 404
         refused_by_service(service.get(f"{API}{place}/figures/{name}.svg?theme=pink"), "unknown-theme")
+
+
+def test_what_a_feedforward_is_worth_is_kept_and_drawn(service, tmp_path):
+    """Of a rig of fifth order of which two parameters are fitted: limit, draws and their band; figure and page."""
+    truth = rig.machine(0)
+    folder = rig.written(tmp_path, truth, 0)
+    archive = archived({path.name: path.read_bytes() for path in folder.iterdir()})
+    matrix = service.post(f"{API}/matrices", files={"file": ("rig.zip", archive)}).json()["id"]
+    few = {"population": 16, "generations": 3, "elite": 3}
+    known = {name: value for name, value in truth._asdict().items() if name not in ("kep", "wn")}
+    fit = ended(service, service.post(
+        f"{API}/fits", json={"matrix": matrix, "model": "strano", "set": known, "options": few}
+    ))  # fmt: skip
+    assert fit["state"] == "succeeded", fit
+    case = {
+        "structure": {"mass": "20 t", "stiffness": "0.8 MN/m", "damping": {"ratio": "20 %"}},
+        "physical": {"mass": "500 kg", "stiffness": "10 %"}, "gain": 100, "piston_area": "9050 mm^2",
+        "supply_pressure": "210 bar",
+        "ground": {"kind": "sine", "frequency": "0.8 Hz", "amplitude": "0.1 g", "duration": "2 s"},
+    }  # fmt: skip
+    body = {"fit": fit["id"], "case": case, "controller": "feedforward"}
+    job = ended(service, service.post(f"{API}/hybrid-simulations", json=body))
+    assert job["state"] == "succeeded", job
+    found = service.get(f"{API}/hybrid-simulations/{job['id']}").json()
+    assert found["figures"] == ["displacement", "response", "feedforward"]
+    told = found["feedforward"]
+    assert (told["draws"], told["gain"]) == (100, 100)
+    assert told["limit"] > 200
+    assert told["both_rms"] < told["feedback_rms"] / 20
+    drawn = service.get(f"{API}/hybrid-simulations/{job['id']}/figures/feedforward.svg")
+    assert b"below the stability limit" in drawn.content
+    assert "What the feedforward is worth" in service.get(f"/fits/{fit['id']}/use?simulation={job['id']}").text
 
 
 def test_the_kept_record_shows_the_reference(service, simulation):
@@ -165,13 +200,13 @@ def test_a_simulation_that_waits_can_be_cancelled(service, fitted):
 def test_a_result_is_stored_once_and_one_that_cannot_be_ends_its_job(service, simulation, fitted, matrix):
     """As after a kill between the last step and its record."""
     context = service.app.state.context
-    steps = GuardedSteps(context.sessions, context.storage, HYBRID)
+    runs = Runs(context.sessions, context.storage, "here", HYBRID)
     held = {"result": {}, "without": None, "map": None, "records": ""}
-    steps.store(simulation["id"], {"outcome": None, "state": held})
+    runs.take(simulation["id"]).store({"outcome": None, "state": held})
     assert service.get(f"{API}/hybrid-simulations/{simulation['id']}").json() == simulation
     with context.sessions.begin() as session:
         repository.add(session, "unstored", matrix, {"asked": {}}, fitted, HYBRID.name)
-    steps.store("unstored", {"outcome": None, "state": {**held, "result": object()}})
+    runs.take("unstored").store({"outcome": None, "state": {**held, "result": object()}})
     assert service.get(f"{API}/jobs/unstored").json()["problem"]["code"] == "not-stored"
     assert service.get(f"{API}/hybrid-simulations/unstored").status_code == 404
 

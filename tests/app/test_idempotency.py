@@ -12,10 +12,11 @@ from typing import Any, cast
 
 import pytest
 
+from app.access.who import START
 from app.context import Context
 from app.database import connect, migrate, sessions
 from app.errors import Failure
-from app.fits.endpoints import approve, submit
+from app.fits.endpoints import approve_fit, start_fit
 from app.idempotency import answers
 from app.settings import Settings
 from app.storage import Storage
@@ -55,7 +56,7 @@ def context_of(folder: Path, database: str = "") -> Context:
 
 def posted(context: Context, key: str | None, seed: int = 0) -> dict[str, Any]:
     """What a POST of a fit is answered."""
-    answer = submit(context, FitRequest(matrix="m", seed=seed), key)
+    answer = start_fit(context, START, FitRequest(matrix="m", seed=seed), key)
     return {"status": answer.status_code, "location": answer.headers["location"], "body": answer.body}
 
 
@@ -155,7 +156,7 @@ def test_a_claim_younger_than_a_minute_is_waited_for(here: Context, monkeypatch:
 def test_a_refused_request_lets_go_of_its_key(here: Context) -> None:
     """The same request may succeed later."""
     with pytest.raises(Failure, match="fit"):
-        approve(here, "no-such-fit", "once")
+        approve_fit(here, START, "no-such-fit", key="once")
     with here.sessions() as session:
         assert session.get(AnswerRow, "once") is None
 

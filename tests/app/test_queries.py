@@ -17,7 +17,7 @@ from app.jobs import service as jobs
 from app.pages import service as pages
 from app.settings import Settings
 from app.storage import Storage
-from app.tables import ActuatorRow, Base, FitRow, JobRow, MatrixRow
+from app.tables import ActuatorRow, Base, FitRow, JobRow, MatrixRow, SetRow
 
 JOBS = 260  # of the busy actuator, all later than the one of the quiet actuator
 SUMMARY: dict[str, Any] = {"data_hash": "", "runs": [], "findings": [], "notices": []}
@@ -40,7 +40,9 @@ def context(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Context]:
             state = "queued" if number == JOBS - 1 else "cancelled"
             session.add(job(f"busy-{number:03}", "m-BUSY", state, f"2026-02-01T00:{number // 60:02}:{number % 60:02}"))
         session.add(job("quiet", "m-QUIET", "succeeded", "2026-01-01T00:00:00"))
-        session.add(FitRow(id="quiet", matrix="m-QUIET", serial="QUIET", model="qian2014", error_fit=0.0123, result={}))
+        session.add(FitRow(id="quiet", matrix="m-QUIET", serial="QUIET", model="qian2014", result={}))
+        session.flush()
+        session.add(SetRow(fit="quiet", serial="QUIET", model="qian2014", error_fit=0.0123))
     yield Context(settings, engine, made, Storage(settings.data / "blobs"), cast(Any, None))
     engine.dispose()
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import pytest
 
 from app.regress.junit import junit
-from app.regress.recheck import Change, Recheck
+from app.regress.recheck import Change, Recheck, recheck
+from ident.progress import silent
 
 
 @pytest.mark.parametrize(
@@ -42,3 +44,10 @@ def test_the_junit_file_counts_failures_and_errors_apart():
     }
     assert [case.get("name") for case in suite] == ["SW-1", "SW-2 <&", "SW-3"]
     assert "Z0 1 → 2" in suite.find(".//failure").get("message")
+
+
+def test_a_fit_that_ran_out_of_its_time_is_not_rechecked():
+    """Made again it may be another: that is no move of the program."""
+    found = recheck("SW-1", "f", SimpleNamespace(ended_early=True), None, 1e-3, silent)
+    assert not found.passed
+    assert "ran out of its time; fit again without a budget" in found.failure

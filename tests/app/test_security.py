@@ -33,6 +33,7 @@ def test_without_the_token_only_health_answers(service: TestClient) -> None:
 def test_the_start_address_gives_a_strict_cookie_and_drops_the_token(service: TestClient) -> None:
     answer = service.get(f"/api/v1/models?token={TOKEN}&x=1", headers={"Authorization": ""}, follow_redirects=False)
     assert (answer.status_code, answer.headers["location"]) == (303, "/api/v1/models?x=1")
+    assert TOKEN not in answer.headers["set-cookie"]
     assert "HttpOnly" in answer.headers["set-cookie"]
     assert "samesite=strict" in answer.headers["set-cookie"].lower()
     service.cookies.clear()

@@ -10,7 +10,7 @@ import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import text
 
-from app.tables import FitRow
+from app.tables import FitRow, SetRow
 
 PATIENCE = 30  # s: they go a moment later
 
@@ -44,9 +44,11 @@ def test_a_fit_keeps_its_history_once_and_compact(service: TestClient, fitted: s
     whole = len(json.dumps(result["evolution"]))
     with service.app.state.context.sessions() as session:
         row = session.execute(text("SELECT length(result) FROM fits WHERE id = :id"), {"id": fitted}).scalar_one()
-        kept = session.execute(text("SELECT length(content) FROM evolutions WHERE fit = :id"), {"id": fitted})
-        assert row < 40_000
-        assert 0 < kept.scalar_one() < 0.35 * whole
+        kept = session.execute(text("SELECT blob, length(content) FROM evolutions WHERE fit = :id"), {"id": fitted})
+        blob, inside = kept.one()
+    assert row < 40_000
+    assert inside == 0
+    assert 0 < service.app.state.context.storage.path(blob).stat().st_size < 0.35 * whole
     assert service.get(f"/api/v1/fits/{fitted}/figures/evolution.svg").content.startswith(b"<svg")
 
 
@@ -54,8 +56,10 @@ def test_a_fit_keeps_its_history_once_and_compact(service: TestClient, fitted: s
 def test_a_fit_of_an_earlier_version_has_its_history_in_its_row(service: TestClient, fitted: str) -> None:
     found = service.get(f"/api/v1/fits/{fitted}").json()
     with service.app.state.context.sessions.begin() as session:
-        session.add(FitRow(id="earlier", matrix=found["matrix"], serial=found["serial"], model="qian2014",
-                           result=found["result"]))  # fmt: skip
+        row = FitRow(id="earlier", matrix=found["matrix"], serial=found["serial"], model="qian2014",
+                     result=found["result"])  # fmt: skip
+        row.set = SetRow(serial=found["serial"], model="qian2014")
+        session.add(row)
     try:
         assert service.get("/api/v1/fits/earlier").json()["result"] == found["result"]
         assert service.get("/api/v1/fits/earlier/figures/evolution.json").status_code == 200

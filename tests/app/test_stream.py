@@ -123,7 +123,9 @@ def test_a_stream_needs_the_token_and_takes_the_cookie(service: TestClient) -> N
     nobody = {"Authorization": ""}
     with pytest.raises(WebSocketDisconnect), connected(service, headers=nobody):
         pass
-    with connected(service, headers=nobody | {"Cookie": f"servoident={TOKEN}"}) as socket:
+    cookie = service.get(f"/?token={TOKEN}", headers=nobody, follow_redirects=False).cookies["servoident"]
+    service.cookies.clear()
+    with connected(service, headers=nobody | {"Cookie": f"servoident={cookie}"}) as socket:
         socket.send_json({"r": [0.0], "y": [0.0]})
         assert socket.receive_json()["nis"] == [0.0]
     with pytest.raises(WebSocketDisconnect), connected(service, headers=BEARER | {"Origin": "http://evil.example"}):

@@ -42,28 +42,28 @@ def test_a_fit_of_the_bench_has_its_own_figures(fitted):
 @pytest.mark.parametrize("name", ["time", "evolution", *OF_BENCH])
 def test_every_figure_is_drawn(fitted, name, theme):
     """As SVG, with the actuator's serial in its title."""
-    chart = figure(name, *fitted, theme)
+    chart = figure(fitted[1], name, theme=theme)
     assert render(chart, "svg").startswith(b"<svg")
     assert "REFERENCE" in texts(chart)
 
 
 def test_the_pressure_loop_has_three_colours(fitted):
     """Rest, movement forward, movement back, each with points of its own."""
-    found = texts(figure("pressure-loop", *fitted))
+    found = texts(figure(fitted[1], "pressure-loop"))
     for group in ("static", "moving +", "moving −"):
         assert found.count(json.dumps(group, ensure_ascii=False)) > 20
 
 
 @pytest.mark.parametrize("smoothing", ["iir", "fir", "bezier"])
 def test_the_speed_is_smoothed_as_asked(fitted, smoothing):
-    assert "fixed levels" in texts(figure("speed-characteristic", *fitted, smoothing=smoothing))
+    assert "fixed levels" in texts(figure(fitted[1], "speed-characteristic", smoothing=smoothing))
 
 
 def test_an_unknown_smoothing_and_a_figure_of_another_model_are_refused(fitted):
     with pytest.raises(Unusable, match="iir, fir, bezier"):
-        figure("speed-characteristic", *fitted, smoothing="none")
+        figure(fitted[1], "speed-characteristic", smoothing="none")
     with pytest.raises(Unusable, match="pressure-loop"):
-        figure("bode", *fitted)
+        figure(fitted[1], "bode")
 
 
 def test_the_sheet_names_every_quantity_and_the_verdict(fitted):

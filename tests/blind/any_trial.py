@@ -1,20 +1,32 @@
-"""A lab's machine, no model named: which structure is taken, what is found. `python -m tests.blind.any_trial 0 10`."""
+"""A lab's machine, no model named: which structure is taken, what is found.
+
+python -m tests.blind.any_trial 0 10   [--seconds N] [--out FILE]    seeds, of each one with and one without an effect
+"""
 
 from __future__ import annotations
 
-import sys
-from dataclasses import dataclass
+import argparse
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
 
 from ident.fit.settings import Settings
 from ident.workflows import diagnose, identify
 from tests.blind.any_machine import Lab, sound
+from tests.blind.campaign import add
+from tests.blind.table import LABS, interval
+from tests.blind.worth import COUNTS, TRUE, nats
 
-SAME = 0.5  # of the noise: so much may a model differ from the machine that is called right
+SAME = 0.5  # of the noise: so much may a simpler model differ from the machine and be called right
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a trial. `differs` is the noise-free error of the model that was taken, with nothing hidden."""
+    """What came of a trial.
+
+    `differs` is the noise-free error of the model that was taken, with nothing hidden, 0 for the true one; `nats` what
+    the hidden effect is worth on runs withheld.
+    """
 
     lab: Lab
     model: str
@@ -24,6 +36,12 @@ class Outcome:
     effects: tuple[str, ...]
     standing: str | None
     group: tuple[str, ...]
+    nats: float
+
+    @property
+    def counts(self) -> bool:
+        """Whether something is hidden that the records show."""
+        return self.nats >= COUNTS
 
     @property
     def structure_right(self) -> bool:
@@ -42,39 +60,70 @@ class Outcome:
         return (
             f"{lab.seed} {lab.structure} {lab.kind}, hidden {lab.hidden or 'nothing'}: {self.model} "
             f"{'right' if self.structure_right else 'wrong'}, {errors} × noise, {', '.join(self.effects) or 'nothing'} "
-            f"{self.standing}"
+            f"{self.standing}, worth {self.nats:.3g} nats"
         )
+
+    def row(self) -> dict[str, object]:
+        """What is kept of it, plain."""
+        of_lab = {name: getattr(self.lab, name) for name in ("seed", "structure", "kind", "hidden", "noise")}
+        own = {name: value for name, value in asdict(self).items() if name != "lab"}
+        return of_lab | own | {"right": self.structure_right, "named": self.named, "counts": self.counts}
 
 
 def trial(seed: int, hidden: bool, seconds: float | None = None) -> Outcome:
     """A lab by its seed, diagnosed in so many seconds at most."""
     lab = Lab.drawn(seed, hidden)
+    worth = nats(lab) if hidden else 0.0
     matrix = lab.measured()
     fit = identify(matrix, Settings(model=""))
-    clean = identify(sound(lab).measured(noisy=False), Settings(model=fit.model))
-    found = diagnose(matrix, fit, seconds=seconds)
+    found = diagnose(matrix, fit, seconds=seconds, propose=False)
     group = next((group for group in found.verdict.indistinguishable if lab.hidden in group), ())
     return Outcome(
-        lab, fit.model, clean.error["fit"] or 0.0, fit.error["fit"] or 0.0, found.ladder[-1].error["fit"] or 0.0,
-        found.verdict.effects, found.verdict.standing, group,
+        lab, fit.model, _differs(lab, fit.model), fit.error["fit"] or 0.0, found.ladder[-1].error["fit"] or 0.0,
+        found.verdict.effects, found.verdict.standing, group, worth,
     )  # fmt: skip
 
 
+def _differs(lab: Lab, model: str) -> float:
+    """The noise-free error of the best fit of a model that is not the machine's own."""
+    if model == TRUE[lab.structure]:
+        return 0.0
+    return identify(sound(lab).measured(noisy=False), Settings(model=model)).error["fit"] or 0.0
+
+
 def rates(outcomes: list[Outcome]) -> str:
-    """How often each thing was right, as counts."""
-    hidden, sound_ones = [o for o in outcomes if o.lab.hidden], [o for o in outcomes if not o.lab.hidden]
-    return (
-        f"structure right {sum(o.structure_right for o in outcomes)} of {len(outcomes)}; "
-        f"hidden effect named {sum(o.named for o in hidden)} of {len(hidden)}; "
-        f"nothing found where nothing is hidden {sum(o.standing != 'found' for o in sound_ones)} of {len(sound_ones)}"
-    )
+    """How often each thing was right, as counts with 95 % intervals."""
+    hidden, sound_ones = [o for o in outcomes if o.counts], [o for o in outcomes if not o.lab.hidden]
+    return "; ".join((
+        f"structure right {_rate([o.structure_right for o in outcomes])}",
+        f"hidden effect named {_rate([o.named for o in hidden])}",
+        f"nothing found where nothing is hidden {_rate([o.standing != 'found' for o in sound_ones])}",
+    ))  # fmt: skip
+
+
+def _rate(right: list[bool]) -> str:
+    lower, upper = interval(sum(right), len(right))
+    return f"{sum(right)} of {len(right)} ({100 * lower:.0f} to {100 * upper:.0f} %)"
+
+
+def main() -> None:
+    """Trials one after the other, each kept as soon as it is known."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("first", type=int)
+    parser.add_argument("end", type=int)
+    parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--minutes", type=float, default=1e9)
+    parser.add_argument("--out", type=Path, default=LABS)
+    asked, begun, outcomes = parser.parse_args(), time.monotonic(), []
+    for seed in range(asked.first, asked.end):
+        for hidden in (True, False):
+            if time.monotonic() - begun > 60 * asked.minutes:
+                break
+            outcomes.append(trial(seed, hidden, asked.seconds))
+            add(outcomes[-1].row(), asked.out)
+            print(outcomes[-1], flush=True)
+    print(rates(outcomes))
 
 
 if __name__ == "__main__":
-    first, last = (int(number) for number in sys.argv[1:3])
-    outcomes = []
-    for seed in range(first, last):
-        for hidden in (True, False):
-            outcomes.append(trial(seed, hidden, 60.0))
-            print(outcomes[-1], flush=True)
-    print(rates(outcomes))
+    main()

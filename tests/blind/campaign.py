@@ -1,7 +1,7 @@
 """The campaign of blind trials: resumable, in parts, its rows kept in docs/blind-trials.jsonl.
 
 python -m tests.blind.campaign one --noise 0.01 --level 3 --seeds 1 2   [--small] [--effects NAME …]
-python -m tests.blind.campaign none|two|three --seeds 1 2 3   [--small]
+python -m tests.blind.campaign none|two|three|clutter --seeds 1 2 3   [--small]
 python -m tests.blind.campaign outside|own|label|noise --seeds 1 2 3
 options: --minutes N (stop after), --out FILE
 """
@@ -14,6 +14,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+from tests.blind.clutter import clutter
 from tests.blind.noises import NOISES
 from tests.blind.trial import NAMES, label, noisy, outside, own, several, single
 from tests.blind.written import WRITTEN
@@ -24,7 +25,7 @@ NAMED = {
     "noise": tuple(NOISES),
 }  # fmt: skip
 """What the trials of a kind are about, by name: what is hidden, but for noise; the other kinds draw it."""
-SMALL = ("one", "none", "two", "three")
+SMALL = ("one", "none", "two", "three", "clutter")
 OUT = Path(__file__).parents[2] / "docs" / "blind-trials.jsonl"
 
 
@@ -63,7 +64,7 @@ def show(row: dict[str, Any]) -> None:
 def main() -> None:
     """Run what is asked for and is not there yet."""
     parser = argparse.ArgumentParser()
-    parser.add_argument("kind", choices=(*NAMED, "none", "two", "three"))
+    parser.add_argument("kind", choices=(*NAMED, "none", "two", "three", "clutter"))
     parser.add_argument("--noise", type=float, default=0.01)
     parser.add_argument("--level", type=float, default=3.0)
     parser.add_argument("--seeds", type=int, nargs="+", default=[1])
@@ -86,6 +87,8 @@ def main() -> None:
             elif asked.kind in NAMED:
                 of = {"outside": outside, "own": own, "label": label, "noise": noisy}
                 row = of[asked.kind](name, seed, asked.noise)
+            elif asked.kind == "clutter":
+                row = clutter(seed, asked.noise, asked.small)
             else:
                 row = several({"none": 0, "two": 2, "three": 3}[asked.kind], seed, asked.noise, asked.small)
             add(row, asked.out)

@@ -14,6 +14,7 @@ from tests.blind.campaign import OUT, rows
 from tests.blind.noises import NOISES
 
 PAGE = OUT.with_suffix(".md")
+LABS = OUT.with_name("blind-labs.jsonl")
 Row = dict[str, Any]
 GOALS = {"one full": 97, "one small": 90, "none full": 98, "none small": 98, "two full": 92, "two small": 92,
          "three full": 80, "three small": 80, "outside full": 90, "own full": 100, "label full": 95}  # fmt: skip
@@ -78,6 +79,20 @@ def noises(tried: Sequence[Row]) -> Iterable[str]:
             yield f"| {kind.replace('_', '-')} | {' | '.join(map(rate, parts))} |"
 
 
+def cluttered(tried: Sequence[Row]) -> Iterable[str]:
+    """One strong effect among weak ones: it is named, and no name is in no class of what is hidden."""
+    columns = "matrix, strong one named, rate in %, no other name, rate in %, verify ≤ 1.1 where the truth is 1.05"
+    yield f"| {' | '.join(columns.split(', '))} |"
+    yield "|---|---|---|---|---|---|"
+    for matrix in ("full", "small"):
+        found = [row for row in tried if (row["kind"], row["matrix"]) == ("clutter", matrix)]
+        if found:
+            reached = [row for row in found if row["oracle"] <= 1.05]
+            at_floor = sum(row["verify"] <= 1.1 for row in reached)
+            clean = rate([{"named": row["clean"]} for row in found])
+            yield f"| {matrix} | {rate(found)} | {clean} | {at_floor} of {len(reached)} |"
+
+
 def confusion(tried: Sequence[Row]) -> Iterable[str]:
     """What was named for each hidden effect."""
     yield "| hidden | named (trials) |"
@@ -99,13 +114,38 @@ def unreachable(everything: Sequence[Row]) -> Iterable[str]:
             yield f"| {name} | {row['matrix']} | {100 * row['noise']:g} % | {row['level']:g} | {largest:.2f} |"
 
 
+def labs(everything: Sequence[Row]) -> Iterable[str]:
+    """Machines that nobody described, drawn from all structures: how often each thing was right."""
+    yield "Each hundred of seeds was tried as the program stood then, each seed once with and once without an effect.\n"
+    yield "| seeds | what | right | rate in % (95 % interval) | goal in % |"
+    yield "|---|---|---|---|---|"
+    for hundred in sorted({row["seed"] // 100 for row in everything}):
+        tried = [row for row in everything if row["seed"] // 100 == hundred]
+        seeds = f"{tried[0]['seed']} to {tried[-1]['seed']}"
+        hidden, sound = [row for row in tried if row["counts"]], [row for row in tried if not row["hidden"]]
+        for what, goal, right in (
+            ("the structure, or a simpler one within half of the noise", 90, [row["right"] for row in tried]),
+            ("the hidden effect named, of those worth 15 nats", 90, [row["named"] for row in hidden]),
+            ("nothing found where nothing is hidden", 97, [row["standing"] != "found" for row in sound]),
+        ):
+            if right:
+                yield f"| {seeds} | {what} | {rate([{'named': hit} for hit in right])} | {goal} |"
+    for row in everything:
+        said = f"seed {row['seed']}, {row['structure']}, {row['kind']}"
+        if row["counts"] and not row["named"]:
+            yield f"\nMissed: {said}: {row['hidden']}, told as {', '.join(row['effects']) or 'nothing'}."
+        if not row["right"]:
+            yield f"\nTaken for another machine: {said}, {row['hidden'] or 'nothing'} hidden: {row['model']}."
+
+
 def page(everything: Sequence[Row]) -> str:
     """The whole page."""
     tried = [row for row in everything if row.get("reachable", True) and not row.get("void")]
     parts: list[tuple[str, Callable[[Sequence[Row]], Iterable[str]], Sequence[Row]]] = [
         ("Rates", summary, tried), ("One effect, by noise and size", levels, tried),
-        ("Noise of other kinds", noises, tried), ("What was named", confusion, tried),
-        ("Unreachable", unreachable, everything),
+        ("Noise of other kinds", noises, tried), ("One strong effect among weak ones", cluttered, tried),
+        ("What was named", confusion, tried),
+        ("Unreachable", unreachable, everything), ("Machines that nobody described", labs, rows(LABS)),
     ]  # fmt: skip
     head = (
         "# Blind trials\n\nWritten by `python -m tests.blind.table` from blind-trials.jsonl. Data come from the "
@@ -113,7 +153,8 @@ def page(everything: Sequence[Row]) -> str:
         "the verdict is the hidden set, each effect itself or in a group of at most three. For an effect that is not "
         "listed: not a confident wrong name, unless the error is at the floor; written as an equation: it is named and "
         "the error falls to 1.1 times the floor. A row that is `void`, for the reason that stands there, is not "
-        "counted.\n"
+        "counted. Machines that nobody described are drawn by `python -m tests.blind.any_trial` from all structures; "
+        "their rows stand in blind-labs.jsonl.\n"
     )
     return head + "\n".join(f"\n## {title}\n\n" + "\n".join(make(of)) + "\n" for title, make, of in parts)
 

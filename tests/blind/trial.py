@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ident.diagnosis.result import Diagnosis
+from ident.diagnosis.stepwise import USUAL
 from ident.effects import EFFECTS
 from ident.effects.effect import Effect
 from ident.fit.settings import Settings
@@ -154,11 +155,13 @@ def outcome(machine: Machine) -> dict[str, Any]:
     return judged(machine.measured(), machine.hidden)
 
 
-def judged(matrix: Matrix, hidden: dict[str, float] | Any, custom: tuple[Effect, ...] = ()) -> dict[str, Any]:
+def judged(
+    matrix: Matrix, hidden: dict[str, float] | Any, custom: tuple[Effect, ...] = (), most: int = USUAL
+) -> dict[str, Any]:
     """Fit, diagnose with the catalogue and effects of one's own, and compare with the truth."""
     fit = identify(matrix, Settings())
     begun = time.perf_counter()
-    found = diagnose(matrix, fit, custom=custom)
+    found = diagnose(matrix, fit, custom=custom, most=most)
     last = found.ladder[-1]
     floor = found.noise_floor
     return {

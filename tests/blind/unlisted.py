@@ -13,7 +13,7 @@ import time
 from collections.abc import Iterable, Sequence
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from ident.matrix import Matrix
 from ident.workflows import diagnose, identify
 from tests.blind.campaign import add, rows
 from tests.blind.machines import runs_away
-from tests.blind.unlisted_effects import KIND, MODEL, Secret, secret
+from tests.blind.unlisted_effects import KIND, MODEL, secret
 from tests.reference import qian_reference as linear
 from tests.reference.unlisted_reference import KINDS, NAMES
 
@@ -51,7 +51,20 @@ def trial(name: str, seed: int, level: float, full: bool = False, catalogue: boo
     return row | outcome(machine, catalogue) if row["reachable"] else row
 
 
-def outcome(machine: Secret, catalogue: bool) -> Row:
+class Hiding(Protocol):
+    """A machine with something hidden; `noise` is its share of each run's output."""
+
+    @property
+    def noise(self) -> float: ...
+
+    @property
+    def trials(self) -> list[linear.Trial]: ...
+
+    def measured(self, trials: Sequence[linear.Trial] | None = None, noise: float | None = None) -> Matrix:
+        """Its test matrix, or other runs."""
+
+
+def outcome(machine: Hiding, catalogue: bool) -> Row:
     """The proposals beside the linear model, or beside what the catalogue found, against the truth."""
     matrix = machine.measured()
     fit = identify(matrix, Settings(model=MODEL))

@@ -15,7 +15,7 @@ LONG = 120_000  # ms, for a machine that is busy with other things
 def upload(page: Page, site: Service, archive: Path) -> None:
     """One zip; the page of its matrix opens."""
     page.goto(f"{site.address}/upload")
-    page.get_by_label("A zip, or matrix.yaml and files").set_input_files(archive)
+    page.get_by_label("A zip, matrix.yaml and files, or raw files").set_input_files(archive)
     page.get_by_role("button", name="Upload").click()
     expect(page.locator("h1")).to_contain_text("Test matrix of", timeout=LONG)
 

@@ -116,7 +116,7 @@ def test_an_upload_shows_how_far_it_is(page, site, tmp_path):
     page.goto(f"{site.address}/upload")
     bar = page.get_by_role("progressbar", name="Progress of the upload")
     expect(bar).to_be_hidden()
-    page.get_by_label("A zip, or matrix.yaml and files").set_input_files(archive)
+    page.get_by_label("A zip, matrix.yaml and files, or raw files").set_input_files(archive)
     page.get_by_role("button", name="Upload").click()
     expect(bar).to_be_visible()
     expect(page.locator("[data-stage]")).to_contain_text("sent")

@@ -23,10 +23,15 @@ def addresses(matrix: str, fitted: str) -> dict[str, str]:
         "jobs": "/jobs",
         "fit": f"/fits/{fitted}",
         "use": f"/fits/{fitted}/use",
+        "statistics": "/statistics?parameter=tau",
+        "limits": "/limits",
+        "regressions": "/regressions",
     }
 
 
-@pytest.mark.parametrize("name", ["actuators", "actuator", "upload", "matrix", "jobs", "fit", "use"])
+@pytest.mark.parametrize(
+    "name", ["actuators", "actuator", "upload", "matrix", "jobs", "fit", "use", "statistics", "limits", "regressions"]
+)
 def test_a_page_fits_desk_and_tablet_in_both_themes_and_shuts_nobody_out(name, page, site, matrix, fitted, screenshots):
     """Every field has a label and every column of a table a heading."""
     page.goto(site.address + addresses(matrix, fitted)[name])
@@ -183,7 +188,7 @@ def test_the_whole_way_from_upload_to_approval(page, site, tmp_path):
     archive = tmp_path / "matrix.zip"
     archive.write_bytes(zipped("SW-NEW"))
     page.goto(f"{site.address}/upload")
-    page.get_by_label("A zip, or matrix.yaml and files").set_input_files(archive)
+    page.get_by_label("A zip, matrix.yaml and files, or raw files").set_input_files(archive)
     page.get_by_role("button", name="Upload").click()
     expect(page.locator("h1")).to_have_text("Test matrix of SW-NEW")
     page.get_by_text("Model, method, bounds").click()
@@ -231,10 +236,25 @@ def test_a_refused_upload_says_what_where_and_the_remedy(page, watch, site, tmp_
     bad = tmp_path / "matrix.zip"
     bad.write_bytes(b"not a zip at all")
     page.goto(f"{site.address}/upload")
-    page.get_by_label("A zip, or matrix.yaml and files").set_input_files(bad)
+    page.get_by_label("A zip, matrix.yaml and files, or raw files").set_input_files(bad)
     page.get_by_role("button", name="Upload").click()
     said = page.get_by_role("alert")
     expect(said).not_to_be_empty()
     assert said.inner_text().endswith(".")
     assert "Traceback" not in page.content()
     watch.complaints.clear()  # the browser notes the status itself
+
+
+def test_what_is_left_is_told_in_its_unit_and_a_profile_is_drawn_when_it_is_opened(page, site, fitted):
+    """In both themes, with its downloads; the choice of a parameter draws another."""
+    page.goto(f"{site.address}/fits/{fitted}")
+    expect(page.locator('[data-size="use:fit"][data-of="rmse"]')).to_have_text(re.compile(r"\d.*m$"), timeout=60_000)
+    figure = page.locator("#figure-profile")
+    expect(figure).to_be_hidden()
+    page.locator("#profile summary").click()
+    for theme in ("light", "dark"):
+        page.emulate_media(color_scheme=theme)
+        expect(figure.locator("a[data-format=pdf]")).to_have_attribute("href", re.compile(f"theme={theme}"))
+        expect(figure.locator("canvas")).to_be_visible(timeout=60_000)
+    figure.get_by_label("Parameter").select_option("tau")
+    expect(figure.locator("a[data-format=svg]")).to_have_attribute("href", re.compile("parameter=tau"))

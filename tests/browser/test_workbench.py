@@ -37,7 +37,7 @@ def the_next_run_is_proposed(page):
 
 
 def an_own_effect_is_tried(page, watch):
-    """Refused at its character, then shown as mathematics."""
+    """Refused at its character, then shown as mathematics; with a curve as well."""
     own = page.locator("form[data-own]")
     for label, text in (("Name", "overlap"), ("Strength, symbol", "h"), ("Unit", "mm"), ("Largest", "1")):
         own.get_by_label(label, exact=True).fill(text)
@@ -49,6 +49,13 @@ def an_own_effect_is_tried(page, watch):
     own.get_by_label("Equation").fill("w = w - clip(w, -h, h)")
     own.get_by_role("button", name="Check").click()
     expect(own.locator("math")).to_have_count(1, timeout=story.LONG)
+    of_curve = {"symbol": "cv", "of the signal": "x", "knots with units": "-2 mm, 0 mm, 2 mm",
+                "values there": "1, 0, 1", "unit": "1", "lowest": "0", "largest": "2"}  # fmt: skip
+    for label, text in of_curve.items():
+        own.get_by_label(f"Curve, {label}", exact=True).fill(text)
+    own.get_by_label("Equation").fill("w = w - h * cv")
+    own.get_by_role("button", name="Check").click()
+    expect(own.locator("math")).to_have_count(2, timeout=story.LONG)
 
 
 def the_first_page_says_what_to_do(page, screenshots):

@@ -76,20 +76,91 @@ def test_fit_tells_a_reader_parameters_and_errors(servoident, matrix):
     assert "search" in done.stderr
 
 
+def test_a_profile_is_told_and_written_beside_the_fit(servoident, few, tmp_path):
+    """The JSON is still that of a fit, which `compare` reads."""
+    held = [f"--set={text}" for text in ("Cl=1e-11", "c0=3200", "m0=4.25", "Ka=1.39e-13", "Z0=2.592e-6")]
+    file = tmp_path / "fit.json"
+    done = servoident("fit", few, *held, "--option", "generations=2", "--profile", "tau", "--json", file)
+    assert done.returncode == 0, done.stderr
+    (found,) = json.loads(file.read_text())["profiles"]
+    assert found["lower"] < json.loads(file.read_text())["parameters"]["tau"]["value"] < found["upper"]
+    assert "tau: 95 % from" in done.stdout
+    assert servoident("fit", few, "--profile", "nothing").returncode == 2
+    again = servoident(
+        "profile",
+        few,
+        "--fit",
+        file,
+        "--parameter",
+        "tau",
+        "--points",
+        5,
+        "--json",
+        tmp_path / "p.json",
+        "--out",
+        tmp_path,
+    )
+    assert again.returncode == 0, again.stderr
+    (one,) = json.loads((tmp_path / "p.json").read_text())["profiles"]
+    assert (one["lower"], one["upper"]) == pytest.approx((found["lower"], found["upper"]), rel=0.02)
+    assert (tmp_path / "profile-tau.svg").read_text().startswith("<svg")
+    assert servoident("profile", few, "--fit", file, "--parameter", "nothing").returncode == 2
+
+
+def test_each_matrix_of_a_folder_is_fitted_and_what_cannot_be_used_is_said_in_its_line(servoident, few, tmp_path):
+    """The others go on; the table and the JSON have them all, and the exit status tells."""
+    (tmp_path / "bad").mkdir()
+    (tmp_path / "bad" / "matrix.yaml").write_text("actuator: {}")
+    shutil.copytree(few, tmp_path / "good")
+    held = [f"--set={text}" for text in ("tau=3.6 ms", "Cl=1e-11", "c0=3200", "m0=4.25", "Ka=1.39e-13", "Z0=2.592e-6")]
+    done = servoident("fit", tmp_path, *held, "--json", tmp_path / "fits.json")
+    assert done.returncode == 2
+    good, bad = (next(line for line in done.stdout.splitlines() if line.startswith(name)) for name in ("good", "bad"))
+    assert "'serial' is missing" in bad
+    assert "Z0 2.592e-06 m^4/s" in good
+    fits = json.loads((tmp_path / "fits.json").read_text())["fits"]
+    assert [entry["matrix"] for entry in fits] == ["bad", "good"]
+    assert fits[1]["fit"]["model"] == "qian2014"
+
+
 def test_compare_writes_every_figure_in_every_format(servoident, few, fit_file, tmp_path):
     """Each figure is there as svg, png, pdf and json, and the table holds every run."""
     done = servoident("compare", few, "--fit", fit_file, "--out", tmp_path / "figures", "--json", tmp_path / "c.json")
     assert done.returncode == 0, done.stderr
     starts = {"svg": b"<svg", "png": b"\x89PNG", "pdf": b"%PDF", "json": b"{"}
-    for name in ("bode", "time", "evolution", "sensitivity", "residual-map", "residual-curve"):
+    for name in (
+        "bode",
+        "time",
+        "evolution",
+        "sensitivity",
+        "residual-map",
+        "residual-curve",
+        "residual-correlation",
+        "starts",
+    ):
         for kind, start in starts.items():
             assert (tmp_path / "figures" / f"{name}.{kind}").read_bytes().startswith(start)
     compared = json.loads((tmp_path / "c.json").read_text())
     assert len(compared["runs"]) == len(compared["bands"]["runs"]) == 17
+    assert {run["unit"] for run in compared["runs"]} == {"m"}
+    assert all(0 < run["mae"] <= run["rmse"] < 1e-3 for run in compared["runs"])
     assert {"amplitude", "gain", "specimen", "direction", "speed"} <= set(compared["groups"])
     assert {"noise", "linear", "nonlinear", "bounds", "notes"} <= set(compared["budget"])
     assert "error budget" in done.stdout
     assert "m087-k36-kp6-a05" in done.stdout
+
+
+def test_several_fits_are_one_table_and_one_plot(servoident, few, fit_file, tmp_path):
+    """A column each, also where they were fitted to other runs."""
+    out = ("--out", tmp_path / "out", "--json", tmp_path / "c.json")
+    done = servoident("compare", few, "--fit", fit_file, "--fit", fit_file, "--fit", fit_file, *out)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out" / "side-by-side.svg").read_bytes().startswith(b"<svg")
+    found = json.loads((tmp_path / "c.json").read_text())
+    assert [one["name"] for one in found["fits"]] == ["A", "B", "C"]
+    assert len(found["runs"]) == 17
+    assert all(run["A"] == run["B"] == run["C"] for run in found["runs"])
+    assert servoident("compare", few, *(["--fit", fit_file] * 9)).returncode == 2
 
 
 def test_report_is_one_html_file(servoident, few, fit_file, tmp_path):

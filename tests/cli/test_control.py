@@ -26,7 +26,9 @@ def test_a_controller_is_designed_and_written(servoident, tmp_path, structure):
     assert len(data["A"]) == data["design"]["order"]["reduced"]
     assert scipy.io.loadmat(out / "controller.mat")["A"].tolist() == data["A"]
     assert f"#define SERVOIDENT_ORDER {len(data['A'])}\n" in (out / "controller.h").read_text()
-    assert (out / "closed-loop.svg").read_text().startswith("<svg")
+    begin = {"svg": b"<svg", "png": b"\x89PNG", "pdf": b"%PDF", "json": b"{"}
+    for kind, first in begin.items():
+        assert (out / f"closed-loop.{kind}").read_bytes().startswith(first)
     assert "phase margin" in done.stdout
     assert "without dead_zone" in done.stdout
 

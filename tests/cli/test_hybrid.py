@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
+
+from schemas.feedforward_result import FeedforwardView
+from tests.hybrid.cases import fitted
 
 FIT = Path(__file__).parents[1] / "stored" / "fit.json"
 CASE = """
@@ -12,6 +16,14 @@ physical: {mass: 10 %, stiffness: 20 %}
 gain: 5
 piston_area: 497 mm^2
 ground: {kind: blwn, band: 20 Hz, amplitude: 0.1 g, duration: 2 s}
+"""
+RIG = """
+structure: {mass: 20 t, stiffness: 0.8 MN/m, damping: {ratio: 20 %}}
+physical: {mass: 500 kg, stiffness: 10 %}
+gain: 100
+piston_area: 9050 mm^2
+supply_pressure: 210 bar
+ground: {kind: sine, frequency: 0.8 Hz, amplitude: 0.1 g, duration: 2 s}
 """
 
 
@@ -33,6 +45,27 @@ def test_a_case_is_simulated_and_drawn(servoident, tmp_path):
         f"{name}.{kind}" for name in ("displacement", "response") for kind in ("svg", "png", "pdf", "json")
     }
     assert "measured against numerical" in done.stdout
+
+
+def test_what_the_feedforward_is_worth_is_told(servoident, tmp_path):
+    """Of a fit with standard errors: limit, errors of the machine and of its draws; as JSON that the service sends."""
+    fit, case, out = tmp_path / "fit.json", tmp_path / "case.yaml", tmp_path / "figures"
+    known = fitted("strano")
+    sure = {name: replace(one, std_error=0.05 * abs(one.value)) for name, one in known.parameters.items()}
+    fit.write_text(json.dumps(replace(known, parameters=sure).to_json()))
+    case.write_text(RIG)
+    given = ("--case", case, "--controller", "feedforward", "--json", tmp_path / "scores.json", "--out", out)
+    done = servoident("hybrid", fit, *given)
+    assert done.returncode == 0, done.stderr
+    told = FeedforwardView(**json.loads((tmp_path / "scores.json").read_text())["feedforward"])
+    assert told.draws == 100
+    assert told.gain == 100
+    assert told.limit > 200
+    assert told.both_rms < told.drawn_both_rms < told.feedback_rms / 5
+    assert all(low <= high for low, high in zip(told.low, told.high, strict=True))
+    assert "below the stability limit" in done.stdout
+    assert "median of 100 machines" in done.stdout
+    assert (out / "feedforward.pdf").is_file()
 
 
 def test_bad_input_is_one_line(servoident, tmp_path):

@@ -2,47 +2,48 @@
 
 from __future__ import annotations
 
-import os
-import shutil
+import json
 import subprocess
+import sys
 import time
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
+from sqlalchemy.exc import DBAPIError
 
-from app.database import connect
+from app.database import connect, sessions
+from app.settings import Settings
+from app.tables import WebhookRow
+from app.webhooks import repository as webhooks
+from app.webhooks.key import key_of
+from app.webhooks.outbox import announce
+from schemas.webhooks import SetWithdrawn
 from tests.app.test_idempotency import context_of, posts_at_once
 from tests.app.test_own_effects import kept_at_once
+from tests.app.webhooks.receiver import receiver
+from tests.app.webhooks.test_webhooks import told_once
+from tests.conftest import ROOT
 from tests.running import Service, command, free_port
+from tests.running_postgresql import MISSING, SERVERS, postgresql
 
-SERVERS = sorted(Path("/usr/lib/postgresql").glob("*/bin/pg_ctl"))
-pytestmark = pytest.mark.skipif(not SERVERS, reason="PostgreSQL is not installed (apt-get install postgresql)")
-
-
-def as_owner(*command: object) -> None:
-    """Run a program of PostgreSQL, which refuses to run as root."""
-    other = ["runuser", "-u", "postgres", "--"] if os.geteuid() == 0 else []
-    done = subprocess.run([*other, *map(str, command)], cwd="/", capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+pytestmark = pytest.mark.skipif(not SERVERS, reason=MISSING)
 
 
 @pytest.fixture(scope="module")
 def database() -> Iterator[str]:
     """The URL of a new PostgreSQL server, which is gone after the tests."""
-    folder = Path("/tmp") / f"servoident-pg-{os.getpid()}"  # short, for its socket; pytest's own is closed to others
-    folder.mkdir(mode=0o700)
-    if os.geteuid() == 0:
-        shutil.chown(folder, "postgres")
-    binaries, port = SERVERS[-1].parent, free_port()
-    options = f"-p {port} -k {folder} -c listen_addresses=127.0.0.1 -c fsync=off"
-    try:
-        as_owner(binaries / "initdb", "-D", folder / "data", "-A", "trust", "-U", "postgres")
-        as_owner(binaries / "pg_ctl", "-D", folder / "data", "-o", options, "-l", folder / "log", "-w", "start")
-        yield f"postgresql://postgres@127.0.0.1:{port}/postgres"
-        as_owner(binaries / "pg_ctl", "-D", folder / "data", "-m", "immediate", "stop")
-    finally:
-        shutil.rmtree(folder)
+    with postgresql() as server:
+        yield server.url
+
+
+def test_processes_that_start_together_on_an_empty_database_make_it_once(database, tmp_path):
+    """A service and its workers, brought up at one moment: one makes the tables, the others find them made."""
+    migrate = [sys.executable, "-m", "app.cli", "migrate", "--database", database, "--data", str(tmp_path)]
+    together = [subprocess.Popen(migrate, stderr=subprocess.PIPE, cwd=ROOT) for _ in range(3)]
+    assert [(said, process.returncode) for process in together for _, said in [process.communicate()]] == [(b"", 0)] * 3
 
 
 def test_the_schema_is_made_and_made_again(servoident, database, tmp_path):
@@ -50,6 +51,18 @@ def test_the_schema_is_made_and_made_again(servoident, database, tmp_path):
     for _ in range(2):
         done = servoident("migrate", "--database", database, "--data", tmp_path)
         assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("change", ["UPDATE audit SET name = 'x'", "DELETE FROM audit", "TRUNCATE audit"])
+def test_nobody_changes_the_audit(servoident, database, tmp_path, change):
+    """The database refuses it; the line of a token that was made stays."""
+    named = ("--database", database, "--data", tmp_path)
+    assert servoident("token", "new", "--role", "ci", "--name", "audited", *named).returncode == 0
+    engine = connect(database)
+    with pytest.raises(DBAPIError, match="the audit is kept"), engine.begin() as connection:
+        connection.exec_driver_sql(change)
+    engine.dispose()
+    assert "new_token" in servoident("audit", *named).stdout
 
 
 def nothing_left(database: str) -> bool:
@@ -62,6 +75,13 @@ def nothing_left(database: str) -> bool:
                 return False
             time.sleep(0.1)
     return True
+
+
+def records(backup: Path) -> dict[str, Any]:
+    """The tables of a backup with their hashes, and the names of its blobs, which are theirs."""
+    with zipfile.ZipFile(backup) as archive:
+        listed: dict[str, Any] = json.loads(archive.read("list.json"))
+    return {"blobs": listed["blobs"], **listed["tables"]}
 
 
 def test_a_service_and_a_worker_share_the_queue(servoident, database, matrix, tmp_path):
@@ -83,6 +103,17 @@ def test_a_service_and_a_worker_share_the_queue(servoident, database, matrix, tm
         assert servoident("approve", ended[0]["fit"], *service.options).returncode == 0
         assert ended[0]["fit"] in servoident("query", "--serial", "SIM-0001", *service.options, "--csv", "-").stdout
         assert nothing_left(database)
+        assert servoident("backup", tmp_path / "all", *place).returncode == 0  # while it runs
+    lite, again = tmp_path / "lite", tmp_path / "again"
+    for moving in (("restore", tmp_path / "all", "--data", lite), ("backup", again, "--data", lite)):
+        moved = servoident(*moving)
+        assert moved.returncode == 0, moved.stderr
+    assert records(again) == records(tmp_path / "all")
+    with postgresql() as other:
+        back = ("--database", other.url, "--data", tmp_path / "back")
+        assert servoident("restore", again, *back).returncode == 0
+        assert servoident("backup", tmp_path / "third", *back).returncode == 0
+        assert records(tmp_path / "third") == records(again)
     done = servoident("regress", *place)
     assert done.returncode == 0, done.stdout + done.stderr
 
@@ -93,3 +124,23 @@ def test_simultaneous_posts_under_one_key_queue_one_job(database, tmp_path):
     posts_at_once(here)
     kept_at_once(here)
     here.engine.dispose()
+
+
+def test_a_webhook_is_told_once_by_several_processes(database, tmp_path):
+    """Each of 24 deliveries once, in order, by three couriers on one database."""
+    engine = connect(database)
+    with receiver() as there:
+        settings = Settings(data=tmp_path, database_url=database, webhook_hosts=(f"127.0.0.1:{there.port}",))
+        key, origin = key_of(settings), f"http://127.0.0.1:{there.port}"
+        with sessions(engine).begin() as session:
+            session.add(WebhookRow(id="pg", url=there.url, origin=origin, events=["set.withdrawn"], key=key.print))
+        ids = []
+        for number in range(24):
+            with sessions(engine).begin() as session:
+                announce(session, SetWithdrawn, serial=f"PG-{number}", fit="f", who="", why="")
+                ids.append(f"PG-{number}")
+        told_once(sessions(engine), settings, there, 24)
+        assert [json.loads(body)["serial"] for _, body in there.came] == ids
+    with sessions(engine).begin() as session:
+        webhooks.revoke(session, "pg", "")
+    engine.dispose()

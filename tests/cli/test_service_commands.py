@@ -22,7 +22,8 @@ def data(tmp_path_factory) -> Path:
 @pytest.fixture(scope="module")
 def said(data) -> Iterator[str]:
     """The line that `servoident serve` prints, while it runs."""
-    arguments = ("--port", free_port(), "--data", data, "--allow-host", "lab.example")
+    arguments = ("--port", free_port(), "--data", data, "--allow-host", "lab.example",
+                 "--webhook-host", "127.0.0.1:9", "--keep-raw", "30")  # fmt: skip
     with command("serve", *arguments, until="token=") as line:
         yield line
 
@@ -103,6 +104,28 @@ def test_an_approved_fit_is_what_a_query_finds_and_what_regress_rechecks(service
     assert (suite.get("tests"), suite.get("failures"), suite.get("errors")) == ("1", "0", "0")
 
 
+def test_the_line_s_questions_are_commands(service, servoident, fitted, tmp_path):
+    """Limits, a verdict with its exit status, statistics with their chart, a recheck over the workers, withdrawing."""
+    servoident("approve", fitted, "--why", "sound", *service.options)
+    done = servoident("limits", "qian2014", "--limit", "tau=1:6 ms", "--limit", "error.fit=:50 %", *service.options)
+    assert done.returncode == 0, done.stderr
+    assert "every  error.fit" in done.stdout
+    told = servoident("verdict", "SIM-0001", *service.options)
+    assert (told.returncode, told.stdout.partition("\n")[0]) == (0, "SIM-0001: pass")
+    servoident("limits", "qian2014", "--batch", "", "--limit", "tau=:1 ms", *service.options)
+    told = servoident("verdict", "SIM-0001", *service.options)
+    assert told.returncode == 1
+    assert "outside the upper limit" in told.stdout
+    found = servoident("statistics", "tau", "--serial", "SIM-0001", *service.options)
+    assert "Mean" in found.stdout, found.stderr
+    junit = tmp_path / "junit.xml"
+    done = servoident("regress", "--serial", "SIM-0001", "--junit", junit, *service.options)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert ElementTree.parse(junit).getroot().get("tests") == "1"
+    assert servoident("withdraw", fitted, "--why", "leaks", *service.options).returncode == 0
+    assert "no parameter set is in force" in servoident("verdict", "SIM-0001", *service.options).stdout
+
+
 def test_what_the_service_refuses_is_one_line_and_exit_2(service, servoident):
     """Its problem document becomes the line."""
     done = servoident("approve", "nothing", *service.options)
@@ -111,9 +134,97 @@ def test_what_the_service_refuses_is_one_line_and_exit_2(service, servoident):
     assert done.stderr.count("\n") == 1
 
 
+def test_a_token_is_made_used_listed_and_revoked(service, data, servoident):
+    """By commands, while the service runs: it lets in what its role may, until it is revoked; all of it is noted."""
+    made = servoident("token", "new", "--role", "line", "--name", "station 2", "--expires", "90d", "--data", data)
+    assert (made.returncode, made.stdout.count("\n")) == (0, 1), made.stderr
+    assert "not shown again" in made.stderr
+    own = ("--server", service.address, "--token", made.stdout.strip())
+    assert servoident("query", *own, "--json", "-").returncode == 0
+    refused = servoident("approve", "nothing", *own)
+    assert refused.returncode == 2
+    assert "a token for line may not do this; use a token for lab" in refused.stderr
+
+    (token,) = json.loads(servoident("token", "list", "--data", data, "--json", "-").stdout)
+    assert (token["name"], token["role"], token["state"]) == ("station 2", "line", "valid")
+    assert token["last_used_at"] is not None
+    assert made.stdout.strip() not in servoident("token", "list", "--data", data).stdout
+
+    assert servoident("token", "revoke", token["id"], "--data", data).returncode == 0
+    assert servoident("query", *own).returncode == 2
+    assert "revoked" in servoident("token", "list", "--data", data).stdout
+    noted = json.loads(servoident("audit", "--object", f"tokens/{token['id']}", "--data", data, "--json", "-").stdout)
+    assert [line["action"] for line in noted] == ["revoke_token", "new_token"]
+    assert "upload_matrix" in servoident("audit", "--by", "start", "--data", data).stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "where"),
+    [(("new", "--role", "boss", "--name", "x"), "--role"), (("new", "--role", "ci", "--name", "a\nb"), "--name"),
+     (("new", "--role", "ci", "--name", "x", "--expires", "soon"), "expires"), (("revoke", "nothing"), "token")],
+)  # fmt: skip
+def test_a_token_that_cannot_be_is_one_line(servoident, tmp_path, arguments, where):
+    done = servoident("token", *arguments, "--data", tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"servoident: {where}: ")
+    assert done.stderr.count("\n") == 1
+
+
+def test_a_proxy_is_an_address(servoident):
+    """What would never be believed is refused at the start."""
+    done = servoident("serve", "--proxy", "the proxy")
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert "--proxy" in done.stderr
+
+
 def test_a_wrong_token_is_told(service, servoident):
     """The remedy names the address that the service printed."""
     done = servoident("query", *service.options[:2], "--token", "guessed")
     assert done.returncode == 2
     assert "token" in done.stderr
     assert done.stderr.count("\n") == 1
+
+
+def test_a_webhook_is_made_listed_and_revoked(service, servoident, stored):
+    """Its secret alone is on standard output; what it was sent is listed; other hosts are refused."""
+    refused = servoident("webhook", "new", "https://elsewhere.example/", *service.options)
+    assert refused.returncode == 2
+    assert "no host that webhooks may reach" in refused.stderr
+    made = servoident("webhook", "new", "http://127.0.0.1:9/told", "--event", "job.ended", *service.options)
+    assert re.fullmatch(r"[\w-]{43}\n", made.stdout), made.stderr
+    assert made.stdout.strip() not in made.stderr
+    listed = servoident("webhook", "list", *service.options, "--json", "-")
+    (one,) = json.loads(listed.stdout)
+    assert (one["url"], one["events"], one["revoked_at"]) == ("http://127.0.0.1:9/told", ["job.ended"], None)
+    assert "127.0.0.1:9/told" in servoident("webhook", "list", *service.options).stdout
+    assert "nothing yet" in servoident("webhook", "deliveries", one["id"], *service.options).stdout
+    service.client.delete(f"/jobs/{service.fit(stored['id'], seed=99)}")
+    service.ended(service.client.get("/jobs").json()["items"][0]["id"])
+    (told,) = json.loads(servoident("webhook", "deliveries", one["id"], *service.options, "--json", "-").stdout)
+    assert (told["event"], told["state"]) == ("job.ended", "waiting")
+    assert "is revoked" in servoident("webhook", "revoke", one["id"], *service.options).stdout
+    assert "dropped" in servoident("webhook", "deliveries", one["id"], *service.options).stdout
+    assert servoident("webhook", "revoke", "nothing", *service.options).returncode == 2
+
+
+def test_retention_is_shown_and_confirmed(service, servoident):
+    """Nothing is 30 days old yet; what was not shown is not removed."""
+    shown = servoident("retention", "--show", *service.options)
+    assert shown.stdout == "nothing is to go that is older than 30 days\n"
+    found = json.loads(servoident("retention", *service.options, "--json", "-").stdout)
+    wrong = servoident("retention", "--confirm", "0" * 64, *service.options)
+    assert (wrong.returncode, "other raw runs would go" in wrong.stderr) == (2, True)
+    assert servoident("retention", "--confirm", found["digest"], *service.options).returncode == 0
+    assert servoident("retention", "--show", "--confirm", found["digest"], *service.options).returncode == 2
+
+
+def test_a_backup_is_asked_for_from_a_running_service(service, servoident, fitted, tmp_path):
+    """As a file that is restored; without its token, none."""
+    done = servoident("backup", tmp_path / "all.backup", *service.options)
+    assert done.returncode == 0, done.stderr
+    restored = servoident("restore", tmp_path / "all.backup", "--data", tmp_path / "new")
+    assert restored.returncode == 0, restored.stderr
+    assert "fits" in restored.stdout
+    assert fitted
+    assert servoident("backup", tmp_path / "none", "--server", service.address, "--token", "x").returncode == 2
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["all.backup", "new"]

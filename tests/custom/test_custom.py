@@ -23,6 +23,8 @@ GOOD = {
     "name": "overlap", "place": "spool", "equation": "w = w - clip(w, -h, h)",
     "strength": {"symbol": "h", "unit": "mm", "lower": 0, "upper": 1}, "meaning": "the lands overlap",
 }  # fmt: skip
+CURVE = {"symbol": "cv", "of": "x", "knots": ["-1 mm", 0, "2 mm"], "values": [1, 0.5, 2], "unit": "1",
+         "lower": 0, "upper": 4}  # fmt: skip
 HOSTILE = {
     "w = __import__('os').system('id')": 5,
     "w = (lambda: w)() * h": 5,
@@ -104,6 +106,14 @@ def test_the_line_and_the_rate_are_named():
         ({"shape": {"h": "1 ms"}}, "name-taken"),
         ({"place": "gearbox"}, "unknown-place"),
         ({"state": {"symbol": "z", "rate": "w", "initial": 1}}, "bad-state"),
+        ({"equation": "w = w + h * displacement"}, "unknown-name"),
+        ({"curve": CURVE | {"of": "supply_presure"}}, "unknown-name"),
+        ({"curve": CURVE | {"symbol": "Q"}}, "name-taken"),
+        ({"curve": CURVE | {"values": [0, 1]}}, "bad-curve"),
+        ({"curve": CURVE | {"knots": [0, 0, 1]}}, "bad-curve"),
+        ({"curve": CURVE | {"knots": ["0 N", "1 mm", "2 mm"]}}, "bad-curve"),
+        ({"curve": CURVE | {"values": [0, 1, 7]}}, "outside-bounds"),
+        ({"curve": CURVE | {"draw": "freehand"}}, "unknown-draw"),
         ({"run": "rm"}, "unknown-key"),
     ],
 )
@@ -127,6 +137,23 @@ def test_a_file_and_its_data_are_the_same_effect():
     assert found == read_effect(definition_of(text, "our-overlap"))
     assert (found.name, found.texts) == ("our_overlap", ("w = w - clip(w, -h, h)",))
     assert (found.strength.unit, found.strength.upper) == ("m", 1e-3)
+
+
+def test_a_curve_is_a_line_of_its_own_whose_values_are_shapes():
+    """In SI, and held unless a fit is given bounds: the kernel draws it through its knots and straight on beyond."""
+    own = read_effect(written(equation="w = w - h * cv", curve=CURVE))
+    assert own.texts[0] == "cv = lines(x, -0.001, cv_1, 0.0, cv_2, 0.002, cv_3)"
+    assert [(p.name, p.value, p.upper) for p in own.shape] == [("cv_1", 1, 4), ("cv_2", 0.5, 4), ("cv_3", 2, 4)]
+    drawn = Equation(own.texts[0]).value({"x": np.array([-1e-3, 1e-3, 4e-3]), "cv_1": 1.0, "cv_2": 0.5, "cv_3": 2.0})
+    assert drawn == pytest.approx([1.0, 1.25, 3.5])
+
+
+def test_what_an_effect_calls_like_a_channel_is_its_own():
+    """A symbol that was kept before channels had names still means what it meant."""
+    own = read_effect(
+        written(equation="w = w - clip(w, -force, force)", strength=GOOD["strength"] | {"symbol": "force"})
+    )
+    assert "force" not in preset_with("qian2014").with_effects((own,)).chain.symbols
 
 
 @pytest.mark.parametrize(

@@ -208,6 +208,18 @@ def test_a_slow_machine_gets_a_run_of_as_many_samples():
     assert {round(experiment.seconds) for experiment in found} == {4000}
 
 
+def test_a_machine_that_was_only_stepped_gets_a_command_as_large_as_its_steps():
+    def stepped(level: float) -> Run:
+        channels = {"command": np.full(200, level), "displacement": level * (1 - np.exp(-0.05 * np.arange(200)))}
+        return Run(f"to {level}", "", 50.0, channels, {"command": "rad", "displacement": "rad"})
+
+    servo = Matrix(Actuator("SERVO"), tuple(map(stepped, (0.0, -0.1, 0.35))))
+    found = [experiment.amplitude for experiment in candidate_runs(servo, 50.0)]
+    assert min(found) > 0.01
+    assert max(found) < 0.35
+    assert not list(candidate_runs(replace(servo, runs=servo.runs[:1]), 50.0))
+
+
 def test_where_no_run_could_be_made_that_is_said(monkeypatch):
     monkeypatch.setattr("ident.design.proposal.candidate_runs", lambda *_: iter(()))
     with pytest.raises(Unusable, match="stable in no run"):

@@ -9,7 +9,7 @@ import pytest
 from scipy.signal import lfilter
 
 from ident.diagnosis.result import Diagnosis
-from ident.diagnosis.standing import contradiction
+from ident.diagnosis.standing import contradiction, standing
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Run
@@ -79,6 +79,11 @@ def test_the_standing_is_read_back_and_an_unknown_one_is_refused(other):
     assert Diagnosis.from_json({**written, "verdict": {"effects": []}}).verdict.standing is None  # of an older version
     with pytest.raises(Unusable, match="is none of found, stand_in, contradicted, nothing"):
         Diagnosis.from_json({**written, "verdict": {**written["verdict"], "standing": "sure"}})
+
+
+def test_what_may_be_larger_than_was_searched_is_not_called_found():
+    assert standing(("lead",), False, ()) == "found"
+    assert standing(("lead",), False, (), sure=False) == "stand_in"
 
 
 def test_with_nothing_missing_nothing_stands():

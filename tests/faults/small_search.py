@@ -10,6 +10,7 @@ import json
 import os
 import sqlite3
 import sys
+import threading
 import time
 from pathlib import Path
 from typing import Any
@@ -27,12 +28,15 @@ class Search:
     """Two generations a step; `dies` is the length of the history at which the process does."""
 
     def __init__(self, folder: Path, dies: int = -1) -> None:
-        self.folder, self.dies = folder, dies
+        self.folder, self.dies, self.stopping = folder, dies, threading.Event()
 
-    def begin(self, _: str) -> State:
+    def take(self, _: str) -> Search:
+        return self
+
+    def begin(self) -> State:
         return {"outcome": None, "state": genetic.begin(2, 0, OPTIONS)}
 
-    def advance(self, _: str, state: State) -> State:
+    def advance(self, state: State) -> State:
         if len(state["history"]) == self.dies:
             os._exit(KILLED)
         for _ in range(2):
@@ -40,10 +44,10 @@ class Search:
                 state = genetic.default_step(state, lambda points: np.abs(points - 0.3).sum(axis=1), OPTIONS)
         return {"outcome": None, "state": state}
 
-    def finish(self, _: str, state: State) -> State:
+    def finish(self, state: State) -> State:
         return {"outcome": None, "state": state}
 
-    def store(self, _: str, last: State) -> None:
+    def store(self, last: State) -> None:
         with (self.folder / "result.json").open("x", encoding="utf-8") as file:
             json.dump(last, file)
 
@@ -51,10 +55,10 @@ class Search:
 def undisturbed(folder: Path) -> State:
     """What comes out without a queue."""
     search = Search(folder)
-    now = search.begin(JOB)
+    now = search.begin()
     while not now["state"]["done"]:
-        now = search.advance(JOB, now["state"])
-    return search.finish(JOB, now["state"])
+        now = search.advance(now["state"])
+    return search.finish(now["state"])
 
 
 def left(folder: Path) -> int:

@@ -34,3 +34,14 @@ def test_a_half_done_job_of_the_version_before_ends_bit_identical(tmp_path: Path
     assert json.loads((tmp_path / "result.json").read_text(encoding="utf-8")) == undisturbed(tmp_path)
     for table in ("operation_outputs", "workflow_status", "workflow_input", "workflow_output"):
         assert rows(tmp_path, f"SELECT count(*) FROM {table}") == [0]
+
+
+def test_the_queue_does_not_grow_with_the_jobs_that_ended(tmp_path: Path, full: bool) -> None:
+    """Of each of its tables there are as many rows after a thousand jobs (ten in the short form) as after one."""
+    count = 1000 if full else 10
+    command = [sys.executable, "-m", "tests.faults.many_jobs", str(tmp_path), str(count)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    found = json.loads(done.stdout.splitlines()[-1])
+    assert found["stored"] == count
+    after_one, after_all = found["rows"]
+    assert after_one == after_all

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from ident.fit.result import Estimate, FitResult, Generation, RunError
+from ident.fit.result import Estimate, FitResult, Generation, RunError, Starts
 from ident.matrix import Actuator, Matrix, Run, Specimen
 
 SPECIMENS = ((0.0, 0.0), (0.87, 36.3e3), (2.1, 17.5e3), (4.25, 17.5e3), (4.25, 67.6e3), (8.5, 36.3e3), (10.2, 67.6e3))
@@ -108,4 +108,5 @@ def fit(matrix: Matrix) -> FitResult:
         runs=tuple(RunError(run.id, run.use, 0.005, 0.0) for run in matrix.runs),
         method="paper-ga", seed=0, evaluations=12000, seconds=1.0, version="0", data_hash="0" * 64,
         searched=("Z0", "c0"), evolution=tuple(generations),
+        starts=Starts(3, 2, (0.005, 0.005, 0.02), {"Z0": (2.6e-6, 2.6e-6, 3e-6), "c0": (3200.0, 3201.0, 900.0)}),
     )  # fmt: skip

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import pytest
 from altair.utils import schemapi
@@ -10,9 +11,10 @@ from altair.utils import schemapi
 import ident.figures.study
 from ident.comparison.compare import Comparison
 from ident.errors import Unusable
-from ident.figures import FIGURES, render
+from ident.figures import FIGURES, figure, render
 from ident.figures.look import LOOKS
-from ident.workflows import figure
+from ident.fit.result import Starts
+from ident.workflows import study
 from tests.figures.conftest import make_comparison
 
 OF_CHAINS = tuple(name for name, drawing in FIGURES.items() if drawing.of == "chain")
@@ -33,7 +35,7 @@ def drawn(name, matrix, fit, theme="light", **options):
     """A figure of the one matrix and fit of these tests, drawn once for all that look at it."""
     key = (name, theme, *sorted(options.items()))
     if key not in DRAWN:
-        DRAWN[key] = render(figure(name, matrix, fit, theme, **options), "json")
+        DRAWN[key] = render(figure(name, study(matrix, fit), theme, **options), "json")
     return json.loads(DRAWN[key])
 
 
@@ -76,7 +78,7 @@ def test_every_named_axis_has_a_unit(name, matrix, fit):
     ("kind", "start"), [("json", b"{"), ("svg", b"<svg"), ("png", b"\x89PNG\r\n\x1a\n"), ("pdf", b"%PDF-")]
 )
 def test_a_figure_is_one_definition_in_four_formats(kind, start, matrix, fit):
-    assert render(figure("evolution", matrix, fit), kind).startswith(start)
+    assert render(figure("evolution", study(matrix, fit)), kind).startswith(start)
 
 
 def test_the_bode_plot_shows_a_few_verify_runs_and_says_of_how_many(matrix, fit):
@@ -124,7 +126,7 @@ def test_filters_choose_by_gain_amplitude_and_specimen_and_say_when_nothing_pass
     rows = rows_of(drawn("bode", matrix, fit, kp="7", amplitude="0.00127", specimen="10.2 kg, 67.6 kN/m"))
     assert {row["r"] for row in rows} == {"m10.2-k67.6-kp7-a1.27"}
     with pytest.raises(Unusable, match="no run with kp"):
-        figure("bode", matrix, fit, kp=8)
+        figure("bode", study(matrix, fit), kp=8)
 
 
 def test_a_time_figure_keeps_the_peaks_of_a_long_stretch(matrix, fit):
@@ -150,7 +152,7 @@ def test_the_residual_below_is_measured_minus_model_on_its_own_scale(matrix, fit
 
 def test_a_stretch_outside_the_record_is_refused_with_the_record_s_length(matrix, fit):
     with pytest.raises(Unusable, match="stay within 0 to 2"):
-        figure("time", matrix, fit, start=3)
+        figure("time", study(matrix, fit), start=3)
 
 
 def test_evolution_shows_generations_1_4_8_and_last_on_the_bounds_with_the_paper_s_axes(matrix, fit):
@@ -170,7 +172,7 @@ def test_error_over_generation_is_in_percent(matrix, fit):
 
 def test_a_name_that_was_not_searched_is_refused_with_those_that_were(matrix, fit):
     with pytest.raises(Unusable, match="use Z0, c0"):
-        figure("evolution", matrix, fit, x="tau")
+        figure("evolution", study(matrix, fit), x="tau")
 
 
 def test_sensitivity_goes_from_a_tenth_to_ten_times_the_run_s_own_value(matrix, fit):
@@ -216,18 +218,18 @@ def test_a_run_without_specimen_has_a_gain_column_only(matrix, fit):
 def test_what_cannot_be_drawn_is_refused_with_the_remedy(arguments, says, matrix, fit):
     arguments = dict(arguments)
     with pytest.raises(Unusable, match=says):
-        figure(arguments.pop("name"), matrix, fit, **arguments)
+        figure(arguments.pop("name"), study(matrix, fit), **arguments)
 
 
 def test_an_unknown_format_is_refused(matrix, fit):
     with pytest.raises(Unusable, match="use one of json, svg, png, pdf"):
-        render(figure("evolution", matrix, fit), "gif")
+        render(figure("evolution", study(matrix, fit)), "gif")
 
 
 @pytest.mark.parametrize("name", ["bode", "time", "sensitivity"])
 def test_drawn_live_two_runs_differ_in_data_and_parameters_only(name, matrix, fit):
     first, second = (
-        json.loads(render(figure(name, matrix, fit, run=run), "json", live=True))
+        json.loads(render(figure(name, study(matrix, fit), run=run), "json", live=True))
         for run in ("m0.87-k36.3-kp7-a1.27", "m2.1-k17.5-kp7-a1.27")
     )
     assert [param["name"] for param in first["params"]] == [param["name"] for param in second["params"]]
@@ -245,3 +247,11 @@ def test_a_chart_that_is_written_does_not_turn_the_checks_on_for_one_that_is_dra
 
     assert json.loads(render(Written(), "json")) == {"checked": False}
     assert schemapi.DEBUG_MODE
+
+
+def test_ends_are_drawn_in_the_order_of_their_errors_over_the_best(matrix, fit):
+    tables = drawn("starts", matrix, fit)["datasets"]
+    assert [row["e"] for row in tables["ends"]] == [0.5, 0.5, 2.0]
+    assert [row["v"] for row in tables["values"] if row["p"] == "c0"] == [1.0, 1.0003, 0.28125]
+    with pytest.raises(Unusable, match=r"no figure .starts."):
+        figure("starts", study(matrix, replace(fit, starts=Starts(3, 2))))

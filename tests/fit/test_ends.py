@@ -131,3 +131,14 @@ def test_starts_are_distinct():
     """A tenth of an axis apart, the best first."""
     points = np.array([[0.5, 0.5], [0.55, 0.5], [0.5, 0.7], [0.9, 0.9]])
     assert np.array(distinct(points, 2)) == pytest.approx(points[[0, 2]])
+
+
+def test_every_start_that_was_asked_for_is_tried_and_its_end_kept():
+    """Also where the first two agree; the least error comes first, with the parameters found there."""
+    fitness = Wells((1.0, 0.4), (1.0, 0.4))
+    further = [np.array([place]) for place in (0.1, 0.9, 0.3, 0.7)]
+    first = [np.array([0.6]), np.array([0.7])]
+    starts = multistart(fitness, fitness, first, silent, further, count=5).starts
+    assert (starts.tried, len(starts.errors)) == (5, 5)
+    np.testing.assert_allclose(starts.errors, [0.4, 0.4, 0.4, 1.0, 1.0], rtol=1e-6)
+    np.testing.assert_allclose(starts.values["a"], [0.8, 0.8, 0.8, 0.2, 0.2], rtol=1e-6)

@@ -148,3 +148,26 @@ def test_runs_of_two_lengths_and_rates_have_windows_of_one_time():
     short = replace(first.part(0, 1500), id="short")
     fit = identify(replace(matrix, runs=(first, short)), Settings(model="motor"))
     assert gain(fit) == pytest.approx(GAIN, rel=0.08)
+
+
+def test_the_noise_floor_over_windows_has_the_noise_with_which_each_begins():
+    """White noise is √2 times as large, counted from where it was at the beginning: that is the error of the truth."""
+    t = np.arange(4000) / RATE
+    u = sum(np.sin(2 * np.pi * f * t + f) for f in (0.05, 0.13, 0.31))
+    decay, x, q, place = np.exp(-1 / RATE / LAG), np.zeros(len(u)), 0.0, 0.0
+    for k in range(len(u) - 1):
+        target = GAIN * u[k]
+        place += target / RATE + (q - target) * LAG * (1 - decay)
+        q = target + (q - target) * decay
+        x[k + 1] = place
+    x += 2e-4 * np.random.default_rng(1).standard_normal(len(x))
+    channels, units = {"command": u, "displacement": x}, {"command": "V", "displacement": "m"}
+    matrix = Matrix(Actuator("CYLINDER"), (Run("r", "", RATE, channels, units, hold="zoh"),))
+    family = ModelFamily.of(matrix, Settings(model="motor"), horizon=1.0)
+    assert family.floor is not None
+    refit = family.refit((), {"m0": 1.0, "c0": 1 / LAG, "Kt": GAIN / LAG})
+    assert refit.error == pytest.approx(family.floor, rel=0.03)
+    assert family.at_floor(refit)
+    whole = ModelFamily.of(matrix, Settings(model="motor"))
+    assert whole.floor == pytest.approx(2e-4 / np.std(x), rel=0.05)
+    assert whole.at_floor(whole.refit((), refit.values))

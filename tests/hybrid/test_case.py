@@ -77,6 +77,7 @@ def test_matrices_in_every_form_are_the_same():
         ({"ground": {"kind": "record"}}, "missing-field"),
         ({"ground": {"file": "x.txt", "unit": "mm"}}, "wrong-dimension"),
         ({"sample_rate": "1 s"}, "wrong-dimension"),
+        ({"structure": {"mass": "87.5 kg", "stiffness": "-1 N/m", "damping": "0 N*s/m"}, "physical": {}}, "bad-case"),
     ],
 )
 def test_what_makes_no_case_is_refused(change, code):
@@ -117,6 +118,13 @@ def test_a_column_of_a_record_is_taken_alone(tmp_path):
         file.write_text(broken)
         with pytest.raises(Unusable):
             read_record(file, 1)
+
+
+@pytest.mark.parametrize("motion", [Ground("sine", frequency=600.0), Ground(band=(0.0, 600.0))])
+def test_a_motion_faster_than_the_loop_samples_is_refused(motion):
+    """600 Hz at 1000 Hz would be shown as another frequency."""
+    with pytest.raises(Unusable, match="cannot be sampled"):
+        motion.samples(1000.0)
 
 
 def test_noise_and_sine_have_the_size_that_was_asked_for():

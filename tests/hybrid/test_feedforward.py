@@ -25,6 +25,7 @@ from ident.hybrid.feedforward import (
     plant_of,
     tracked,
 )
+from ident.hybrid.followed import Followed
 from ident.hybrid.inverse import Inverse
 from ident.matrix import Actuator, Specimen
 from ident.workflows import identify
@@ -130,7 +131,7 @@ def test_a_fit_gives_the_feedforward_and_its_band(fit):
     assert np.all(low <= high)
     assert np.mean((found.both >= low) & (found.both <= high)) > 0.5
     assert found.margin > 6
-    drawing = feedforward_figure(found, look("light")).to_dict()
+    drawing = feedforward_figure(Followed.of(found, 40), look("light")).to_dict()
     assert "band" in str(drawing).lower()
     with pytest.raises(Unusable, match="supply_pressure"):
         plant_of(fit, replace(actuator, supply_pressure=None), 50.0)

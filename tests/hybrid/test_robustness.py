@@ -70,10 +70,10 @@ def test_a_fit_that_knows_little_is_told_so(fit):
 
 def test_a_loop_with_little_margin_is_told(fit):
     """With eight samples of delay it is stable, and the design says how near the end that is."""
-    made = design_controller(fit, SPECIMEN, delay=8, **CASE)
+    made = design_controller(fit, SPECIMEN, delay=8, draws=5, **CASE)
     assert made.design.loop.stable
     assert "leaves little margin" in made.notes[0]
-    assert not design_controller(fit, SPECIMEN, **CASE).notes
+    assert not design_controller(fit, SPECIMEN, draws=5, **CASE).notes
 
 
 def test_without_standard_errors_nothing_is_claimed(fit):
@@ -103,7 +103,8 @@ def test_linear_effects_are_part_of_the_plant_and_others_are_named(fit):
     system[0, 3], system[0, n] = 0.0, back / C[3]
     inside = np.linalg.solve(2j * np.pi * f[:, None, None] * np.eye(n + 1) - system, np.append(B, 0.0)[None, :, None])
     assert lagged.model.frequency_response(f) == pytest.approx(inside[:, n, 0], rel=1e-6)
-    made = design_controller(with_effect(fit, "dead_zone", half_width=1e-4, skew=0.0), SPECIMEN, **CASE)
+    dead = with_effect(fit, "dead_zone", half_width=1e-4, skew=0.0)
+    made = design_controller(dead, SPECIMEN, draws=5, **CASE)
     assert made.notes[0] == "designed on the linear part of the model, without dead_zone"
     assert made.design.plant.frequency_response(f) == pytest.approx(plain.model.frequency_response(f), rel=1e-9)
 

@@ -150,7 +150,7 @@ def test_the_command_tracks_a_run_and_draws_it(servoident, tmp_path: Path):
         f"tracking.{e}" for e in ("svg", "png", "pdf", "json")
     }
     assert "holds: " in servoident("track", tmp_path).stdout
-    for wrong in (("--run", "none"), ("--noise", "-1 mm"), ("--noise", "much")):
+    for wrong in (("--run", "none"), ("--noise", "0"), ("--noise", "-1 mm"), ("--noise", "much")):
         refused = servoident("track", tmp_path, *wrong)
         assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
 

@@ -170,6 +170,7 @@ def test_a_volume_takes_the_place_of_area_and_stroke():
         (Change(sizes={"volume": 1e-4}), None, "missing-size"),
         (Change(sizes={"area": -1.0}), None, "bad-size"),
         (Change(values={"nothing": 1.0}), None, "unknown-parameter"),
+        (Change(values={"Z0": -1e-6}), None, "bad-number"),
         (Change(known={"area": 5e-4}), None, "two-sizes"),
         (Change(), (3.0, 2.0), "bad-gain"),
     ],

@@ -7,8 +7,9 @@ from tests.mutations.data import DATA
 from tests.mutations.estimation import ESTIMATION
 from tests.mutations.machine import MACHINE
 from tests.mutations.mutation import Mutation
+from tests.mutations.regress import REGRESS
 from tests.mutations.service import SERVICE
 
-MUTATIONS: tuple[Mutation, ...] = (*MACHINE, *ESTIMATION, *DATA, *SERVICE)
+MUTATIONS: tuple[Mutation, ...] = (*MACHINE, *ESTIMATION, *DATA, *SERVICE, *REGRESS)
 
 __all__ = ["MUTATIONS", "Mutation"]

@@ -3,6 +3,7 @@
 from tests.mutations.mutation import Mutation
 
 _SERVICE = "tests/app/test_service.py"
+_WEBHOOKS = ("tests/app/webhooks/test_webhooks.py",)
 _SECURITY = ("tests/app/test_security.py",)
 
 SERVICE = (
@@ -12,20 +13,31 @@ SERVICE = (
              "whatever ends is called a success", (f"{_SERVICE}::test_a_running_job_is_cancelled_and_leaves_no_fit",)),
     Mutation("foreign-origin", "app/security.py", 'origin.partition("://")[2] not in self.hosts',
              'not origin.partition("://")[2]', "any page may post", _SECURITY),
-    Mutation("token", "app/security.py", "if self._right(bearer) or self._right(cookie):",
-             "if bearer or self._right(cookie):", "any token is right", _SECURITY),
-    Mutation("approved-after", "app/parameters/repository.py", "FitRow.approved_at > wanted.approved_after",
-             "FitRow.approved_at < wanted.approved_after", "sets approved before are found",
+    Mutation("token", "app/access/identity.py", "if not shown.cookie and same(shown.text, context.settings.token):",
+             "if not shown.cookie:", "any token is right", _SECURITY),
+    Mutation("approved-after", "app/parameters/repository.py", "[row.since > after]",
+             "[row.since < after]", "sets approved before are found",
              (f"{_SERVICE}::test_an_approved_set_is_what_the_production_line_finds",)),
-    Mutation("range", "app/parameters/repository.py", "ValueRow.value >= wanted.lowest[name]",
-             "ValueRow.value <= wanted.lowest[name]", "values below a range are found",
+    Mutation("range", "app/parameters/repository.py", "of_name.where(ValueRow.value.between(lower, upper))",
+             "of_name.where(ValueRow.value < lower)", "values below a range are found",
              ("tests/cli/test_service_commands.py",)),
-    Mutation("current-set", "app/fits/repository.py", "row.current, row.approved_at = True,",
-             "row.current, row.approved_at = False,", "an approved set is not in force",
+    Mutation("current-set", "app/tables/sets.py", "any(approval.until is None for",
+             "any(approval.until for", "an approved set is not in force",
              (f"{_SERVICE}::test_an_approved_set_is_what_the_production_line_finds",
               "tests/cli/test_service_commands.py")),
-    Mutation("recheck", "app/regress/recheck.py", "if change.relative > self.tolerance)",
-             "if change.relative > 100 * self.tolerance)", "a per cent for a tenth of a per mille",
+    Mutation("recheck", "app/regress/recheck.py", "self.relative > tolerance and told",
+             "self.relative > 100 * tolerance and told", "a per cent for a tenth of a per mille",
              ("tests/app/test_recheck.py",)),
+    Mutation("line-apart", "app/access/noting.py", 'and "apart" not in session.info:', 'and "apart" in session.info:',
+             "a change is committed without its line of the audit",
+             ("tests/app/access/test_audit.py::test_a_change_leaves_one_line_and_is_none_without_it",)),
+    Mutation("unsigned-time", "app/webhooks/signing.py", 'b"%d." % timestamp + body', "body",
+             "what was recorded is genuine for ever", _WEBHOOKS),
+    Mutation("redirect", "app/webhooks/sending.py", "follow_redirects=False", "follow_redirects=True",
+             "a receiver sends the service elsewhere", _WEBHOOKS),
+    Mutation("two-couriers", "app/webhooks/repository.py", "WebhookRow.leased_until <= moment, waits", "waits",
+             "two processes send to one webhook at once", _WEBHOOKS),
+    Mutation("raw-in-force", "app/retention/repository.py", "_approval(ApprovalRow.until.is_(None) |", "_approval(",
+             "raw runs of a set in force are removed", ("tests/app/retention/test_rule.py",)),
 )  # fmt: skip
 """Defects of the service."""

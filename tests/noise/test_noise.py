@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from ident.fit.reduction import excited_band
+from ident.matrix import Run
 from ident.noise.floor import noise_floors, repeated
 from tests.blind.machines import Machine
 from tests.blind.noises import with_noise
@@ -92,3 +93,17 @@ def test_repeats_are_measurements_of_one_command_at_the_same_conditions(clean):
     assert repeated([first, replace(second, channels=louder)]) == []
     later = {name: samples[: second.length // 2] for name, samples in second.channels.items()}
     assert repeated([first, replace(second, channels=later)]) == []
+
+
+def test_of_steps_those_to_one_level_from_one_place_are_repeats():
+    """A command that stands still has no shape that would tell two steps apart: its level and the start do."""
+    rng = np.random.default_rng(4)
+
+    def step(name: str, level: float, start: float = 0.0) -> Run:
+        went = level + (start - level) * np.exp(-0.05 * np.arange(400)) + 1e-4 * rng.standard_normal(400)
+        channels = {"command": np.full(400, level), "displacement": went}
+        return Run(name, "", 50.0, channels, {"command": "m", "displacement": "m"})
+
+    one, again, other, back = step("one", 0.1), step("again", 0.1), step("other", 0.35), step("back", 0.1, 0.3)
+    fall, still = step("fall", 0.0, 0.3), step("still", 0.0)
+    assert repeated([one, again, other, back, fall, still]) == [(one, again)]

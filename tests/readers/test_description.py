@@ -167,6 +167,31 @@ def test_a_command_has_any_unit_and_what_turns_is_measured_as_an_angle(command, 
     assert {channel: one.scale.unit for channel, one in found.items()} == wanted
 
 
+@pytest.mark.parametrize(
+    ("answers", "output"),
+    [("velocity: {column: 1, unit: rpm}", "velocity"), ("force: {column: 1, unit: N}", "force"),
+     ("velocity: {column: 1, unit: m/s}, displacement: {column: 2, unit: m}", "displacement")],
+)  # fmt: skip
+def test_what_alone_was_recorded_of_the_answer_is_the_output(answers, output):
+    text = f"""
+actuator: {{serial: A}}
+runs:
+  - {{id: only, file: a.csv, sample_rate: 10 Hz, channels: {{command: {{column: 0, unit: V}}, {answers}}}}}
+"""
+    assert describe(text.encode(), LIMITS).runs[0].labels.output == output
+
+
+def test_which_of_several_answers_is_the_output_is_asked_for():
+    text = """
+actuator: {serial: A}
+runs:
+  - {id: only, file: a.csv, sample_rate: 10 Hz, channels: {command: {column: 0, unit: V},
+     velocity: {column: 1, unit: m/s}, force: {column: 2, unit: N}}}
+"""
+    with pytest.raises(Unusable, match="choose from command, velocity, force"):
+        describe(text.encode(), LIMITS)
+
+
 def test_a_bare_number_is_no_angle_and_an_angle_no_length():
     assert describe_channel({"column": 0, "unit": "1"}, "displacement", "x").scale.unit == "1"
     assert describe_channel({"column": 0, "unit": "deg"}, "displacement", "x").scale.factor == pytest.approx(0.0174533)

@@ -117,8 +117,8 @@ def test_scale_offset_and_invert_act_in_this_order(matrix, columns):
 
 
 def test_a_type_that_nobody_can_read_is_refused_with_the_list(matrix):
-    matrix.change("first.csv", "first.xlsx").describe()
-    (matrix.path / "runs/first.xlsx").write_bytes(b"PK")
+    matrix.change("first.csv", "first.rpc").describe()
+    (matrix.path / "runs/first.rpc").write_bytes(b"PK")
     with pytest.raises(Unusable, match=r"\.parquet") as refused:
         read_matrix(matrix.path)
     assert refused.value.code == "unknown-type"

@@ -55,6 +55,28 @@ def benchmark_2020(a1b0=2.1283e13, a2=4.2297e6, a3=3.3, b1=425.0, b2=9.9976e4, m
     return A, np.append(np.zeros(n - 1), numerator / w ** (n - 1)), np.append(1.0, np.zeros(n - 1))
 
 
+def benchmark_record(seconds, seed, band=80.0, size=2e-3, sample_rate=4096.0):
+    """(command, x) of the transfer system under noise from 0 to `band` Hz of RMS `size` m, begun within 0.1 s.
+
+    The command runs straight from sample to sample; the ramp's share is that of the exponential of an added state.
+    """
+    n, h = int(seconds * sample_rate), 1.0 / sample_rate
+    rng, f = np.random.default_rng(seed), np.fft.rfftfreq(n, h)
+    lines = np.where((f > 0) & (f <= band), rng.standard_normal(len(f)) + 1j * rng.standard_normal(len(f)), 0.0)
+    command = np.fft.irfft(lines, n)
+    command *= size / command.std() * np.clip(np.arange(n) * h / 0.1, 0.0, 1.0)
+    A, B, C = benchmark_2020()
+    m = len(A)
+    block = np.zeros((m + 2, m + 2))  # d/dt of the states, the command, its slope
+    block[:m, :m], block[:m, m], block[m, m + 1] = A, B, 1.0
+    step = expm(block * h)[:m]
+    state, x = np.zeros(m), np.zeros(n)
+    for k in range(n - 1):
+        state = step @ np.append(state, [command[k], (command[k + 1] - command[k]) / h])
+        x[k + 1] = C @ state
+    return command, x
+
+
 def run(plant, controller, delay, wanted, disturbance, sample_rate=4096.0):
     """What is measured and what is commanded: (x, u), each (n,), from rest.
 

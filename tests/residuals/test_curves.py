@@ -8,13 +8,14 @@ import pytest
 from ident.comparison.compare import compare
 from ident.effects.backlash import BACKLASH
 from ident.errors import Unusable
+from ident.figures import figure
 from ident.fit.settings import Settings
 from ident.presets import preset
 from ident.residuals.curves import curves
 from ident.residuals.decimation import Response
 from ident.residuals.traces import traces
 from ident.residuals.views import VIEWS, injected, showing, view_of
-from ident.workflows import figure, identify
+from ident.workflows import identify, study
 from tests.fit.test_windows import cylinder
 from tests.residuals.conftest import HIDDEN, TRUE, compared
 
@@ -133,7 +134,7 @@ def test_an_unknown_curve_is_refused_with_those_there_are():
     """The remedy names every view."""
     base = compared("dead_zone")
     with pytest.raises(Unusable, match="no curve 'thermal'") as refused:
-        figure("residual-curve", base.matrix, base.fit, view="thermal")
+        figure("residual-curve", study(base.matrix, base.fit), view="thermal")
     assert all(view.name in refused.value.remedy for view in VIEWS[:3])
 
 
@@ -141,7 +142,7 @@ def test_an_unknown_curve_is_refused_with_those_there_are():
 def test_symbols_keep_their_case_in_a_heading(view, heading):
     """A drive signal w is not its upper case."""
     base = compared("dead_zone")
-    drawn = figure("residual-curve", base.matrix, base.fit, view=view)
+    drawn = figure("residual-curve", study(base.matrix, base.fit), view=view)
     assert f'"{heading}' in drawn.to_json()
 
 

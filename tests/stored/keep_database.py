@@ -2,7 +2,8 @@
 
 A service is run on a small matrix: a fit and its diagnosis, then the same two once more, the fit killed in the middle
 of its search, the diagnosis while it waits behind that. FOLDER has both databases as SQL, the blobs as text, and what
-the service answered. For another version, put this file into its checkout and run it there.
+the service answered. For another version, put this file into its checkout and run it there; before there were
+turns at a job, `Dispatch.advance` of app/dispatch.py, which is given the job, stands for `Run.advance`.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from typing import Any
 
 from fastapi.testclient import TestClient
 
-from app.jobs.steps import GuardedSteps
+from app.jobs.steps import Run
 from app.main import create_app
 from app.settings import Settings
 from tests.reference import nonlinear_reference as reference
@@ -65,16 +66,17 @@ def matrix() -> dict[str, str]:
 def serve(data: Path) -> None:
     """Store all of it in the folder `data`, and end as `kill -9` does."""
     steps, waiting = {}, threading.Event()
-    advance = GuardedSteps.advance
+    advance = Run.advance
 
-    def dying(self: GuardedSteps, job: str, state: dict[str, Any]) -> dict[str, Any]:
+    def dying(self: Run, state: dict[str, Any]) -> dict[str, Any]:
+        job = self.lease.job
         steps[job] = steps.get(job, 0) + 1
         if len(steps) == 2 and steps[job] > BLOCKS:
             waiting.wait()
             os._exit(KILLED)
-        return advance(self, job, state)
+        return advance(self, state)
 
-    GuardedSteps.advance = dying
+    Run.advance = dying
     headers = {"Authorization": f"Bearer {TOKEN}"}
     with TestClient(create_app(Settings(data=data, token=TOKEN)), "http://127.0.0.1:8000", headers=headers) as client:
         answers: dict[str, Any] = {}

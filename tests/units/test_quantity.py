@@ -10,7 +10,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ident.errors import Unusable
-from ident.units.quantity import parameter_value, printed_notice, quantity, si_unit, unit_scale
+from ident.units.quantity import (
+    atom_of_pint,
+    known_atom,
+    parameter_value,
+    printed_notice,
+    quantity,
+    si_unit,
+    unit_scale,
+)
+from ident.units.usual import USUAL
 
 READ = [
     ("497 mm^2", "area", 4.97e-4),
@@ -155,3 +164,9 @@ def test_any_unit_is_a_unit_or_is_refused(unit):
 @given(st.floats(-1e20, 1e20))
 def test_a_number_in_si_stays_bit_for_bit_what_it_was(number):
     assert quantity(f"{number!r} m", "length", "field") == number
+
+
+@pytest.mark.parametrize("name", USUAL)
+def test_a_usual_unit_is_what_the_library_of_units_says(name):
+    """The table only saves an import: factor, zero and dimensions are those of pint, bit for bit."""
+    assert known_atom(name) == atom_of_pint(name)

@@ -18,6 +18,16 @@ export async function send(method, path, body) {
   return { data, status: answer.status, location: answer.headers.get("Location") };
 }
 
+// A file of the service, and the name that it gives it.
+export async function fetched(path) {
+  const answer = await fetch(path, { credentials: "same-origin" }).catch(() => {
+    throw new Error("The service does not answer. Check that it is running, then try again.");
+  });
+  if (!answer.ok) throw new Error(sentence(await answer.json().catch(() => null), answer));
+  const name = /filename="([^"]+)"/.exec(answer.headers.get("Content-Disposition") ?? "")?.[1] ?? "";
+  return { file: await answer.blob(), name };
+}
+
 // A form with files; `told` hears which share of it has left, because fetch does not say so.
 export function upload(path, form, told) {
   return new Promise((done, fail) => {
@@ -58,4 +68,20 @@ export async function guarded(button, place, work) {
   } finally {
     button.disabled = false;
   }
+}
+
+// Does `work` where a form would be sent: the button waits meanwhile and says so, what goes wrong stands beside the form.
+export function submitted(form, work) {
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    const button = form.querySelector("button[type=submit]"), said = button.textContent;
+    guarded(button, form.querySelector("[role=alert]"), async () => {
+      button.textContent = form.dataset.wait;
+      try {
+        await work();
+      } finally {
+        button.textContent = said;
+      }
+    });
+  });
 }

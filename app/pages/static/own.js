@@ -57,9 +57,21 @@ function definition() {
   const made = { name: name.trim(), place, equation: lines.length > 1 ? lines : lines[0] ?? "", strength };
   const shape = shapes();
   if (shape.length) made.shape = shape;
+  const curve = curveOf((name) => form.elements[name].value.trim());
+  if (curve) made.curve = curve;
   const state = { symbol: form.elements.state.value.trim(), rate: rate.value.trim() };
   if (state.symbol || state.rate) made.state = state;
   if (meaning.trim()) made.meaning = meaning.trim();
+  return made;
+}
+
+// Nothing where neither its symbol nor its knots are given; what is left out beside them the service asks for.
+function curveOf(given) {
+  if (!given("curve") && !given("knots")) return null;
+  const listed = (name) => given(name).split(",").map((one) => one.trim()).filter(Boolean);
+  const made = { symbol: given("curve"), of: given("of"), knots: listed("knots"), unit: given("curve-unit"), draw: given("draw") };
+  made.values = listed("values").map(Number);
+  for (const end of ["lower", "upper"]) if (given(`curve-${end}`)) made[end] = Number(given(`curve-${end}`));
   return made;
 }
 

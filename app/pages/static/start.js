@@ -44,6 +44,7 @@ form.addEventListener("submit", (event) => {
     const wanted = { model: fields.get("model") || null, method: fields.get("method"), seed: Number(fields.get("seed")) };
     wanted.effects = fields.getAll("effects");
     wanted.bounds = bounds(fields);
+    if (fields.get("budget")) wanted.budget = Number(fields.get("budget"));
     if (fields.has("load")) wanted.load = fields.get("load");
     try {
       const { data } = await send("POST", form.action, { ...wanted, matrix: await matrix() });

@@ -1,4 +1,4 @@
-// Upload of a matrix: one zip, or matrix.yaml with its files (a folder keeps its paths).
+// Upload of a matrix: one zip, or matrix.yaml with its files (a folder keeps its paths). Raw files become a draft.
 
 import { guarded, upload } from "./api.js";
 
@@ -69,8 +69,9 @@ form.addEventListener("submit", (event) => {
     bar.closest("p").hidden = false;
     tell(0);
     try {
-      const { id } = await upload(form.action, body, tell);
-      location.assign(`/matrices/${id}`);
+      const raw = !files.some(({ path }) => /(^|\/)matrix\.ya?ml$|\.zip$/i.test(path));
+      const { id } = await upload(raw ? form.dataset.raw : form.action, body, tell);
+      location.assign(raw ? `/drafts/${id}` : `/matrices/${id}`);
     } finally {
       bar.closest("p").hidden = true;
     }

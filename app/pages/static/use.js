@@ -1,6 +1,6 @@
 // An identified machine put to use: forms that make a controller or queue a hybrid simulation, fields that come and go.
 
-import { guarded, send } from "./api.js";
+import { send, submitted } from "./api.js";
 import "./progress.js";
 
 // What was chosen is there again on the page that shows what came of it; no browser lets a page choose a file.
@@ -55,20 +55,11 @@ for (const form of document.querySelectorAll("form[data-sparse]")) {
 const made = { controller: controller, simulation: simulation };
 
 for (const form of document.querySelectorAll("form[data-make]")) {
-  form.addEventListener("submit", (event) => {
-    event.preventDefault();
-    const button = form.querySelector("button[type=submit]"), said = button.textContent;
-    guarded(button, form.querySelector("[role=alert]"), async () => {
-      button.textContent = form.dataset.wait;
-      try {
-        const { data } = await send("POST", form.action, await made[form.dataset.make](form));
-        remember(form);
-        if (form.dataset.make === "controller") choose(data.id);
-        show(form.dataset.make, data.id, form.closest("section").id);
-      } finally {
-        button.textContent = said;
-      }
-    });
+  submitted(form, async () => {
+    const { data } = await send("POST", form.action, await made[form.dataset.make](form));
+    remember(form);
+    if (form.dataset.make === "controller") choose(data.id);
+    show(form.dataset.make, data.id, form.closest("section").id);
   });
 }
 

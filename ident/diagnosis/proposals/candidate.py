@@ -52,19 +52,10 @@ class Candidate:
 
 def offered(found: Regression, units: Mapping[str, str]) -> tuple[tuple[Candidate, ...], int]:
     """The terms and pairs that promise most, and how many were looked at."""
-    classes = _apart(found)
+    classes = found.classes()
     singles = [_single(found, group) for group in (*classes[:_TRIED], *_shaped(found, classes))]
     pairs, count = _pairs(found, units)
-    return (*singles, *pairs), len(found.terms) + count
-
-
-def _apart(found: Regression) -> list[list[int]]:
-    """The best class of every form: those that differ by where their shapes begin come to the same in a refit."""
-    best: dict[object, list[int]] = {}
-    for group in found.classes():
-        term = found.terms[group[0]]
-        best.setdefault((term.at, term.kind, term.of) if term.free_shapes else group[0], group)
-    return list(best.values())
+    return (*singles, *pairs), found.looked_at + count
 
 
 def _shaped(found: Regression, classes: Sequence[Sequence[int]]) -> list[Sequence[int]]:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.proposals.regression import WIDE
+from ident.diagnosis.proposals.columns import WIDE
 from ident.diagnosis.significance import WORTHWHILE
 from ident.fit.windows import unforeseen
 from ident.matrix import Run

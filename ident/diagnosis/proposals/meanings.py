@@ -43,10 +43,10 @@ _KINDS = {
 
 def meaning(terms: Sequence[Term]) -> str:
     """In words; "" where the term has no known name."""
-    places = {(term.at, term.kind, term.of) for term in terms}
+    places = {term.form for term in terms}
     if places == {("Q", "size", ("v",)), ("R", "turns with", ("P", "v"))}:
         return "the areas of the piston differ between the directions"
     found = [
-        _MEANINGS.get((term.at, term.kind, term.of)) or _KINDS.get(term.kind, "") for term in terms
+        _MEANINGS.get(term.form) or _KINDS.get(term.kind, "") for term in terms
     ]  # fmt: skip
     return "; ".join(dict.fromkeys(entry for entry in found if entry))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from ident.diagnosis.family import Refit
 from ident.diagnosis.proposals.proposal import Proposal
+from ident.diagnosis.refit import Refit
 from ident.diagnosis.standing import contradiction
 from ident.matrix import Run
 

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from ident.chain.chain import linear_model
 from ident.chain.conditions import conditions
-from ident.diagnosis.family import Refit
+from ident.diagnosis.refit import Refit
+from ident.fit.anchoring import Anchoring
 from ident.fit.responses import Sensitivities
 from ident.matrix import Actuator, Run
 from ident.parallel import each
@@ -28,7 +29,7 @@ class Record:
     """One run on the coarse clock of `rate` Hz.
 
     Sensitivities to the parameters (n, p), what is `free` in the run (n, s), the residual (n,), all counted from where
-    each `window` of so many samples begins, where there are such.
+    each window of the `anchoring` begins, where there are such.
 
     `signals` are those inside the model, the conditions of the run and the time, by name, (n,).
     """
@@ -38,7 +39,7 @@ class Record:
     sensitivities: Array
     free: Array
     residual: Array
-    window: int
+    anchoring: Anchoring
     signals: Mapping[str, Array]
 
 
@@ -49,7 +50,7 @@ def records(refit: Refit, names: Sequence[str], instead_of: Sequence[str] = ()) 
     names: they are no parameters then, and what its strength explains is a part of the residual again.
     """
     fitness, point = refit.fitness, refit.point
-    windows = [fitness.window(run) for run in fitness.runs]
+    windows = [fitness.anchoring(run).window for run in fitness.runs]
     count = next(n for n in range(stride(fitness.runs), 0, -1) if all(window % n == 0 for window in windows))
     most = max(256, _MOST // len(fitness.runs))
     sensitivities = Sensitivities.of(fitness, point)
@@ -69,7 +70,7 @@ def records(refit: Refit, names: Sequence[str], instead_of: Sequence[str] = ()) 
         p = len(point)
         residual = coarse[:, -1] + coarse[:, :p] @ put_back
         return Record(
-            run, rate, coarse[:, kept], coarse[:, p:-2], residual, fitness.window(run) // count, known | time | shown
+            run, rate, coarse[:, kept], coarse[:, p:-2], residual, fitness.anchoring(run, count), known | time | shown
         )
 
     return tuple(each(one, fitness.runs))

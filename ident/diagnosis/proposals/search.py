@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.custom.definition import read_effect
-from ident.diagnosis.family import TRYING, ModelFamily, Refit
+from ident.diagnosis.family import TRYING, ModelFamily
 from ident.diagnosis.proposals.candidate import Candidate
 from ident.diagnosis.proposals.evidence import evidence
 from ident.diagnosis.proposals.meanings import meaning
@@ -26,6 +26,7 @@ from ident.diagnosis.proposals.own import definition
 from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.proposals.shown import shown_in
 from ident.diagnosis.proposals.sight import Sight, sight
+from ident.diagnosis.refit import Refit
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.standing import Contradiction, contradiction
 from ident.diagnosis.ties import first_least, in_order

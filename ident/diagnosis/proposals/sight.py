@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.chain.conditions import CONDITIONS
-from ident.diagnosis.family import ModelFamily, Refit
+from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.proposals.candidate import Candidate, offered
 from ident.diagnosis.proposals.records import paths, records
 from ident.diagnosis.proposals.regression import regression
 from ident.diagnosis.proposals.terms import Library
+from ident.diagnosis.refit import Refit
 from ident.effects.effect import Effect
 from ident.parameter import Parameter
 from ident.presets import Preset

@@ -86,6 +86,11 @@ class Term:
         """How many numbers within it a refit moves."""
         return sum(shape.free for shape in self.shapes)
 
+    @property
+    def form(self) -> tuple[str, str, tuple[str, ...]]:
+        """What terms have in common that differ by where their shapes begin alone."""
+        return self.at, self.kind, self.of
+
 
 @dataclass(frozen=True)
 class Library:

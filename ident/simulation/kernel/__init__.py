@@ -13,7 +13,7 @@ from functools import lru_cache
 
 from ident.chain.chain import Chain
 from ident.simulation.kernel.layout import HELD, SHARE, Filter, Kernel
-from ident.simulation.kernel.machine_code import LANES
+from ident.simulation.kernel.machine_code import LANES, WIDE
 from ident.simulation.kernel.source import constant
 from ident.simulation.kernel.writer import Writer
 
@@ -29,4 +29,4 @@ def kernel(
     return Writer(chain, output, dict(plain), beside=beside).kernel()
 
 
-__all__ = ["HELD", "LANES", "SHARE", "Filter", "Kernel", "constant", "kernel"]
+__all__ = ["HELD", "LANES", "SHARE", "WIDE", "Filter", "Kernel", "constant", "kernel"]

@@ -5,10 +5,10 @@ from __future__ import annotations
 import ast
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 
+from ident.cached import cached_property
 from ident.chain.chain import INPUT, Chain
-from ident.simulation.kernel.machine_code import Advance, Fed, address, advance
+from ident.simulation.kernel.machine_code import WIDE, Advance, Fed, address, advance
 
 HELD, SHARE = "held", "share"
 """Rows that the packing fills: 1 where a lane's command is held between samples; the delay's fraction of a step."""
@@ -28,10 +28,11 @@ class Filter:
 class Kernel:
     """The generated kernel of a chain and one output, and where things are in its buffer (rows of lanes).
 
-    `advance(b, commands, forces, command_at, force_at, first, last, every, out, stride)` takes the buffer b over the
-    steps first to last − 1 and writes the output of every `every`-th of them to the flat array out, rows `stride`
-    apart. Step k of a lane begins at commands[command_at[lane] + k], which its delay shifts, and at row
-    force_at[lane] + k of the forces, which have a column for each measured input, and reads up to the next value.
+    `advance(b, commands, forces, command_at, force_at, first, last, every, out, stride)` takes eight lanes, those with
+    which the buffer b begins, over the steps first to last − 1 and writes the output of every `every`-th of them to the
+    flat array out, rows `stride` apart. Step k of a lane begins at commands[command_at[lane] + k], which its delay
+    shifts, and at row force_at[lane] + k of the forces, which have a column for each measured input, and reads up to
+    the next value.
     """
 
     chain: Chain
@@ -50,7 +51,7 @@ class Kernel:
     @cached_property
     def advance(self) -> Advance:
         """The compiled function."""
-        return advance(self.lines, self._fed, self.shown)
+        return advance(self.lines, self._fed, self.shown, WIDE)
 
     def address(self, lanes: int) -> tuple[int, object]:
         """Where the machine code of :attr:`advance` stands for the first `lanes` alone, and what keeps it there."""

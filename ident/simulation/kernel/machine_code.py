@@ -22,8 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 LANES = 16
-_WIDE = 8  # lanes of one operation: two registers of AVX2, one of AVX-512
-_VECTOR = f"<{_WIDE} x double>"
+WIDE = 8
+"""Lanes of one operation, two registers of AVX2 or one of AVX-512: fewer cost as much."""
+_VECTOR = f"<{WIDE} x double>"
 _FAST = "nnan ninf nsz contract"
 _SIGNS = {ast.Add: "fadd", ast.Sub: "fsub", ast.Mult: "fmul", ast.Div: "fdiv"}
 _RELATIONS = {ast.Lt: "olt", ast.LtE: "ole", ast.Gt: "ogt", ast.GtE: "oge", ast.Eq: "oeq", ast.NotEq: "une"}
@@ -34,14 +35,16 @@ Fed = tuple[int, str, int, int]
 
 
 @lru_cache(maxsize=256)
-def advance(lines: Sequence[str], fed: Sequence[Fed], shown: int) -> Advance:
+def advance(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int = LANES) -> Advance:
     """The function advance(b, commands, forces, command_at, force_at, first, last, every, out, stride) of some lines.
+
+    It serves the first `lanes` lanes of the buffer, a multiple of eight, and leaves the others alone.
 
     Before the lines of step k of a lane are carried out, each row of `fed` is filled from commands[command_at[lane] +
     k + 1] or from the forces alike, of which the columns that it names lie side by side; row `shown` is what is
     written to `out` (see :class:`ident.simulation.kernel.layout.Kernel`). Arrays are contiguous, of float64 and int64.
     """
-    engine = _engine(_program(lines, fed, shown, LANES))
+    engine = _machine_code(lines, fed, shown, lanes)
     types = [*[ctypes.c_void_p] * 5, *[ctypes.c_int64] * 3, ctypes.c_void_p, ctypes.c_int64]
     native = ctypes.CFUNCTYPE(None, *types)(engine.get_function_address("advance"))
 
@@ -56,16 +59,13 @@ def advance(lines: Sequence[str], fed: Sequence[Fed], shown: int) -> Advance:
     return run
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=256)
 def _machine_code(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int) -> Any:
     return _engine(_program(lines, fed, shown, lanes))
 
 
 def address(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int) -> tuple[int, object]:
-    """Where the machine code of :func:`advance` stands, for a compiled loop to call, and what keeps it there.
-
-    It serves the first `lanes` lanes of the buffer, a multiple of eight, and leaves the others alone.
-    """
+    """Where the machine code of :func:`advance` stands, for a compiled loop to call, and what keeps it there."""
     engine = _machine_code(lines, fed, shown, lanes)
     return engine.get_function_address("advance"), engine
 
@@ -86,7 +86,7 @@ class _Writer:
     def feed(self, row: int, array: str, column: int, columns: int) -> None:
         """Fill a row from the next value of every lane."""
         vector = "undef"
-        for lane in range(_WIDE):
+        for lane in range(WIDE):
             at = self._once(f"add i64 %{array}_{lane}, %k")
             if columns > 1:
                 at = self._new(f"add i64 {self._once(f'mul i64 {at}, {columns}')}, {column}")
@@ -136,7 +136,7 @@ class _Writer:
             case ast.Name(id="k"):
                 number = self._once("sitofp i64 %k to double")
                 alone = self._once(f"insertelement {_VECTOR} undef, double {number}, i32 0")
-                return self._once(f"shufflevector {_VECTOR} {alone}, {_VECTOR} undef, <{_WIDE} x i32> zeroinitializer")
+                return self._once(f"shufflevector {_VECTOR} {alone}, {_VECTOR} undef, <{WIDE} x i32> zeroinitializer")
             case ast.Name(id=name):
                 return self.names[name]
             case ast.Subscript():
@@ -151,11 +151,11 @@ class _Writer:
                 a, b = self._value(left), self._value(right)
                 holds = self._once(f"fcmp {_FAST} {_RELATIONS[type(op)]} {_VECTOR} {a}, {b}")
                 then, els = self._value(body), self._value(other)
-                return self._once(f"select <{_WIDE} x i1> {holds}, {_VECTOR} {then}, {_VECTOR} {els}")
+                return self._once(f"select <{WIDE} x i1> {holds}, {_VECTOR} {then}, {_VECTOR} {els}")
             case ast.Call(func=ast.Name(id=name), args=arguments) if len(arguments) == _CALLS.get(name):
                 self.called.add(name)
                 given = ", ".join(f"{_VECTOR} {self._value(argument)}" for argument in arguments)
-                return self._once(f"call {_FAST} {_VECTOR} @llvm.{name}.v{_WIDE}f64({given})")
+                return self._once(f"call {_FAST} {_VECTOR} @llvm.{name}.v{WIDE}f64({given})")
         raise TypeError(f"{ast.unparse(node)!r} is nothing that a kernel can do")
 
 
@@ -177,7 +177,7 @@ def _offset(node: ast.Subscript) -> int:
 def _number(value: float) -> str:
     """A number to its last bit, in every lane."""
     bits = f"double 0x{struct.unpack('<Q', struct.pack('<d', value))[0]:016X}"
-    return f"<{', '.join([bits] * _WIDE)}>"
+    return f"<{', '.join([bits] * WIDE)}>"
 
 
 # Programs ---------------------------------------------------------------------------------------------------------
@@ -192,18 +192,18 @@ def _program(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int) -
         of.line(line)
     output = of.load(shown * LANES)
     begins = []
-    for lane in range(_WIDE):
+    for lane in range(WIDE):
         begins.append(f"%lane_{lane} = add i64 %lane, {lane}")
         for array, at in (("commands", "command_at"), ("forces", "force_at")):
             begins.append(f"%{at}_place_{lane} = getelementptr i64, ptr %{at}, i64 %lane_{lane}")
             begins.append(f"%{at}_{lane} = load i64, ptr %{at}_place_{lane}")
             begins.append(f"%{array}_{lane} = add i64 %{at}_{lane}, 1")
     declared = (
-        f"declare {_VECTOR} @llvm.{name}.v{_WIDE}f64({', '.join([_VECTOR] * _CALLS[name])})" for name in of.called
+        f"declare {_VECTOR} @llvm.{name}.v{WIDE}f64({', '.join([_VECTOR] * _CALLS[name])})" for name in of.called
     )
     return _PROGRAM.format(
         declared="\n".join(sorted(declared)), begins="\n  ".join(begins), steps="\n  ".join(of.written),
-        vector=_VECTOR, output=output, wide=_WIDE, lanes=lanes,
+        vector=_VECTOR, output=output, wide=WIDE, lanes=lanes,
     )  # fmt: skip
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 from app.diagnoses.service import Stored
@@ -61,10 +62,13 @@ def test_what_does_not_help_stands_apart_and_what_is_left_is_said():
     assert (lacks.suspects[0].stated, lacks.suspects[0].found) == ("2.670 kg", "0.9000 kg")
 
 
+ANYBODY = SimpleNamespace(has=lambda _role: True)
+
+
 def test_the_section_is_markup_with_everything_escaped():
     page = {"id": "f", "serial": "S", "matrix": "m", "again": "{}", "on_bench": False, "kept": ()}
     page |= {"missing": missing(found(), None)}
-    text = _TEMPLATES.get_template("missing.html").render(fit=page, vega="")
+    text = _TEMPLATES.get_template("missing.html").render(fit=page, vega="", who=ANYBODY)
     assert "r &lt;1&gt;" in text
     assert "cannot tell these 2 apart" in text
     assert "{&#34;runs&#34;: {&#34;r &lt;1&gt;&#34;: {&#34;specimen&#34;: {&#34;mass&#34;: &#34;0.9 kg&#34;}}}}" in text

@@ -8,9 +8,9 @@ from typing import cast
 import numpy as np
 import pytest
 
-from ident.diagnosis.family import Refit
 from ident.diagnosis.proposals.outcome import Proposals
 from ident.diagnosis.proposals.proposal import Proposal
+from ident.diagnosis.refit import Refit
 from ident.diagnosis.words import proposed_text
 from ident.matrix import Run
 

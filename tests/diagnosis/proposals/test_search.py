@@ -11,6 +11,7 @@ import pytest
 
 from ident.custom.definition import read_effect
 from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.proposals import columns
 from ident.diagnosis.proposals import regression as regressions
 from ident.diagnosis.proposals.candidate import Candidate
 from ident.diagnosis.proposals.records import records
@@ -252,11 +253,39 @@ def test_the_regression_is_that_of_all_terms_and_runs_at_once(monkeypatch):
         return [(one.equation, one.strength, one.share) for one in seen.candidates]
 
     together = candidates()
-    monkeypatch.setattr(regressions, "_BLOCK", 7)
+    monkeypatch.setattr(columns, "BLOCK", 7)
     monkeypatch.setattr(regressions, "_AT_ONCE", 5)
     for (text, strength, share), (other, same, left) in zip(together, candidates(), strict=True):
         assert text == other
         assert (strength, share) == pytest.approx((same, left), rel=1e-6)
+
+
+def test_of_each_form_the_term_that_explains_most_is_set_beside_the_others(monkeypatch):
+    """Where its shapes begin is all that tells a form's terms apart: the regression of every term leads to the same."""
+    matrix = machine(2, gain_bump=0.25)
+    models = ModelFamily.of(matrix, Settings(model="qian2014"))
+    base = models.refit((), {p.in_equations: p.value for p in models.preset.parameters})
+    met = []
+
+    def regressed(terms, *of):
+        met.append((terms, regression(terms, *of)))
+        return met[-1][1]
+
+    regression = regressions.regression
+    monkeypatch.setattr("ident.diagnosis.proposals.sight.regression", regressed)
+    seen = sight(models, base)
+    monkeypatch.setattr(regressions, "_leading", lambda terms, *_: terms)
+    sight(models, base)
+    (listed, some), (_, every) = met
+    assert (some.looked_at, every.looked_at) == (len(listed), len(listed))
+    assert seen.looked_at > len(listed)
+    assert len(some.terms) < min(0.7 * len(listed), 1500)
+    best = {}
+    for term, gain in zip(every.terms, every.gains, strict=True):
+        best[term.form] = max(best.get(term.form, 0.0), gain)
+    shaped = [(term.form, gain) for term, gain in zip(some.terms, some.gains, strict=True) if term.free_shapes]
+    assert {form for form, _ in shaped} == {term.form for term in listed if term.free_shapes}
+    assert [gain for _, gain in shaped] == pytest.approx([best[form] for form, _ in shaped], rel=1e-6, abs=1e-8)
 
 
 def test_a_term_that_closes_a_circle_with_those_before_is_not_tried():

@@ -1,0 +1,63 @@
+"""Approve a set, withdraw it, and say who did so when."""
+
+from __future__ import annotations
+
+from sqlalchemy.orm import Session
+
+from app.approvals import repository
+from app.context import Context
+from app.errors import Failure, missing
+from app.fits import repository as fits
+from app.limits.broken import tell_broken
+from app.tables import FitRow
+from app.webhooks.outbox import announce
+from schemas.parameters import ApprovalView
+from schemas.webhooks import SetApproved, SetWithdrawn
+
+
+def approve(context: Context, fit: str, who: str, why: str) -> None:
+    """Make a fit the set in force of its actuator. One that is in force stays so, since then.
+
+    Raises Failure 404, and 409 where the search of the fit ran out of its time.
+    """
+    with context.sessions.begin() as session:
+        row = _fit(session, fit)
+        if row.result.get("ended_early"):
+            raise Failure(409, "ended-early", "the search of this fit ran out of its time", f"fit {fit}",
+                          "fit again without a budget")  # fmt: skip
+        if not row.set.current:
+            repository.put_in_force(session, row.serial, row.set.number, who, why)
+            announce(session, SetApproved, serial=row.serial, fit=fit, who=who, why=why)
+            tell_broken(session, row.set)
+
+
+def withdraw(context: Context, fit: str, who: str, why: str) -> None:
+    """Nothing is in force any more for the fit's actuator; raises Failure 404, 409 where the fit was not in force."""
+    with context.sessions.begin() as session:
+        row = _fit(session, fit)
+        if not row.set.current:
+            raise Failure(409, "not-in-force", "this set is not in force, so there is nothing to withdraw", "fit",
+                          "withdraw the one that is: see the actuator")  # fmt: skip
+        repository.put_in_force(session, row.serial, None, who, why)
+        announce(session, SetWithdrawn, serial=row.serial, fit=fit, who=who, why=why)
+
+
+def _fit(session: Session, fit: str) -> FitRow:
+    row = fits.fit(session, fit)
+    if row is None:
+        raise missing("fit", fit)
+    return row
+
+
+def of_actuator(context: Context, serial: str) -> list[ApprovalView]:
+    """Every approval of a serial number, the newest first."""
+    with context.sessions() as session:
+        return history(session, serial)
+
+
+def history(session: Session, serial: str) -> list[ApprovalView]:
+    """Every approval of a serial number, the newest first."""
+    return [
+        ApprovalView(fit=fit, since=row.since, until=row.until, who=row.who, why=row.why)
+        for row, fit in repository.history(session, serial)
+    ]

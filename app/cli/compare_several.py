@@ -1,0 +1,41 @@
+"""`servoident compare` with several fits: one table and one plot of them all."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.output import STANDARD_OUTPUT, write_bytes, write_json
+
+if TYPE_CHECKING:
+    from ident.fit.result import FitResult
+    from ident.matrix import Matrix
+
+NAME = "side-by-side"
+
+
+def compare_several(matrix: Matrix, fits: Sequence[FitResult], json: Path | None, out: Path | None) -> None:
+    """Each fit against every run of the matrix, whatever it was fitted to."""
+    from app.cli.tables import show
+    from ident.comparison.side_by_side import of_comparisons
+    from ident.workflows import compare
+
+    found = of_comparisons([compare(matrix, fit) for fit in fits])
+    if json is not None:
+        columns = [
+            {"name": one.name, "model": one.fit.model, "effects": list(one.fit.effects), "error": dict(one.error),
+             "parameters": one.fit.records()}
+            for one in found.columns
+        ]  # fmt: skip
+        write_json({"fits": columns, "runs": found.records()}, json)
+    if json != STANDARD_OUTPUT:
+        show(found.listings())
+    if out is not None:
+        from ident.figures import MEDIA, look, render, side_by_side
+
+        out.mkdir(parents=True, exist_ok=True)
+        chart = side_by_side(found, matrix.actuator, look("light"))
+        for kind in MEDIA:
+            write_bytes(render(chart, kind), out / f"{NAME}.{kind}")
+        print(f"wrote {NAME} to {out}")

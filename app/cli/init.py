@@ -1,0 +1,146 @@
+"""`servoident init`: raw files of a bench, described: a matrix folder."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from app.cli.arguments import split
+from app.cli.check import description, summary
+from app.cli.output import write_bytes
+from ident.errors import Unusable
+from ident.words.number import count
+
+if TYPE_CHECKING:
+    from ident.drafts.draft import Answer, Answers, Draft
+    from ident.drafts.text import Gathered
+
+_FORM = "NAME=COLUMN:UNIT"
+_Texts = list[str] | None
+
+
+def init(
+    files: Annotated[list[Path], typer.Argument(metavar="FILES…", help="Raw files of one actuator, a run each.")],
+    out: Annotated[Path, typer.Option(metavar="MATRIX", help="Folder to write: matrix.yaml and runs/.")],
+    serial: Annotated[str, typer.Option(metavar="TEXT", help="Serial number of the actuator.")] = "",
+    channel: Annotated[
+        _Texts,
+        typer.Option(metavar=_FORM, help="What a column is, by name or number, and its unit; NAME=:UNIT for the unit "
+                     "alone, NAME=- where it is not there. May be repeated."),
+    ] = None,
+    time: Annotated[str, typer.Option(metavar="COLUMN:UNIT", help="The column of the time.")] = "",
+    rate: Annotated[str, typer.Option(metavar="HZ", help="Sample rate, as in '4096 Hz', where no column has it.")] = "",
+    output: Annotated[str, typer.Option(metavar="NAME", help="Channel that a model is to reproduce.")] = "",
+    verify: Annotated[_Texts, typer.Option(metavar="FILE", help="A run to verify; may be repeated.")] = None,
+    area: Annotated[str, typer.Option(metavar="AREA", help="Piston area, as in '497 mm^2'.")] = "",
+    gain: Annotated[str, typer.Option(metavar="KP", help="Gain of the loop in every run.")] = "",
+    hold: Annotated[str, typer.Option(metavar="NAME", help="The command between samples: linear, zoh.")] = "",
+) -> None:  # fmt: skip
+    """Describe raw files: find columns, units, time and rate, ask for what they do not state, write matrix.yaml.
+
+    What no file states is asked on a terminal; elsewhere it is refused with a list of what is missing. The matrix is
+    checked, and every doubt shown.
+    """
+    from ident.drafts.draft import NONE, Answers, Draft
+    from ident.drafts.raw import read_raw
+    from ident.drafts.text import gathered
+
+    if (out / "matrix.yaml").exists():
+        raise Unusable("there-already", "there is a matrix.yaml", str(out), "name another folder")
+    contents = [_content(file) for file in files]
+    found = [read_raw(content, file.name) for file, content in zip(files, contents, strict=True)]
+    given = {"gain": gain, "hold": hold}
+    answers = Answers(
+        serial=serial, channels=dict(_channel(text) for text in channel or []), time=_answer(time), rate=rate,
+        output=output, verify=tuple(Path(name).name for name in verify or []),
+        actuator={"piston_area": area} if area else {}, common={name: text for name, text in given.items() if text},
+    )  # fmt: skip
+    if strange := sorted(set(answers.verify) - {file.name for file in files}):
+        raise Unusable("missing-file", f"{strange[0]!r} is none of the files", "--verify", "name one of them")
+    draft = Draft(found, answers)
+    while draft.missing and sys.stdin.isatty():
+        draft = _asked(draft, NONE)
+    _made(draft, gathered(draft, contents), out)
+
+
+def _made(draft: Draft, files: Gathered, out: Path) -> None:
+    """Check the matrix, write it, and say what was taken and what is doubted."""
+    from ident.checks.check import check
+    from ident.drafts.text import drafted
+
+    matrix = drafted(files)
+    _write(files, out)
+    findings = check(matrix)
+    print("\n".join([*(f"taken: {doubt}" for doubt in draft.doubts), *description(matrix)]))
+    for finding in findings:
+        print(f"{finding.severity}: {f'run {finding.run}: ' if finding.run else ''}{finding.text} [{finding.code}]")
+    print(summary([finding.severity for finding in findings]))
+    print(f"wrote {out / 'matrix.yaml'} and {count(len(draft.files), 'file')}; next: servoident fit {out}")
+
+
+def _content(file: Path) -> bytes:
+    from ident.readers.limits import LIMITS
+    from ident.readers.source import read_regular
+
+    return read_regular(file, file.name, LIMITS.file)
+
+
+def _channel(text: str) -> tuple[str, Answer]:
+    """`displacement=CHANNEL0:cm`. Raises Unusable."""
+    name, value = split(text, "--channel", _FORM)
+    return name, _answer(value)
+
+
+def _answer(text: str) -> Answer:
+    """`COLUMN:UNIT`, either of them left out; a column of digits is its number."""
+    from ident.drafts.draft import Answer
+
+    column, colon, unit = (part.strip() for part in text.rpartition(":"))
+    if not colon:
+        column, unit = unit, ""
+    return Answer(int(column) if column.isdigit() else column, unit)
+
+
+def _asked(draft: Draft, none: str) -> Draft:
+    """The draft with the next thing that is missing answered on the terminal; as it is where that cannot be."""
+    from ident.drafts.draft import Draft
+
+    key, question = draft.missing[0].key, draft.missing[0].question
+    hint = f" (COLUMN or COLUMN:UNIT, {none} for none)" if key.startswith("channel") else ""
+    text = str(typer.prompt(f"{question}{hint}")).strip()
+    try:
+        answered = Draft(draft.files, _with(draft.answers, key, text))
+        _ = answered.missing  # names the column that is not there
+    except Unusable as refused:
+        print(str(refused), file=sys.stderr)
+        return draft
+    return answered
+
+
+def _with(answers: Answers, key: str, text: str) -> Answers:
+    """The answers with one more."""
+    from ident.drafts.draft import Answer
+
+    kind, _, name = key.partition(" ")
+    if kind == "serial":
+        return replace(answers, serial=text)
+    if kind == "rate":
+        known = any(sign.isdigit() for sign in text[:1])
+        return replace(answers, rate=text) if known else replace(answers, time=_answer(text))
+    before = answers.time if name == "time" else answers.channels.get(name, Answer())
+    after = replace(before, unit=text) if kind == "unit" else _answer(text)
+    if name == "time":
+        return replace(answers, time=after)
+    channels: dict[str, Any] = {**answers.channels, name: after}
+    return replace(answers, channels=channels)
+
+
+def _write(files: Gathered, out: Path) -> None:
+    """The files of the matrix, its description last: a folder that has one is whole."""
+    (out / "runs").mkdir(parents=True, exist_ok=True)
+    for name, content in reversed(list(files.files.items())):
+        write_bytes(content, out / name)

@@ -1,0 +1,61 @@
+"""`servoident profile`: how well parameters of a fit are known, without the curvature that standard errors assume."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from app.cli.given import read_fit
+from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
+
+if TYPE_CHECKING:
+    from ident.comparison.profile import Profile
+    from ident.fit.result import FitResult
+    from ident.matrix import Actuator
+
+FORMATS = ("svg", "png", "pdf", "json")
+
+
+def profile(
+    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")],
+    fit: Annotated[Path, typer.Option(metavar="FIT.json", help="What `servoident fit --json` wrote.")],
+    parameter: Annotated[list[str], typer.Option(metavar="NAME", help="Parameter to hold; may be repeated.")],
+    points: Annotated[int, typer.Option(help="Values at which it is held, 5 to 101.")] = 15,
+    json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the profiles as JSON; - is stdout.")] = None,
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures: svg, png, pdf, json.")] = None,
+) -> None:
+    """Profile likelihood of parameters of a fit: their 95 % intervals, also at a bound or to one side.
+
+    At each value the others are fitted again; of a model with effects that takes a refit by simulation a value.
+    """
+    from app.cli.progress import shown
+    from app.cli.tables import show
+    from ident.comparison.profile import profile as profiled
+    from ident.plain import written
+    from ident.readers import read_matrix
+
+    check_target(json)
+    result, read = read_fit(fit), read_matrix(matrix)
+    with shown() as report:
+        found = [profiled(read, result, name, points, report) for name in parameter]
+    if json is not None:
+        write_json({"profiles": written(found)}, json)
+    if json != STANDARD_OUTPUT:
+        for one in found:
+            show(one.listings())
+    if out is not None:
+        draw(found, result, read.actuator, out)
+
+
+def draw(found: list[Profile], fit: FitResult, actuator: Actuator, out: Path) -> None:
+    """Write a figure a parameter, in every format, to the folder `out`."""
+    from ident.figures import look, profile_likelihood, render
+
+    out.mkdir(parents=True, exist_ok=True)
+    for one in found:
+        for format_ in FORMATS:
+            chart = profile_likelihood(one, actuator, fit, look("light"))
+            write_bytes(render(chart, format_), out / f"profile-{one.parameter.replace('/', '-')}.{format_}")
+    print(f"wrote {', '.join(f'profile-{one.parameter}' for one in found)} to {out}")

@@ -1,0 +1,52 @@
+"""`servoident statistics`: what the sets of a batch, or of an actuator over time, tell about production."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
+from app.cli.remote import DEFAULT, Server, Token, request
+
+
+def statistics(
+    parameter: Annotated[str, typer.Argument(metavar="PARAMETER", help="Its name, or error.fit, error.verify.")],
+    batch: Annotated[str | None, typer.Option(help="Batch.")] = None,
+    serial: Annotated[str | None, typer.Option(help="Serial number, for its drift over all that was approved.")] = None,
+    model: Annotated[str | None, typer.Option(help="Model.")] = None,
+    server: Server = DEFAULT,
+    token: Token = "",
+    json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write all of it as JSON; - is stdout.")] = None,
+    figure: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw the control chart: .svg, .png, .pdf or .json.")
+    ] = None,
+) -> None:
+    """Statistics of a parameter over the sets in force: spread, control chart, Cpk, outliers, drift."""
+    check_target(json)
+    check_target(figure)
+    given = {"parameter": parameter, "batch": batch, "serial": serial, "model": model}
+    params = {name: value for name, value in given.items() if value is not None}
+    found = request(server, token, "GET", "/statistics", params=params).json()
+    if figure is not None:
+        at = f"/statistics/figures/control-chart.{figure.suffix.removeprefix('.') or 'svg'}"
+        write_bytes(request(server, token, "GET", at, params=params).content, figure)
+    if json is not None:
+        write_json(found, json)
+    if json != STANDARD_OUTPUT:
+        show(found)
+
+
+def show(found: dict[str, Any]) -> None:
+    """Print the numbers, then what is out of the ordinary."""
+    from app.cli.tables import output, table
+    from app.statistics.words import called, facts
+    from schemas.statistics import StatisticsView
+
+    view = StatisticsView(**found)
+    console = output()
+    console.print(table(("of", view.parameter), facts(view), numbers=()))
+    rows = [(one.serial, one.fit, one.value, one.why) for one in called(view)]
+    if rows:
+        console.print(table(("serial", "fit", "value", "out of the ordinary"), rows, numbers=("value",)))

@@ -1,0 +1,30 @@
+"""`servoident tidy`: remove what need not be kept."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from app.cli.data_options import Blobs, Data, Database, settings
+
+
+def tidy(
+    hours: Annotated[
+        float, typer.Option("--older-than", min=0, metavar="HOURS", help="Leave what is younger alone.")
+    ] = 24,
+    yes: Annotated[bool, typer.Option("--yes", help="Remove it; else it is only shown.")] = False,
+    data: Data = None,
+    database: Database = "",
+    blobs: Blobs = "",
+) -> None:
+    """Show, and with --yes remove, raw uploads that no record names: an upload was cut off before it was recorded."""
+    from app.retention import service
+
+    chosen = settings(data, database, blobs=blobs)
+    found = service.unused(chosen, 3600 * hours)
+    for blob in found:
+        print(f"{blob.sha256}  {blob.size / 1e6:.3f} MB")
+    if yes:
+        service.remove(chosen, found)
+    print(f"{len(found)} raw uploads that no record names{' are removed' if yes else '; --yes removes them'}")

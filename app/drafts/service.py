@@ -1,0 +1,132 @@
+"""Drafts: raw files that wait in a staged store until they are described, and are a matrix, or are forgotten."""
+
+from __future__ import annotations
+
+import io
+import json
+import shutil
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import PurePosixPath
+from typing import BinaryIO
+
+from app.context import Context
+from app.errors import missing
+from app.lru import LRU
+from app.matrices import service as matrices
+from app.matrices.stored import Blobs, Revised
+from app.storage import Storage
+from ident.checks.check import check
+from ident.drafts.draft import Answer, Answers, Draft
+from ident.drafts.raw import RawFile, read_raw
+from ident.drafts.text import as_yaml, run_files
+from ident.errors import Unusable
+from ident.readers import read_source
+from ident.readers.limits import LIMITS, check_size
+from ident.readers.source import DESCRIPTION, inside, read_regular
+from schemas.draft import AnswersRequest, AnswerView, ColumnView, DraftView, MissingView, RawFileView
+from schemas.matrix import FindingView, MatrixView
+
+_NAMES = "names.json"
+_MOST = 2  # drafts in memory
+_read: LRU[tuple[RawFile, ...]] = LRU(_MOST)
+
+
+def check_room(context: Context) -> None:
+    """Raise Failure 507 where raw files would go at the reserve of the disk: before they are read."""
+    matrices.check_room(context)
+
+
+def begin(context: Context, files: Mapping[str, BinaryIO]) -> DraftView:
+    """Keep raw files for a day and say what they hold. Raises Unusable; then nothing is kept."""
+    context.storage.tidy()
+    name, store = context.storage.begun()
+    try:
+        plain = {PurePosixPath(inside(path, "upload")).name: content for path, content in files.items()}
+        if len(plain) < len(files):
+            raise Unusable("duplicate-file", "two files have one name", "upload", "give each its own name")
+        names = {one: store.put(content) for one, content in sorted(plain.items())}
+        (store.folder / _NAMES).write_text(json.dumps(names), encoding="utf-8")
+        return look(context, name, AnswersRequest())
+    except BaseException:
+        shutil.rmtree(store.folder, ignore_errors=True)
+        raise
+
+
+def look(context: Context, draft: str, asked: AnswersRequest) -> DraftView:
+    """What is known of the files with these answers, what is missing, and, where nothing is, what the check doubts.
+
+    Raises Unusable for answers that fit no file, and Failure 404.
+    """
+    of = Draft(raw_files(context, draft), answers(asked))
+    known, lacks = of.known(of.files[0]), of.missing
+    text, findings = "", []
+    if not lacks:
+        text = as_yaml(of)
+        store, names = _opened(context, draft)
+        source = Revised(Blobs(store, run_files(names)), text.encode())
+        findings = [FindingView(**asdict(finding)) for finding in check(read_source(source))]
+    return DraftView(
+        id=draft,
+        files=[_file(of, file) for file in of.files],
+        channels={name: AnswerView(**asdict(answer)) for name, answer in known.channels.items()},
+        time=AnswerView(**asdict(known.time)), rate=known.rate,
+        missing=[MissingView(**asdict(one)) for one in lacks], doubts=list(of.doubts),
+        findings=findings, description=text,
+    )  # fmt: skip
+
+
+def _file(draft: Draft, file: RawFile) -> RawFileView:
+    known = draft.known(file)
+    by_column = {file.table.number(answer.column, ""): name for name, answer in known.channels.items()}
+    if known.time.column != "":
+        by_column[file.table.number(known.time.column, "")] = "time"
+    columns = [
+        ColumnView(number=c.number, name=c.name, unit=c.unit, role=by_column.get(c.number, "")) for c in file.columns
+    ]
+    return RawFileView(name=file.name, samples=len(file.samples(file.columns[0].number)), columns=columns)
+
+
+def make(context: Context, draft: str, asked: AnswersRequest) -> tuple[MatrixView, bool]:
+    """The matrix that a draft is with these answers, stored as an upload is; True where it is new.
+
+    Raises Unusable where something is missing or the matrix cannot be, and Failure 404.
+    """
+    text = as_yaml(Draft(raw_files(context, draft), answers(asked)))
+    store, names = _opened(context, draft)
+    described = {DESCRIPTION: store.put(io.BytesIO(text.encode()))}
+    found = matrices.record(context, store, {"files": described | run_files(names)}, None)
+    shutil.rmtree(store.folder, ignore_errors=True)
+    return found
+
+
+def answers(asked: AnswersRequest) -> Answers:
+    """The library's answers. Raises Unusable for a channel that is none."""
+    common = {"gain": asked.gain, "hold": asked.hold}
+    return Answers(
+        serial=asked.serial.strip(), channels={name: Answer(a.column, a.unit) for name, a in asked.channels.items()},
+        time=Answer(asked.time.column, asked.time.unit), rate=asked.rate, output=asked.output,
+        verify=tuple(asked.verify), actuator={"piston_area": asked.area} if asked.area else {},
+        common={name: text for name, text in common.items() if text},
+    )  # fmt: skip
+
+
+def raw_files(context: Context, draft: str) -> tuple[RawFile, ...]:
+    """The files of a draft, from memory where they were read lately. Raises Failure 404, Unusable."""
+    store, names = _opened(context, draft)
+
+    def read() -> tuple[RawFile, ...]:
+        sizes = [store.path(sha256).stat().st_size for sha256 in names.values()]
+        check_size(sum(sizes), LIMITS.total, "all files together", "upload")
+        return tuple(read_raw(read_regular(store.path(sha), name, LIMITS.file), name) for name, sha in names.items())
+
+    return _read.get((str(context.storage.folder), draft), read)
+
+
+def _opened(context: Context, draft: str) -> tuple[Storage, dict[str, str]]:
+    """The staged store of a draft, and its blobs by name. Raises Failure 404."""
+    store = context.storage.resumed(draft)
+    if store is None or not (store.folder / _NAMES).is_file():
+        raise missing("draft", draft)
+    names: dict[str, str] = json.loads((store.folder / _NAMES).read_text(encoding="utf-8"))
+    return store, names

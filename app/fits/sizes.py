@@ -1,0 +1,33 @@
+"""How large what is left is, in the unit of the output: beside eq. (17), which is a ratio."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.context import Context
+from app.fits.drawing import study
+from ident.comparison.compare import RunComparison
+from ident.words.engineering import quantity
+from schemas.fit import ErrorSize, ErrorSizesView
+
+
+def sizes(context: Context, fit_id: str) -> ErrorSizesView:
+    """RMSE and MAE of each run, and their means over the runs of each use that have one unit. Raises Failure 404."""
+    found = study(context, fit_id)
+    compared = found.compared(found.matrix.runs).runs
+    uses = {use: [one for one in compared if one.run.use == use] for use in ("fit", "verify")}
+    means = {use: _mean(runs) for use, runs in uses.items() if len({one.unit for one in runs}) == 1}
+    return ErrorSizesView(uses=means, runs={one.run.id: _mean([one]) for one in compared})
+
+
+def _mean(runs: Sequence[RunComparison]) -> ErrorSize:
+    rmse, mae, unit = (
+        float(np.mean([one.rmse for one in runs])),
+        float(np.mean([one.mae for one in runs])),
+        runs[0].unit,
+    )
+    return ErrorSize(
+        rmse=rmse, mae=mae, unit=unit, rmse_in_print=quantity(rmse, unit), mae_in_print=quantity(mae, unit)
+    )

@@ -1,0 +1,1 @@
+"""What the parameters of a model have to keep to, and who does."""

@@ -1,0 +1,38 @@
+"""/limits, and the verdict on an actuator."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter
+
+from app.access.roles import LAB, READERS
+from app.access.who import Me
+from app.context import Here
+from app.errors import COMMON
+from app.limits import judging, service
+from schemas.limits import LimitsRequest, LimitsView, LineVerdictView
+
+router = APIRouter(tags=["limits"], responses=COMMON)
+
+
+@router.get("/limits", dependencies=[READERS])
+def list_limits(here: Here) -> list[LimitsView]:
+    """The limits of every model that has some."""
+    return service.listed(here)
+
+
+@router.get("/limits/{model:path}", dependencies=[READERS])
+def get_limits(here: Here, model: str) -> LimitsView:
+    """The limits of a model, of all batches and of each that has its own."""
+    return service.of_model(here, model)
+
+
+@router.put("/limits/{model:path}", dependencies=[LAB])
+def put_limits(here: Here, me: Me, model: str, request: LimitsRequest) -> LimitsView:
+    """Set the limits of a model for one batch, or for all; they take the place of those before."""
+    return service.put(here, model, request, me.name)
+
+
+@router.get("/actuators/{serial:path}/verdict", dependencies=[READERS])
+def get_verdict(here: Here, serial: str) -> LineVerdictView:
+    """Pass, fail or unknown, with the reasons: the set in force against the limits of its model and batch."""
+    return judging.judge(here, serial)

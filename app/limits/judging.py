@@ -1,0 +1,66 @@
+"""The verdict on an actuator: its set in force against the limits of its model and batch."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from app.actuators.repository import find
+from app.approvals.repository import in_force
+from app.context import Context
+from app.errors import missing
+from app.limits import repository
+from app.limits.verdict import Judged, verdict
+from app.statistics.repository import ERRORS
+from app.tables import LimitRow, SetRow
+from schemas.limits import JudgedView, LineVerdictView
+
+
+def judge(context: Context, serial: str) -> LineVerdictView:
+    """Pass, fail, or unknown with the reasons; raises Failure 404."""
+    with context.sessions() as session:
+        actuator, row = find(session, serial), in_force(session, [serial]).get(serial)
+        if actuator is None:
+            raise missing("actuator", serial)
+        limits = repository.in_batch(session, row.model, row.batch) if row else {}
+    if row is None:
+        return _unknown(serial, actuator.batch, None, "no parameter set is in force: approve a fit")
+    if not limits:
+        of = f"model {row.model}, batch {row.batch}" if row.batch else f"model {row.model}"
+        return _unknown(serial, row.batch, row, f"no limits are set for {of}")
+    judged = judged_by(row, limits)
+    found = verdict(judged)
+    decisive = {"fail": "outside", "unknown": "unknown", "pass": "inside"}[found]
+    reasons = [one.reason for one in judged if one.outcome == decisive]
+    return LineVerdictView(
+        serial=serial, verdict=found, reasons=reasons, fit=row.fit, model=row.model, batch=row.batch,
+        approved_at=row.approved_at, judged=[_view(one) for one in judged],
+    )  # fmt: skip
+
+
+def judged_by(row: SetRow, limits: Mapping[str, LimitRow]) -> list[Judged]:
+    """Each value of a set that has a limit, against it."""
+    return [_judged(row, limit) for limit in limits.values()]
+
+
+def _judged(row: SetRow, limit: LimitRow) -> Judged:
+    if limit.name in ERRORS:
+        value = row.error_fit if limit.name == "error.fit" else row.error_verify
+        return Judged(limit.name, value, None, "1", limit.lower, limit.upper, exact=True)
+    found = next((value for value in row.values if value.name == limit.name), None)
+    if found is None:
+        return Judged(limit.name, None, None, "", limit.lower, limit.upper)
+    return Judged(limit.name, found.value, found.std_error, found.unit, limit.lower, limit.upper)
+
+
+def _view(one: Judged) -> JudgedView:
+    return JudgedView(
+        name=one.name, value=one.value, std_error=one.std_error, unit=one.unit, lower=one.lower, upper=one.upper,
+        outcome=one.outcome, uncertain=one.uncertain, reason=one.reason,
+    )  # fmt: skip
+
+
+def _unknown(serial: str, batch: str, row: SetRow | None, why: str) -> LineVerdictView:
+    return LineVerdictView(
+        serial=serial, verdict="unknown", reasons=[why], fit=row.fit if row else None, batch=batch, judged=[],
+        model=row.model if row else None, approved_at=row.approved_at if row else None,
+    )  # fmt: skip

@@ -1,0 +1,86 @@
+"""Whether an actuator's set in force keeps to its limits, judged with the standard errors of its values.
+
+A value within two standard errors of a limit may lie on either side of it: it proves neither that the limit is kept
+nor that it is broken (ISO 14253-1 judges measured workpieces so).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from ident.words.engineering import quantity
+from ident.words.percent import percent
+from ident.words.plus_minus import plus_minus
+
+SURE = 2.0  # standard errors from a limit
+Outcome = Literal["inside", "outside", "unknown"]
+Verdict = Literal["pass", "fail", "unknown"]
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A value against its limits, SI; no standard error where it was held fixed or the data do not determine it."""
+
+    name: str
+    value: float | None
+    std_error: float | None
+    unit: str
+    lower: float | None
+    upper: float | None
+    exact: bool = False  # an error, which has no standard error and needs none
+
+    @property
+    def nearest(self) -> float:
+        """How far inside the nearer limit it lies; below 0 outside."""
+        assert self.value is not None
+        below = math.inf if self.lower is None else self.value - self.lower
+        above = math.inf if self.upper is None else self.upper - self.value
+        return min(below, above)
+
+    @property
+    def uncertain(self) -> bool:
+        """Whether its standard error leaves open on which side of a limit it lies."""
+        if self.value is None or self.std_error is None:
+            return False
+        ends = [limit for limit in (self.lower, self.upper) if limit is not None]
+        return any(abs(self.value - limit) < SURE * self.std_error for limit in ends)
+
+    @property
+    def outcome(self) -> Outcome:
+        """Inside or outside for sure, else unknown."""
+        if self.value is None or (self.std_error is None and not self.exact) or self.uncertain:
+            return "unknown"
+        return "inside" if self.nearest >= 0 else "outside"
+
+    @property
+    def reason(self) -> str:
+        """The outcome in words."""
+        if self.value is None:
+            return f"{self.name}: the set has no such value"
+        if self.std_error is None and not self.exact:
+            return f"{self.name} {self._shown(self.value)}: held fixed or not determined by the data, so not judged"
+        said = f"{self.name} {self._with_error} is {'within' if self.nearest >= 0 else 'outside'} {self._limits}"
+        return f"{said}, but uncertain: a limit is less than two standard errors away" if self.uncertain else said
+
+    @property
+    def _with_error(self) -> str:
+        assert self.value is not None
+        return percent(self.value) if self.exact else plus_minus(self.value, self.std_error, self.unit)
+
+    @property
+    def _limits(self) -> str:
+        lower, upper = (None if limit is None else self._shown(limit) for limit in (self.lower, self.upper))
+        if lower is None or upper is None:
+            return f"the lower limit {lower}" if upper is None else f"the upper limit {upper}"
+        return f"{lower} to {upper}"
+
+    def _shown(self, value: float) -> str:
+        return percent(value) if self.exact else quantity(value, self.unit)
+
+
+def verdict(judged: list[Judged]) -> Verdict:
+    """Fail where one is outside, pass where every one is inside."""
+    outcomes = {one.outcome for one in judged}
+    return "fail" if "outside" in outcomes else "pass" if outcomes == {"inside"} else "unknown"

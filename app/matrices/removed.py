@@ -1,0 +1,21 @@
+"""A matrix whose raw runs were removed by the rule: what was found from them stays."""
+
+from __future__ import annotations
+
+from app.tables import MatrixRow
+from ident.errors import Unusable
+
+
+class Removed(Unusable):
+    """Raw runs that were there and are gone; over HTTP 410."""
+
+
+def check_there(row: MatrixRow) -> None:
+    """Raise Removed where the raw runs of a matrix are gone."""
+    if row.removed_at is not None:
+        raise Removed(
+            "removed-by-rule",
+            f"its raw runs were removed by the rule on {row.removed_at[:10]}; what was found from them stays",
+            f"matrix {row.id}",
+            "upload them again to work on them",
+        )

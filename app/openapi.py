@@ -1,0 +1,61 @@
+"""The OpenAPI document: ids of operations are words, Problem is one component, each call says which roles may."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import APIRouter, FastAPI, Request
+from fastapi.openapi.utils import get_openapi
+from fastapi.routing import APIRoute, iter_route_contexts
+from pydantic.json_schema import models_json_schema
+
+from app.access.roles import READERS, May, declared
+from app.access.who import Role
+from schemas.problem import Problem
+
+router = APIRouter(include_in_schema=False)
+_BINARY = {"application/pdf", "application/zip"}
+_BYTES = "application/octet-stream"
+_BEARER = {"type": "http", "scheme": "bearer", "description": "A token; or the cookie of a session."}
+
+
+@router.get("/openapi.json", dependencies=[READERS])
+def document(request: Request) -> dict[str, Any]:
+    """This document."""
+    content: dict[str, Any] = request.app.openapi()
+    return content
+
+
+def named(route: APIRoute) -> str:
+    """The id of an operation: what its function is called."""
+    return route.name
+
+
+def write(app: FastAPI) -> dict[str, Any]:
+    """The document of an application's calls."""
+    made = get_openapi(title=app.title, version=app.version, routes=app.routes,
+                       webhooks=app.webhooks.routes)  # fmt: skip
+    components = made.setdefault("components", {})
+    _, problem = models_json_schema([(Problem, "serialization")], ref_template="#/components/schemas/{model}")
+    components.setdefault("schemas", {}).update(problem["$defs"])
+    components["securitySchemes"] = {"token": _BEARER}
+    found = {each.name: declared(each.original_route) for each in iter_route_contexts(app.routes)}
+    for operations in made["paths"].values():
+        for operation in operations.values():
+            operation["security"] = _security(found[operation["operationId"]])
+            for response in operation["responses"].values():
+                _add_bytes(response.get("content", {}))
+    return made
+
+
+def _add_bytes(content: dict[str, Any]) -> None:
+    """What comes as a document or an archive may be taken for plain bytes: few clients know more of it."""
+    if content and not content.keys() - _BINARY:
+        content.update({kind: {"schema": {"type": "string", "format": "binary"}} for kind in [*content, _BYTES]})
+
+
+def _security(declaration: May | None) -> list[dict[str, list[str]]]:
+    """The roles, each of which will do; none of them for what anyone may ask."""
+    if declaration is None or declaration.free:
+        return []
+    return [{"token": [role]} for role in Role if role in declaration.roles | {Role.ADMIN}]

@@ -1,0 +1,63 @@
+"""More than two fits side by side: what the page of them shows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from app.fits.service import Stored
+from app.pages.fit_page import other_fit
+from ident.comparison.side_by_side import SideBySide
+from ident.words.percent import percent_in_print
+from schemas.parameters import ParameterSetView
+
+Row = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Head:
+    """One of the fits, and the address of this page without it."""
+
+    id: str
+    title: str
+    method: str
+    seed: int
+    made: str
+    current: bool
+    without: str
+
+
+@dataclass(frozen=True)
+class SideView:
+    """The fits and their tables; `fixed` are the others in the query of the figure, which is the first one's."""
+
+    id: str
+    serial: str
+    heads: tuple[Head, ...]
+    letters: tuple[str, ...]
+    errors: tuple[Row, ...]
+    parameters: tuple[Row, ...]
+    runs: tuple[Row, ...]
+    fits: str
+    fixed: str
+
+
+def side_view(stored: Sequence[Stored], found: SideBySide) -> SideView:
+    """The page of these fits."""
+    ids = [one.id for one in stored]
+    heads = tuple(
+        Head(one.id, column.title, one.found.method, one.found.seed, one.created_at, one.current,
+             "/compare?fits=" + ",".join(other for other in ids if other != one.id))
+        for one, column in zip(stored, found.columns, strict=True)
+    )  # fmt: skip
+    columns = found.columns
+    runs = ((run, use, *(percent_in_print(one.runs.get(run)) for one in columns)) for run, use in found.uses.items())
+    return SideView(
+        ids[0], stored[0].serial, heads, tuple(column.name for column in found.columns), tuple(found.error_rows()),
+        tuple(found.parameter_rows()), tuple(runs), ",".join(ids), "&".join(f"other={one}" for one in ids[1:]),
+    )  # fmt: skip
+
+
+def further(known: Iterable[ParameterSetView], fits: Sequence[str]) -> tuple[tuple[str, str], ...]:
+    """Fits of the actuator that can be added to these, by id and in words."""
+    return tuple((one.id, other_fit(one)) for one in known if one.id not in fits)

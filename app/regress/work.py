@@ -1,0 +1,55 @@
+"""The recheck of one approved set as the work of a job."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import asdict, dataclass
+
+from sqlalchemy.orm import Session
+
+from app.fits import repository as fits
+from app.jobs.work import Kind, State, Task, Work
+from app.regress import repository
+from app.regress.recheck import Change, found
+from app.tables import JobRow
+from ident.errors import Unusable
+from ident.fit.result import FitResult
+
+KIND = "recheck"
+
+
+@dataclass(frozen=True)
+class RecheckWork(Work):
+    """The stored error computed again, and the stored runs fitted from scratch."""
+
+    task: Task
+
+    def finish(self, _: State) -> State:
+        """Every quantity before and now. Raises Unusable."""
+        assert self.task.parent is not None
+        with self.task.sessions() as session:
+            row = fits.fit(session, self.task.parent)
+        if row is None:
+            raise Unusable("no-such-fit", "the fit is not stored any more", self.task.parent, "start another one")
+        began = time.monotonic()
+        changes = found(FitResult.from_json(row.result), self.task.matrix, self.task.report)
+        return {"changes": [written(change) for change in changes], "seconds": time.monotonic() - began}
+
+
+def written(change: Change) -> dict[str, object]:
+    """A change as JSON, which knows no NaN."""
+    return {**asdict(change), "after": None if math.isnan(change.after) else change.after}
+
+
+def read(entry: dict[str, object]) -> Change:
+    """The inverse of `written`."""
+    after = entry["after"]
+    return Change(**{**entry, "after": math.nan if after is None else after})  # type: ignore[arg-type]
+
+
+def _keep(session: Session, job: JobRow, _serial: str, made: State) -> None:
+    repository.keep(session, job.id, made["changes"], made["seconds"])
+
+
+RECHECK = Kind(KIND, RecheckWork, _keep)

@@ -1,0 +1,34 @@
+"""The control chart as bytes in every format."""
+
+from __future__ import annotations
+
+from app.context import Context
+from app.errors import Failure
+from app.statistics import service
+from ident.figures import MEDIA, look, render
+from ident.figures.control_chart import control_chart as drawn
+from ident.statistics import control_chart as chart_of
+from ident.words.symbols import symbol
+
+
+def control_chart(
+    context: Context,
+    parameter: str,
+    batch: str | None,
+    serial: str | None,
+    model: str | None,
+    kind: str,
+    style: tuple[str, float],
+) -> tuple[bytes, str]:
+    """Individuals and moving ranges. Raises Failure where there are not two sets."""
+    if kind not in MEDIA:
+        raise Failure(404, "no-such-format", f"no figures as {kind!r}", "figure", f"use {', '.join(MEDIA)}")
+    found = service.statistics(context, parameter, batch, serial, model)
+    chart = chart_of([point.value for point in found.points])
+    if chart is None:
+        raise Failure(409, "too-few", "one set makes no chart", "parameter", "approve a second one")
+    where = f"serial number {serial}" if serial is not None else f"batch {batch}" if batch else "every batch"
+    limits = (found.capability.lower, found.capability.upper) if found.capability else (None, None)
+    labels = [point.serial if serial is None else point.created_at[:10] for point in found.points]
+    figure = drawn(chart, symbol(parameter, ""), found.unit, where, labels, limits, look(*style))
+    return render(figure, kind), MEDIA[kind]

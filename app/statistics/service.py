@@ -1,0 +1,94 @@
+"""Statistics of one parameter over the sets of a batch, or of one actuator over time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from datetime import datetime
+
+from app.context import Context
+from app.errors import Failure
+from app.limits.repository import EVERY, in_batch
+from app.statistics import repository
+from app.statistics.repository import Chosen, Point
+from ident.statistics import Capability, ControlChart, capability, control_chart, drift, outliers, summary
+from schemas.statistics import (
+    CapabilityView,
+    ControlChartView,
+    DriftView,
+    OutlierView,
+    PointView,
+    SignalView,
+    StatisticsView,
+)
+
+MOST = 5000  # sets that are taken
+
+
+def statistics(
+    context: Context, parameter: str, batch: str | None, serial: str | None, model: str | None
+) -> StatisticsView:
+    """Of the sets in force, or of one serial number those that ever were; raises Failure where there are none."""
+    with context.sessions() as session:
+        points = repository.points(session, parameter, Chosen(batch, serial, model), MOST + 1)
+        points, left_out = points[-MOST:], len(points) > MOST
+        _check(points, parameter)
+        limit = in_batch(session, points[0].model, batch or EVERY).get(parameter)
+    lower, upper = (limit.lower, limit.upper) if limit else (None, None)
+    values = [point.value for point in points]
+    found, chart = summary(values), control_chart(values)
+    return StatisticsView(
+        parameter=parameter, unit=points[0].unit, model=points[0].model, n=found.n, mean=found.mean,
+        deviation=found.deviation, minimum=found.minimum, maximum=found.maximum,
+        percentiles={str(share): value for share, value in found.percentiles.items()},
+        control_chart=_chart(chart), capability=_capability(capability(values, lower, upper), lower, upper),
+        outliers=_outliers(points), drift=_drift(points) if serial is not None else None,
+        points=_points(points, chart), left_out=left_out,
+    )  # fmt: skip
+
+
+def _check(points: Sequence[Point], parameter: str) -> None:
+    """Raises Failure where there is nothing, or where values of several models would be mixed."""
+    if not points:
+        raise Failure(404, "no-sets", f"no approved set here has {parameter!r}", "parameter",
+                      "see /api/v1/parameter-sets for the names, and approve a fit first")  # fmt: skip
+    models = sorted({point.model for point in points})
+    if len(models) > 1:
+        raise Failure(409, "several-models", f"the sets are of {', '.join(models)}", "model", "name one of them")
+
+
+def _chart(chart: ControlChart | None) -> ControlChartView | None:
+    if chart is None:
+        return None
+    return ControlChartView(
+        centre=chart.centre, sigma=chart.sigma, lower=chart.lower, upper=chart.upper, mean_range=chart.mean_range,
+        upper_range=chart.upper_range, wide_ranges=list(chart.wide_ranges),
+        signals=[SignalView(place=one.place, rule=one.rule, text=one.text) for one in chart.signals],
+    )  # fmt: skip
+
+
+def _capability(found: Capability | None, lower: float | None, upper: float | None) -> CapabilityView | None:
+    return None if found is None else CapabilityView(lower=lower, upper=upper, **vars(found))
+
+
+def _outliers(points: Sequence[Point]) -> list[OutlierView]:
+    found = outliers([point.value for point in points])
+    return [
+        OutlierView(fit=points[one.place].fit, serial=points[one.place].serial, value=points[one.place].value,
+                    score=one.score)
+        for one in found
+    ]  # fmt: skip
+
+
+def _drift(points: Sequence[Point]) -> DriftView | None:
+    times = [datetime.fromisoformat(point.created_at).timestamp() for point in points]
+    found = drift(times, [point.value for point in points])
+    return None if found is None else DriftView(**vars(found), significant=found.significant)
+
+
+def _points(points: Sequence[Point], chart: ControlChart | None) -> list[PointView]:
+    ranges = (None, *chart.moving_ranges) if chart else (None,) * len(points)
+    return [
+        PointView(fit=one.fit, serial=one.serial, created_at=one.created_at, value=one.value, std_error=one.std_error,
+                  moving_range=range_)
+        for one, range_ in zip(points, ranges, strict=True)
+    ]  # fmt: skip

@@ -1,0 +1,65 @@
+"""Statistics in words: what a page and a terminal show of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from ident.words.engineering import quantity
+from ident.words.number import plain
+from schemas.statistics import StatisticsView
+
+
+@dataclass(frozen=True)
+class Called:
+    """A set that is out of control or far from the others."""
+
+    fit: str
+    serial: str
+    value: str
+    why: str
+
+
+def facts(found: StatisticsView) -> list[tuple[str, str]]:
+    """The numbers beside the chart."""
+    shown = dict(_numbers(found))
+    return list(shown.items())
+
+
+def _numbers(found: StatisticsView) -> Iterator[tuple[str, str]]:
+    def of(value: float | None) -> str:
+        return "–" if value is None else quantity(value, found.unit)
+
+    yield "Sets", f"{found.n}{', the newest' if found.left_out else ''}, of model {found.model}"
+    yield "Mean", of(found.mean)
+    yield "Standard deviation", of(found.deviation)
+    yield "Smallest, largest", f"{of(found.minimum)}, {of(found.maximum)}"
+    yield "Median", of(found.percentiles["50"])
+    yield "5 % to 95 % lie in", f"{of(found.percentiles['5'])} to {of(found.percentiles['95'])}"
+    if chart := found.control_chart:
+        yield "Control limits, 3 σ", f"{of(chart.lower)} to {of(chart.upper)}"
+        yield "Mean moving range", of(chart.mean_range)
+    if able := found.capability:
+        yield "Limits of the product", f"{of(able.lower)} to {of(able.upper)}; {able.outside} outside"
+        yield "Cpk, 95 % interval", f"{plain(able.cpk, 3)} ({plain(able.low, 3)} to {plain(able.high, 3)})"
+    if drift := found.drift:
+        told = "significant" if drift.significant else "within chance"
+        yield "Drift a year", f"{of(drift.slope)} ± {of(drift.std_error)}, {told} (p = {plain(drift.p, 2)})"
+
+
+def called(found: StatisticsView) -> list[Called]:
+    """Every set that breaks a rule, jumps, or lies far out, in the order of the chart."""
+    why: dict[int, list[str]] = {}
+    chart = found.control_chart
+    for signal in chart.signals if chart else ():
+        why.setdefault(signal.place, []).append(signal.text)
+    for place in chart.wide_ranges if chart else ():
+        why.setdefault(place, []).append("further from the one before than ranges should be")
+    places = {point.fit: place for place, point in enumerate(found.points)}
+    for far in found.outliers:
+        why.setdefault(places[far.fit], []).append(f"outlier, modified z-score {plain(far.score, 2)}")
+    return [
+        Called(found.points[place].fit, found.points[place].serial, quantity(found.points[place].value, found.unit),
+               "; ".join(dict.fromkeys(texts)))
+        for place, texts in sorted(why.items())
+    ]  # fmt: skip

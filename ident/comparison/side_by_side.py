@@ -1,0 +1,102 @@
+"""Several fits side by side: errors, parameters and runs, a column each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from string import ascii_uppercase
+from typing import Any
+
+from ident.comparison.compare import Comparison
+from ident.errors import Unusable
+from ident.fit.result import Estimate, FitResult
+from ident.words.number import count
+from ident.words.percent import percent
+from ident.words.plus_minus import plus_minus
+from ident.words.shown import Listing, Shown
+
+MOST = 8
+_USES = {"fit": "fit", "held_out": "held out", "verify": "verify"}
+
+
+@dataclass(frozen=True)
+class Column:
+    """One fit: its letter, and eq. (17) by use and by run."""
+
+    name: str
+    fit: FitResult
+    error: Mapping[str, float | None]
+    runs: Mapping[str, float]
+
+    @property
+    def title(self) -> str:
+        """Letter, model, and the parameters that were held."""
+        held = ", ".join(name for name, estimate in self.fit.parameters.items() if estimate.fixed)
+        model = " + ".join((self.fit.model, *self.fit.effects))
+        return f"{self.name}: {model}{f', {held} held' if held else ''}"
+
+
+@dataclass(frozen=True)
+class SideBySide(Shown):
+    """The fits in the order in which they were given; `uses` has the use of each run that one of them has."""
+
+    columns: tuple[Column, ...]
+    uses: Mapping[str, str]
+
+    def listings(self) -> Iterable[Listing | str]:
+        """What the letters stand for, errors, parameters, runs."""
+        names = [column.name for column in self.columns]
+        yield from (column.title for column in self.columns)
+        yield Listing("", ("error (eq. 17)", *names), self.error_rows(), names)
+        yield Listing("", ("parameter", *names), self.parameter_rows(), names)
+        yield Listing("", ("run", "use", *names), self.run_rows(), names)
+
+    def error_rows(self) -> Iterator[tuple[str, ...]]:
+        """One row a use of which there are runs."""
+        for use, title in _USES.items():
+            errors = [column.error.get(use) for column in self.columns]
+            if any(error is not None for error in errors):
+                yield title, *map(percent, errors)
+
+    def parameter_rows(self) -> Iterator[tuple[str, ...]]:
+        """One row a parameter that one of the fits has, with its standard error."""
+        for name in dict.fromkeys(name for column in self.columns for name in column.fit.parameters):
+            yield name, *(_value(column.fit.parameters.get(name)) for column in self.columns)
+
+    def run_rows(self) -> Iterator[tuple[str, ...]]:
+        """One row a run."""
+        for run, use in self.uses.items():
+            yield run, use, *(percent(column.runs.get(run)) for column in self.columns)
+
+    def records(self) -> list[dict[str, Any]]:
+        """A record a run, for a data frame: its error in each fit, by letter."""
+        return [
+            {"id": run, "use": use, **{column.name: column.runs.get(run) for column in self.columns}}
+            for run, use in self.uses.items()
+        ]
+
+
+def _value(entry: Estimate | None) -> str:
+    return "–" if entry is None else plus_minus(entry.value, entry.std_error, entry.unit)
+
+
+def of_fits(fits: Sequence[FitResult]) -> SideBySide:
+    """Fits with the errors that they were stored with. Raises Unusable for fewer than two, or more than eight."""
+    _check(len(fits))
+    runs = [{run.id: run.error for run in fit.runs} for fit in fits]
+    columns = tuple(map(Column, ascii_uppercase, fits, [fit.error for fit in fits], runs))
+    return SideBySide(columns, {run.id: run.use for fit in fits for run in fit.runs})
+
+
+def of_comparisons(comparisons: Sequence[Comparison]) -> SideBySide:
+    """Fits against the same runs, whatever each was fitted to. Raises Unusable as :func:`of_fits`."""
+    _check(len(comparisons))
+    runs = [{one.run.id: one.error for one in comparison.runs} for comparison in comparisons]
+    fits = [comparison.fit for comparison in comparisons]
+    columns = tuple(map(Column, ascii_uppercase, fits, [comparison.error for comparison in comparisons], runs))
+    return SideBySide(columns, {one.run.id: one.run.use for comparison in comparisons for one in comparison.runs})
+
+
+def _check(number: int) -> None:
+    if not 2 <= number <= MOST:
+        raise Unusable("bad-option", f"{count(number, 'fit')} to compare", "fits", f"give 2 to {MOST}")

@@ -1,0 +1,73 @@
+"""The columns of a regression over terms: what each changes of a run's output, beside its parameters and residual."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from ident.diagnosis.proposals.records import Record
+from ident.diagnosis.proposals.terms import Term
+from ident.residuals.decimation import Response
+
+Array = NDArray[np.float64]
+BLOCK = 128
+"""Terms whose responses are worked out together: those to all at once are large."""
+WIDE = 1.3  # of the command's band is looked at
+_WITHOUT_END = 1e60  # of the output, for a strength of one: no power of a signal comes near
+
+
+@dataclass(frozen=True)
+class Columns:
+    """One run as its columns see it: `known` is [J, r] within the `band`, (n, p+1), all over the residual's `size`.
+
+    What is free in the run is taken off, and so it is of each column, by the orthonormal `basis`, (n, s).
+    """
+
+    record: Record
+    band: float
+    known: Array
+    basis: Array
+    size: float
+
+    @classmethod
+    def of(cls, record: Record, band: float) -> Columns:
+        """Those of a run; `band` in rad/s."""
+        known = _within(np.column_stack([record.sensitivities, record.residual]), record, band)
+        basis = np.empty((len(known), 0))
+        if record.free.shape[1]:
+            free = _within(record.free.copy(), record, band)
+            basis = scipy.linalg.orth(free / np.maximum(np.linalg.norm(free, axis=0), 1e-300), rcond=1e-9)
+        known = known - basis @ (basis.T @ known)
+        size = max(float(np.linalg.norm(known[:, -1])), 1e-300)
+        return cls(record, band, known / size, basis, size)
+
+    def to(self, terms: Sequence[Term], path: Response) -> Array:
+        """T * φ of terms that add to one signal, (n, terms); `path` leads from there to the output."""
+        samples = np.column_stack([term.samples(self.record.signals, self.record.rate) for term in terms])
+        found = _within(path.to(samples)[:, :, 0], self.record, self.band)
+        # Where small signals are not stable an answer grows without end: it tells nothing of the run.
+        found = np.where(np.max(np.abs(found), axis=0, initial=0.0) < _WITHOUT_END, found, 0.0)
+        return np.asarray((found - self.basis @ (self.basis.T @ found)) / self.size)
+
+
+def blocks(terms: Sequence[Term]) -> list[list[int]]:
+    """The numbers of terms that add to one signal, at most :data:`BLOCK` together."""
+    by_signal: dict[str, list[int]] = {}
+    for i, term in enumerate(terms):
+        by_signal.setdefault(term.at, []).append(i)
+    return [here[k : k + BLOCK] for here in by_signal.values() for k in range(0, len(here), BLOCK)]
+
+
+def _within(rows: Array, record: Record, band: float) -> Array:
+    """Columns over time as what of them is seen: the lines of their spectra in the band, or the windows they begin."""
+    rows[~np.isfinite(rows)] = 0.0
+    if record.anchoring.window:
+        return record.anchoring(rows)
+    spectrum = np.fft.rfft(rows, axis=0)
+    lines = np.fft.rfftfreq(len(rows), 1.0 / record.rate) * 2 * np.pi
+    inside = spectrum[(lines > 0) & (lines <= WIDE * band)]
+    return np.concatenate([inside.real, inside.imag])

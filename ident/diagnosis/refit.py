@@ -1,0 +1,133 @@
+"""A model at its optimum for the runs that it is fitted to, and how it does there and elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.cached import cached_property
+from ident.diagnosis.cross_validation import CrossValidation, cross_validated
+from ident.diagnosis.estimate import Found
+from ident.fit.fitness import Local
+from ident.fit.simulated_fitness import SimulatedFitness
+from ident.fit.space import Space
+from ident.fit.uncertainty import Covariance, covariance
+from ident.matrix import Run, over_runs
+from ident.noise.effective_sample_size import independent_samples
+
+Array = NDArray[np.float64]
+_FOLLOWED = 1.2  # times the promised error that a simulation may leave
+_KNOWN = 1e3  # times its value: the standard error beyond which nothing is known of a parameter
+
+
+@dataclass(frozen=True)
+class Refit:
+    """A model with these effects at its optimum: `values` by the equations' names, SI."""
+
+    effects: tuple[str, ...]
+    values: Mapping[str, float]
+    space: Space
+    point: Array
+    here: Local
+    fitness: SimulatedFitness = field(repr=False)
+
+    @cached_property
+    def held_out(self) -> CrossValidation:
+        """Its errors on blocks that were left out in turn."""
+        return cross_validated(self.point, self.here, self.fitness.exact, self._simulated.independent)
+
+    @property
+    def stable(self) -> bool:
+        """Whether the model is stable on every run."""
+        return bool(np.isfinite(self.here.error))
+
+    @property
+    def finite(self) -> bool:
+        """Whether the model is stable on every run, and leaves there what it promises."""
+        return self.stable and self._followed
+
+    @cached_property
+    def _followed(self) -> bool:
+        """Whether a simulation from the first states that were found leaves what their linear correction promises.
+
+        A model that is not linear in them may look good where no first state at all leads.
+        """
+        if all(run.begins != "moving" for run in self.fitness.runs):
+            return True
+        return self._simulated.error < _FOLLOWED * self.error
+
+    @cached_property
+    def _simulated(self) -> _Simulated:
+        return _Simulated.of(self.fitness, self.point)
+
+    @property
+    def error(self) -> float:
+        """Eq. (17) averaged over the runs."""
+        return float(over_runs([run.error for run in self.here.runs], self.here.runs))
+
+    @cached_property
+    def on_verify(self) -> float | None:
+        """Eq. (17) averaged over the runs to verify; None where there are none, or the model is unstable on one.
+
+        Of what it leaves there once their first states are found, as a comparison shows it: what is linear in these
+        would flatter a model that is not.
+        """
+        runs = self.fitness.matrix.of_use("verify")
+        if not runs:
+            return None
+        found = _Simulated.of(self.fitness.fresh(runs), self.point).error
+        return found if np.isfinite(found) else None
+
+    @property
+    def errors(self) -> dict[str, float | None]:
+        """Its errors by what they are measured on."""
+        return {"fit": self.error, "held_out": self.held_out.error, "verify": self.on_verify}
+
+    def left(self, runs: Sequence[Run]) -> list[Array]:
+        """What it leaves of any runs of the matrix, (n,) each, less its mean or over windows."""
+        outputs = self.fitness.fresh(tuple(runs)).outputs(self.point)
+        return [self.fitness.left(run, outputs[run.id]) for run in runs]
+
+    @cached_property
+    def _known(self) -> Covariance:
+        return covariance(self.here, self.point)
+
+    def deviation(self, parameter: str) -> float | None:
+        """The standard error of a parameter by its name in the equations; None where it is held or not determined."""
+        if parameter not in self.space.names:
+            return None
+        error = self._known.deviation(lambda points: self.space.values(points)[parameter])
+        return error if np.isfinite(error) and error < _KNOWN * max(abs(self.values[parameter]), 1e-300) else None
+
+    @property
+    def parameters(self) -> dict[str, Found]:
+        """What it found of every parameter, by its name."""
+        preset, found = self.fitness.preset, {}
+        for one in preset.parameters:
+            name = one.in_equations
+            found[one.name] = Found(self.values[name], preset.unit(one), self.deviation(name), one.symbol)
+        return found
+
+    @property
+    def offset(self) -> float:
+        """The mean of the runs' offsets."""
+        return float(over_runs([run.offset for run in self.here.runs], self.here.runs))
+
+
+@dataclass(frozen=True)
+class _Simulated:
+    """What a simulation leaves of runs: eq. (17) averaged over them, and how many of its samples tell something new."""
+
+    error: float
+    independent: float
+
+    @classmethod
+    def of(cls, fitness: SimulatedFitness, point: Array) -> _Simulated:
+        """Simulate the model at a point."""
+        outputs, runs = fitness.outputs(point), fitness.runs
+        left = [fitness.left(run, outputs[run.id]) for run in runs]
+        errors = [np.sqrt(np.mean(r**2)) / np.std(run.measured) for r, run in zip(left, runs, strict=True)]
+        return cls(float(over_runs(errors, runs)), sum(map(independent_samples, left)))

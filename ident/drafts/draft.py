@@ -1,0 +1,241 @@
+"""A draft of a matrix: raw files with what is known of them, and what is still to be answered."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import PurePosixPath
+from typing import Any
+
+from ident.drafts.names import is_time, suggested, unit_of
+from ident.drafts.raw import Column, RawFile
+from ident.drafts.steps import moves_in_steps
+from ident.errors import Unusable
+from ident.matrix import CHANNELS
+from ident.readers import PACKED
+from ident.units.quantity import shown
+
+OUTPUTS = ("displacement", "velocity", "force", "load_pressure")
+"""Channels that a model may have to reproduce; the first that there is, unless one is named."""
+_DRIVES = ("command", "current")
+_HELD = "the command rests and jumps, so it is taken to be held between its changes (hold: zoh)"
+_DRAWN = "the command is taken to run straight from sample to sample (hold: linear); say zoh where it is held"
+NONE = "-"
+"""The answer that a channel is not there, though a column is called after it."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Which column a channel or the time is, by name or number, and its unit; what is empty is not answered."""
+
+    column: str | int = ""
+    unit: str = ""
+
+
+@dataclass(frozen=True)
+class Answers:
+    """What a person says of raw files. `common` are further entries of every run, as they stand in matrix.yaml."""
+
+    serial: str = ""
+    channels: Mapping[str, Answer] = field(default_factory=dict)
+    time: Answer = Answer()
+    rate: str = ""
+    output: str = ""
+    verify: tuple[str, ...] = ()
+    actuator: Mapping[str, str] = field(default_factory=dict)
+    common: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for channel in self.channels:
+            if channel not in CHANNELS:
+                raise Unusable("unknown-channel", f"no channel {shown(channel)!r}", "channel",
+                               f"choose from {', '.join(CHANNELS)}")  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Missing:
+    """One thing that the files do not state: `key` as an option and a field name it, and the question."""
+
+    key: str
+    question: str
+
+
+@dataclass(frozen=True)
+class Known:
+    """What is known of one file: the column and the unit of each channel, how it was sampled, what drives it."""
+
+    channels: Mapping[str, Answer]
+    time: Answer
+    rate: str
+    hold: str
+    doubts: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Draft:
+    """Raw files under one set of answers."""
+
+    files: Sequence[RawFile]
+    answers: Answers
+
+    def known(self, file: RawFile) -> Known:
+        """What the file states and the answers say of it. Raises Unusable where an answer names no column of it."""
+        doubts: list[str] = []
+        found = {channel: Answer(column.name, unit_of(column)) for channel, column in suggested(file.columns).items()}
+        doubts += [f"{shown(a.column)!r} is taken for {channel}, by its name" for channel, a in found.items()
+                   if channel not in self.answers.channels]  # fmt: skip
+        for channel, answer in self.answers.channels.items():
+            if answer.column == NONE:
+                found.pop(channel, None)
+                continue
+            column = _column(file, answer.column, f"channel {channel}") if answer.column != "" else None
+            before = found.get(channel, Answer())
+            stated = unit_of(column) if column else before.unit
+            found[channel] = Answer(answer.column if column else before.column, answer.unit or stated)
+        found = {channel: answer for channel, answer in found.items() if answer.column != ""}
+        time, rate, said = self._clock(file)
+        used = [answer.column for answer in (*found.values(), time) if answer.column != ""]
+        if twice := {str(column) for column in used if used.count(column) > 1}:
+            raise Unusable("column-twice", f"{', '.join(sorted(twice))} is asked to be two channels", file.name,
+                           "give each channel its own column")  # fmt: skip
+        hold = str(self.answers.common.get("hold", "")) or self._hold(file, found)
+        return Known(found, time, rate, hold, (*doubts, *said))
+
+    def _hold(self, file: RawFile, channels: Mapping[str, Answer]) -> str:
+        """What the command does between samples, by the look of it."""
+        drive = next((channels[name].column for name in _DRIVES if name in channels), None)
+        held = drive is not None and moves_in_steps(file.samples(file.table.number(drive, file.name)))
+        return "zoh" if held else "linear"
+
+    def _clock(self, file: RawFile) -> tuple[Answer, str, tuple[str, ...]]:
+        """Column of times or rate, and what was assumed."""
+        answer = self.answers.time
+        if self.answers.rate:
+            return Answer(), self.answers.rate, ()
+        if answer.column != "":
+            column = _column(file, answer.column, "time")
+            return Answer(answer.column, answer.unit or column.unit), "", ()
+        named = [column for column in file.columns if is_time(column.name)]
+        if len(named) == 1:
+            told = f"{shown(named[0].name)!r} is taken for the time, by its name"
+            return Answer(named[0].name, answer.unit or named[0].unit), "", (told,)
+        if (rate := file.rate) is None:
+            return Answer(), "", ()
+        told = f"the sample rate {rate.value:g} Hz is that of the lines above the table"
+        return Answer(), f"{rate.value:g} Hz", (told + ("" if rate.stated else ", which name no unit"),)
+
+    @property
+    def missing(self) -> tuple[Missing, ...]:
+        """Everything that has still to be said, once for all files."""
+        found: dict[str, Missing] = {}
+        if not self.answers.serial:
+            found["serial"] = Missing("serial", "serial number of the actuator")
+        for file in self.files:
+            for one in self._missing_of(file):
+                found.setdefault(one.key, one)
+        return tuple(found.values())
+
+    def _missing_of(self, file: RawFile) -> list[Missing]:
+        known, found = self.known(file), []
+        output = next((name for name in OUTPUTS if name in known.channels), "")
+        wanted = self.answers.output or output
+        drives = {*_DRIVES, *({"velocity", "displacement"} if wanted == "force" else ())}
+        if not drives & known.channels.keys() and self._said("command") != NONE:
+            driven = ", or say --output force where the motion drives" if "force" in known.channels else ""
+            found.append(Missing("channel command", f"which column of {_listed(file)} is the command{driven}"))
+        if not wanted or wanted not in known.channels:
+            what = wanted or "displacement, velocity or force"
+            found.append(Missing(f"channel {wanted or OUTPUTS[0]}", f"which column of {_listed(file)} is the {what}"))
+        for channel, answer in known.channels.items():
+            if not answer.unit:
+                found.append(Missing(f"unit {channel}", f"unit of {channel}, column {shown(answer.column)!r}"))
+        if known.time.column == "" and not known.rate:
+            found.append(Missing("rate", "sample rate, or the column of the time"))
+        elif known.time.column != "" and not known.time.unit:
+            found.append(Missing("unit time", f"unit of the time, column {shown(known.time.column)!r}"))
+        return found
+
+    def _said(self, channel: str) -> str | int:
+        return self.answers.channels.get(channel, Answer()).column
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What was taken from names and heads, file by file, and what no file states, once each."""
+        known = [self.known(file) for file in self.files]
+        return tuple(dict.fromkeys([*(doubt for one in known for doubt in one.doubts), *self._on_hold(known)]))
+
+    def _on_hold(self, known: Sequence[Known]) -> Iterator[str]:
+        """What was taken of the command between its samples."""
+        if "hold" in self.answers.common:
+            return
+        held = [file.name for file, one in zip(self.files, known, strict=True) if one.hold == "zoh"]
+        if not held or len(held) == len(known):
+            yield _HELD if held else _DRAWN
+            return
+        named = ", ".join(held[:3]) + (f" and {len(held) - 3} more" if len(held) > 3 else "")
+        yield (
+            f"the command of {named} rests and jumps, so it is taken to be held there between its changes (hold: zoh), "
+            "and in the other files to run straight from sample to sample (hold: linear); say zoh where it is held"
+        )
+
+    def description(self) -> dict[str, Any]:
+        """What matrix.yaml says. Raises Unusable ``not-stated`` with everything that is missing."""
+        if missing := self.missing:
+            what = "the files do not state: " + "; ".join(one.question for one in missing)
+            raise Unusable("not-stated", what, "init", "say it, as " + ", ".join(_option(one.key) for one in missing))
+        runs = [self._run(file, name) for file, name in zip(self.files, run_ids(self.files), strict=True)]
+        return {"actuator": {"serial": self.answers.serial, **self.answers.actuator}, "runs": runs}
+
+    def _run(self, file: RawFile, name: str) -> dict[str, Any]:
+        known = self.known(file)
+        output = self.answers.output or next(one for one in OUTPUTS if one in known.channels)
+        run: dict[str, Any] = {"id": name, "file": f"runs/{PurePosixPath(file.name).name}"}
+        if known.time.column != "":
+            run["time"] = {"column": known.time.column, "unit": known.time.unit}
+        else:
+            run["sample_rate"] = known.rate
+        run |= {"skip_rows": file.skip_rows} if file.skip_rows else {}
+        run |= {"output": output} if output != OUTPUTS[0] else {}
+        run |= {"hold": "zoh"} if known.hold == "zoh" else {}
+        run |= {
+            "use": "verify" if PurePosixPath(file.name).name in self.answers.verify else "fit",
+            **self.answers.common,
+        }
+        channels = sorted(known.channels.items(), key=lambda item: CHANNELS.index(item[0]))
+        return run | {"channels": {name: {"column": a.column, "unit": a.unit} for name, a in channels}}
+
+
+def _column(file: RawFile, column: str | int, where: str) -> Column:
+    """The column of numbers that an answer names. Raises Unusable."""
+    number = file.table.number(column, f"{file.name}: {where}")
+    for found in file.columns:
+        if found.number == number:
+            return found
+    raise Unusable("not-numeric", f"column {shown(column)!r} does not hold numbers throughout", file.name,
+                   "name another column")  # fmt: skip
+
+
+def _listed(file: RawFile) -> str:
+    names = ", ".join(shown(column.name) for column in file.columns[:12])
+    return f"{file.name} ({names})"
+
+
+def _option(key: str) -> str:
+    """How an answer is given on the command line."""
+    kind, _, name = key.partition(" ")
+    if kind in ("channel", "unit"):
+        column = "COLUMN:UNIT" if kind == "channel" else ":UNIT"
+        return f"--time {column}" if name == "time" else f"--channel {name}={column}"
+    return "--rate '1000 Hz' or --time COLUMN:UNIT" if kind == "rate" else f"--{kind} TEXT"
+
+
+def run_ids(files: Sequence[RawFile]) -> list[str]:
+    """An id for each file, after its name; a number behind those that are there already."""
+    ids: list[str] = []
+    for file in files:
+        name = PurePosixPath(file.name).name
+        stem = name.removesuffix(PACKED).rpartition(".")[0].lstrip(".") or "run"
+        plain = "".join(sign if sign.isalnum() or sign in "-_ " else "-" for sign in stem)[:80]
+        number = sum(one == plain or one.startswith(f"{plain}-") for one in ids)
+        ids.append(plain if plain not in ids else f"{plain}-{number + 1}")
+    return ids

@@ -1,0 +1,87 @@
+"""Whether what is left of a run is noise: its correlation with itself and with the command, in bands of chance."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import altair as alt
+
+from ident.comparison.compare import RunComparison
+from ident.figures import words
+from ident.figures.choose import one
+from ident.figures.drawing import Drawing, Options
+from ident.figures.look import Look
+from ident.figures.render import Chart, Panel, datasets
+from ident.figures.selection import number
+from ident.figures.study import Study
+from ident.figures.time import typical
+from ident.fit.result import FitResult
+from ident.matrix import Actuator, Run
+from ident.residuals.correlation import SURE, Correlation, correlation
+from ident.words.percent import percent
+
+
+def residual_correlation(
+    compared: RunComparison, actuator: Actuator, fit: FitResult, look: Look, *, lags: int | None = None
+) -> Chart:
+    """Autocorrelation above, correlation with the command below, each within its 99 % band."""
+    found, run = correlation(compared, lags), compared.run
+    panels, tables, told = [], {}, []
+    for name, title, shown in (
+        ("auto", "Of the residual with itself (–)", found.auto),
+        ("cross", "Of the residual with the command (–)", found.cross),
+    ):
+        if shown is None:
+            continue
+        tables[name] = _rows(shown, run)
+        panels.append(_panel(name, title, shown.band, run, look))
+        told.append(f"{percent(shown.outside)} {'with itself' if name == 'auto' else 'with the command'}")
+    subtitle = [
+        words.verdict(fit),
+        words.describe(run),
+        f"outside the {SURE:.0%} band: {', '.join(told)} (chance: 1.00 %)",
+    ]
+    headline = alt.TitleParams(words.headline(actuator, "is what is left noise?"), subtitle=subtitle)
+    chart: Chart = alt.vconcat(*panels, title=headline, spacing=14, datasets=datasets(tables)).configure(
+        **look.config()
+    )
+    return chart
+
+
+def _rows(shown: Correlation, run: Run) -> list[dict[str, Any]]:
+    step = 1e3 / run.sample_rate if run.time_unit == "s" else 1.0
+    return [
+        {"k": float(f"{step * lag:.6g}"), "r": float(f"{value:.4g}"), "o": bool(lag and abs(value) > shown.band)}
+        for lag, value in zip(shown.lags, shown.values, strict=True)
+    ]
+
+
+def _panel(name: str, title: str, band: float, run: Run, look: Look) -> Panel:
+    data = alt.NamedData(name)
+    clock = "ms" if run.time_unit == "s" else "samples"
+    across = f"Lag of the residual ({clock})"
+    x = alt.X("k:Q", axis=alt.Axis(title=across), scale=alt.Scale(nice=False, zero=False))
+    y = alt.Y("r:Q", axis=alt.Axis(title=title, tickCount=5))
+    colours = alt.Scale(domain=[False, True], range=[look.series[0], look.series[1]])
+    colour = alt.Color("o:N", legend=None, scale=colours)
+    tip = [alt.Tooltip("k:Q", title=across), alt.Tooltip("r:Q", title="Correlation")]
+    chance = (
+        alt.Chart(alt.InlineData(values=[{"low": -band, "high": band}]))
+        .mark_rect(color=look.faint, opacity=0.25)
+        .encode(y=alt.Y("low:Q"), y2="high:Q")
+    )
+    stems = alt.Chart(data).mark_rule(strokeWidth=1.2).encode(x=x, y=y, y2=alt.datum(0), color=colour)
+    heads = alt.Chart(data).mark_circle(size=14, opacity=1).encode(x=x, y=y, color=colour, tooltip=tip)
+    return alt.layer(chance, stems, heads).properties(width=look.across(560), height=150)
+
+
+def _draw(study: Study, look: Look, options: Options) -> Chart:
+    run = one(study.matrix, options) or typical(study.matrix, study.fit)
+    (compared,) = study.compared((run,)).runs
+    lags = number(options, "lags")
+    return residual_correlation(
+        compared, study.matrix.actuator, study.fit, look, lags=None if lags is None else int(lags)
+    )
+
+
+RESIDUAL_CORRELATION = Drawing("residual-correlation", "Residual's correlation", _draw, ("run", "lags"))

@@ -1,0 +1,95 @@
+"""How windows begin anew: at the measured position, and where a machine integrates twice with the speed found before.
+
+Beside a free run only what deviates from it is begun anew. Its position is the measured one at the first sample of a
+window; its speed is what the steady Kalman filter of a double integrator, ẍ = w, with white w and white noise of the
+position, tells of the samples up to there (Kalata 1984): with Λ = (1/memory)² in samples,
+
+    r = (4 + Λ − √(8Λ + Λ²))/4,   α = 1 − r²,   β = 2(2 − α) − 4√(1 − α),
+
+    ν[k] = e[k] − x̂[k−1] − v̂[k−1],   x̂[k] = x̂[k−1] + v̂[k−1] + αν[k],   v̂[k] = v̂[k−1] + βν[k].
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import lfilter
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Anchoring:
+    """Windows of so many samples, 0 for the whole run; `memory` (samples) of the speed's filter, 0: positions alone."""
+
+    window: int
+    memory: float = 0.0
+
+    def __call__(self, signal: Array) -> Array:
+        """A whole signal (n, …) counted from where each window begins; as it is where there is none."""
+        return self.from_start()(signal)
+
+    def from_start(self) -> Stream:
+        """The same for a signal that comes in parts, each of whole windows."""
+        return Stream(self)
+
+    @property
+    def noise(self) -> float:
+        """What white noise of a variance of 1 becomes, its mean square over a window: 1 where there is none."""
+        if not self.window:
+            return 1.0
+        k = np.arange(self.window)
+        if not self.memory:
+            return float(np.mean(2.0 * (k > 0)))
+        alpha, beta = gains(self.memory)
+        speed = 2.0 * beta**2 / (alpha * (4.0 - 2.0 * alpha - beta))
+        return float(np.mean(np.where(k > 0, 2.0 + 2.0 * beta * k + speed * k**2, 0.0)))
+
+
+class Stream:
+    """A signal that is anchored part by part."""
+
+    def __init__(self, anchoring: Anchoring) -> None:
+        self._of = anchoring
+        self._state: Array | None = None
+
+    def __call__(self, rows: Array) -> Array:
+        """The next rows (n, …) of it."""
+        if not self._of.window:
+            return rows
+        places = np.arange(len(rows))
+        first = places // self._of.window * self._of.window
+        counted = rows - rows[first]
+        if not self._of.memory:
+            return np.asarray(counted)
+        since = (places - first).reshape(-1, *[1] * (rows.ndim - 1))
+        return np.asarray(counted - since * self._speeds(rows)[first])
+
+    def _speeds(self, rows: Array) -> Array:
+        numerator, denominator = filter_of_speed(self._of.memory)
+        if self._state is None:
+            self._state = np.zeros((2, *rows.shape[1:]))
+        speeds, self._state = lfilter(numerator, denominator, rows, axis=0, zi=self._state)
+        return np.asarray(speeds)
+
+
+def gains(memory: float) -> tuple[float, float]:
+    """α and β of the steady filter."""
+    index = 1.0 / memory**2
+    r = (4.0 + index - np.sqrt(8.0 * index + index**2)) / 4.0
+    alpha = 1.0 - r**2
+    return float(alpha), float(2.0 * (2.0 - alpha) - 4.0 * np.sqrt(1.0 - alpha))
+
+
+def filter_of_speed(memory: float) -> tuple[Array, Array]:
+    """The filter from a position to its speed, in samples: numerator and denominator in z⁻¹."""
+    alpha, beta = gains(memory)
+    return np.array([beta, -beta, 0.0]), np.array([1.0, alpha + beta - 2.0, 1.0 - alpha])
+
+
+def innovations(signal: Array, memory: float) -> Array:
+    """What the filter did not foresee of a signal (n,), from its first sample on."""
+    _, denominator = filter_of_speed(memory)
+    return np.asarray(lfilter([1.0, -2.0, 1.0], denominator, signal - signal[0]))

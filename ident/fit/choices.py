@@ -1,0 +1,54 @@
+"""What a notebook or a request chooses about a fit, in its own words, to the settings that they are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, TypedDict, cast
+
+from ident.custom.definition import definition_of, preset_with
+from ident.errors import Unusable
+from ident.fit.settings import Settings
+from ident.units.quantity import parameter_value
+
+Value = float | str
+"""A plain number, SI, or text that carries a unit, as "1 ms"."""
+
+
+class Choices(TypedDict, total=False):
+    """Fields of :class:`ident.fit.settings.Settings`; values may carry units, `custom` are definitions or their text.
+
+    The effects that `custom` defines are in the model, whether `effects` names them or not.
+    """
+
+    model: str
+    effects: Sequence[str]
+    custom: Sequence[Mapping[str, Any] | str]
+    method: str
+    bounds: Mapping[str, tuple[Value, Value]]
+    fixed: Mapping[str, Value]
+    load: str
+    seed: int
+    options: Mapping[str, float]
+    budget: float | None
+
+
+def settings_of(choices: Choices, usual: Settings | None = None) -> Settings:
+    """The settings, `usual` where nothing is chosen. Raises Unusable for what the model does not know."""
+    given = cast(dict[str, Any], choices)
+    unknown = [name for name in given if name not in Choices.__annotations__]
+    if unknown:
+        known = ", ".join(Choices.__annotations__)
+        raise Unusable("unknown-option", f"no choice {unknown[0]!r} about a fit", "settings", f"choose {known}")
+    chosen = {**vars(usual or Settings()), **given}
+    custom = tuple(definition_of(one) for one in chosen["custom"])
+    effects = tuple(dict.fromkeys((*chosen["effects"], *(str(one["name"]) for one in custom))))
+    model = preset_with(chosen["model"] or Settings().model, effects, custom)
+
+    def si(name: str, value: Value) -> float:
+        return parameter_value(value, model.parameter(name).unit, name)
+
+    bounds = {name: (si(name, lower), si(name, upper)) for name, (lower, upper) in chosen["bounds"].items()}
+    for name, (lower, upper) in bounds.items():
+        model.parameter(name).within(lower, upper)
+    fixed = {name: si(name, value) for name, value in chosen["fixed"].items()}
+    return Settings(**{**chosen, "effects": effects, "custom": custom, "bounds": bounds, "fixed": fixed})

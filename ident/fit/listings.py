@@ -1,0 +1,57 @@
+"""A fit as tables for a reader: on a terminal and in a notebook."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from ident.words.percent import percent
+from ident.words.plus_minus import plus_minus_si
+from ident.words.shown import Listing
+
+if TYPE_CHECKING:
+    from ident.fit.result import Estimate, FitResult
+
+USES = ("fit", "held out", "verify")
+
+
+def listings(result: FitResult) -> Iterator[Listing | str]:
+    """Parameters, errors, what the data determine and what they do not, notes."""
+    header = ("parameter", "value", "std error", "unit", "")
+    title = " + ".join((result.model, *result.effects))
+    yield Listing(title, header, parameter_rows(result.parameters), header[1:3])
+    yield Listing("", ("error (eq. 17)", *USES), error_rows(result), USES)
+    yield from remarks(result)
+
+
+def remarks(result: FitResult) -> Iterator[str]:
+    """What the data determine and what they do not, and the notes, a line each."""
+    for combination in result.determined:
+        value = plus_minus_si(combination.value, combination.std_error, combination.unit)
+        yield f"determined: {combination.expression} = {value}"
+    for entry in result.undetermined:
+        yield f"not determined: {entry.name}: {entry.reason}"
+    for note in result.notes:
+        yield f"note: {note}"
+
+
+def parameter_rows(parameters: Mapping[str, Estimate]) -> Iterator[tuple[str, ...]]:
+    """One row a parameter."""
+    for name, estimate in parameters.items():
+        remark = "held" if estimate.fixed else "at its bound" if estimate.at_bound else ""
+        std_error = "–" if estimate.std_error is None else f"{estimate.std_error:.2g}"
+        yield name, f"{estimate.value:.5g}", std_error, estimate.unit, remark
+
+
+def error_rows(result: FitResult) -> Iterator[tuple[str, ...]]:
+    """Error, offset and noise floor by use, in per cent."""
+    uses = ("fit", "held_out", "verify")
+    yield "model", *(percent(result.error.get(use)) for use in uses)
+    if result.window:
+        over = result.window.error
+        between = {use: " to ".join(map(percent, ends)) for use, ends in result.window.free_run.items()}
+        if between:
+            yield "95 % interval", *(between.get(use, "–") for use in uses)
+        yield f"over {result.window.horizon:.3g} s", *(percent(over.get(use)) for use in uses)
+    yield "noise floor", *(percent(result.noise_floor.get(use)) for use in uses)
+    yield "offset", *(percent(result.offset.get(use)) for use in uses)

@@ -1,0 +1,54 @@
+"""``python -m ident.foreign FORMAT FILE MEMORY``: the columns of a file to standard output, within so many bytes."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+
+def limited(memory: int) -> None:
+    """Let this process have no more memory, where the system can see to that."""
+    try:
+        import resource  # noqa: PLC0415 - not on Windows
+    except ImportError:
+        return
+    resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+
+
+def answer(format_: str, path: str) -> tuple[dict[str, Any], list[Any]]:
+    """What is said of the columns, and those of numbers."""
+    try:
+        found = list(import_module(f"ident.foreign.{format_}").columns(path))
+    except ModuleNotFoundError as error:
+        return {"refused": "not-installed", "what": error.name}, []
+    except MemoryError:
+        return {"refused": "memory", "what": ""}, []
+    except Exception as error:  # whatever a parser meets in a broken file
+        return {"refused": "broken", "what": f"{type(error).__name__}: {error}"[:200]}, []
+    numbers = [np.asarray(values) for _, _, values in found]
+    sound = [values.dtype.kind in "iuf" and values.ndim == 1 for values in numbers]
+    entries = [
+        {"name": name, "unit": unit, "length": len(values) if fine else None}
+        for (name, unit, _), values, fine in zip(found, numbers, sound, strict=True)
+    ]
+    return {"columns": entries}, [values for values, fine in zip(numbers, sound, strict=True) if fine]
+
+
+def main() -> None:
+    """Write a line of JSON, then the columns of numbers as float64, one after the other."""
+    format_, path, memory = sys.argv[1:]
+    limited(int(memory))
+    with os.fdopen(os.dup(1), "wb") as out:
+        os.dup2(2, 1)  # what a parser prints does not come into the answer
+        said, numbers = answer(format_, path)
+        out.write(json.dumps(said).encode() + b"\n")
+        for values in numbers:
+            out.write(values.astype("<f8").tobytes())
+
+
+main()

@@ -1,0 +1,113 @@
+"""What the feedforward is worth in a case: the machine of a fit, and draws of it, follow the reference solution."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.fit.result import FitResult
+from ident.hybrid.case import Case
+from ident.hybrid.draws import drawn_parameters
+from ident.hybrid.feedforward import Plant, Tracked, plant_of, tracked
+from ident.hybrid.machine import actuator
+from ident.hybrid.substructure import reference
+from ident.words.engineering import quantity
+
+Array = NDArray[np.float64]
+_SHOWN = 600  # points of a curve that are kept
+_RATE = 1000.0  # Hz: no structure moves so fast that more samples would show more
+
+
+@dataclass(frozen=True)
+class Followed:
+    """Errors (m) of a machine that follows a reference with the feedback alone and with feedforward beside it.
+
+    `gain` and `limit`, from which the loop is unstable, in V/m. `feedback_rms` and `both_rms` are of the machine,
+    `drawn_feedback_rms` and `drawn_both_rms` the medians of the `draws` machines drawn from the fitted covariance,
+    `drawn_ratio` the median of feedback over both; these three are None without standard errors. Curves over `t` (s):
+    `reference`, both errors, and between what 90 % of the draws lie with the feedforward, `low` and `high`.
+    """
+
+    gain: float
+    limit: float
+    draws: int
+    feedback_rms: float
+    both_rms: float
+    drawn_feedback_rms: float | None
+    drawn_both_rms: float | None
+    drawn_ratio: float | None
+    t: list[float]
+    reference: list[float]
+    feedback: list[float]
+    both: list[float]
+    low: list[float]
+    high: list[float]
+
+    @property
+    def margin(self) -> float:
+        """By how much the gain could rise before the loop is unstable, dB."""
+        return float(20.0 * np.log10(self.limit / self.gain))
+
+    @property
+    def said(self) -> list[str]:
+        """In words: the gain below its limit, the errors of the fitted machine, those of the drawn ones."""
+        alone = quantity(self.feedback_rms, "m")
+        lines = [
+            f"gain {self.gain:.3g} V/m, {self.margin:.2g} dB below the stability limit of {self.limit:.3g} V/m",
+            f"error {quantity(self.both_rms, 'm')} RMS, with the feedback alone {alone}",
+        ]
+        if self.drawn_both_rms is None or self.drawn_ratio is None:
+            return [*lines, "the fit states no standard errors: nothing is known of other machines that it allows"]
+        drawn = f"median of {self.draws} machines drawn from the fit {quantity(self.drawn_both_rms, 'm')}"
+        return [*lines, f"{drawn}, 1/{rounded(self.drawn_ratio)} of the feedback's"]
+
+    def to_json(self) -> dict[str, Any]:
+        """As plain JSON data; a limit that there is not is null."""
+        return asdict(self) | {"limit": self.limit if np.isfinite(self.limit) else None}
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Followed:
+        """What :meth:`to_json` gave."""
+        return cls(**{**data, "limit": np.inf if data["limit"] is None else data["limit"]})
+
+    @classmethod
+    def of(cls, found: Tracked, draws: int) -> Followed:
+        """Of what was tracked: at most 600 points of each curve."""
+        places = np.unique(np.linspace(0, len(found.reference) - 1, _SHOWN).astype(np.intp))
+        low, high = found.band()
+        curves = {"reference": found.reference, "feedback": found.feedback, "both": found.both, "low": low,
+                  "high": high}  # fmt: skip
+        rms = found.rms()
+        told = {name: float(np.median(rms[name])) if draws else None for name in ("drawn_feedback", "drawn_both")}
+        return cls(
+            found.gain, found.limit, draws, float(rms["feedback"]), float(rms["both"]),
+            told["drawn_feedback"], told["drawn_both"],
+            float(np.median(rms["drawn_feedback"] / np.maximum(rms["drawn_both"], 1e-300))) if draws else None,
+            (places / found.sample_rate).tolist(), **{name: curve[places].tolist() for name, curve in curves.items()},
+        )  # fmt: skip
+
+
+def rounded(ratio: float) -> str:
+    """Three digits, as one would say them."""
+    return f"{float(f'{ratio:.3g}'):,.10g}"
+
+
+def plant_in(fit: FitResult, case: Case) -> Plant:
+    """The machine of a fit of `strano` with the gain and the specimen of a case. Raises Unusable."""
+    return replace(plant_of(fit, actuator(case), case.gain), specimen=case.physical)
+
+
+def followed_in(fit: FitResult, case: Case, seed: int = 0) -> Followed:
+    """How the machine of a fit follows the reference solution of a case, and so do 100 drawn machines.
+
+    The feedforward is that of the fitted machine for all of them. Raises Unusable as :func:`plant_in`.
+    """
+    every = max(1, int(case.sample_rate // _RATE))
+    wanted = reference(case, case.ground.samples(case.sample_rate))[::every]
+    plant, drawn = plant_in(fit, case), drawn_parameters(fit, seed=seed)
+    found = tracked(plant, plant, wanted, case.sample_rate / every, drawn)
+    return Followed.of(found, len(next(iter(drawn.values()), ())))

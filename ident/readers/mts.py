@@ -1,0 +1,28 @@
+"""Records of MTS's station manager (793): some lines about the test, names, units, then numbers, apart by tabs."""
+
+from __future__ import annotations
+
+from ident.errors import Unusable
+from ident.readers.limits import Limits
+from ident.readers.table import Table
+from ident.readers.text import as_utf8, is_number, line_start, next_line, read_text
+
+_LINES = 200  # looked through for the first line of numbers
+
+
+def read_mts(data: bytes, where: str, limits: Limits) -> Table:
+    """The columns of the first block; one more block is refused, with its line, when a column is loaded.
+
+    Raises Unusable: ``broken-mts``, and what :func:`read_text` raises.
+    """
+    text = as_utf8(data)
+    start = 0
+    for line in range(_LINES):
+        if start >= len(text):
+            break
+        end = line_start(text, 1, start)
+        fields = next_line(text, start, where).split("\t") if text[start:end].strip() else []
+        if line > 1 and fields and all(is_number(field.strip(), "\t") for field in fields if field.strip()):
+            return read_text(data, where, limits, line - 2)
+        start = end
+    raise Unusable("broken-mts", "no line of numbers was found", where, "export the record again, as text")

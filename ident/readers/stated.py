@@ -1,0 +1,100 @@
+"""A record without a matrix.yaml: a bare file, arrays or a table of the caller's, and what the caller states of it.
+
+What is stated has the words of matrix.yaml and goes the same way: the same units, checks and refusals.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ident.errors import Unusable
+from ident.matrix import Matrix
+from ident.readers.description import describe_actuator
+from ident.readers.run import read_run
+from ident.readers.run_description import RunDescription, describe_run
+from ident.readers.table import Array, Table
+from ident.units.quantity import shown
+from ident.words.stated import Stated
+
+_OF_NO_RUN = ("units", "columns", "actuator")
+_EXAMPLE = 'state them, as units={"command": "mm", "displacement": "mm"}'
+
+
+def described(stated: Mapping[str, Any], file: str, name: str) -> RunDescription:
+    """What is stated of the record in `file`, as an entry of matrix.yaml; `name` is its id where none is stated."""
+    unknown = [key for key in stated if key not in Stated.__annotations__]
+    if unknown:
+        known = ", ".join(Stated.__annotations__)
+        raise Unusable("unknown-key", f"unknown key {unknown[0]!r}", file, f"known are {known}")
+    units, columns = stated.get("units") or {}, stated.get("columns") or {}
+    for channel in (*columns, *(() if units else ("",))):
+        if channel not in units:
+            raise Unusable("missing-unit", f"no unit of {channel or 'any channel'} is stated", file, _EXAMPLE)
+    channels = {channel: {"column": columns.get(channel, channel), "unit": unit} for channel, unit in units.items()}
+    run = {key: list(value) if isinstance(value, tuple) else value for key, value in stated.items()}
+    for key in _OF_NO_RUN:
+        run.pop(key, None)
+    return describe_run({"id": name, "file": file, "channels": channels, **run}, f"run {name}")
+
+
+def of_file(
+    path: Path, parts: list[bytes], stated: Mapping[str, Any], read: Callable[[RunDescription], Table]
+) -> Matrix:  # fmt: skip
+    """The matrix of one file, which `read` makes a table of. What is to be stated is told with the file's columns.
+
+    `parts` are its bytes, and those of the files beside it that `read` adds.
+    """
+    if not stated.get("units"):
+        some = {"units": {"command": "1", "displacement": "1"}, "skip_rows": stated.get("skip_rows", 0)}
+        table = read(described({**some, "sample_rate": "1 Hz"}, path.name, path.stem))
+        what = "a file without a matrix.yaml does not state its units"
+        raise Unusable("missing-unit", what, path.name, f"{_EXAMPLE}, and the clock; {table.listed()}")
+    run = described(stated, path.name, path.stem)
+    return _matrix(run, read(run), stated, parts)
+
+
+def of_arrays(arrays: Mapping[str, ArrayLike], stated: Mapping[str, Any]) -> Matrix:
+    """The matrix of one record in arrays (n,) by the name of their columns."""
+    columns = {name: np.asarray(values) for name, values in arrays.items()}
+
+    def load(numbers: Sequence[int]) -> list[Array]:
+        found = [(list(columns)[number], list(columns.values())[number]) for number in numbers]
+        for name, values in found:
+            if values.ndim != 1:
+                what = f"{shown(name)!r} has the shape {values.shape}"
+                raise Unusable("not-numeric", what, "arrays", "give arrays of one dimension")
+        return [values for _, values in found]
+
+    return _matrix(described(stated, "arrays", "run"), Table(tuple(columns), load), stated)
+
+
+def of_table(table: Any, stated: Mapping[str, Any]) -> Matrix:
+    """The matrix of one record in a table that speaks ``__arrow_c_stream__``, as those of pandas, polars, pyarrow."""
+    import pyarrow as pa  # noqa: PLC0415
+
+    if not hasattr(table, "__arrow_c_stream__"):
+        what = f"{type(table).__name__} does not speak __arrow_c_stream__"
+        raise Unusable("not-a-table", what, "table", "give a table of pandas, polars or pyarrow, or use from_arrays")
+    read = pa.table(table)
+
+    def load(numbers: Sequence[int]) -> list[Array]:
+        return [read.column(number).to_numpy() for number in numbers]
+
+    return _matrix(described(stated, "table", "run"), Table(tuple(read.column_names), load), stated)
+
+
+def _matrix(run: RunDescription, table: Table, stated: Mapping[str, Any], parts: Sequence[bytes] = ()) -> Matrix:
+    """The run as a matrix, hashed by the `parts` of its file, else by its samples."""
+    read = read_run(run, table)
+    actuator = describe_actuator({"serial": "unnamed", **(stated.get("actuator") or {})})
+    digest = hashlib.sha256(json.dumps(stated, sort_keys=True, default=str).encode())
+    for part in parts or [samples.tobytes() for samples in read.channels.values()]:
+        digest.update(part)
+    return Matrix(actuator, read.of_outputs(run.outputs), digest.hexdigest(), notices=table.notices)

@@ -1,0 +1,83 @@
+"""The inputs of a run at the fine steps of a simulation."""
+
+from __future__ import annotations
+
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.chain.chain import DISTURBANCE, FORCE, INPUT
+from ident.chain.channels import BESIDE_MEAN, means
+from ident.chain.varying import MEASURED_CONDITIONS, is_measured
+from ident.matrix import DISTURBANCES, Run
+
+Array = NDArray[np.float64]
+_KEPT = 4  # of a run: a search has models that differ by their steps side by side
+_known: WeakKeyDictionary[Run, dict[tuple[str, int, int], Array]] = WeakKeyDictionary()
+"""Of each run the inputs that were asked for last: a fit asks for the same one thousands of times."""
+
+
+def fine(run: Run, name: str, steps: int, before: int) -> Array:
+    """An input at the fine steps, with `before` steps in front and two behind; not to be written to.
+
+    Before the record a command is what it was, where that is known. Else it was zero where the run starts at rest, and
+    its first value where the run is cut out of a longer test.
+    """
+    kept, asked = _known.setdefault(run, {}), (name, steps, before)
+    found = kept.get(asked)
+    if found is None:
+        found = _fine(run, name, steps, before)
+        for oldest in list(kept)[: max(len(kept) + 1 - _KEPT, 0)]:
+            kept.pop(oldest, None)  # another thread may have been there first
+        kept[asked] = found
+    return found
+
+
+def _fine(run: Run, channel: str, steps: int, before: int) -> Array:
+    samples = _record(run, channel)
+    past = samples[:0] if run.past is None or channel != INPUT else run.past[-(before // steps + 1) :]
+    samples = np.concatenate([past, samples])
+    held, first = run.hold == "zoh" and channel == INPUT, len(past) * steps
+    count = len(samples) * steps if held else (len(samples) - 1) * steps + 1
+    lead = max(before - first, 0)  # of the steps in front, those from before anything is known
+    whole = np.empty(lead + count + steps + 2)
+    whole[:lead], whole[lead + count :] = samples[0], samples[-1]
+    fine = whole[lead : lead + count]
+    if held:
+        fine.reshape(-1, steps)[:] = samples[:, None]
+    else:
+        between, slopes = fine[:-1].reshape(-1, steps), np.diff(samples) / steps
+        for step in range(steps):
+            between[:, step] = samples[:-1] + step * slopes
+        fine[-1] = samples[-1]
+    if not first and channel == INPUT and run.begins == "at rest":
+        whole[:lead] = 0.0
+    if not first and run.hold == "linear":
+        whole[lead - 1] -= jump_share(np.array(2.0)) * (fine[0] - whole[lead - 1])
+    return whole[max(first - before, 0) :]
+
+
+def _record(run: Run, name: str) -> Array:
+    """The samples of an input."""
+    if name == FORCE:
+        return run.channels["force"]
+    if name == DISTURBANCE:  # of a run that says nothing there was none
+        return next((run.channels[one] for one in DISTURBANCES if one in run.channels), np.zeros(run.length))
+    if name in BESIDE_MEAN:
+        record = run.channels.get(BESIDE_MEAN[name])
+        return np.zeros(run.length) if record is None else np.asarray(record - means(run)[BESIDE_MEAN[name]])
+    for beside, channel, unit in MEASURED_CONDITIONS.values():
+        if name == beside:  # of a run that did not measure it, it stays
+            known = is_measured(run, channel, unit)
+            return np.asarray(run.channels[channel] - run.channels[channel].mean()) if known else np.zeros(run.length)
+    return run.command
+
+
+def jump_share(delay: Array) -> Array:
+    """How far the value one step before a jump goes the other way, in jumps, (lanes,); `delay` in steps.
+
+    The record is drawn in lines: then those to and from it have, as far as the simulation sees them, which begins
+    `delay` before the jump, the area of the jump.
+    """
+    return np.where(delay < 1, 2 / delay - 1, 1 / (1 + (np.minimum(delay, 2) - 1) * (3 - np.minimum(delay, 2))))

@@ -1,0 +1,70 @@
+"""Raw files, described on the page alone: from three CSV files to a fit."""
+
+from __future__ import annotations
+
+import csv
+
+import numpy as np
+from playwright.sync_api import expect
+
+from ident.synthesis.matrix import simulate_matrix
+from tests.browser.looks import everywhere
+
+
+def raw_files(folder):
+    """Three runs of the simulated actuator as a bench leaves them: a clock, two channels nobody named, in mm."""
+    from ident.readers import read_matrix
+
+    simulate_matrix(folder / "matrix", "qian2014", 1.0, 3, 0.005, {}, small=True)
+    runs = read_matrix(folder / "matrix").runs[:3]
+    for number, run in enumerate(runs):
+        with (folder / f"run{number}.csv").open("w", newline="") as file:
+            writer = csv.writer(file)
+            writer.writerow(["t", "AI0", "AI1"])
+            times = np.arange(run.length) / run.sample_rate
+            writer.writerows(zip(times, 1e3 * run.command, 1e3 * run.measured, strict=True))
+    return [folder / f"run{number}.csv" for number in range(3)]
+
+
+def test_three_raw_files_become_a_fit_without_a_description(page, watch, site, tmp_path, screenshots, full):
+    """Chosen, named, their units said, checked, made a matrix, fitted: nothing but the page. Short: until the job."""
+    page.goto(f"{site.address}/upload")
+    page.get_by_label("A zip, matrix.yaml and files, or raw files").set_input_files(raw_files(tmp_path))
+    page.get_by_role("button", name="Upload").click()
+    expect(page.get_by_role("heading", name="What is in these files?")).to_be_visible()
+    expect(page.locator("img").first).to_have_js_property("naturalWidth", 160)
+    missing = page.locator("[data-missing] li")
+    expect(missing).to_have_count(4)
+    make = page.get_by_role("button", name="Make the matrix")
+    expect(make).to_be_disabled()
+    everywhere(page, screenshots, "raw-files")
+
+    page.get_by_label("Unit of t", exact=True).select_option("s")
+    page.get_by_label("Serial number").fill("SW-RAW")
+    page.get_by_label("What AI0 is").select_option("command")
+    page.get_by_label("What AI1 is").select_option("command")
+    expect(page.locator("#draft [role=alert]")).to_contain_text("Two columns are the command")
+    page.get_by_label("What AI1 is").select_option("displacement")
+    expect(missing).to_have_count(2)
+    page.get_by_label("Unit of AI0").select_option("mm")
+    page.get_by_label("Unit of AI1").select_option("mm")
+    page.get_by_label("run2.csv").check()
+    page.get_by_label("Piston area").fill("497 mm^2")
+    page.get_by_label("Piston area").press("Tab")
+    expect(missing).to_have_count(0)
+    expect(page.locator("[data-findings]")).to_contain_text("specimen is not stated")
+    everywhere(page, screenshots, "raw-files-described")
+
+    assert not watch.complaints
+
+    make.click()
+    expect(page.get_by_role("heading", name="Test matrix of SW-RAW")).to_be_visible()
+    page.get_by_role("button", name="Start the fit").click()
+    page.wait_for_url("**/fits/*")
+    job = page.url.rpartition("/")[2]
+    if full:
+        assert site.ended(job)["state"] == "succeeded"
+        expect(page.get_by_role("heading", name="How good is it?")).to_be_visible(timeout=60_000)  # it shows itself
+    else:
+        site.client.delete(f"/jobs/{job}")
+        site.ended(job)

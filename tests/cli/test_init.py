@@ -1,0 +1,65 @@
+"""`servoident init`, as a user runs it."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from ident.readers import read_matrix
+
+
+@pytest.fixture
+def record(tmp_path):
+    """A record whose columns nobody can name and whose units nobody can know."""
+    t = np.arange(400) / 200
+    rows = np.column_stack([t, np.sin(9 * t), np.sin(9 * t - 0.1)])
+    np.savetxt(tmp_path / "a.csv", rows, "%.6f", ",", header="time,c0,c1", comments="")
+    return tmp_path / "a.csv"
+
+
+def test_off_a_terminal_everything_that_is_missing_is_listed_and_nothing_written(servoident, record, tmp_path):
+    done = servoident("init", record, "--out", tmp_path / "m")
+    assert done.returncode == 2
+    for option in ("--serial TEXT", "--channel command=COLUMN:UNIT", "--channel displacement=", "--time :UNIT"):
+        assert option in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not (tmp_path / "m").exists()
+
+
+def test_with_answers_as_options_a_matrix_is_written_that_check_takes(servoident, record, tmp_path):
+    """Commented, with the doubts of the check; a second time it is not written over."""
+    given = ("--serial", "SW-1", "--channel", "command=c0:mm", "--channel", "displacement=2:mm", "--time", "time:s",
+             "--gain", "7", "--area", "497 mm^2", "--out", tmp_path / "m")  # fmt: skip
+    done = servoident("init", record, *given)
+    assert done.returncode == 0, done.stderr
+    assert "specimen is not stated" in done.stdout
+    assert "hold: linear" in done.stdout
+    text = (tmp_path / "m" / "matrix.yaml").read_text()
+    assert text.startswith("# ")
+    run = read_matrix(tmp_path / "m").runs[0]
+    assert (run.sample_rate, run.gain, run.units) == (200.0, 7.0, {"command": "m", "displacement": "m"})
+    assert servoident("check", tmp_path / "m").returncode == 0
+    again = servoident("init", record, *given)
+    assert (again.returncode, "there is a matrix.yaml" in again.stderr) == (2, True)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no pseudo-terminal")
+def test_on_a_terminal_what_is_missing_is_asked(record, tmp_path):
+    """One question after another; an answer that names no column is asked again."""
+    import pty
+
+    ours, theirs = pty.openpty()
+    command = [sys.executable, "-m", "app.cli", "init", str(record), "--out", str(tmp_path / "m")]
+    with subprocess.Popen(command, stdin=theirs, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        os.write(ours, b"SW-2\nnothing\nc0:mm\nc1:mm\ns\n")
+        said, errors = running.communicate(timeout=120)
+    os.close(ours)
+    os.close(theirs)
+    assert running.returncode == 0, errors
+    assert "there is no column 'nothing'" in errors
+    assert said.count("is the command") == 2
+    assert read_matrix(tmp_path / "m").actuator.serial == "SW-2"

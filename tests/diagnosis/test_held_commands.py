@@ -1,0 +1,57 @@
+"""Of a command that is held in steps a strength in seconds goes as far as half a step, and says where it ended."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ident.diagnosis.family import ModelFamily
+from ident.fit.settings import Settings
+from ident.matrix import Actuator, Matrix, Run
+from ident.workflows import diagnose
+
+RATE, HELD, LAG = 100.0, 50, 4.0
+
+
+def late(delay: int, noise: float = 0.01) -> Matrix:
+    """ω[k+1] = ω[k] + (1 − e^(−1/LAG)) (30 u[k − delay] − ω[k]) of held commands, and noise."""
+    runs = []
+    for number in range(2):
+        random = np.random.default_rng([3, number])
+        u = np.repeat(np.append(0.0, random.uniform(-1.5, 1.5, 24)), HELD)
+        w, share = np.zeros(len(u)), -np.expm1(-1 / LAG)
+        for k in range(len(u) - 1):
+            w[k + 1] = w[k] + share * (30.0 * (u[k - delay] if k >= delay else 0.0) - w[k])
+        w += noise * w.std() * random.standard_normal(len(w))
+        channels, units = {"command": u, "velocity": w}, {"command": "V", "velocity": "rad/s"}
+        runs.append(Run(f"r{number}", "", RATE, channels, units, hold="zoh", output="velocity"))
+    return Matrix(Actuator("LATE"), tuple(runs))
+
+
+def test_a_command_is_held_between_its_changes():
+    (run, _) = late(1).runs
+    assert run.dwell == HELD / RATE
+    moved = Run("m", "", RATE, {"command": np.sin(np.arange(300.0)), "displacement": np.arange(300.0)})
+    assert moved.dwell == 1 / RATE
+    assert moved.driven_by("displacement").part(0, 2).dwell == 0.0
+
+
+def test_a_delay_of_a_part_of_a_step_is_found():
+    """Three times the inverse of the highest frequency of a step's power, which falls by 1/f² alone, were less."""
+    found = diagnose(late(5), settings=Settings(model="motor"), most=1, propose=False)
+    assert found.verdict.effects == ("command_delay",)
+    assert found.verdict.at_bound == ()
+    delay = found.ladder[-1].parameters["command_delay.delay"]
+    assert delay.value == pytest.approx(5 / RATE, abs=0.1 / RATE)
+    assert found.ladder[-1].error["fit"] == pytest.approx(0.01, rel=0.05)
+
+
+def test_a_strength_at_the_bound_of_its_search_is_not_called_found():
+    """Of a delay of more than half a step nobody can say where it would end, though it looks like noise."""
+    matrix = late(27, noise=0.3)
+    assert ModelFamily.of(matrix, Settings(model="motor")).floor is None
+    found = diagnose(matrix, settings=Settings(model="motor"), most=1, propose=False)
+    assert found.verdict.at_bound == ("command_delay",)
+    assert found.verdict.standing == "stand_in"
+    assert "ended at the bound of its search" in found.verdict.text
+    assert type(found).from_json(found.to_json()).verdict == found.verdict

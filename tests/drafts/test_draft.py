@@ -1,0 +1,232 @@
+"""Raw files described: what they state is found, what they do not state is asked, nothing is silently wrong."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ident.drafts.draft import NONE, Answer, Answers, Draft
+from ident.drafts.names import channel_of
+from ident.drafts.raw import read_raw
+from ident.drafts.text import drafted, gathered
+from ident.errors import Unusable
+from ident.readers import read_matrix
+from ident.readers.description import describe
+from ident.readers.limits import LIMITS
+from ident.units.quantity import unit_scale
+from tests.readers.lab_files import FILES
+
+FOLDERS = ("crane_actuator", "dc_motor", "emps", "excavator_boom", "mr_damper", "mts_actuator")
+
+
+def raw(text: str, name: str = "run.csv"):
+    return read_raw(text.encode(), name)
+
+
+def table(*head: str, samples: int = 40) -> str:
+    """Lines above, then three columns: a clock of 100 Hz, a command, a response."""
+    rows = [f"{n / 100:g},{np.sin(n):.6f},{np.sin(n - 1):.6f}" for n in range(samples)]
+    return "\n".join([*head, *rows, ""])
+
+
+@pytest.fixture(params=FOLDERS)
+def measured(request, measured_data):
+    """A folder of measured data: its description, its matrix, its raw files and what they hold."""
+    folder = measured_data / request.param
+    told = describe((folder / "matrix.yaml").read_bytes(), LIMITS)
+    names = list(dict.fromkeys(run.labels.file for run in told.runs))
+    contents = [(folder / name).read_bytes() for name in names]
+    return folder, told, [read_raw(data, name) for data, name in zip(contents, names, strict=True)], contents
+
+
+def of_file(told, file):
+    """The truth about a file: the run that reads it."""
+    return next(run for run in told.runs if run.labels.file == file.name)
+
+
+def test_what_is_found_in_measured_files_is_the_truth_or_asked(measured):
+    """Every column, unit and rate that is found is that of the folder's matrix.yaml; everything else is asked."""
+    _, told, files, _ = measured
+    draft = Draft(files, Answers())
+    asked = {one.key for one in draft.missing}
+    for file in files:
+        known, truth = draft.known(file), of_file(told, file)
+        for channel, answer in known.channels.items():
+            right = truth.channels[channel]
+            assert file.table.number(answer.column, "") == file.table.number(right.column, "")
+            assert f"unit {channel}" in asked if not answer.unit else scale_of(answer.unit, right.scale) == right.scale
+        if known.rate:
+            assert float(known.rate.removesuffix(" Hz")) == truth.labels.sample_rate
+        elif known.time.column == "":
+            assert "rate" in asked
+        assert file.skip_rows == truth.skip_rows
+    assert "serial" in asked
+    with pytest.raises(Unusable) as refused:
+        gathered(draft, [b""] * len(files))
+    assert refused.value.code == "not-stated"
+
+
+def scale_of(unit, like):
+    return unit_scale(unit, like.unit, "")
+
+
+def test_with_what_was_asked_the_measured_matrix_comes_out(measured):
+    """Only what is missing is answered, from matrix.yaml: the samples and the clock of every channel are the same."""
+    folder, told, files, contents = measured
+    answers = Answers()
+    for _ in range(20):
+        missing = Draft(files, answers).missing
+        if not missing:
+            break
+        answers = answered(answers, missing[0].key, folder, of_file(told, files[0]))
+    draft = Draft(files, answers)
+    found, wanted = drafted(gathered(draft, contents)), read_matrix(folder)
+    for run in wanted.runs:
+        mine = next(one for one in found.runs if one.file.removeprefix("runs/") == run.file.removeprefix("runs/"))
+        described = next(one for one in told.runs if one.labels.id == run.id)
+        assert mine.sample_rate == pytest.approx(run.sample_rate, rel=1e-6)
+        assert mine.time_unit == run.time_unit
+        assert mine.output == run.output
+        if run.evened:  # resampled to the clock of the whole record
+            continue
+        part = slice(*described.rows) if described.rows else slice(None)
+        for channel in mine.channels:
+            np.testing.assert_allclose(mine.channels[channel][part], run.channels[channel], rtol=1e-12)
+
+
+def answered(answers, key, folder, truth):
+    """The answers with the next one, as matrix.yaml has it."""
+    from ident.readers.strict_yaml import read_yaml
+
+    kind, _, name = key.partition(" ")
+    stated = read_yaml((folder / "matrix.yaml").read_bytes(), "")["runs"][0]
+    if kind == "serial":
+        return replace(answers, serial="SW-1", output=truth.outputs[0])
+    if kind == "rate":
+        return replace(answers, rate=stated["sample_rate"])
+    if name == "time":
+        return replace(answers, time=Answer(stated.get("time", {"column": "time"})["column"], "s"))
+    assert name in truth.channels, f"{key} is asked, which the truth does not have"
+    entry = stated["channels"][name]
+    return replace(answers, channels={**answers.channels, name: Answer(entry["column"], entry["unit"])})
+
+
+@pytest.mark.parametrize(
+    "head",
+    [("time [s],Command (V),Position [mm]",), ("time,command,position", "s,V,mm"),
+     ("Bench 4", "Operator: A", "time,cmd,disp", "(s),(V),(mm)")],
+)  # fmt: skip
+def test_units_of_headers_and_of_a_row_below_them_are_found(head):
+    """Nothing but the serial number is asked."""
+    file = raw(table(*head))
+    draft = Draft([file], Answers())
+    assert [one.key for one in draft.missing] == ["serial"]
+    known = draft.known(file)
+    assert {name: answer.unit for name, answer in known.channels.items()} == {"command": "V", "displacement": "mm"}
+    assert known.time.unit == "s"
+    made = drafted(gathered(Draft([file], Answers(serial="SW-1")), [table(*head).encode()])).runs[0]
+    assert (made.sample_rate, made.units) == (100.0, {"command": "V", "displacement": "m"})
+
+
+@pytest.mark.parametrize("form", ["uff", "lvm", "mts", "xlsx"])
+def test_files_that_state_units_are_asked_only_what_a_column_is(form):
+    ending, made, (time, u, x) = FILES[form]
+    file = read_raw(made(), f"run{ending}")
+    answers = Answers("SW-1", {"command": Answer(u), "displacement": Answer(x)}, Answer(time, "s"))
+    draft = Draft([file], answers)
+    assert not draft.missing
+    assert drafted(gathered(draft, [made()])).runs[0].units == {"command": "V", "displacement": "m"}
+
+
+@pytest.mark.parametrize(
+    ("head", "asked"),
+    [("time,command,position", {"unit time", "unit command", "unit displacement"}),
+     ("time [s],cmd 1 [V],cmd 2 [V]", {"channel command", "channel displacement"}),
+     ("n,command [V],position [widget]", {"rate", "unit displacement"}),
+     ("time [s],command [V],position [1]", {"unit displacement"})],
+)  # fmt: skip
+def test_what_could_be_another_thing_is_asked(head, asked):
+    """Units that are not stated or not known, two columns of one name's kind, a time that is none."""
+    assert {one.key for one in Draft([raw(table(head))], Answers(serial="x")).missing} == asked
+
+
+def test_a_rate_above_the_table_counts_where_its_unit_or_its_interval_tells_what_it_is():
+    """A bare number is none; what was taken is said."""
+    columns = "n,command [V],position [mm]"
+    for head, rate in (("Sampling Rate: 2 kHz", "2000 Hz"), ("Sample rate: 100\nSampling interval: 0.01", "100 Hz")):
+        draft = Draft([raw(table(head, columns))], Answers())
+        assert draft.known(draft.files[0]).rate == rate
+        assert any(rate in doubt for doubt in draft.doubts)
+    bare = raw(table("Sampling Rate: 100", columns))
+    assert not Draft([bare], Answers()).known(bare).rate
+
+
+def test_answers_that_fit_no_file_are_refused():
+    file = raw(table("time [s],command [V],position [mm]"))
+    for channels, code in (
+        ({"command": Answer("volts")}, "missing-column"),
+        ({"force": Answer("position [mm]", "N")}, "column-twice"),
+    ):
+        with pytest.raises(Unusable) as refused:
+            _ = Draft([file], Answers(channels=channels)).missing
+        assert refused.value.code == code
+    with pytest.raises(Unusable, match="no channel 'motion'"):
+        Answers(channels={"motion": Answer("x")})
+    taken = Draft([file], Answers(channels={"displacement": Answer(NONE)}))
+    assert {one.key for one in taken.missing} == {"serial", "channel displacement"}
+
+
+def test_a_name_is_a_channel_only_where_it_is_the_whole_of_it():
+    known = {"Cmd": "command", "Load Cell [kN]": "force", "bench/Position": "displacement", "RPM": "velocity"}
+    assert {name: channel_of(name) for name in known} == known
+    assert not any(map(channel_of, ("Boom Cmd", "position of the valve", "CHANNEL0", "loader", "x")))
+
+
+def steps(rng) -> np.ndarray:
+    """Levels of a knob, each held for some tens of samples."""
+    return np.repeat(rng.integers(-5, 6, 30) / 10, rng.integers(10, 60, 30))
+
+
+@pytest.mark.parametrize(
+    ("command", "hold"),
+    [
+        (steps, "zoh"),
+        (lambda rng: 0.3 * np.sign(rng.standard_normal(150)), "zoh"),
+        (lambda rng: rng.standard_normal(900), "linear"),
+        (lambda _: np.round(np.linspace(0, 1, 20_000) * 500) / 500, "linear"),  # a slow ramp in few bits rests too
+        (lambda _: np.zeros(100), "linear"),
+    ],
+    ids=["levels", "switched", "noise", "slow ramp", "nothing"],
+)
+def test_a_command_that_rests_and_jumps_is_taken_as_held_and_it_is_said(command, hold):
+    """What an answer says of it goes before what it looks like."""
+    samples = command(np.random.default_rng(3))
+    text = "\n".join(["time (s),command (V),speed (rpm)", *(f"{n / 100:g},{u:g},1" for n, u in enumerate(samples)), ""])
+    draft = Draft([raw(text)], Answers(serial="M", channels={"velocity": Answer("speed (rpm)")}))
+    assert draft.known(draft.files[0]).hold == hold
+    assert draft.description()["runs"][0].get("hold", "linear") == hold
+    assert any(f"hold: {hold}" in doubt for doubt in draft.doubts)
+    said = replace(draft, answers=replace(draft.answers, common={"hold": "linear"}))
+    assert said.description()["runs"][0]["hold"] == "linear"
+    assert not any("hold:" in doubt for doubt in said.doubts)
+
+
+def test_where_some_files_look_held_and_others_do_not_they_are_named():
+    def file(name: str, samples: np.ndarray):
+        rows = [f"{n / 100:g},{u:g},1" for n, u in enumerate(samples)]
+        return raw("\n".join(["time (s),command (V),speed (rpm)", *rows, ""]), name)
+
+    rng = np.random.default_rng(3)
+    files = [file("knob.csv", steps(rng)), file("noise.csv", rng.standard_normal(900))]
+    draft = Draft(files, Answers(serial="M", channels={"velocity": Answer("speed (rpm)")}))
+    (told,) = [doubt for doubt in draft.doubts if "hold:" in doubt]
+    assert told.startswith("the command of knob.csv rests and jumps")
+
+
+def test_no_measured_command_is_taken_as_held_that_was_not(measured):
+    _, told, files, _ = measured
+    draft = Draft(files, Answers())
+    for file in files:
+        assert draft.known(file).hold in ("linear", of_file(told, file).labels.hold)
