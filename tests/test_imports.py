@@ -170,6 +170,14 @@ def test_effects_never_import_each_other():
     assert not list(offences(own, {"ident.effects"}, {"ident.effects.effect"}))
 
 
+def test_syntax_trees_are_made_in_one_place():
+    """Python 3.11 cannot make two at once: whoever parses beside the others' lock makes all of them fail."""
+    asking = [
+        file for file in files("ident/**/*.py", "app/**/*.py") if "ast.parse(" in file.read_text(encoding="utf-8")
+    ]
+    assert asking == [ROOT / "ident" / "equations" / "grammar.py"]
+
+
 def test_stages_never_import_an_effect():
     """The linear core of a place does not know what may be added to it."""
     assert not list(offences(files("ident/stages/*.py"), {"ident.effects"}))

@@ -1,8 +1,9 @@
-"""The error of a refit on blocks of the records that it was not fitted to.
+"""The error of a refit on blocks of the records, or on whole runs, that it was not fitted to.
 
 Each record is cut into chunks that take turns: the parameters are fitted again without the chunks of one fold, and
-judged on these. From the optimum of all data one Gauss-Newton step leads to the optimum without a fold, exactly for a
-linear least-squares problem, so that sums of products of each block are all that is needed:
+judged on these. Chunks leave something of every run in the fit; whole runs that take turns do not, and refuse what
+only tells runs apart. From the optimum of all data one Gauss-Newton step leads to the optimum without a fold, exactly
+for a linear least-squares problem, so that sums of products of each block are all that is needed:
 
     δ = −H⁻¹ g  from the other folds,   Σ (r − J δ − N ν)²  over the fold
 
@@ -30,6 +31,7 @@ Indices = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 CHUNKS, FOLDS = 8, 4
 _FINER = 32  # chunks of a record where there are fewer records than CHUNKS
+_DEALT = 0  # seed by which runs are dealt to folds: a matrix lists them in an order of its own
 _FAR = 0.01  # of an axis: a longer step is beyond what one linearisation tells
 _CLOSE = Way(converged=1e-4, most=5)  # of a fit without a fold: it starts close by, and one linearisation ends it
 
@@ -80,22 +82,37 @@ def scored(error: float, offset: float, weight: float) -> float:
 
 
 def cross_validated(
-    point: Array, here: Local, evaluate: Callable[[Array], Local], independent: float
+    point: Array, here: Local, evaluate: Callable[[Array], Local], independent: float, whole_runs: bool = False
 ) -> CrossValidation:
-    """The held-out errors at the optimum `point` of the unit cube; `evaluate` is the objective."""
+    """The held-out errors at the optimum `point` of the unit cube; `evaluate` is the objective.
+
+    Chunks of every record are left out in turn, or `whole_runs`, of which there have to be two at least.
+    """
     few = len(here.runs) < CHUNKS
     count = min(_FINER, *(len(run.blocks) for run in here.runs)) if few else CHUNKS
     chunks = [_chunk_of(run, count) for run in here.runs]
     squares = np.zeros((len(here.runs), count))
-    for fold in range(FOLDS):
-        used = [of % FOLDS != fold for of in chunks]
+    fold_of = (_folds_of_runs if whole_runs else _folds_of_chunks)(len(here.runs), count)
+    for fold in range(fold_of.max() + 1):
+        used = [folds[of] != fold for folds, of in zip(fold_of, chunks, strict=True)]
         there, step = _without(point, here, used, evaluate)
-        inside = np.arange(count) % FOLDS == fold
         for i, (run, of) in enumerate(zip(there.runs, chunks, strict=True)):
+            inside = fold_of[i] == fold
             squares[i, inside] = _by_chunk(run, of, count, step)[inside]
     means = np.array([run.offset for run in here.runs])
     totals = np.array([run.total for run in here.runs])
     return CrossValidation(squares, totals, means - means.mean(), sum(run.length for run in here.runs), independent)
+
+
+def _folds_of_chunks(runs: int, count: int) -> Indices:
+    """The fold of each run's chunks, (runs, count): one chunk after the other."""
+    return np.tile(np.arange(count) % FOLDS, (runs, 1))
+
+
+def _folds_of_runs(runs: int, count: int) -> Indices:
+    """The same where whole runs are left out, dealt out at random."""
+    dealt = np.random.default_rng(_DEALT).permutation(runs) % min(FOLDS, runs)
+    return np.repeat(dealt[:, None], count, axis=1)
 
 
 def _without(point: Array, here: Local, used: list[Mask], evaluate: Callable[[Array], Local]) -> tuple[Local, Array]:
@@ -128,7 +145,7 @@ def _partly(here: Local, used: list[Mask]) -> Local:
     return local([
         NormalMatrices(_projected(run, of), run.scores[:0], run.total, run.offset, run.release, run.means, run.length,
                        share=run.share)
-        for run, of in zip(here.runs, used, strict=True)
+        for run, of in zip(here.runs, used, strict=True) if of.any()
     ])  # fmt: skip
 
 

@@ -8,8 +8,9 @@ from functools import partial
 from itertools import groupby
 from typing import TypeVar
 
+from ident.cached import cached_property
 from ident.diagnosis.family import ModelFamily
-from ident.diagnosis.refit import Refit
+from ident.diagnosis.refit import Refit, carries_over
 from ident.diagnosis.screening import Prediction, predict
 from ident.diagnosis.significance import VISIBLE, WORTHWHILE, Improvement, improvement
 from ident.diagnosis.ties import first_least, in_order
@@ -31,12 +32,13 @@ _SIGHT = 5  # effects that are told at first sight
 
 @dataclass(frozen=True)
 class Candidate:
-    """An effect, what it promises, its refit on all records where it came that far, and what that gains."""
+    """An effect, what it promises, its refit on all records where it came that far, and what that gains over a base."""
 
     prediction: Prediction
     trial: Refit | None = None
     refit: Refit | None = None
     gain: Improvement | None = None
+    base: Refit | None = None
 
     @property
     def effect(self) -> str:
@@ -45,8 +47,19 @@ class Candidate:
 
     @property
     def helps(self) -> bool:
-        """Whether adding it helps beyond chance."""
-        return self.gain is not None and self.gain.beyond_chance
+        """Whether adding it helps beyond chance, and from run to run."""
+        return self.gain is not None and self.gain.beyond_chance and self.carries_over
+
+    @cached_property
+    def carries_over(self) -> bool:
+        """Whether it does no harm on whole runs that were left out; where there is no refit nothing is known of it."""
+        return self.refit is None or self.base is None or carries_over(self.base, self.refit)
+
+    @property
+    def between_runs(self) -> tuple[float, ...]:
+        """The errors without it and with it on whole runs that were left out, where there are any."""
+        judged = (one.between_runs for one in (self.base, self.refit) if one is not None)
+        return tuple(one.error for one in judged if one is not None)
 
     @property
     def stage(self) -> int:
@@ -62,7 +75,7 @@ class Candidate:
 
     def refitted(self, base: Refit, refit: Refit) -> Candidate:
         """The candidate with a refit on all records, and what that gains over the model without the effect."""
-        return replace(self, refit=refit, gain=improvement(base.held_out, refit.held_out))
+        return replace(self, refit=refit, gain=improvement(base.held_out, refit.held_out), base=base)
 
 
 Base = tuple[Refit, Sequence[str]]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ident.cached import cached_property
 from ident.diagnosis.cross_validation import CrossValidation, cross_validated
 from ident.diagnosis.estimate import Found
+from ident.diagnosis.significance import improvement
 from ident.fit.fitness import Local
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import Space
@@ -38,6 +39,13 @@ class Refit:
     def held_out(self) -> CrossValidation:
         """Its errors on blocks that were left out in turn."""
         return cross_validated(self.point, self.here, self.fitness.exact, self._simulated.independent)
+
+    @cached_property
+    def between_runs(self) -> CrossValidation | None:
+        """Its errors on whole runs that were left out in turn; None of a single run."""
+        if len(self.here.runs) < 2:
+            return None
+        return cross_validated(self.point, self.here, self.fitness.exact, self._simulated.independent, whole_runs=True)
 
     @property
     def stable(self) -> bool:
@@ -115,6 +123,20 @@ class Refit:
     def offset(self) -> float:
         """The mean of the runs' offsets."""
         return float(over_runs([run.offset for run in self.here.runs], self.here.runs))
+
+
+def helps(less: Refit, more: Refit) -> bool:
+    """Whether a model does better than another beyond chance, and what it has learned holds from run to run."""
+    return improvement(less.held_out, more.held_out).beyond_chance and carries_over(less, more)
+
+
+def carries_over(less: Refit, more: Refit) -> bool:
+    """Whether a model is no worse than another, but by chance, on whole runs that neither was fitted to.
+
+    What does better on blocks of runs that it has seen, and worse here, tells runs apart instead of explaining them.
+    """
+    before, after = less.between_runs, more.between_runs
+    return before is None or after is None or not improvement(after, before).beyond_chance
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from itertools import combinations
 
 from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.ranking import Candidate, rank, rank_each, ranked
-from ident.diagnosis.refit import Refit
+from ident.diagnosis.refit import Refit, helps
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.ties import first_least
 from ident.errors import TimeIsUp
@@ -155,7 +155,7 @@ class StepwiseSelection:
             return False
         less = self.models.refit(refit.effects[:-1], _without(refit.values, name))
         worse = not less.finite or less.held_out.score >= self.found.held_out.score
-        if worse or improvement(less.held_out, refit.held_out).beyond_chance:
+        if worse or helps(less, refit):
             return False
         if less.effects == self.base.effects:
             self.base = less
@@ -187,7 +187,7 @@ class StepwiseSelection:
         if best is None or not best.here.error < self.models.tried(self.found):
             return False
         refit = self.models.refit(best.effects, best.values)
-        if not refit.finite or not improvement(self.found.held_out, refit.held_out).beyond_chance:
+        if not refit.finite or not helps(self.found, refit):
             return False
         self._step(refit)
         return True
@@ -238,7 +238,7 @@ class StepwiseSelection:
         doubted = [name for name in self.added if name != latest]
         while doubted:
             here, tried = self.found, each(self._less, doubted)
-            needless = (i for i, less in enumerate(tried) if less.finite and not _helps(less, here))
+            needless = (i for i, less in enumerate(tried) if less.finite and not helps(less, here))
             first = next(needless, None)
             if first is None:
                 break
@@ -264,7 +264,7 @@ class StepwiseSelection:
             best = next((c for c in ranking if c.refit is not None), None)
             if best is None or best.refit is None:
                 continue
-            if best.effect != name and improvement(here.held_out, best.refit.held_out).beyond_chance:
+            if best.effect != name and helps(here, best.refit):
                 self._step(best.refit)
                 self._backward(best.effect)
                 return True
@@ -277,11 +277,6 @@ class StepwiseSelection:
             return [self.ranking for _ in added]
         bases = each(self._less, added)
         return rank_each(self.models, [(base, self._others(base)) for base in bases], self.report, thorough=False)
-
-
-def _helps(less: Refit, more: Refit) -> bool:
-    """Whether a model does better than another beyond chance."""
-    return improvement(less.held_out, more.held_out).beyond_chance
 
 
 def _without(values: Mapping[str, float], effect: str) -> dict[str, float]:

@@ -18,12 +18,19 @@ _BOUNDED = (
     "your own let it go farther."
 )
 
+_TELLS_APART = (
+    "It does better on stretches of the runs that it was fitted to, but on whole runs that were left out the error "
+    "rises from {} to {}: it tells runs apart, and does not explain them."
+)
+
 
 def why(candidate: Candidate, effect: Effect, before: float, floor: float | None, best: bool) -> str:
     """Why the data speak for or against an effect; `before` is the held-out error without it."""
     if candidate.refit is None or candidate.gain is None:
         share = 100 * candidate.prediction.fall
         return f"Predicted to take {share:.2g} % off the error, less than others; it was not refitted."
+    if candidate.gain.beyond_chance and not candidate.carries_over:
+        return _TELLS_APART.format(*map(percent, candidate.between_runs))
     return why_of_gain(candidate.gain, effect, (before, candidate.refit.held_out.error), floor, best)
 
 

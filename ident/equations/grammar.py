@@ -75,10 +75,21 @@ _JOINED = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![eE][+-]
 _ONLY = "only numbers, names, + - * / **, comparisons and functions"
 
 
+# One thread at a time parses: Python 3.11 counts the depth of all trees in one place (python/cpython#106905), and raises
+# SystemError where threads take turns in the middle of one.
+
+
 def tree_of(text: str) -> ast.expr:
-    """The syntax of an expression; raises SyntaxError. One thread at a time: Python 3.11 counts the depth of all."""
+    """The syntax of an expression; raises SyntaxError."""
     with _PARSING:
         return ast.parse(text, mode="eval").body
+
+
+def statement_of(line: str) -> ast.stmt:
+    """The syntax of a line of a kernel."""
+    with _PARSING:
+        (statement,) = ast.parse(line).body
+    return statement
 
 
 @lru_cache(maxsize=65_536)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Collection, Iterator, Sequence
 
+from ident.equations.grammar import statement_of
 from ident.simulation.kernel import LANES
 
 _SIGNS: dict[type[ast.operator] | type[ast.cmpop], str] = {
@@ -32,7 +33,7 @@ def _needed(lines: Sequence[str], rows: Collection[int]) -> list[ast.Assign]:
     kept: list[ast.Assign] = []
     wanted: set[str] = set()
     for line in reversed(lines):
-        (node,) = ast.parse(line).body
+        node = statement_of(line)
         if not isinstance(node, ast.Assign):
             raise TypeError(f"{line!r} is no line of a kernel")
         (place,) = node.targets

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from ident.diagnosis.cross_validation import CrossValidation, bounded_step, cross_validated
+from ident.diagnosis.cross_validation import CrossValidation, _folds_of_runs, bounded_step, cross_validated
+from ident.diagnosis.refit import carries_over, helps
 from ident.diagnosis.significance import improvement
 from ident.fit.fitness import Local, local
 from ident.fit.normal_matrices import NormalMatrices, normal_matrices_of
@@ -38,8 +40,8 @@ def objective(data, point: np.ndarray) -> Local:
     runs: list[NormalMatrices] = []
     for run, J in data:
         residual = run.measured - run.measured.mean() - J @ (point - 0.5)
-        z = np.column_stack([J, np.ones(N), residual]).reshape(BLOCKS, -1, 4)
-        runs += normal_matrices_of([run], np.einsum("bni,bnj->bij", z, z)[None], 2)
+        z = np.column_stack([J, np.ones(N), residual]).reshape(BLOCKS, N // BLOCKS, -1)
+        runs += normal_matrices_of([run], np.einsum("bni,bnj->bij", z, z)[None], len(point))
     return local(runs)
 
 
@@ -71,6 +73,48 @@ def test_held_out_errors_of_a_line_are_those_of_fits_without_each_fold(rng):
             left = run.measured - run.measured.mean() - (J - J.mean(axis=0)) @ best
             expected = [np.sum(left[chunk == c] ** 2) for c in range(8) if c % 4 == fold]
             assert found.squares[i, fold::4] == pytest.approx(expected, rel=1e-6)
+
+
+def test_errors_between_runs_are_those_of_fits_without_each_fold_of_runs(rng):
+    """Whole runs take turns: each is judged by what the others alone ask for."""
+    data = records(rng, 6)
+    here = objective(data, np.array([0.8, 0.3]))
+    point = np.array([0.8, 0.3]) - np.linalg.solve(here.curvature, here.gradient)
+    here = objective(data, point)
+    found = cross_validated(point, here, lambda p: objective(data, p), 1.0, whole_runs=True)
+    weights = np.array([1 / np.sqrt(run.gram[-1, -1] * run.total) for run in here.runs])
+    folds = _folds_of_runs(6, 1)[:, 0]
+    assert sorted(np.bincount(folds)) == [1, 1, 2, 2]
+    for i, (run, J) in enumerate(data):
+        others = [(one, weight) for one, weight, fold in zip(data, weights, folds, strict=True) if fold != folds[i]]
+        best = weighted_optimum([one for one, _ in others], np.full(N, True), np.array([w for _, w in others]))
+        left = run.measured - run.measured.mean() - (J - J.mean(axis=0)) @ best
+        assert found.squares[i].sum() == pytest.approx(np.sum(left**2), rel=1e-6)
+
+
+@pytest.mark.parametrize("lawful", [False, True])
+def test_what_only_tells_runs_apart_does_not_carry_over(rng, lawful):
+    """A curve of a condition passes through every run's own size: between runs it is worth something only as a law."""
+    levels, shape = np.linspace(-1, 1, 6), rng.standard_normal(N)
+    sizes = 1.0 + 0.5 * levels - 0.3 * levels**3 if lawful else 1.0 + 0.5 * np.array([1, 1, -1, 1, -1, -1])
+
+    def refitted(columns: int) -> SimpleNamespace:
+        data = []
+        for i, (level, size) in enumerate(zip(levels, sizes, strict=True)):
+            y = size * shape + 0.1 * np.random.default_rng(i).standard_normal(N)
+            data.append((Run(f"r{i}", "", 1.0, {"command": y, "displacement": y}),
+                         4.0 * np.stack([shape * level**k for k in range(columns)], axis=1)))  # fmt: skip
+        point = np.full(columns, 0.5)
+        for _ in range(5):
+            here = objective(data, point)
+            point = point - np.linalg.solve(here.curvature, here.gradient)
+        judged = [cross_validated(point, objective(data, point), lambda p: objective(data, p), 6.0 * N, whole)
+                  for whole in (False, True)]  # fmt: skip
+        return SimpleNamespace(held_out=judged[0], between_runs=judged[1])
+
+    less, more = refitted(1), refitted(4)
+    assert improvement(less.held_out, more.held_out).beyond_chance
+    assert carries_over(less, more) is helps(less, more) is lawful
 
 
 def test_at_the_edge_of_what_is_stable_the_linearisation_judges(rng):

@@ -105,6 +105,10 @@ class Judged:
         needed = bool((more.effects - less.effects) & self.needed) or more.score < 0.3 * less.score
         return SimpleNamespace(beyond_chance=needed, within_chance=False)
 
+    def helps(self, less, more):
+        """The same of refits."""
+        return self.improvement(less.held_out, more.held_out).beyond_chance
+
 
 @pytest.fixture
 def searched(monkeypatch):
@@ -117,6 +121,7 @@ def searched(monkeypatch):
         monkeypatch.setattr(stepwise, "rank", judged.rank)
         monkeypatch.setattr(stepwise, "rank_each", judged.rank_each)
         monkeypatch.setattr(stepwise, "improvement", judged.improvement)
+        monkeypatch.setattr(stepwise, "helps", judged.helps)
         return StepwiseSelection(judged, judged.refit((), {}), 2, lambda *_: None).run()  # type: ignore[arg-type]
 
     return of

@@ -10,9 +10,10 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from ident.equations.grammar import tree_of
+from ident.equations.grammar import statement_of, tree_of
 
 TEXT = " + ".join(f"sin(a{i} * b{i})" for i in range(80))
+LINE = f"b[{3} + lane] = {TEXT}"
 
 
 @pytest.fixture
@@ -36,5 +37,5 @@ def often_interrupted() -> Iterator[None]:
 def test_threads_that_parse_at_once_do_not_disturb_each_other():
     """Python 3.11 counts the depth of one thread's expression in the other's: SystemError."""
     with ThreadPoolExecutor(8) as threads:
-        trees = list(threads.map(tree_of, [TEXT] * 100))
-    assert len({type(tree) for tree in trees}) == 1
+        trees = list(threads.map(lambda i: statement_of(LINE) if i % 2 else tree_of(TEXT), range(100)))
+    assert len({type(tree) for tree in trees}) == 2

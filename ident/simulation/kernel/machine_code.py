@@ -21,6 +21,8 @@ import llvmlite.binding as llvm
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.equations.grammar import statement_of
+
 LANES = 16
 WIDE = 8
 """Lanes of one operation, two registers of AVX2 or one of AVX-512: fewer cost as much."""
@@ -162,8 +164,7 @@ class _Writer:
 @lru_cache(maxsize=65_536)
 def _statement(text: str) -> ast.stmt:
     """A line's syntax: kernels of one machine with other effects have most of their lines in common."""
-    (statement,) = ast.parse(text).body
-    return statement
+    return statement_of(text)
 
 
 def _offset(node: ast.Subscript) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import sqlite3
+import time
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +30,8 @@ def rows(data: Path) -> dict[str, list[Any]]:
 @pytest.fixture(scope="module")
 def kept(service, fitted, tmp_path_factory) -> Path:
     """A backup of a running service that has a fit."""
+    while any(service.get("/api/v1/jobs", params={"state": at}).json()["items"] for at in ("queued", "running")):
+        time.sleep(0.1)  # what other tests left at work would change while the backup is made
     file = tmp_path_factory.mktemp("backup") / "all.backup"
     held = backup(service.app.state.context.settings, file)
     assert fitted
