@@ -75,8 +75,8 @@ _JOINED = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![eE][+-]
 _ONLY = "only numbers, names, + - * / **, comparisons and functions"
 
 
-# One thread at a time parses: Python 3.11 counts the depth of all trees in one place (python/cpython#106905), and raises
-# SystemError where threads take turns in the middle of one.
+# One thread at a time parses: Python 3.11 counts the depth of all trees in one place (python/cpython#106905), and
+# raises SystemError where threads take turns in the middle of one.
 
 
 def tree_of(text: str) -> ast.expr:
