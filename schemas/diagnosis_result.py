@@ -175,6 +175,7 @@ class TermView(BaseModel):
     meaning: str
     formula: str
     hypothesis: bool
+    free_curve: bool = False
     contradicted: RiseView | None = None
 
 

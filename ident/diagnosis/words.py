@@ -121,6 +121,7 @@ def proposed_text(terms: Sequence[Proposal]) -> str:
     last = terms[-1]
     verify = f" ({percent(last.error['verify'])} on verify runs)" if last.error.get("verify") is not None else ""
     doubt = ", a hypothesis" if any(one.hypothesis for one in terms) else ""
+    doubt += ", at last a free curve" if any(one.free_curve for one in terms) else ""
     instead = f" in place of {', '.join(map(title, last.instead_of))}" if last.instead_of else ""
     it = "it" if len(terms) == 1 else "them"
     against = [one.contradicted.told(one.equation) for one in terms if one.contradicted]

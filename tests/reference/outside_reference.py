@@ -6,6 +6,7 @@ hold. Kutta's classical rule with many sub-steps a sample; flat, SI, from rest; 
     tau (1 + c |P| / P0) q' = Kp (u - y) - q - f q |P| / P0         loaded_lag; flow_force on the spool
     Q = Z0/A q (1 + d t) (1 + p sin(2 pi 23 t)) (1 + w)    gain_drift, pump_ripple, valve_temperature: w of the run
         (1 + g |P| / P0) (1 + b exp(-((x - X/4) / (X/4))²))     pressure_gain; gain_bump
+        (1 + h sin(2 P / P0))                                   swinging_gain
     Ka P' = Q - Cl P - l Cl max(P, 0) - A (1 + a sgn v) v   one_way_leakage; unequal_areas
         - n Cl sgn(P) max(|P| - P0/2, 0)                    relief_leakage
     (m0 + mL) v' = A (1 + a sgn v) P - (c0 + cL) v - k x - F (x/X)² tanh(v/Vs)    position_friction
@@ -45,6 +46,7 @@ class Outside(NamedTuple):
     relief_leakage: float = 0.0
     growing_friction: float = 0.0  # N/s
     position_damping: float = 0.0  # N s/m
+    swinging_gain: float = 0.0
 
 
 UNLISTED = ("gain_drift", "valve_temperature", "sensor_curve", "loaded_lag", "gain_bump", "relief_leakage",
@@ -59,6 +61,7 @@ def derivative(plant, cell, o, warm, t, u, s, out):
     )
     gain = (1.0 + o.gain_drift * t) * (1.0 + o.pump_ripple * np.sin(RIPPLE * t)) * (1.0 + warm)
     gain *= 1.0 + o.pressure_gain * abs(p) / P0
+    gain *= 1.0 + o.swinging_gain * np.sin(2.0 * p / P0)
     gain *= 1.0 + o.gain_bump * np.exp(-((4.0 * x / X - 1.0) ** 2))
     leak = plant.Cl * (p + o.one_way_leakage * max(p, 0.0))
     leak += plant.Cl * o.relief_leakage * np.sign(p) * max(abs(p) - 0.5 * P0, 0.0)

@@ -39,14 +39,15 @@ class Candidate:
 
     @property
     def starts(self) -> tuple[float, ...]:
-        """Where the shapes of its terms begin."""
-        return tuple(shape.value for term in self.terms for shape in term.shapes)
+        """Where the shapes of its terms begin, and what their curves go through."""
+        shapes = (shape.value for term in self.terms for shape in term.shapes)
+        return (*shapes, *(knot for term in self.terms if term.curve for knot in term.curve.knots))
 
     @property
     def simplicity(self) -> tuple[object, ...]:
         """What of two that are as good comes first."""
         text = "".join(term.text for term in self.terms)
-        shapes = sum(term.free_shapes for term in self.terms)
+        shapes = sum(term.fitted for term in self.terms)
         return len(self.terms), shapes, not meaning(self.terms), len(text), text
 
 

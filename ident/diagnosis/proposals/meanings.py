@@ -37,6 +37,7 @@ _KINDS = {
     "late friction": "dry friction that builds up, and turns, with a delay",
     "fading": "comes, or goes, with time as what warms up", "fading friction": "dry friction that wears in",
     "resonance": "a part that swings on a spring, moved by what is here",
+    "free curve": "a free curve: no formula is known for it yet",
     "periodic": "comes and goes with time, as the pulses of a pump",
 }  # fmt: skip
 

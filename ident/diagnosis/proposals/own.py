@@ -7,10 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from ident.diagnosis.proposals.terms import LIMIT, Signals, Term, ratio
+from ident.diagnosis.proposals.terms import CURVE, LIMIT, Signals, Term, ratio
+from ident.effects.effect import Effect
 
 _REACH = 4.0  # times what makes a term as large as the signal that it adds to: bounds of a strength
 _FAR = 10.0  # times what a regression makes of a strength
+_STEEP = 20.0  # times a large value of a curve that others may become
 STRENGTH = "s"
 
 
@@ -58,4 +60,34 @@ def definition(
                      "upper": bound},
         "meaning": "proposed by search", "source": "proposed by search",
     }  # fmt: skip
+    if first.curve is not None:
+        knots, values = list(first.curve.knots), list(first.curve.values)
+        found["curve"] = {"symbol": CURVE, "of": first.curve.of, "knots": knots, "values": values, "unit": "1",
+                          "lower": -_STEEP, "upper": _STEEP}  # fmt: skip
     return found | ({"shape": shapes} if shapes else {})
+
+
+def searched(own: Mapping[str, Any], terms: Sequence[Term]) -> dict[str, tuple[float, float]]:
+    """What a refit moves beside the strength, by name, and within which bounds."""
+    free = [shape.symbol for term in terms for shape in term.shapes if shape.free]
+    found = {f"{own['name']}.{symbol}": _bounds(own["shape"][symbol]) for symbol in free}
+    for curve in (term.curve for term in terms if term.curve is not None):
+        moved = (n for n in range(len(curve.knots)) if n != curve.held)
+        found |= {f"{own['name']}.{CURVE}_{n + 1}": _bounds(own["curve"]) for n in moved}
+    return found
+
+
+def _bounds(of: Mapping[str, Any]) -> tuple[float, float]:
+    return of["lower"], of["upper"]
+
+
+def as_found(own: Mapping[str, Any], effect: Effect, values: Mapping[str, float]) -> dict[str, Any]:
+    """The definition with its shapes as a refit found them, by the equations' names: added, they are held there."""
+    found = dict(own)
+    at = {parameter.symbol: values[parameter.in_equations] for parameter in effect.added[1:]}
+    if "shape" in own:
+        found["shape"] = {symbol: {**of, "value": at[symbol]} for symbol, of in own["shape"].items()}
+    if "curve" in own:
+        count = len(own["curve"]["knots"])
+        found["curve"] = {**own["curve"], "values": [at[f"{CURVE}_{n}"] for n in range(1, count + 1)]}
+    return found

@@ -24,6 +24,8 @@ class Proposal:
     `parameters` are those of the model with it, by name, and `view` is where its characteristic shows (see
     :func:`ident.residuals.views.view_called`); "" where that is no function of one signal.
 
+    A `free_curve` is one: h in its equation is drawn through knots of its effect's curve, and no formula is known.
+
     Of a `hypothesis` there were too few runs to confirm it on others. `contradicted`: the error on runs to verify rises
     with it, or is above that of what it stands instead of.
     """
@@ -47,6 +49,7 @@ class Proposal:
     meaning: str = ""
     formula: str = ""
     hypothesis: bool = False
+    free_curve: bool = False
     contradicted: Contradiction | None = None
 
     def to_json(self) -> dict[str, Any]:

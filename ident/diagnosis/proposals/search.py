@@ -22,7 +22,7 @@ from ident.diagnosis.proposals.candidate import Candidate
 from ident.diagnosis.proposals.evidence import evidence
 from ident.diagnosis.proposals.meanings import meaning
 from ident.diagnosis.proposals.outcome import Proposals, Refused
-from ident.diagnosis.proposals.own import definition
+from ident.diagnosis.proposals.own import as_found, definition, searched
 from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.proposals.shown import shown_in
 from ident.diagnosis.proposals.sight import Sight, sight
@@ -68,18 +68,30 @@ class Search:
         self.beside = self.base.effects
 
     def run(self) -> Proposals:
-        """One term on top of the other until none passes the bar, or the noise is reached."""
+        """One term on top of the other until none passes the bar, or the noise is reached; then one free curve."""
+        begun = Search(self.models, self.base, self.report, self.given)
         with suppress(TimeIsUp):
             while len(self.found) < self.most and not self.models.at_floor(self.base) and self._added():
                 pass
+            if not self.models.at_floor(self.base):
+                self._drawn(begun)
             self.complete = True
         return Proposals(
             found=tuple(self.found), refit=self.base, refused=self.refused, looked_at=self.looked_at,
             complete=self.complete,
         )  # fmt: skip
 
-    def _added(self) -> bool:
-        """Look for one more term; True where one passed the bar."""
+    def _drawn(self, begun: Search) -> None:
+        """One free curve beside the terms or, where it leaves no more without them, in the place of all of them."""
+        terms = self.found
+        self._added(curves=True)
+        begun.looked_at = self.looked_at
+        if terms and begun._added(curves=True) and _held_out(begun) <= _AS_GOOD * _held_out(self):
+            self.models, self.base, self.beside, self.found = begun.models, begun.base, begun.beside, begun.found
+        self.looked_at = begun.looked_at
+
+    def _added(self, curves: bool = False) -> bool:
+        """Look for one more term, or for a free curve; True where one passed the bar."""
         self.report(Progress("proposing", len(self.found), self.most))
         sought, chosen_by, confirming = _parts(self.models.runs)
         searching = self.models.without(run.id for run in self.models.runs if run not in sought)
@@ -87,10 +99,10 @@ class Search:
         if not base.finite:
             return False
         name = next(f"{_PREFIX}{n}" for n in count(1) if f"{_PREFIX}{n}" not in self.models.effects)
-        seen = sight(self.models, base)
+        seen = sight(self.models, base, curves=curves)
         self.looked_at += seen.looked_at
         self.report(Progress("proposing", len(self.found), self.most, base.error))
-        tried = self._all_tried(searching, base, name, seen)
+        tried = self._all_tried(searching, base, name, seen, curves)
         if not tried:
             return False
         few = _few(self.models.runs)
@@ -106,7 +118,7 @@ class Search:
             gained, sound = told.nats, told.steady and told.worthwhile
         bar = float(np.log(self.looked_at)) + _EVIDENCE
         if not (gained > bar and sound):
-            self.refused = Refused(equation=candidate.equation, nats=gained, bar=bar)
+            self.refused = self.refused or Refused(equation=candidate.equation, nats=gained, bar=bar)
             return False
         self.models = replace(self.models, effects=family.effects, given=family.given, _known={})
         before, self.base = self.base, self.models.refit(refit.effects, refit.values)
@@ -115,7 +127,7 @@ class Search:
         self.found.append(replace(proposal, contradicted=self._contradiction(name, before)))
         return True
 
-    def _all_tried(self, searching: ModelFamily, base: Refit, name: str, seen: Sight) -> list[Tried]:
+    def _all_tried(self, searching: ModelFamily, base: Refit, name: str, seen: Sight, curves: bool) -> list[Tried]:
         """The refits with the candidates that come first after a rough one.
 
         What is strong moves the signals that terms are of: where the best leaves more than noise, what could be in its
@@ -130,7 +142,7 @@ class Search:
             return tried
         best = first_least(tried, lambda one: one[1].error)
         if not searching.at_floor(best[1]):
-            again = sight(self.models, best[1], best[2].effects[name])
+            again = sight(self.models, best[1], best[2].effects[name], curves)
             self.looked_at += again.looked_at
             known = {(one.equation, *one.starts) for one in seen.candidates}
             tried += refits([one for one in again.candidates if (one.equation, *one.starts) not in known])
@@ -167,10 +179,8 @@ class Search:
     def _proposal(
         self, candidate: Candidate, seen: Sight, name: str, gained: float, bar: float, hypothesis: bool
     ) -> Proposal:
-        own = dict(next(one for one in self.models.given.custom if one["name"] == name))
-        if shapes := self.models.effects[name].added[1:]:  # as the refit found them: added, they are held there
-            given = own["shape"]
-            own["shape"] = {p.symbol: {**given[p.symbol], "value": self.base.values[p.in_equations]} for p in shapes}
+        own = next(one for one in self.models.given.custom if one["name"] == name)
+        own = as_found(own, self.models.effects[name], self.base.values)
         return Proposal(
             place=tuple(dict.fromkeys(term.place for term in candidate.terms)),
             equation="; ".join(own["equation"]),
@@ -182,7 +192,7 @@ class Search:
             view=shown_in(candidate.terms[0], self.models.preset, seen.typical),
             beside=self.beside,
             terms=len(self.found) + 1,
-            shapes=sum(term.free_shapes for term in candidate.terms),
+            shapes=sum(term.fitted for term in candidate.terms),
             error=self.base.errors,
             nats=gained,
             bar=bar,
@@ -190,6 +200,7 @@ class Search:
             meaning=meaning(candidate.terms),
             formula=" ".join(map(mathml, own["equation"])),
             hypothesis=hypothesis,
+            free_curve=any(term.curve is not None for term in candidate.terms),
         )
 
     def _tried(self, searching: ModelFamily, base: Refit, name: str, candidate: Candidate, seen: Sight) -> Tried | None:
@@ -199,13 +210,8 @@ class Search:
             effect = read_effect(own, model=self.models.preset.name)
         except Unusable:
             return None
-        free = {
-            f"{name}.{one.symbol}": (own["shape"][one.symbol]["lower"], own["shape"][one.symbol]["upper"])
-            for term in candidate.terms for one in term.shapes if one.free
-        }  # fmt: skip
-        given = replace(
-            searching.given, custom=(*searching.given.custom, own), bounds={**searching.given.bounds, **free}
-        )
+        bounds = {**searching.given.bounds, **searched(own, candidate.terms)}
+        given = replace(searching.given, custom=(*searching.given.custom, own), bounds=bounds)
         family = replace(searching, effects={**searching.effects, name: effect}, given=given, _known={})
         if not family.fit_together((*base.effects, name)):
             return None  # it closes a circle of signals with what was found before
@@ -213,6 +219,10 @@ class Search:
         start |= {p.in_equations: p.value for p in effect.added[1:]}
         refit = family.refit((*base.effects, name), start, way=TRYING)
         return (candidate, refit, family) if refit.finite else None
+
+
+def _held_out(search: Search) -> float:
+    return search.base.held_out.error
 
 
 def _settled(candidate: Candidate, refit: Refit, family: ModelFamily) -> Tried:
@@ -233,7 +243,11 @@ def _parts(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[Run, ...], tuple
         return (of.mass, of.stiffness, run.Kp, run.drive) if of else (0.0, 0.0, run.Kp, run.drive)
 
     ordered = list(dict.fromkeys(run.record or run.id for run in sorted(runs, key=condition)))
-    parts = [set(ordered[first::3]) for first in range(3)]
+    parts: list[set[str]] = [set(), set(), set()]
+    dealing = np.random.default_rng(0)
+    for first in range(0, len(ordered), 3):  # neighbours go to one part each: one after the other a part gets one gain
+        for at, record in zip(dealing.permutation(3), ordered[first : first + 3], strict=False):
+            parts[at].add(record)
     sought, chosen_by, confirming = (tuple(run for run in runs if (run.record or run.id) in part) for part in parts)
     return sought, chosen_by, confirming
 

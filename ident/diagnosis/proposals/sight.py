@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ident.chain.conditions import CONDITIONS
 from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.proposals import free_curves
 from ident.diagnosis.proposals.candidate import Candidate, offered
 from ident.diagnosis.proposals.records import paths, records
 from ident.diagnosis.proposals.regression import regression
@@ -36,8 +37,11 @@ class Sight:
     units: Mapping[str, str]
 
 
-def sight(models: ModelFamily, base: Refit, instead_of: Effect | None = None) -> Sight:
-    """Of a model that was refitted to the runs that search; what could be there `instead_of` an effect that it has."""
+def sight(models: ModelFamily, base: Refit, instead_of: Effect | None = None, curves: bool = False) -> Sight:
+    """Of a model that was refitted to the runs that search; what could be there `instead_of` an effect that it has.
+
+    Terms, or free `curves`.
+    """
     preset = models.preset
     named = {equation.target for equation in preset.core.equations if not equation.is_rate} | {*preset.core.states}
     names = [name for name in _SIGNALS if name in named]
@@ -52,6 +56,11 @@ def sight(models: ModelFamily, base: Refit, instead_of: Effect | None = None) ->
     there = {place: [name for name in names if _known_there(preset, place, at, name)] for place, at in places.items()}
     library = Library(places, there, typical, units, models.band, shortest, varied)
     responses = {at: paths(preset, base.values, models.matrix.actuator, at, runs) for at in places.values()}
+    if curves:
+        drawn = free_curves.free_curves(library)
+        hats = [hat for curve in drawn for hat in curve.hats()]
+        candidates = free_curves.offered(regression(hats, runs, responses, models.band), drawn) if hats else ()
+        return Sight(candidates, len(drawn), typical, units)
     found = regression(list(library.terms()), runs, responses, models.band)
     candidates, looked_at = offered(found, units)
     return Sight(candidates, looked_at, typical, units)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.signal import bilinear, lfilter
 
 from ident.equations.equation import Equation
+from ident.equations.interpolation import interpolated
 from ident.units.grammar import Powers, powers_of
 
 Array = NDArray[np.float64]
@@ -26,6 +27,8 @@ _LAGS = (0.02, 0.06, 0.2, 0.6)  # of a period at the end of the band, times 2π
 _PLAYS = (0.1, 0.3, 0.6)  # of the deviation of a signal
 _RESONANCES, _DAMPED = (0.15, 0.2, 0.27, 0.36, 0.48, 0.65, 0.9), 0.1  # of the end of the band; of critical damping
 _FADING = (0.15, 0.5)  # of the shortest run
+CURVE = "h"
+"""What a free curve is called in a term."""
 LIMIT = "Ff"
 """The signal that says what dry friction takes at most, of machines whose load sticks."""
 _REMEMBERED = {("controller", "x"), ("flow", "P"), ("load", "v"), ("load", "x")}  # places of another signal's memory
@@ -54,12 +57,30 @@ class Shape:
 
 
 @dataclass(frozen=True)
+class Curve:
+    """A curve of a signal through knots, h in a term: its values there where the search saw them.
+
+    That at the knot `held` is 1 and stays, for the strength is its size; a refit moves the others.
+    """
+
+    of: str
+    knots: tuple[float, ...]
+    values: tuple[float, ...]
+    held: int = 0
+
+    def samples(self, signals: Signals) -> Array:
+        """Between the knots straight, and beyond them."""
+        table = np.ravel(np.column_stack([self.knots, self.values])).tolist()
+        return np.asarray(interpolated("lines", signals[self.of], *table))
+
+
+@dataclass(frozen=True)
 class Term:
     """A term at a place: `at` is the signal that it adds to, `text` its equation, `unit` that of the term.
 
     `kind` names its form and `of` the signals that it is of; `memory` are equations of its own that go before.
     `worked_out` gives its samples where the equation alone does not. Of dry friction of the moving mass `limit` is what
-    it takes at most: such a term sticks.
+    it takes at most: such a term sticks. Of a `curve` the equation has h.
     """
 
     place: str
@@ -72,19 +93,27 @@ class Term:
     memory: tuple[str, ...] = ()
     worked_out: Callable[[Signals, float], Array] | None = field(default=None, compare=False, repr=False)
     limit: str = ""
+    curve: Curve | None = None
 
     def samples(self, signals: Signals, rate: float) -> Array:
         """The term on the signals of a run, (n,)."""
         if self.worked_out is not None:
             return self.worked_out(signals, rate)
         known = {**signals, **{shape.symbol: shape.value for shape in self.shapes}}
+        if self.curve is not None:
+            known[CURVE] = self.curve.samples(signals)
         value = Equation(f"d = {self.text}").value(known)
         return np.broadcast_to(np.asarray(value, dtype=np.float64), next(iter(signals.values())).shape)
 
     @property
     def free_shapes(self) -> int:
-        """How many numbers within it a refit moves."""
+        """How many of its shapes a refit moves."""
         return sum(shape.free for shape in self.shapes)
+
+    @property
+    def fitted(self) -> int:
+        """How many numbers within it a refit moves, those of a curve with them."""
+        return self.free_shapes + (len(self.curve.knots) - 1 if self.curve else 0)
 
     @property
     def form(self) -> tuple[str, str, tuple[str, ...]]:
