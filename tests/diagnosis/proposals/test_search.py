@@ -81,42 +81,6 @@ def test_the_equation_that_no_list_holds_is_found(kind, full):
     assert term.nats > term.bar > 10
 
 
-SWING = 0.12
-
-
-@cache
-def with_a_bent_gain() -> tuple[Matrix, Diagnosis]:
-    """A flow gain that swings along the pressure, as no form of the search does; runs of one size."""
-    small = [trial for trial in linear.trials() if trial.use == "fit" and trial.amplitude < 6e-4]
-    trials = [*small[:12], *(trial._replace(use="verify") for trial in small[12:15])]
-    records = measure_all(Outside(swinging_gain=SWING), trials, PLANT, seconds=0.5, noise=NOISE, seed=1)
-    matrix = matrix_of(records, PLANT)
-    return matrix, proposed(matrix)
-
-
-def test_what_no_form_reaches_is_drawn_as_a_free_curve():
-    """It is called one, tells what it is of, goes where the truth does, and holds on runs that nobody fitted."""
-    _, found = with_a_bent_gain()
-    last = found.proposals[-1]
-    assert last.free_curve
-    assert "no formula is known" in last.meaning
-    assert last.nats > last.bar
-    assert last.error["verify"] < 1.2 * NOISE < found.baseline.error["verify"]
-    curve = last.effect["curve"]
-    assert (last.effect["place"], curve["of"]) == ("spool", "P")
-    gain = (1 + last.strength * np.array(curve["values"])) * last.parameters["Z0"].value / PLANT.Z0
-    true = 1 + SWING * np.sin(2 * np.array(curve["knots"]) / 1e6)
-    assert gain[1:-1] == pytest.approx(true[1:-1], abs=0.1 * SWING)
-
-
-def test_a_free_curve_is_an_effect_that_anyone_may_add():
-    matrix, found = with_a_bent_gain()
-    last = found.proposals[-1]
-    customs = tuple(one.effect for one in found.proposals)
-    fit = identify(matrix, Settings(model="qian2014", effects=tuple(c["name"] for c in customs), custom=customs))
-    assert fit.error["verify"] == pytest.approx(last.error["verify"], rel=1e-2)
-
-
 def test_a_proposal_is_no_finding():
     _, found = with_a_leak()
     assert [term.equation for term in found.proposals] == ["Q = Q + s * (abs(P))"]
