@@ -33,11 +33,8 @@ _BLIND = 1e-7  # of the largest of a group's products: what its hats do together
 
 @dataclass(frozen=True)
 class FreeCurve:
-    """A place, the signal that is added to, what is multiplied, the signal that the curve is of, and its knots."""
+    """The signal that a curve is of, its knots, and the term that it is drawn in."""
 
-    place: str
-    at: str
-    by: str
     of: str
     knots: tuple[float, ...]
     term: Term
@@ -67,7 +64,7 @@ def _all(library: Library) -> Iterator[FreeCurve]:
             for by, text in _multiplied(place, at, of, library.signals[place]):
                 unit = powers_of(library.units[by]) or {} if by and text != "sgn(v) * h" else {}
                 named = (by, of) if by else (of,)
-                yield FreeCurve(place, at, by, of, knots, Term(place, at, text, "free curve", named, dict(unit)))
+                yield FreeCurve(of, knots, Term(place, at, text, "free curve", named, dict(unit)))
 
 
 def _multiplied(place: str, at: str, of: str, signals: Sequence[str]) -> Iterator[tuple[str, str]]:
