@@ -90,7 +90,7 @@ def test_a_backup_is_taken_by_a_button(page: Page, site: Process) -> None:
 
 @pytest.mark.parametrize(
     ("path", "shows"),
-    [("/workers", "servoident-1"), ("/statistics?parameter=Z0", "Sets2"), ("/limits?model=qian2014", "Z0"),
+    [("/workers", "servoident-1"), ("/statistics?parameter=Z0&batch=B", "Sets2"), ("/limits?model=qian2014", "Z0"),
      ("/regressions", "Recheck"), ("/actuators/BESIDE", "verdict")],
 )  # fmt: skip
 def test_the_lines_pages_look_sound(page: Page, site: Process, old: str, screenshots, path: str, shows: str) -> None:
