@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import cast
 
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page
 
 from tests.app.conftest import zipped
+from tests.browser.window import Window
 from tests.running import CHROMIUM, Service, process
 
 HERE = Path(__file__).resolve().parent
@@ -65,25 +67,36 @@ def running(site: Service, matrix: str) -> Iterator[str]:
     assert site.ended(job)["state"] == "cancelled"
 
 
+@pytest.fixture(scope="session")
+def window(
+    launch_browser: Callable[..., Browser], browser_type_launch_args: dict[str, object], site: Service
+) -> Iterator[Window]:
+    """Where someone has signed in."""
+    args = cast("list[str]", browser_type_launch_args["args"])
+    made = Window(launch_browser, args, f"{site.address}/?token={site.token}")
+    yield made
+    made.end()
+
+
 @pytest.fixture(scope="module")
-def context(browser: Browser, site: Service) -> Iterator[BrowserContext]:
-    """A signed-in window for the tests of a file: stylesheets and scripts are fetched and compiled once."""
-    with browser.new_context() as made:
-        made.new_page().goto(f"{site.address}/?token={site.token}")
-        yield made
+def of_file(window: Window) -> Iterator[Window]:
+    """The same for the tests of a file: stylesheets and scripts are fetched and compiled once."""
+    yield window
+    window.renew()
 
 
 @pytest.fixture
-def page(context: BrowserContext, site: Service) -> Iterator[Page]:
+def context(of_file: Window) -> BrowserContext:
+    """The context of a test's page."""
+    return of_file.context
+
+
+@pytest.fixture
+def page(of_file: Window, context: BrowserContext) -> Iterator[Page]:
     """A page of its own for each test; nothing that one leaves in the browser is there for the next."""
     made = context.new_page()
     yield made
-    made.close()
-    last = context.new_page()  # of one that goes on to another page by itself nothing can be asked
-    last.goto(f"{site.address}/api/v1/ready")
-    last.evaluate("localStorage.clear()")
-    last.close()
-    context.clear_permissions()
+    of_file.close(made)
 
 
 @dataclass
