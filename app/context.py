@@ -10,19 +10,21 @@ from sqlalchemy import Engine
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.jobs.engine import Jobs
+from app.processes import Place
 from app.settings import Settings
 from app.storage import Storage
 
 
 @dataclass(frozen=True)
 class Context:
-    """Settings, database, blobs and job queue of one service."""
+    """Settings, database, blobs, job queue of one service, and where it reads uploads."""
 
     settings: Settings
     engine: Engine
     sessions: sessionmaker[Session]
     storage: Storage
     jobs: Jobs
+    readers: Place
 
 
 def context_of(request: Request) -> Context:

@@ -30,6 +30,11 @@ class LRU(Generic[Item]):
         with self._lock:
             return key in self._items
 
+    def drop(self, key: Hashable) -> None:
+        """Let go of an item, where it is there."""
+        with self._lock:
+            self._items.pop(key, None)
+
     def put(self, key: Hashable, item: Item) -> Item:
         """Keep an item."""
         with self._lock:

@@ -24,10 +24,8 @@ from app.access.tries import Tries
 from app.blobs import open_storage
 from app.context import Context
 from app.database import connect, migrate, sessions
-from app.diagnoses.work import DIAGNOSIS
-from app.fits.work import FIT
-from app.hybrid.work import HYBRID
 from app.jobs.engine import Jobs
+from app.jobs.kinds import KINDS
 from app.jobs.service import resume
 from app.jobs.steps import Runs
 from app.operation.logs import in_json
@@ -35,8 +33,7 @@ from app.operation.metrics import Requests
 from app.operation.observed import Observed
 from app.pages import router as pages
 from app.pages.problems import sign_in
-from app.profiles.work import PROFILE
-from app.regress.work import RECHECK
+from app.processes import Apart, Here
 from app.request_id import RequestId
 from app.security import Guard
 from app.settings import Settings
@@ -74,16 +71,19 @@ FEATURES = (
 )
 """Folders whose endpoints.py has a `router` of the API."""
 _PATIENCE = 5  # s in which what is being answered ends, before the service does
-_TURN = (
-    1e-3  # s after which an upload that is read, or a fit, lets an answer take its turn: the interpreter's own are 5
-)
+_TURN = 1e-3  # s after which a figure that is drawn lets an answer take its turn: the interpreter's own are 5
+READERS = 2  # uploads that are read at once
+WORK = "app.jobs.kinds"  # what processes apart have imported when they begin
 
 
-def create_app(settings: Settings) -> FastAPI:
-    """The application; its database is migrated and its queue runs while it is served."""
+def create_app(settings: Settings, apart: bool = False) -> FastAPI:
+    """The application; its database is migrated and its queue runs while it is served.
+
+    `apart` has jobs and uploads worked out in processes beside it.
+    """
     origins(settings.webhook_hosts)  # before anything is opened: what cannot be a host is refused
     app = routed()
-    app.state.context = make_context(settings)
+    app.state.context = make_context(settings, apart)
     app.state.tries = Tries(settings.failures)
     app.state.requests = Requests()
     errors.install(app)
@@ -152,20 +152,25 @@ def start(context: Context) -> Threads:
 def stop(context: Context, threads: Threads) -> None:
     """Let go of what runs, and end."""
     context.jobs.stop()
+    context.readers.stop()
     threads.courier.stop()
     threads.pulse.stop()
     context.engine.dispose()
 
 
-def make_context(settings: Settings) -> Context:
-    """Folders, database and queue of a service that is not serving yet."""
+def make_context(settings: Settings, apart: bool = False) -> Context:
+    """Folders, database and queue of a service that is not serving yet.
+
+    Where others wait for answers, jobs and the reading of uploads go to processes `apart`.
+    """
     settings.make_folders()
     migrate(settings.database)
     engine = connect(settings.database)
     makers, storage = sessions(engine), open_storage(settings)
     carry(makers)
-    runs = Runs(makers, storage, settings.executor, FIT, DIAGNOSIS, HYBRID, RECHECK, PROFILE)
-    return Context(settings, engine, makers, storage, Jobs(settings, runs))
+    work, readers = (Apart(1, WORK), Apart(READERS, WORK)) if apart else (Here(), Here())
+    runs = Runs(makers, storage, settings.executor, *KINDS, place=work)
+    return Context(settings, engine, makers, storage, Jobs(settings, runs), readers)
 
 
 def run(settings: Settings) -> None:
@@ -173,7 +178,7 @@ def run(settings: Settings) -> None:
     sys.setswitchinterval(_TURN)
     if settings.log == "json":
         in_json()
-    app = create_app(settings)
+    app = create_app(settings, apart=True)
     uvicorn.run(
         app, host=settings.host, port=settings.port, log_level="warning", timeout_graceful_shutdown=_PATIENCE,
         log_config=None if settings.log == "json" else uvicorn.config.LOGGING_CONFIG,

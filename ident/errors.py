@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 
 class Unusable(ValueError):
     """Input that cannot be used: what is wrong, where, and the remedy, each a short phrase without a final stop.
@@ -12,6 +14,10 @@ class Unusable(ValueError):
     def __init__(self, code: str, what: str, where: str, remedy: str) -> None:
         super().__init__(f"{where}: {what}; {remedy}")
         self.code, self.what, self.where, self.remedy = code, what, where, remedy
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """As it passes from one process to another."""
+        return type(self), (self.code, self.what, self.where, self.remedy)
 
 
 class Cancelled(Exception):

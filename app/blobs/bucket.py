@@ -35,6 +35,10 @@ class Bucket:
             what = str(error).partition("\n")[0]
             raise Unusable("bad-blobs", f"S3 cannot be used: {what}", url, "write s3://BUCKET/PREFIX") from None
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """As it passes from one process to another: each has connections of its own."""
+        return Bucket, (self.url,)
+
     def put(self, sha256: str, file: Path) -> None:
         """Store a file, whole or not at all."""
         import obstore  # noqa: PLC0415

@@ -17,7 +17,7 @@ from app.own_effects.kept import Kept, suited
 from app.tables import JobRow
 from ident.custom.definition import read_effect
 from ident.diagnosis.course import left
-from ident.errors import Cancelled, TimeIsUp, Unusable
+from ident.errors import Cancelled, TimeIsUp
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.plain import read
@@ -36,7 +36,7 @@ class DiagnosisWork(Work):
     def finish(self, state: State) -> State:  # noqa: ARG002  nothing comes before it
         """The diagnosis, and the fit that was made for it."""
         chosen, matrix, report, begun = self.task.settings, self.task.matrix, self.task.report, monotonic()
-        given = self._given()
+        given = self.task.fit
         if given is None:
             settings = Settings.from_json({name: value for name, value in chosen.items() if name not in OWN})
             try:
@@ -54,17 +54,6 @@ class DiagnosisWork(Work):
             propose=chosen.get("propose", False),
         )  # fmt: skip
         return {"diagnosis": found.to_json(), "fit": None if given else put_apart(self.task.storage, made.to_json())}
-
-    def _given(self) -> FitResult | None:
-        """The fit that the job starts from, None where it makes its own. Raises Unusable."""
-        parent = self.task.parent
-        if parent is None:
-            return None
-        with self.task.sessions() as session:
-            stored = fits.fit(session, parent)
-        if stored is None:
-            raise Unusable("no-such-fit", "the fit is not stored any more", parent, "start another diagnosis")
-        return FitResult.from_json(stored.result)
 
 
 def _beside_the_lab_s(fit: FitResult, kept: Sequence[Mapping[str, Any]]) -> FitResult:

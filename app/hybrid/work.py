@@ -8,7 +8,6 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
-from app.fits import repository as fits
 from app.hybrid import repository
 from app.hybrid.acting import acting
 from app.hybrid.asked import AskedCase
@@ -16,8 +15,6 @@ from app.hybrid.records import packed
 from app.hybrid.service import KIND
 from app.jobs.work import Kind, State, Task, Work
 from app.tables import JobRow
-from ident.errors import Unusable
-from ident.fit.result import FitResult
 from ident.hybrid.controller import SampledController
 from ident.hybrid.followed import followed_in
 from ident.hybrid.rig import simulate_hybrid
@@ -34,8 +31,9 @@ class HybridWork(Work):
 
     def finish(self, state: State) -> State:  # noqa: ARG002  nothing comes before it
         """What `servoident hybrid` writes, and the displacements for its figures."""
-        asked, report, fit = self.task.settings["asked"], self.task.report, self._fit()
+        asked, report, fit = self.task.settings["asked"], self.task.report, self.task.fit
         case = AskedCase(asked["case"], asked["ground"], self._blob(asked["text"])).read()
+        assert fit is not None
         given: Any = json.loads(self._blob(asked["controller"])) if asked["inline"] else asked["controller"]
         chosen, effects = acting(given, fit, case), asked["effects"]
         main = simulate_hybrid(fit, case, chosen, effects, report)
@@ -52,14 +50,6 @@ class HybridWork(Work):
             "feedforward": worth.to_json() if worth else None,
             "records": base64.b85encode(packed(runs)).decode(),
         }
-
-    def _fit(self) -> FitResult:
-        """The fit that is simulated. Raises Unusable."""
-        with self.task.sessions() as session:
-            stored = fits.fit(session, self.task.parent or "")
-        if stored is None:
-            raise Unusable("no-such-fit", "the fit is not stored any more", str(self.task.parent), "simulate another")
-        return FitResult.from_json(stored.result)
 
     def _blob(self, name: str) -> str:
         return self.task.storage.path(name).read_text(encoding="utf-8") if name else ""

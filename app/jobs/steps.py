@@ -3,28 +3,27 @@
 from __future__ import annotations
 
 import logging
+import secrets
 import threading
-import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import asdict
-from functools import partial
 from typing import Any
 
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.errors import is_full
-from app.jobs import repository
+from app.fits import repository as fits
+from app.jobs import at_work, repository
 from app.jobs.ending import end
 from app.jobs.lease import AWAY, Lease, Superseded, patiently
-from app.jobs.work import Kind, Search, State, Task, Work
-from app.matrices.service import load_row
+from app.jobs.work import Kind, State, Task
+from app.processes import Here, Place, Stopped
 from app.storage import Storage, Unreachable
 from app.tables import JobRow
 from ident.errors import Cancelled, TimeIsUp, Unusable
-from ident.progress import Progress, Report
+from ident.progress import Progress
 
-_EVERY = 0.2  # s between two reports to the database
 _PATIENCE = 600.0  # s for a database or a store of blobs to answer again
 _log = logging.getLogger("servoident.jobs")
 
@@ -32,9 +31,13 @@ _log = logging.getLogger("servoident.jobs")
 class Runs:
     """Takes jobs for this process, of every kind that there is."""
 
-    def __init__(self, sessions: sessionmaker[Session], storage: Storage, worker: str, *kinds: Kind) -> None:
+    def __init__(
+        self, sessions: sessionmaker[Session], storage: Storage, worker: str, *kinds: Kind, place: Place | None = None
+    ) -> None:
+        """`place` is where work is done: by default here."""
         self.sessions, self.storage, self.worker = sessions, storage, worker
         self.stopping = threading.Event()
+        self.place = place or Here()
         self._kinds = {kind.name: kind for kind in kinds}
 
     def take(self, job: str) -> Run:
@@ -61,7 +64,8 @@ class Run:
 
     def __init__(self, runs: Runs, lease: Lease, kind: Kind) -> None:
         self.runs, self.lease, self.kind = runs, lease, kind
-        self._work: Work | None = None
+        self._turn = secrets.token_hex(8)
+        self._task: Task | None = None
 
     def told(self) -> dict[str, Any]:
         """What a line of the log says of it."""
@@ -69,24 +73,20 @@ class Run:
 
     def begin(self) -> State:
         """Begin; work without a search is done but for its finish."""
-        return self._step(lambda work: work.begin() if isinstance(work, Search) else {"done": True})
+        return self._step(at_work.begin)
 
     def advance(self, state: State) -> State:
         """A block of the search."""
-
-        def block(work: Work) -> State:
-            assert isinstance(work, Search)
-            return work.advance(state)
-
-        return self._step(block)
+        return self._step(at_work.advance, state)
 
     def finish(self, state: State) -> State:
         """All that follows the search; the state is the result."""
-        return self._step(lambda work: work.finish(state))
+        return self._step(at_work.finish, state)
 
     def store(self, last: State) -> None:
         """Record the result, or how the job ended; in one transaction, once."""
-        self._work = None
+        with suppress(Stopped, MemoryError):
+            self.runs.place.call(at_work.leave, self._turn)
         try:
             patiently(lambda: self._store(last), self.runs.stopping)
         except Exception:
@@ -95,10 +95,13 @@ class Run:
             failed = _failed("not-stored", what, self.kind.name, "see the service's log")
             patiently(lambda: self._store(failed), self.runs.stopping)
 
-    def _step(self, act: Callable[[Work], State]) -> State:
-        """What `act` makes of the job's work, or how the job ended in it."""
+    def _step(self, act: Callable[..., State], *given: State) -> State:
+        """What a step of the job's work returns, or how the job ended in it."""
         try:
-            return {"outcome": None, "state": patiently(lambda: self._acted(act), self.runs.stopping, _PATIENCE)}
+            state = patiently(lambda: self._acted(act, *given), self.runs.stopping, _PATIENCE)
+            return {"outcome": None, "state": state}
+        except Stopped:
+            raise Superseded from None
         except Cancelled:
             return {"outcome": "cancelled", "state": {}}
         except Unusable as error:
@@ -116,11 +119,10 @@ class Run:
             what = f"the {self.kind.name} failed by a defect of the program"
             return _failed("defect", what, self.kind.name, "see the service's log")
 
-    def _acted(self, act: Callable[[Work], State]) -> State:
+    def _acted(self, act: Callable[..., State], *given: State) -> State:
         self._note({})
-        if self._work is None:
-            self._work = self.kind.work(self._task())
-        return act(self._work)
+        task = self._task = self._task or self._asked()
+        return self.runs.place.call(act, self._turn, self.kind.work, task, *given, report=self._report)
 
     def _store(self, last: State) -> None:
         job = self.lease.job
@@ -145,32 +147,26 @@ class Run:
             raise Superseded
         return row
 
-    def _task(self) -> Task:
-        """What the job is asked, and where the samples of its matrix are read. Raises Unusable."""
-        job, storage = self.lease.job, self.runs.storage
+    def _asked(self) -> Task:
+        """What the job is asked. Raises Unusable."""
+        job = self.lease.job
         with self.runs.sessions() as session:
             row, matrix = repository.find(session, job), repository.matrix_of(session, job)
+            parent = fits.fit(session, row.parent) if row is not None and row.parent is not None else None
         if row is None or matrix is None:
             raise Unusable("no-such-job", "the job is not recorded", job, "start it again")
-        load = partial(load_row, storage, matrix)
-        return Task(row.settings, row.parent, load, self._reporter(), self.runs.sessions, storage)
+        if row.parent is not None and parent is None:
+            raise Unusable("no-such-fit", "the fit is not stored any more", row.parent, "start again from another")
+        return Task(row.settings, parent.result if parent else None, matrix, self.runs.storage)
 
-    def _reporter(self) -> Report:
-        """A report that is recorded for those who watch the job.
+    def _report(self, progress: Progress) -> None:
+        """Record it for those who watch the job.
 
-        It raises Cancelled when the job is to stop, TimeIsUp when it is to keep what it found.
+        Raises Cancelled when the job is to stop, TimeIsUp when it is to keep what it found.
         """
-        last = 0.0
-
-        def report(progress: Progress) -> None:
-            nonlocal last
-            if time.monotonic() - last >= _EVERY or progress.done == progress.total:
-                last = time.monotonic()
-                with suppress(*AWAY):  # progress can wait
-                    if self._note({"progress": asdict(progress)}):
-                        raise TimeIsUp
-
-        return report
+        with suppress(*AWAY):  # progress can wait
+            if self._note({"progress": asdict(progress)}):
+                raise TimeIsUp
 
     def _note(self, values: dict[str, Any]) -> bool:
         """Write progress; whether the job is to keep what it found and end. Raises Cancelled, Superseded."""

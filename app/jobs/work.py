@@ -7,12 +7,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy.orm import Session, sessionmaker
+from sqlalchemy.orm import Session
 
+from app.matrices.stored import load_row
 from app.storage import Storage
-from app.tables import JobRow
+from app.tables import JobRow, MatrixRow
+from ident.fit.result import FitResult
 from ident.matrix import Matrix
-from ident.progress import Report
+from ident.progress import Report, silent
 
 State = dict[str, Any]
 Keep = Callable[[Session, JobRow, str, State], None]
@@ -21,22 +23,26 @@ Keep = Callable[[Session, JobRow, str, State], None]
 
 @dataclass(frozen=True)
 class Task:
-    """What a job is asked: its settings, the fit that it starts from, if any, and whom it tells of its progress.
+    """What a job is asked: its settings, the stored fit that it starts from, if any, whom it tells of its progress.
 
-    `load` reads the samples of its matrix.
+    All but the last may pass from one process to another.
     """
 
     settings: dict[str, Any]
-    parent: str | None
-    load: Callable[[], Matrix]
-    report: Report
-    sessions: sessionmaker[Session]
+    parent: dict[str, Any] | None
+    recorded: MatrixRow
     storage: Storage
+    report: Report = silent
 
     @property
     def matrix(self) -> Matrix:
         """The samples. Raises Unusable."""
-        return self.load()
+        return load_row(self.storage, self.recorded)
+
+    @property
+    def fit(self) -> FitResult | None:
+        """The fit that the job starts from."""
+        return None if self.parent is None else FitResult.from_json(self.parent)
 
 
 class Work(ABC):

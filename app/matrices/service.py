@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import threading
 from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any, BinaryIO
@@ -14,26 +13,22 @@ from sqlalchemy.exc import IntegrityError
 from app.access.noting import about
 from app.context import Context
 from app.errors import missing
-from app.lru import LRU
 from app.matrices import repository
 from app.matrices.removed import check_there
-from app.matrices.stored import opened, read_stored
+from app.matrices.stored import load_row, opened, read_stored
 from app.operation.reserve import check_reserve
 from app.paging import cursor, keys_of
 from app.storage import Storage
 from app.tables import MatrixRow
 from ident.checks.check import check
 from ident.errors import Unusable
-from ident.matrix import Matrix, Run, output_id
+from ident.matrix import Actuator, Matrix, Run, output_id
 from ident.readers.limits import LIMITS
 from ident.readers.source import DESCRIPTION, inside
 from ident.readers.strict_yaml import read_yaml
 from schemas.matrix import FindingView, MatrixPage, MatrixView, Revision, RunView
 
 LONGEST = 200  # characters of a serial number or batch
-_MOST = 2  # matrices in memory: one may take 130 MB
-_READERS = threading.BoundedSemaphore(2)  # uploads that are read at once; the others' turn comes, and so do all answers
-_loaded: LRU[Matrix] = LRU(_MOST)
 
 
 def upload(context: Context, files: Mapping[str, BinaryIO]) -> tuple[MatrixView, bool]:
@@ -56,13 +51,12 @@ def check_room(context: Context) -> None:
 
 def record(context: Context, staged: Storage, source: dict[str, Any], parent: str | None) -> tuple[MatrixView, bool]:
     """Read and check a source; keep its blobs and record it where it is new."""
-    with _READERS:
-        matrix = read_stored(staged, source)
-    for name in ("serial", "batch"):
-        length = len(getattr(matrix.actuator, name))
-        if length > LONGEST:
-            raise Unusable("too-long", f"{length} characters where {LONGEST} fit", f"actuator {name}", "shorten it")
-    identity = matrix.data_hash[:32]
+    try:
+        actuator, shown = context.readers.call(_read, staged, source)
+    except MemoryError:
+        what = "it needs more memory than there is"
+        raise Unusable("out-of-memory", what, "upload", "upload fewer or shorter runs at a time") from None
+    identity = shown["data_hash"][:32]
     with context.sessions() as session:
         known = repository.find(session, identity)
         if known is not None and known.removed_at is None:
@@ -73,18 +67,25 @@ def record(context: Context, staged: Storage, source: dict[str, Any], parent: st
             staged.keep()
             session.commit()
             return view(known), False
-    with _READERS:
-        shown = summary(matrix)
     with context.sessions() as session:
         try:
-            row = repository.add(session, identity, matrix.actuator, source, shown, parent)
+            row = repository.add(session, identity, actuator, source, shown, parent)
             staged.keep()
             session.commit()
         except IntegrityError:  # the same upload twice at the same moment
             session.rollback()
             return get(context, identity), False
-    _loaded.put((str(context.storage.folder), identity), matrix)
     return view(row), True
+
+
+def _read(staged: Storage, source: dict[str, Any]) -> tuple[Actuator, dict[str, Any]]:
+    """The actuator of an upload, and what is shown of it. Raises Unusable."""
+    matrix = read_stored(staged, source)
+    for name in ("serial", "batch"):
+        length = len(getattr(matrix.actuator, name))
+        if length > LONGEST:
+            raise Unusable("too-long", f"{length} characters where {LONGEST} fit", f"actuator {name}", "shorten it")
+    return matrix.actuator, summary(matrix)
 
 
 def revise(context: Context, matrix: str, revision: Revision) -> tuple[MatrixView, bool]:
@@ -181,12 +182,6 @@ def newer(context: Context, matrix: str) -> str | None:
 def load(context: Context, matrix: str) -> Matrix:
     """The samples of a matrix, from memory where it was used lately."""
     return load_row(context.storage, find(context, matrix))
-
-
-def load_row(storage: Storage, row: MatrixRow) -> Matrix:
-    """The samples of a recorded matrix. Raises Removed, Unusable."""
-    check_there(row)
-    return _loaded.get((str(storage.folder), row.id), lambda: read_stored(storage, row.source))
 
 
 def summary(matrix: Matrix) -> dict[str, Any]:

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from typing import Any
 
+from app.lru import LRU
+from app.matrices.removed import check_there
 from app.storage import Storage
+from app.tables import MatrixRow
 from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.readers import read_source
 from ident.readers.archive import Archive
 from ident.readers.limits import check_size
 from ident.readers.source import DESCRIPTION, inside, read_regular
+
+_MOST = 2  # matrices in memory: one may take 130 MB
+_loaded: LRU[Matrix] = LRU(_MOST)
 
 
 class Blobs:
@@ -45,6 +51,12 @@ def read_stored(storage: Storage, source: dict[str, Any]) -> Matrix:
     """The matrix of a record's `source`: {"zip": sha} or {"files": {name: sha}}, and "description": sha if revised."""
     with opened(storage, source) as files:
         return read_source(files)
+
+
+def load_row(storage: Storage, row: MatrixRow) -> Matrix:
+    """The samples of a recorded matrix, from memory where they were used lately. Raises Removed, Unusable."""
+    check_there(row)
+    return _loaded.get((str(storage.folder), row.id), lambda: read_stored(storage, row.source))
 
 
 class opened:  # noqa: N801  used as a function in a with statement

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from app.blobs import open_storage
 from app.database import connect, reachable, sessions, shown
-from app.matrices.service import load_row
+from app.matrices.stored import load_row
 from app.regress.recheck import Recheck, recheck
 from app.regress.repository import Asked, approved
 from app.settings import Settings

@@ -8,13 +8,10 @@ from dataclasses import asdict, dataclass
 
 from sqlalchemy.orm import Session
 
-from app.fits import repository as fits
 from app.jobs.work import Kind, State, Task, Work
 from app.regress import repository
 from app.regress.recheck import Change, found
 from app.tables import JobRow
-from ident.errors import Unusable
-from ident.fit.result import FitResult
 
 KIND = "recheck"
 
@@ -27,13 +24,10 @@ class RecheckWork(Work):
 
     def finish(self, _: State) -> State:
         """Every quantity before and now. Raises Unusable."""
-        assert self.task.parent is not None
-        with self.task.sessions() as session:
-            row = fits.fit(session, self.task.parent)
-        if row is None:
-            raise Unusable("no-such-fit", "the fit is not stored any more", self.task.parent, "start another one")
+        fit = self.task.fit
+        assert fit is not None
         began = time.monotonic()
-        changes = found(FitResult.from_json(row.result), self.task.matrix, self.task.report)
+        changes = found(fit, self.task.matrix, self.task.report)
         return {"changes": [written(change) for change in changes], "seconds": time.monotonic() - began}
 
 

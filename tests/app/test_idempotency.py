@@ -18,6 +18,7 @@ from app.database import connect, migrate, sessions
 from app.errors import Failure
 from app.fits.endpoints import approve_fit, start_fit
 from app.idempotency import answers
+from app.processes import Here
 from app.settings import Settings
 from app.storage import Storage
 from app.tables import ActuatorRow, AnswerRow, JobRow, MatrixRow
@@ -51,7 +52,7 @@ def context_of(folder: Path, database: str = "") -> Context:
         session.add(ActuatorRow(serial="SW-1"))
         session.flush()
         session.add(MatrixRow(id="m", serial="SW-1", source={}, summary=SUMMARY))
-    return Context(settings, engine, made, Storage(folder / "blobs"), cast(Any, Queue()))
+    return Context(settings, engine, made, Storage(folder / "blobs"), cast(Any, Queue()), Here())
 
 
 def posted(context: Context, key: str | None, seed: int = 0) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from app.database import connect, migrate, sessions
 from app.diagnoses import service as diagnoses
 from app.jobs import service as jobs
 from app.pages import service as pages
+from app.processes import Here
 from app.settings import Settings
 from app.storage import Storage
 from app.tables import ActuatorRow, Base, FitRow, JobRow, MatrixRow, SetRow
@@ -43,7 +44,7 @@ def context(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Context]:
         session.add(FitRow(id="quiet", matrix="m-QUIET", serial="QUIET", model="qian2014", result={}))
         session.flush()
         session.add(SetRow(fit="quiet", serial="QUIET", model="qian2014", error_fit=0.0123))
-    yield Context(settings, engine, made, Storage(settings.data / "blobs"), cast(Any, None))
+    yield Context(settings, engine, made, Storage(settings.data / "blobs"), cast(Any, None), Here())
     engine.dispose()
 
 

@@ -11,7 +11,7 @@ import pytest
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.database import connect, migrate, sessions
-from app.jobs import repository, steps
+from app.jobs import repository, steps, work
 from app.jobs.lease import Superseded
 from app.jobs.steps import Runs
 from app.jobs.work import Kind, Search, State, Task, Work
@@ -98,7 +98,7 @@ def makers(tmp_path: Path) -> Iterator[sessionmaker[Session]]:
 @pytest.fixture
 def runs(makers: sessionmaker[Session], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Runs:
     """Turns at two kinds of job, whose matrix needs no file."""
-    monkeypatch.setattr(steps, "load_row", lambda *_: "the samples")
+    monkeypatch.setattr(work, "load_row", lambda *_: "the samples")
     monkeypatch.setattr(Counting, "prepared", [])
     kinds = Kind("piece", Piece, keep), Kind("search", Counting, keep)
     return Runs(makers, Storage(tmp_path / "blobs"), "here", *kinds)
@@ -225,8 +225,8 @@ def test_what_does_not_answer_for_a_moment_is_waited_for(runs, makers, monkeypat
             raise found
         return "the samples"
 
-    monkeypatch.setattr(steps, "load_row", loaded)
-    monkeypatch.setitem(ACTS, "read", lambda task: task.load())
+    monkeypatch.setattr(work, "load_row", loaded)
+    monkeypatch.setitem(ACTS, "read", lambda task: task.matrix)
     turn = runs.take(queued(makers, "piece", act="read"))
     assert turn.finish({})["outcome"] is None
     monkeypatch.setattr(steps, "_PATIENCE", 0.2)
