@@ -34,5 +34,4 @@ def list_parameter_sets(
     if format == "parquet":
         blocks = service.export.parquet_blocks(here, wanted)
         return StreamingResponse(blocks, media_type="application/vnd.apache.parquet")
-    # Written here: validated once more, a page of many sets would take twice as long.
-    return Response(service.page(here, wanted, cursor, limit).model_dump_json(), media_type="application/json")
+    return Response(service.page_as_json(here, wanted, cursor, limit), media_type="application/json")

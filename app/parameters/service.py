@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
+
+from pydantic_core import to_json
 
 from app.context import Context
 from app.errors import Failure
@@ -10,18 +13,27 @@ from app.paging import cursor, keys_of
 from app.parameters import export, repository
 from app.parameters.wanted import Wanted, wanted
 from app.tables import SetRow
-from schemas.parameters import LineageView, ParameterSetPage, ParameterSetView, ValueView
+from schemas.parameters import ParameterSetPage, ParameterSetView
 
-__all__ = ["Wanted", "export", "page", "wanted"]
+__all__ = ["Wanted", "export", "page", "page_as_json", "wanted"]
 
 
 def page(context: Context, wanted: Wanted, after: str | None, limit: int) -> ParameterSetPage:
     """A page of parameter sets."""
+    return ParameterSetPage(**_page(context, wanted, after, limit))
+
+
+def page_as_json(context: Context, wanted: Wanted, after: str | None, limit: int) -> bytes:
+    """The same as it is sent: a line asks all day, and to check each value of what is stored takes half the time."""
+    return to_json(_page(context, wanted, after, limit), inf_nan_mode="null")
+
+
+def _page(context: Context, wanted: Wanted, after: str | None, limit: int) -> dict[str, Any]:
     before = _number(after)
     with context.sessions() as session:
         rows = repository.sets(session, wanted, before, limit)
     following = cursor(str(rows[-1].number)) if len(rows) == limit else None
-    return ParameterSetPage(items=[view(row) for row in rows], next=following)
+    return {"items": [_plain(row) for row in rows], "next": following}
 
 
 def _number(after: str | None) -> int | None:
@@ -50,12 +62,17 @@ def approved(context: Context, serials: Sequence[str]) -> dict[str, list[Paramet
 
 def view(row: SetRow | repository.FoundSet) -> ParameterSetView:
     """A set as it is sent."""
-    return ParameterSetView(
-        id=row.fit, serial=row.serial, batch=row.batch, model=row.model, created_at=row.created_at,
-        approved_at=row.approved_at, current=row.current, error_fit=row.error_fit, error_verify=row.error_verify,
-        parameters={v.name: ValueView(value=v.value, unit=v.unit, std_error=v.std_error) for v in row.values},
-        lineage=LineageView(
-            data_hash=row.data_hash, effects=row.effects, seed=row.seed, version=row.version, equations=row.equations,
-            who=row.who,
-        ),
-    )  # fmt: skip
+    return ParameterSetView(**_plain(row))
+
+
+def _plain(row: SetRow | repository.FoundSet) -> dict[str, Any]:
+    return {
+        "id": row.fit, "serial": row.serial, "batch": row.batch, "model": row.model, "created_at": row.created_at,
+        "approved_at": row.approved_at, "current": row.current, "error_fit": row.error_fit,
+        "error_verify": row.error_verify,
+        "parameters": {v.name: {"value": v.value, "unit": v.unit, "std_error": v.std_error} for v in row.values},
+        "lineage": {
+            "data_hash": row.data_hash, "effects": row.effects, "seed": row.seed, "version": row.version,
+            "equations": row.equations, "who": row.who,
+        },
+    }  # fmt: skip
