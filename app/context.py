@@ -17,7 +17,7 @@ from app.storage import Storage
 
 @dataclass(frozen=True)
 class Context:
-    """Settings, database, blobs, job queue of one service, and where it reads uploads."""
+    """Settings, database, blobs and job queue of one service; where it reads uploads, and works on jobs."""
 
     settings: Settings
     engine: Engine
@@ -25,6 +25,7 @@ class Context:
     storage: Storage
     jobs: Jobs
     readers: Place
+    worker: Place
 
 
 def context_of(request: Request) -> Context:

@@ -151,6 +151,7 @@ def start(context: Context) -> Threads:
 
 def stop(context: Context, threads: Threads) -> None:
     """Let go of what runs, and end."""
+    context.worker.stop()
     context.jobs.stop()
     context.readers.stop()
     threads.courier.stop()
@@ -168,9 +169,9 @@ def make_context(settings: Settings, apart: bool = False) -> Context:
     engine = connect(settings.database)
     makers, storage = sessions(engine), open_storage(settings)
     carry(makers)
-    work, readers = (Apart(1, WORK), Apart(READERS, WORK)) if apart else (Here(), Here())
-    runs = Runs(makers, storage, settings.executor, *KINDS, place=work)
-    return Context(settings, engine, makers, storage, Jobs(settings, runs), readers)
+    worker, readers = (Apart(1, WORK), Apart(READERS, WORK)) if apart else (Here(), Here())
+    runs = Runs(makers, storage, settings.executor, *KINDS, place=worker)
+    return Context(settings, engine, makers, storage, Jobs(settings, runs), readers, worker)
 
 
 def run(settings: Settings) -> None:

@@ -60,7 +60,7 @@ def need(actuators: int, seconds: int, known: Figures) -> Need:
 
 REMEDIES = {
     "service": (
-        "uploads: one process reads and checks them",
+        "uploads: a service reads and checks two at once",
         "a service more for each core that they take, on the same PostgreSQL and S3, behind a balancer",
         "measured: the processor time of an upload; that services add up is reckoned",
     ),

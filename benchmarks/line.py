@@ -23,7 +23,8 @@ from sqlalchemy import Engine
 from app.context import Context
 from app.database import connect, sessions
 from app.main import create_app
-from app.parameters import export, found
+from app.parameters import export
+from app.parameters.found import numbers
 from app.parameters.wanted import Wanted
 from app.settings import Settings
 from benchmarks import figures, process
@@ -95,7 +96,7 @@ def in_database(engine: Engine, ask: Callable[[float], Asked], page: int) -> Tak
 
     def work(at: float) -> None:
         with makers() as session:
-            found.numbers(session, _wanted(ask(at)), next(ends), ROWS)
+            numbers(session, _wanted(ask(at)), next(ends), ROWS)
 
     return p95(work)
 
@@ -103,8 +104,8 @@ def in_database(engine: Engine, ask: Callable[[float], Asked], page: int) -> Tak
 def _ends(engine: Engine, ask: Callable[[float], Asked], page: int) -> Iterator[int]:
     """The number before which the page begins, found by going there once; the last page where there are fewer."""
     with sessions(engine)() as session:
-        numbers = found.numbers(session, _wanted(ask(0.5)), None, (page - 1) * ROWS)
-    yield numbers[-1] if len(numbers) == (page - 1) * ROWS else (numbers[-ROWS:] or [SETS])[0]
+        passed = numbers(session, _wanted(ask(0.5)), None, (page - 1) * ROWS)
+    yield passed[-1] if len(passed) == (page - 1) * ROWS else (passed[-ROWS:] or [SETS])[0]
 
 
 def rows(url: str) -> Iterator[tuple[tuple[str, ...], bool]]:

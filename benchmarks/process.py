@@ -3,38 +3,54 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 
 def processor(pid: int) -> float:
     """Processor time (s) of a process and of all that came of it and runs."""
-    total, waiting = 0.0, [pid]
-    while waiting:
-        one = waiting.pop()
-        try:
+    total = 0.0
+    for one in _family(pid):
+        with suppress(FileNotFoundError, ProcessLookupError):
             fields = Path(f"/proc/{one}/stat").read_text().rpartition(")")[2].split()
-            waiting += [int(child) for child in Path(f"/proc/{one}/task/{one}/children").read_text().split()]
-        except (FileNotFoundError, ProcessLookupError):
-            continue
-        total += sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")  # its own, and what its ended children used
+            # Its own, and what its ended children used.
+            total += sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
     return total
 
 
 def resident(pid: int) -> int:
-    """Memory (bytes) that a process holds now."""
+    """Memory (bytes) that a process and all that came of it hold now."""
     return _memory(pid, "VmRSS")
 
 
 def peak(pid: int) -> int:
-    """The most that it held since `reset`."""
+    """The most that each held since `reset`, together."""
     return _memory(pid, "VmHWM")
 
 
 def reset(pid: int) -> None:
-    """Count the peak from here."""
-    Path(f"/proc/{pid}/clear_refs").write_text("5")
+    """Count the peaks from here."""
+    for one in _family(pid):
+        with suppress(FileNotFoundError, ProcessLookupError):
+            Path(f"/proc/{one}/clear_refs").write_text("5")
 
 
 def _memory(pid: int, entry: str) -> int:
-    text = Path(f"/proc/{pid}/status").read_text()
-    return 1024 * int(next(line for line in text.splitlines() if line.startswith(entry)).split()[1])
+    total = 0
+    for one in _family(pid):
+        with suppress(FileNotFoundError, ProcessLookupError):
+            lines = Path(f"/proc/{one}/status").read_text().splitlines()
+            total += next((int(line.split()[1]) for line in lines if line.startswith(entry)), 0)
+    return 1024 * total
+
+
+def _family(pid: int) -> Iterator[int]:
+    """A process, and all that came of it and run."""
+    waiting = [pid]
+    while waiting:
+        one = waiting.pop()
+        with suppress(FileNotFoundError, ProcessLookupError):
+            for task in Path(f"/proc/{one}/task").iterdir():  # any of its threads may have begun one
+                waiting += [int(child) for child in (task / "children").read_text().split()]
+            yield one

@@ -20,7 +20,6 @@ from app.database import HEEDFUL, connect
 from app.jobs.generations import added, whole
 from app.jobs.lease import Superseded
 from app.jobs.work import State
-from app.processes import Place
 from app.settings import Settings
 
 QUEUE = "fits"
@@ -56,10 +55,9 @@ class Steps(Protocol):
 
 
 class Runs(Protocol):
-    """Who works, and where; `stopping` is set when what runs is to be let go."""
+    """Who works: `stopping` is set when what runs is to be let go."""
 
     stopping: threading.Event
-    place: Place
 
     def take(self, job: str) -> Steps:
         """A turn at a job, each time that this process begins or takes it up."""
@@ -148,7 +146,6 @@ class Jobs:
     def stop(self) -> None:
         """Stop the engine: what runs is let go, and goes on elsewhere or at the next start, as after a kill."""
         self.runs.stopping.set()
-        self.runs.place.stop()
         if self.running:
             self.running = False
             self._ended.put(None)

@@ -52,7 +52,7 @@ def context_of(folder: Path, database: str = "") -> Context:
         session.add(ActuatorRow(serial="SW-1"))
         session.flush()
         session.add(MatrixRow(id="m", serial="SW-1", source={}, summary=SUMMARY))
-    return Context(settings, engine, made, Storage(folder / "blobs"), cast(Any, Queue()), Here())
+    return Context(settings, engine, made, Storage(folder / "blobs"), cast(Any, Queue()), Here(), Here())
 
 
 def posted(context: Context, key: str | None, seed: int = 0) -> dict[str, Any]:

@@ -44,7 +44,7 @@ def context(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Context]:
         session.add(FitRow(id="quiet", matrix="m-QUIET", serial="QUIET", model="qian2014", result={}))
         session.flush()
         session.add(SetRow(fit="quiet", serial="QUIET", model="qian2014", error_fit=0.0123))
-    yield Context(settings, engine, made, Storage(settings.data / "blobs"), cast(Any, None), Here())
+    yield Context(settings, engine, made, Storage(settings.data / "blobs"), cast(Any, None), Here(), Here())
     engine.dispose()
 
 
