@@ -64,8 +64,7 @@ def look(context: Context, draft: str, asked: AnswersRequest) -> DraftView:
     if not lacks:
         text = as_yaml(of)
         store, names = _opened(context, draft)
-        source = Revised(Blobs(store, run_files(names)), text.encode())
-        findings = [FindingView(**asdict(finding)) for finding in check(read_source(source))]
+        findings = context.readers.call(_findings, store, run_files(names), text)
     return DraftView(
         id=draft,
         files=[_file(of, file) for file in of.files],
@@ -74,6 +73,12 @@ def look(context: Context, draft: str, asked: AnswersRequest) -> DraftView:
         missing=[MissingView(**asdict(one)) for one in lacks], doubts=list(of.doubts),
         findings=findings, description=text,
     )  # fmt: skip
+
+
+def _findings(store: Storage, files: dict[str, str], text: str) -> list[FindingView]:
+    """What the check doubts of files under a description."""
+    source = Revised(Blobs(store, files), text.encode())
+    return [FindingView(**asdict(finding)) for finding in check(read_source(source))]
 
 
 def _file(draft: Draft, file: RawFile) -> RawFileView:
