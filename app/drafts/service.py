@@ -64,7 +64,7 @@ def look(context: Context, draft: str, asked: AnswersRequest) -> DraftView:
     if not lacks:
         text = as_yaml(of)
         store, names = _opened(context, draft)
-        findings = context.readers.call(_findings, store, run_files(names), text)
+        findings = matrices.in_reader(context, _findings, store, run_files(names), text)
     return DraftView(
         id=draft,
         files=[_file(of, file) for file in of.files],

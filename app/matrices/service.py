@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, TypeVar
 
 import yaml
 from sqlalchemy.exc import IntegrityError
@@ -28,6 +28,7 @@ from ident.readers.source import DESCRIPTION, inside
 from ident.readers.strict_yaml import read_yaml
 from schemas.matrix import FindingView, MatrixPage, MatrixView, Revision, RunView
 
+Made = TypeVar("Made")
 LONGEST = 200  # characters of a serial number or batch
 
 
@@ -51,11 +52,7 @@ def check_room(context: Context) -> None:
 
 def record(context: Context, staged: Storage, source: dict[str, Any], parent: str | None) -> tuple[MatrixView, bool]:
     """Read and check a source; keep its blobs and record it where it is new."""
-    try:
-        actuator, shown = context.readers.call(_read, staged, source)
-    except MemoryError:
-        what = "it needs more memory than there is"
-        raise Unusable("out-of-memory", what, "upload", "upload fewer or shorter runs at a time") from None
+    actuator, shown = in_reader(context, _read, staged, source)
     identity = shown["data_hash"][:32]
     with context.sessions() as session:
         known = repository.find(session, identity)
@@ -76,6 +73,15 @@ def record(context: Context, staged: Storage, source: dict[str, Any], parent: st
             session.rollback()
             return get(context, identity), False
     return view(row), True
+
+
+def in_reader(context: Context, act: Callable[..., Made], *given: Any) -> Made:
+    """What a function makes of an upload, where those are read. Raises Unusable where there is no memory for it."""
+    try:
+        return context.readers.call(act, *given)
+    except MemoryError:
+        what = "it needs more memory than there is"
+        raise Unusable("out-of-memory", what, "upload", "upload fewer or shorter runs at a time") from None
 
 
 def _read(staged: Storage, source: dict[str, Any]) -> tuple[Actuator, dict[str, Any]]:

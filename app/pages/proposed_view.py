@@ -10,6 +10,7 @@ from markupsafe import Markup
 
 from app.diagnoses.service import Stored
 from app.pages.evidence_view import proposal_evidence
+from ident.diagnosis.proposals.own import curves
 from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.result import Rung
 from ident.equations.mathml import mathml
@@ -57,7 +58,7 @@ def proposed(stored: Stored, run: RunView | None) -> Iterator[ProposedCard]:
             title=one.meaning[:1].upper() + one.meaning[1:]
             if one.meaning
             else f"A term at the {' and '.join(one.place)}",
-            equations=tuple(Markup(mathml(line)) for line in one.effect["equation"]),
+            equations=tuple(Markup(mathml(line, curves(one.effect))) for line in one.effect["equation"]),
             strength=plus_minus(one.strength, one.std_error, one.unit),
             against=one.contradicted.told("it") if one.contradicted else "",
             error=one.error,

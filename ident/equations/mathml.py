@@ -3,31 +3,48 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from copy import deepcopy
 
 from ident.equations.equation import Equation
 
 _GREEK = {
     "tau": "τ", "omega": "ω", "zeta": "ζ", "xi": "ξ", "beta": "β", "kappa": "κ", "alpha": "α", "sigma": "σ", "mu": "μ",
 }  # fmt: skip
+_WORD = 4  # letters: fewer are a symbol and its index
 _BINARY = {ast.Add: "+", ast.Sub: "−", ast.Mult: "·", ast.Lt: "&lt;", ast.LtE: "≤", ast.Gt: "&gt;", ast.GtE: "≥"}
 _RANK = {ast.Add: 1, ast.Sub: 1, ast.Mult: 2, ast.Div: 2, ast.USub: 3, ast.UAdd: 3, ast.Pow: 4}
 
 
-def mathml(text: str) -> str:
-    """An equation of the grammar as a MathML element, for the documentation and the page."""
+def mathml(text: str, curves: Mapping[str, str] | None = None) -> str:
+    """An equation of the grammar as a MathML element, for the documentation and the page.
+
+    `curves` names the signal of each symbol that stands for a curve: h of P is written h(P).
+    """
     equation = Equation(text)
     left = _symbol(equation.target)
     if equation.is_rate:
         left = f"<mover>{left}<mo>˙</mo></mover>"
     equals = "≔" if equation.is_memory else "="
-    return f"<math display='block'><mrow>{left}<mo>{equals}</mo>{_render(equation.tree)}</mrow></math>"
+    return f"<math display='block'><mrow>{left}<mo>{equals}</mo>{_render(_Curves(curves or {}).visit(deepcopy(equation.tree)))}</mrow></math>"
+
+
+class _Curves(ast.NodeTransformer):
+    """Writes the signal of a curve behind its symbol."""
+
+    def __init__(self, of: Mapping[str, str]) -> None:
+        self.of = of
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:  # noqa: N802  the name that ast asks for
+        """A symbol, or a curve of a signal."""
+        return ast.Call(node, [ast.Name(self.of[node.id])], []) if node.id in self.of else node
 
 
 def _symbol(name: str) -> str:
-    """``m0`` → m with subscript 0, ``tau`` → τ, ``y_fb`` → y with subscript fb."""
+    """``m0`` → m with subscript 0, ``tau`` → τ, ``y_fb`` → y with subscript fb; a word, such as ``flow``, is one."""
     head, _, tail = name.partition("_")
-    if not tail and len(name) > 1 and name not in _GREEK:
+    word = len(head) >= _WORD and head.isalpha() and head.islower()
+    if not tail and len(name) > 1 and name not in _GREEK and not word:
         head, tail = name[0], name[1:]
     letter = f"<mi>{_GREEK.get(head, head)}</mi>"
     return f"<msub>{letter}<mi>{tail}</mi></msub>" if tail else letter

@@ -255,3 +255,16 @@ def test_another_upload_under_the_same_key_is_refused(service: TestClient, matri
         answer = service.post("/api/v1/matrices", files={"files": ("a.zip", io.BytesIO(sent))}, headers=headers)
         assert answer.status_code == status
         assert status != 200 or answer.json()["id"] == matrix
+
+
+def test_an_upload_that_memory_does_not_hold_is_refused(service: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The process that read it was ended for it: the service goes on, and says what to do."""
+
+    def ended(*_: object, **__: object) -> None:
+        raise MemoryError
+
+    with monkeypatch.context() as without:
+        without.setattr(service.app.state.context.readers, "call", ended)
+        refused = service.post("/api/v1/matrices", files={"files": ("matrix.zip", zipped("SW-M"))})
+    assert (refused.status_code, refused.json()["type"].rpartition(":")[2]) == (422, "out-of-memory"), refused.text
+    assert service.post("/api/v1/matrices", files={"files": ("matrix.zip", zipped("SW-M"))}).status_code == 201

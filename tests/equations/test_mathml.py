@@ -22,3 +22,16 @@ X_OVER_D = "<mfrac><mrow><mi>x</mi></mrow><mrow><mi>d</mi></mrow></mfrac>"
 )
 def test_brackets_stand_where_a_reader_needs_them_and_only_there(text, drawn):
     assert drawn in mathml(text)
+
+
+def test_a_curve_is_written_with_its_signal():
+    """A symbol that stands for a curve says what it is a curve of; others with the same letter are left."""
+    found = mathml("flow = s * (h * P + h0)", {"h": "P"})
+    assert "<mi>h</mi><mo>⁡</mo><mrow><mo>(</mo><mi>P</mi><mo>)</mo></mrow>" in found
+    assert "<msub><mi>h</mi><mi>0</mi></msub>" in found
+
+
+def test_a_word_is_no_letter_with_an_index():
+    assert mathml("flow = Ka * force_max").count("<mi>flow</mi>") == 1
+    assert "<msub><mi>K</mi><mi>a</mi></msub>" in mathml("flow = Ka * x")
+    assert "<msub><mi>force</mi><mi>max</mi></msub>" in mathml("flow = Ka * force_max")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -75,6 +76,19 @@ def searched(own: Mapping[str, Any], terms: Sequence[Term]) -> dict[str, tuple[f
         moved = (n for n in range(len(curve.knots)) if n != curve.held)
         found |= {f"{own['name']}.{CURVE}_{n + 1}": _bounds(own["curve"]) for n in moved}
     return found
+
+
+def curves(own: Mapping[str, Any]) -> dict[str, str]:
+    """The signal of the curve that an effect has, by the curve's symbol."""
+    return {own["curve"]["symbol"]: own["curve"]["of"]} if "curve" in own else {}
+
+
+def told(own: Mapping[str, Any]) -> str:
+    """The equations in words: h of P is told as h(P)."""
+    text = "; ".join(own["equation"])
+    for symbol, of in curves(own).items():
+        text = re.sub(rf"\b{symbol}\b", f"{symbol}({of})", text)
+    return text
 
 
 def _bounds(of: Mapping[str, Any]) -> tuple[float, float]:

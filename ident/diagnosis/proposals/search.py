@@ -22,7 +22,7 @@ from ident.diagnosis.proposals.candidate import Candidate
 from ident.diagnosis.proposals.evidence import evidence
 from ident.diagnosis.proposals.meanings import meaning
 from ident.diagnosis.proposals.outcome import Proposals, Refused
-from ident.diagnosis.proposals.own import as_found, definition, searched
+from ident.diagnosis.proposals.own import as_found, curves, definition, searched, told
 from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.proposals.shown import shown_in
 from ident.diagnosis.proposals.sight import Sight, sight
@@ -183,7 +183,7 @@ class Search:
         own = as_found(own, self.models.effects[name], self.base.values)
         return Proposal(
             place=tuple(dict.fromkeys(term.place for term in candidate.terms)),
-            equation="; ".join(own["equation"]),
+            equation=told(own),
             effect=own,
             strength=self.base.values[self.models.strength(name)],
             std_error=self.base.deviation(self.models.strength(name)),
@@ -198,7 +198,7 @@ class Search:
             bar=bar,
             alike=tuple("; ".join(f"{t.at}: {t.text}" for t in terms) for terms in candidate.alike),
             meaning=meaning(candidate.terms),
-            formula=" ".join(map(mathml, own["equation"])),
+            formula=" ".join(mathml(line, curves(own)) for line in own["equation"]),
             hypothesis=hypothesis,
             free_curve=any(term.curve is not None for term in candidate.terms),
         )

@@ -34,6 +34,8 @@ def test_what_no_form_reaches_is_drawn_as_a_free_curve():
     _, found = with_a_bent_gain()
     last = found.proposals[-1]
     assert last.free_curve
+    assert "h(P)" in last.equation
+    assert "<mo>(</mo><mi>P</mi><mo>)</mo>" in last.formula
     assert "no formula is known" in last.meaning
     assert last.nats > last.bar
     assert last.error["verify"] < 1.2 * NOISE < found.baseline.error["verify"]
