@@ -25,8 +25,9 @@ def mathml(text: str, curves: Mapping[str, str] | None = None) -> str:
     left = _symbol(equation.target)
     if equation.is_rate:
         left = f"<mover>{left}<mo>˙</mo></mover>"
+    tree = _Curves(curves or {}).visit(deepcopy(equation.tree))
     equals = "≔" if equation.is_memory else "="
-    return f"<math display='block'><mrow>{left}<mo>{equals}</mo>{_render(_Curves(curves or {}).visit(deepcopy(equation.tree)))}</mrow></math>"
+    return f"<math display='block'><mrow>{left}<mo>{equals}</mo>{_render(tree)}</mrow></math>"
 
 
 class _Curves(ast.NodeTransformer):
@@ -35,7 +36,7 @@ class _Curves(ast.NodeTransformer):
     def __init__(self, of: Mapping[str, str]) -> None:
         self.of = of
 
-    def visit_Name(self, node: ast.Name) -> ast.expr:  # noqa: N802  the name that ast asks for
+    def visit_Name(self, node: ast.Name) -> ast.expr:
         """A symbol, or a curve of a signal."""
         return ast.Call(node, [ast.Name(self.of[node.id])], []) if node.id in self.of else node
 
