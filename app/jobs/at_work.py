@@ -1,46 +1,88 @@
-"""The work of jobs where it is done, which may be a process of its own: what a turn has prepared stays there."""
+"""The work of jobs where it is done, which may be a process of its own: what a turn has prepared stays there.
+
+So does the state of a search, which holds its whole history: a step is sent by how much of it is known, and returns
+what it added.
+"""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
+from app.jobs.generations import added
 from app.jobs.work import Search, State, Task, Work
 from app.lru import LRU
 from ident.progress import Progress, Report
 
 _EVERY = 0.2  # s between two reports
 _MOST = 4  # turns whose work is kept: one that was let go may not have said so
-_works: LRU[Work] = LRU(_MOST)
+_HELD = "held"
+Make = Callable[[Task], Work]
 
 
-def begin(turn: str, make: Callable[[Task], Work], task: Task, report: Report) -> State:
+class Unheld(Exception):
+    """The state that a step goes on from is not here: it has to be sent whole."""
+
+
+@dataclass
+class _Turn:
+    """What a turn has prepared, and the last state of its search."""
+
+    work: Work
+    state: State | None = None
+
+    def whole(self, state: State) -> State:
+        """The state that a short one stands for. Raises Unheld."""
+        if _HELD not in state:
+            return state
+        if self.state is None or len(self.state["history"]) != state[_HELD]:
+            raise Unheld
+        return self.state
+
+
+_turns: LRU[_Turn] = LRU(_MOST)
+
+
+def short(state: State) -> State:
+    """What stands for a state where it is held."""
+    return {_HELD: len(state["history"])} if "history" in state else state
+
+
+def begin(turn: str, make: Make, task: Task, report: Report) -> State:
     """Begin; work without a search is done but for its finish."""
-    work = _work(turn, make, task, report)
-    return work.begin() if isinstance(work, Search) else {"done": True}
+    here = _here(turn, make, task, report)
+    here.state = here.work.begin() if isinstance(here.work, Search) else {"done": True}
+    return _made(here.state)
 
 
-def advance(turn: str, make: Callable[[Task], Work], task: Task, state: State, report: Report) -> State:
-    """A block of the search."""
-    work = _work(turn, make, task, report)
-    assert isinstance(work, Search)
-    return work.advance(state)
+def advance(turn: str, make: Make, task: Task, state: State, report: Report) -> State:
+    """A block of the search: what it added. Raises Unheld."""
+    here = _here(turn, make, task, report)
+    before = here.whole(state)
+    assert isinstance(here.work, Search)
+    here.state = here.work.advance(before)
+    return added(before, _made(here.state))
 
 
-def finish(turn: str, make: Callable[[Task], Work], task: Task, state: State, report: Report) -> State:
-    """All that follows the search; the state is the result."""
-    return _work(turn, make, task, report).finish(state)
+def finish(turn: str, make: Make, task: Task, state: State, report: Report) -> State:
+    """All that follows the search; the state is the result. Raises Unheld."""
+    here = _here(turn, make, task, report)
+    return _made(here.work.finish(here.whole(state)))
 
 
 def leave(turn: str) -> None:
     """Forget what a turn has prepared."""
-    _works.drop(turn)
+    _turns.drop(turn)
 
 
-def _work(turn: str, make: Callable[[Task], Work], task: Task, report: Report) -> Work:
-    """The work of a turn, made at its first step."""
-    return _works.get(turn, lambda: make(replace(task, report=_seldom(report))))
+def _made(state: State) -> State:
+    return {"outcome": None, "state": state}
+
+
+def _here(turn: str, make: Make, task: Task, report: Report) -> _Turn:
+    """What a turn has prepared: at its first step, now."""
+    return _turns.get(turn, lambda: _Turn(make(replace(task, report=_seldom(report)))))
 
 
 def _seldom(report: Report) -> Report:

@@ -76,7 +76,7 @@ class Run:
         return self._step(at_work.begin)
 
     def advance(self, state: State) -> State:
-        """A block of the search."""
+        """A block of the search: what it added (see app/jobs/generations.py)."""
         return self._step(at_work.advance, state)
 
     def finish(self, state: State) -> State:
@@ -98,8 +98,7 @@ class Run:
     def _step(self, act: Callable[..., State], *given: State) -> State:
         """What a step of the job's work returns, or how the job ended in it."""
         try:
-            state = patiently(lambda: self._acted(act, *given), self.runs.stopping, _PATIENCE)
-            return {"outcome": None, "state": state}
+            return patiently(lambda: self._acted(act, *given), self.runs.stopping, _PATIENCE)
         except Stopped:
             raise Superseded from None
         except Cancelled:
@@ -122,7 +121,11 @@ class Run:
     def _acted(self, act: Callable[..., State], *given: State) -> State:
         self._note({})
         task = self._task = self._task or self._asked()
-        return self.runs.place.call(act, self._turn, self.kind.work, task, *given, report=self._report)
+        before = self._turn, self.kind.work, task
+        try:
+            return self.runs.place.call(act, *before, *map(at_work.short, given), report=self._report)
+        except at_work.Unheld:  # this turn began elsewhere, or what it began in has ended
+            return self.runs.place.call(act, *before, *given, report=self._report)
 
     def _store(self, last: State) -> None:
         job = self.lease.job

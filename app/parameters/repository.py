@@ -15,7 +15,10 @@ from app.tables import ApprovalRow, SetRow, ValueRow
 
 
 class FoundSet(NamedTuple):
-    """A set as it is read only, with the rows of its values: a page of records that could be changed takes thrice."""
+    """A set as it is read only: a page of records that could be changed takes thrice as long.
+
+    `values` are rows of number, name, value, unit and standard error.
+    """
 
     number: int
     fit: str
@@ -36,11 +39,11 @@ class FoundSet(NamedTuple):
     current: bool
 
 
+COLUMNS = FoundSet._fields[:-3]
+"""Those of a set's own row."""
 _NUMBERS: BindParameter[Any] = bindparam("numbers", expanding=True)
 # Made once: to make a query of a hundred numbers takes as long as to answer it.
-_SETS_OF = (
-    select(*[getattr(SetRow, name) for name in FoundSet._fields[:-3]]).where(SET.in_(_NUMBERS)).order_by(SET.desc())
-)
+_SETS_OF = select(*[getattr(SetRow, name) for name in COLUMNS]).where(SET.in_(_NUMBERS)).order_by(SET.desc())
 _VALUES_OF = (
     select(ValueRow.number, ValueRow.name, ValueRow.value, ValueRow.unit, ValueRow.std_error)
     .where(ValueRow.number.in_(_NUMBERS))

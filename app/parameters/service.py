@@ -62,15 +62,21 @@ def approved(context: Context, serials: Sequence[str]) -> dict[str, list[Paramet
 
 def view(row: SetRow | repository.FoundSet) -> ParameterSetView:
     """A set as it is sent."""
+    if isinstance(row, SetRow):
+        values = [(v.number, v.name, v.value, v.unit, v.std_error) for v in row.values]
+        own = [getattr(row, name) for name in repository.COLUMNS]
+        row = repository.FoundSet._make([*own, values, row.approved_at, row.current])
     return ParameterSetView(**_plain(row))
 
 
-def _plain(row: SetRow | repository.FoundSet) -> dict[str, Any]:
+def _plain(row: repository.FoundSet) -> dict[str, Any]:
     return {
         "id": row.fit, "serial": row.serial, "batch": row.batch, "model": row.model, "created_at": row.created_at,
         "approved_at": row.approved_at, "current": row.current, "error_fit": row.error_fit,
         "error_verify": row.error_verify,
-        "parameters": {v.name: {"value": v.value, "unit": v.unit, "std_error": v.std_error} for v in row.values},
+        "parameters": {
+            name: {"value": value, "unit": unit, "std_error": error} for _, name, value, unit, error in row.values
+        },
         "lineage": {
             "data_hash": row.data_hash, "effects": row.effects, "seed": row.seed, "version": row.version,
             "equations": row.equations, "who": row.who,

@@ -1,0 +1,90 @@
+"""A search that is worked on elsewhere: its history is sent once, and what a lost process knew is sent again."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.jobs import at_work
+from app.jobs.generations import whole
+from app.jobs.work import Search, State, Task
+from app.storage import Storage
+from app.tables import MatrixRow
+from ident.progress import silent
+
+
+class Growing(Search):
+    """Adds two generations a block to its history, and ends after three blocks."""
+
+    def __init__(self, task: Task) -> None:
+        self.task = task
+
+    def begin(self) -> State:
+        return {"done": False, "history": [], "population": [0.0] * 100}
+
+    def advance(self, state: State) -> State:
+        history = list(state["history"])
+        population = state["population"]
+        for _ in range(2):
+            history.append({"number": len(history), "population": population})
+            population = [one + 1.0 for one in population]
+        return {"done": len(history) >= 6, "history": history, "population": population}
+
+    def finish(self, state: State) -> State:
+        return {"count": len(state["history"]), "last": state["population"][0]}
+
+
+@pytest.fixture
+def task(tmp_path: Path) -> Task:
+    return Task({}, None, MatrixRow(id="m"), Storage(tmp_path))
+
+
+def searched(task: Task, turn: str, lost_after: int | None = None) -> tuple[Any, list[int]]:
+    """What a search ends with as the queue has it done, and how many bytes each step was sent."""
+    sent: list[int] = []
+
+    def asked(act: Any, state: State) -> State:
+        given = at_work.short(state)
+        try:
+            made: State = act(turn, Growing, task, pickle.loads(pickle.dumps(given)), silent)
+        except at_work.Unheld:
+            given = state
+            made = act(turn, Growing, task, pickle.loads(pickle.dumps(given)), silent)
+        sent.append(len(pickle.dumps(given)))
+        return pickle.loads(pickle.dumps(made))
+
+    now = at_work.begin(turn, Growing, task, silent)
+    steps = 0
+    while not now["state"]["done"]:
+        if steps == lost_after:
+            at_work.leave(turn)
+        now = whole(now["state"], asked(at_work.advance, now["state"]))
+        steps += 1
+    return (now["state"], asked(at_work.finish, now["state"])), sent
+
+
+def test_what_is_known_there_is_not_sent_again(task: Task) -> None:
+    (state, result), sent = searched(task, "a")
+    assert [entry["number"] for entry in state["history"]] == list(range(6))
+    assert [entry["population"][0] for entry in state["history"]] == list(range(6))
+    assert result == {"outcome": None, "state": {"count": 6, "last": 6.0}}
+    assert max(sent) < 100
+
+
+@pytest.mark.parametrize("lost_after", [0, 1, 2])
+def test_a_process_that_was_lost_is_told_all_once(task: Task, lost_after: int) -> None:
+    """And the search ends as if nothing had been."""
+    undisturbed, _ = searched(task, "b")
+    found, sent = searched(task, f"c{lost_after}", lost_after)
+    assert found == undisturbed
+    assert [size > 100 for size in sent] == [step == lost_after for step in range(4)]
+
+
+def test_what_is_known_of_another_step_is_not_taken_for_it(task: Task) -> None:
+    first = at_work.begin("d", Growing, task, silent)["state"]
+    at_work.advance("d", Growing, task, at_work.short(first), silent)
+    with pytest.raises(at_work.Unheld):
+        at_work.advance("d", Growing, task, at_work.short(first), silent)
