@@ -28,7 +28,7 @@ LINES, BENCHES, SETS, ROWS = 50, 5, 20_000, 100
 SLOWEST = 500.0  # ms, p99 of the line's questions
 LARGEST = {"npz": 5.0, "parquet": 5.0, "csv": 15.0}  # s from upload to findings, by kind of file
 TWICE = 2.0  # times the matrix's arrays
-SEARCH = {"options": {"generations": 10_000, "population": 300}}
+SEARCH = {"options": {"generations": 10_000, "population": 200}}
 
 
 @dataclass
