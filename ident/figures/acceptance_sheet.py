@@ -9,8 +9,8 @@ import altair as alt
 import numpy as np
 
 from ident.bench.acceptance import Line, passed, read_limits, sheet
-from ident.bench.analysis import Analysis, analyse
-from ident.bench.records import BenchSet, bench_set
+from ident.bench.analysis import Analysis
+from ident.bench.records import BenchSet
 from ident.figures.drawing import Drawing, Options
 from ident.figures.frequency_characteristics import frequency_panels
 from ident.figures.look import Look, look
@@ -112,8 +112,8 @@ def _short(text: str, most: int = 150) -> str:
 
 def _drawn(study: Study, of: Look, _options: Options) -> Chart:
     """The records as the procedures judge them: the sheet of `servoident bench`, whatever the fit."""
-    matrix, bench = study.matrix, bench_set(study.matrix)
-    analysis = analyse(bench)
+    matrix = study.matrix
+    bench, analysis = study.judged
     lines = sheet(analysis, read_limits(matrix.limits_text, matrix.limits or "limits"))
     return sheet_chart(matrix, bench, analysis, lines, of)
 

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Hashable
 from dataclasses import dataclass, field, replace
 
+from ident.bench.analysis import Analysis, analyse
+from ident.bench.records import BenchSet, bench_set
+from ident.cached import cached_property
 from ident.comparison.compare import Comparison, RunComparison, Simulator, compare, modelled
 from ident.figures.selection import Band
 from ident.fit.result import FitResult
@@ -29,6 +32,12 @@ class Study:
     _runs: dict[str, RunComparison] = field(default_factory=dict)
     _settled: tuple[tuple[str, ...], Traces, dict[str | None, tuple[CurveFit, ...]]] | None = None
     _curves: dict[Hashable, tuple[Curve, ...]] = field(default_factory=dict)
+
+    @cached_property
+    def judged(self) -> tuple[BenchSet, Analysis]:
+        """The records of a bench, and what its procedures say of them whatever the fit."""
+        bench = bench_set(self.matrix)
+        return bench, analyse(bench)
 
     def beside(self, other: FitResult) -> Study:
         """Another fit beside the same data."""

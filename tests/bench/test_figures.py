@@ -7,13 +7,12 @@ import json
 import pytest
 
 from ident.bench.acceptance import sheet
-from ident.bench.analysis import analyse
-from ident.bench.records import bench_set
 from ident.errors import Unusable
 from ident.figures import FIGURES, figures_of, render
+from ident.figures import figure as drawn
 from ident.figures.acceptance_sheet import acceptance_sheet
 from ident.fit.settings import Settings
-from ident.workflows import figure, identify
+from ident.workflows import figure, identify, study
 from tests.bench.sets import as_matrix
 from tests.reference import kononykhin_reference as reference
 
@@ -29,6 +28,12 @@ def fitted():
     return matrix, identify(matrix, Settings(model="kononykhin", options=options))
 
 
+@pytest.fixture(scope="module")
+def studied(fitted):
+    """What its figures take from the data, worked out once."""
+    return study(*fitted)
+
+
 def texts(chart) -> str:
     return render(chart, "json").decode()
 
@@ -40,9 +45,9 @@ def test_a_fit_of_the_bench_has_its_own_figures(fitted):
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
 @pytest.mark.parametrize("name", ["time", "evolution", *OF_BENCH])
-def test_every_figure_is_drawn(fitted, name, theme):
+def test_every_figure_is_drawn(studied, name, theme):
     """As SVG, with the actuator's serial in its title."""
-    chart = figure(fitted[1], name, theme=theme)
+    chart = drawn(name, studied, theme)
     assert render(chart, "svg").startswith(b"<svg")
     assert "REFERENCE" in texts(chart)
 
@@ -66,11 +71,10 @@ def test_an_unknown_smoothing_and_a_figure_of_another_model_are_refused(fitted):
         figure(fitted[1], "bode")
 
 
-def test_the_sheet_names_every_quantity_and_the_verdict(fitted):
+def test_the_sheet_names_every_quantity_and_the_verdict(fitted, studied):
     """A broken limit is seen on the page."""
     matrix, _ = fitted
-    bench = bench_set(matrix)
-    analysis = analyse(bench)
+    bench, analysis = studied.judged
     lines = sheet(analysis, {"hysteresis": (None, 1e-6), "T": (None, 1.0)})
     page = texts(acceptance_sheet(matrix, bench, analysis, lines))
     assert "NOT passed" in page

@@ -54,6 +54,7 @@ def test_the_tables_say_it_with_units(told):
     assert found["verdict"]["text"] in printed
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_an_own_effect_is_ranked_beside_the_catalogue(servoident, matrix, tmp_path):
     """Its definition is in the result, beside a fit too; one that is none of its model is refused with its file."""
     own, fit = tmp_path / "overlap.yaml", tmp_path / "fit.json"
@@ -70,6 +71,7 @@ def test_an_own_effect_is_ranked_beside_the_catalogue(servoident, matrix, tmp_pa
     assert f"{own} equation, character" in done.stderr
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_a_search_whose_time_is_over_tells_what_it_has(servoident, matrix, tmp_path):
     file = tmp_path / "found.json"
     done = servoident("diagnose", matrix, "--time", 0.001, "--json", file)
@@ -80,6 +82,7 @@ def test_a_search_whose_time_is_over_tells_what_it_has(servoident, matrix, tmp_p
     assert " ".join(found["verdict"]["text"].split()) in " ".join(done.stdout.split())
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_what_was_found_is_not_lost_with_what_was_to_come(servoident, matrix, tmp_path, monkeypatch):
     """Ctrl-C after the first step."""
     file = tmp_path / "found.json"
@@ -97,6 +100,7 @@ def test_what_was_found_is_not_lost_with_what_was_to_come(servoident, matrix, tm
     assert (found["complete"], found["verdict"]["effects"]) == (False, ["dead_zone"])
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_a_fit_from_a_file_is_diagnosed_as_it_is(servoident, matrix, tmp_path):
     """Its errors are the baseline, --max-effects is obeyed, and only JSON goes to standard output."""
     file = tmp_path / "fit.json"
@@ -108,6 +112,7 @@ def test_a_fit_from_a_file_is_diagnosed_as_it_is(servoident, matrix, tmp_path):
     assert (found["seed"], len(found["ladder"])) == (4, 1)
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_a_proposed_term_goes_from_a_diagnosis_into_a_fit(servoident, tmp_path):
     matrix, found, fitted = hidden_bump.write(tmp_path / "bump"), tmp_path / "found.json", tmp_path / "fit.json"
     asked = ("diagnose", matrix, "--model", "qian2014", "--max-effects", 0, "--json", found)

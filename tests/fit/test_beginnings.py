@@ -129,6 +129,7 @@ def test_a_command_is_counted_from_where_it_is_held_while_the_cylinder_stands(ne
     assert all("2.5 V" in note for note in said)
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_a_lag_far_below_the_sample_time_is_not_searched_and_the_diagnosis_follows_the_fit():
     """The time constant went to microseconds at a sample of milliseconds; then no simulation followed the fit."""
     matrix = motor(6, 3.0)
