@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import yaml
 from fastapi.testclient import TestClient
 
 from ident.bench.synthesis import write_bench
 from ident.presets import PRESETS
+from tests.bench.sets import simulated
 
 API = "/api/v1"
 OPTIONS = {"population": 16, "generations": 2, "elite": 3}
@@ -28,22 +28,13 @@ def ended(service: TestClient, answer: Any) -> dict[str, Any]:
     return job
 
 
-def few_records(description: Path) -> None:
-    """Leave a third of the records: one static of three, the sines that last less than ten seconds, all of speed."""
-    said = yaml.safe_load(description.read_text())
-    long = re.compile(r"static-(20|80)|sine-.*-0_[25]")
-    said["runs"] = [run for run in said["runs"] if not long.fullmatch(run["id"])]
-    description.write_text(yaml.safe_dump(said, allow_unicode=True))
-
-
 @pytest.fixture(scope="module")
 def fit(service: TestClient, tmp_path_factory: pytest.TempPathFactory, full: bool) -> str:
     """A fit of an uploaded set."""
     folder = Path(tmp_path_factory.mktemp("bench"))
     (folder / "runs").mkdir()
-    write_bench(folder, PRESETS["kononykhin"], seed=5, noise=0.005)
-    if not full:
-        few_records(folder / "matrix.yaml")
+    with simulated(full):
+        write_bench(folder, PRESETS["kononykhin"], seed=5, noise=0.005)
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w") as archive:
         for path in sorted(folder.rglob("*.*")):

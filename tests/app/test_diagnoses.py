@@ -86,6 +86,7 @@ def test_the_diagnoses_of_a_fit_are_listed(service, diagnosis, linear):
     assert service.get(f"{API}/diagnoses/none").status_code == 404
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_a_diagnosis_without_a_fit_makes_one_first(service, matrix):
     body = {"matrix": matrix, "seed": 2, "max_effects": 0}
     job = ended(service, service.post(f"{API}/diagnoses", json=body))
@@ -204,6 +205,7 @@ def test_a_diagnosis_is_no_fit_of_the_actuators_page(service, diagnosis, linear)
     assert f"/fits/{diagnosis['id']}" not in page
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_an_own_effect_is_ranked_beside_the_catalogue_and_added(service, linear):
     """A dead zone under another name: the data cannot tell the two apart, and either can be added."""
     job = ended(service, service.post(f"{API}/diagnoses", json={"fit": linear, "max_effects": 1, "custom": [OWN]}))

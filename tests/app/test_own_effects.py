@@ -208,8 +208,8 @@ def test_the_next_actuator_has_it_by_name(service: TestClient, found: dict[str, 
 
     plain = ended(service, service.post(f"{API}/fits", json={"matrix": stored["id"]}))["fit"]
     ranked = {}
-    for name, asked in (("own", {"own": True}), ("named", {"custom": ["hill"]}), ("without", {})):
-        job = ended(service, service.post(f"{API}/diagnoses", json={"fit": plain, "max_effects": 1, **asked}))
+    for name, most, asked in (("own", 1, {"own": True}), ("named", 1, {"custom": ["hill"]}), ("without", 0, {})):
+        job = ended(service, service.post(f"{API}/diagnoses", json={"fit": plain, "max_effects": most, **asked}))
         assert job["state"] == "succeeded", job
         ranked[name] = service.get(f"{API}/diagnoses/{job['diagnosis']}").json()
     assert ranked["own"]["candidates"][0]["effect"] == "hill"

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 import numpy as np
+import pytest
 
+from ident.bench import synthesis
 from ident.bench.model import Model
 from ident.bench.records import BenchSet, bench_set
 from ident.bench.speed_table import FRACTIONS, SpeedTable
@@ -43,3 +47,19 @@ def true_model(truth: reference.Truth) -> Model:
     u = 100 * np.array(FRACTIONS)
     table = SpeedTable(tuple(1e-3 * truth.speed(u)), tuple(1e-3 * truth.speed(-u)))
     return Model(truth.T, truth.B / 100, truth.I0 / 100, 1e8 * truth.kp, 1e6 * truth.dPfr, table, 1e6 * truth.Ps)
+
+
+@contextmanager
+def simulated(full: bool) -> Iterator[None]:
+    """Sets that the program simulates have, but in the full form, a third of the records.
+
+    One static record, the sines that last less than ten seconds, those of speed.
+    """
+    whole, long = synthesis.plans, re.compile(r"static-(20|80)|sine-.*-0_[25]")
+
+    def some(gain: float) -> Iterator[synthesis.Plan]:
+        return (plan for plan in whole(gain) if full or not long.fullmatch(plan.id))
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(synthesis, "plans", some)
+        yield

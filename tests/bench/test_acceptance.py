@@ -11,14 +11,16 @@ import yaml
 from ident.bench.acceptance import Line, read_limits
 from ident.errors import Unusable
 from ident.presets.kononykhin import KONONYKHIN
+from tests.bench.sets import simulated
 
 MIDDLE = {p.name: p.value for p in KONONYKHIN.parameters}
 
 
 @pytest.fixture(scope="module")
-def folder(servoident, tmp_path_factory):
+def folder(servoident, tmp_path_factory, full):
     out = tmp_path_factory.mktemp("bench") / "set"
-    done = servoident("simulate", out, "--preset", "kononykhin", "--seed", 5)
+    with simulated(full):
+        done = servoident("simulate", out, "--preset", "kononykhin", "--seed", 5)
     assert done.returncode == 0, done.stderr
     return out
 

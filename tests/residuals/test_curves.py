@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -27,6 +29,7 @@ LEAST = {"backlash": 0.8}
 """Of the residual's power: play is memory, of which a curve against the speed of the spool shows only the ends."""
 
 
+@cache
 def best(name):
     found = curves(compared(name))
     return found[0], np.array(found[0].x), np.array(found[0].y)
