@@ -14,7 +14,7 @@ from schemathesis.checks import not_a_server_error
 from schemathesis.specs.openapi.checks import content_type_conformance, status_code_conformance
 
 CHECKS = [not_a_server_error, status_code_conformance, content_type_conformance]
-EXAMPLES, MORE = 10, 70  # of each operation by the admin; with --full
+EXAMPLES, MORE = 6, 70  # of each operation by the admin; with --full
 OTHERS, MORE_OTHERS = 1, 30  # by each of the other roles, and by nobody
 Headers = dict[str, str]
 

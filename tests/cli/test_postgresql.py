@@ -84,7 +84,7 @@ def records(backup: Path) -> dict[str, Any]:
     return {"blobs": listed["blobs"], **listed["tables"]}
 
 
-def test_a_service_and_a_worker_share_the_queue(servoident, database, matrix, tmp_path):
+def test_a_service_and_a_worker_share_the_queue(servoident, database, few, tmp_path):
     """Fits of one matrix all end well, and an approved one is found by its serial number and rechecked."""
     place = ("--database", database, "--data", tmp_path)
     with (
@@ -94,7 +94,7 @@ def test_a_service_and_a_worker_share_the_queue(servoident, database, matrix, tm
         service = Service.that_said(line)
         nul = service.client.get("/actuators/%00")
         assert (nul.status_code, nul.json()["code"]) == (422, "unusable-text")  # SQLite would have looked for it
-        stored = servoident("upload", matrix, *service.options)
+        stored = servoident("upload", few, *service.options)
         assert stored.returncode == 0, stored.stderr
         identity = stored.stdout.split()[1]
         jobs = [service.fit(identity, seed=seed) for seed in (1, 2)]

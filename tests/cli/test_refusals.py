@@ -57,9 +57,9 @@ def test_unusable_input_is_one_line_and_exit_2(servoident, matrix, arguments, na
     assert "Traceback" not in done.stderr
 
 
-def test_ctrl_c_is_one_line_and_130(matrix, tmp_path):
+def test_ctrl_c_is_one_line_and_130(few, tmp_path):
     """An interrupted fit says so and writes nothing."""
-    command = [sys.executable, "-m", "app.cli", "fit", str(matrix), "--json", str(tmp_path / "fit.json"), "--method"]
+    command = [sys.executable, "-m", "app.cli", "fit", str(few), "--json", str(tmp_path / "fit.json"), "--method"]
     process = subprocess.Popen([*command, "differential-evolution"], stderr=subprocess.PIPE, text=True)
     assert process.stderr is not None
     heard = process.stderr.readline()
