@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.signal
+import scipy  # signal, which takes most of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
 from scipy.special import comb
 

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy  # optimize, which takes a third of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
 from ident.bench.least_squares import solve
 from ident.bench.model import Model
@@ -94,7 +94,9 @@ def by_library(target: Target, start: float) -> float:
         T = float(np.exp(np.clip(place[0], np.log(_SMALLEST), np.log(_LARGEST))))
         return np.concatenate([r / np.sqrt(len(r)) for r in target.residuals(T)])
 
-    found = least_squares(stacked, [np.log(start)], method="lm", diff_step=1e-3, xtol=1e-4, ftol=1e-6, max_nfev=30)
+    found = scipy.optimize.least_squares(
+        stacked, [np.log(start)], method="lm", diff_step=1e-3, xtol=1e-4, ftol=1e-6, max_nfev=30
+    )
     return float(np.exp(np.clip(found.x[0], np.log(_SMALLEST), np.log(_LARGEST))))
 
 

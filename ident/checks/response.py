@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # signal, which takes most of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
-from scipy.signal import ShortTimeFFT, get_window
 
 from ident.cached import cached_property
 from ident.matrix import Run, Samples
@@ -63,7 +63,7 @@ def response(u: Samples, y: Samples, sample_rate: float) -> Response | None:
     length = min(LONGEST_FRAME, 1 << max(len(u) // (FRAMES // 2 + 1), 1).bit_length() - 1)
     if length < SHORTEST_FRAME:
         return None
-    frames = ShortTimeFFT(get_window("hann", length), length // 2, sample_rate)
+    frames = scipy.signal.ShortTimeFFT(scipy.signal.get_window("hann", length), length // 2, sample_rate)
     inside = frames.lower_border_end[1], frames.upper_border_begin(len(u))[1]
     one, two = (frames.stft_detrend(signal, "constant", *inside)[1:] for signal in (u, y))
     uy = (one.conj() * two).mean(axis=1)

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import scipy  # stats, which takes half a second to load, is loaded where it is first used
 from numpy.typing import NDArray
-from scipy.stats.qmc import Sobol
 
 from ident.cached import cached_property
 from ident.chain.channels import unmeasured
@@ -222,7 +222,7 @@ class ModelFamily:
         Where the fitted model went far astray for want of the effect, no start near it leads back.
         """
         fitness = self.fitness(effects, _SIGHT)
-        points = Sobol(len(fitness.space.axes), rng=0).random(_SCATTERED)
+        points = scipy.stats.qmc.Sobol(len(fitness.space.axes), rng=0).random(_SCATTERED)
         best = points[np.argsort(fitness.errors(points), kind="stable")[:_LEADING]]
         starts = [{name: float(v[0]) for name, v in fitness.space.values(point[None]).items()} for point in best]
         return [self.refit(effects, start, _TRIAL, _FIRST_STEPS) for start in starts]

@@ -7,7 +7,7 @@ from typing import Any
 
 import altair as alt
 import numpy as np
-import scipy.signal
+import scipy  # signal, which takes most of a second to load, is loaded where it is first used
 
 from ident.figures.frame import unchecked
 from ident.figures.hybrid_time import legend_of, told

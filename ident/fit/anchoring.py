@@ -14,8 +14,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # signal, which takes most of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 Array = NDArray[np.float64]
 
@@ -71,7 +71,7 @@ class Stream:
         numerator, denominator = filter_of_speed(self._of.memory)
         if self._state is None:
             self._state = np.zeros((2, *rows.shape[1:]))
-        speeds, self._state = lfilter(numerator, denominator, rows, axis=0, zi=self._state)
+        speeds, self._state = scipy.signal.lfilter(numerator, denominator, rows, axis=0, zi=self._state)
         return np.asarray(speeds)
 
 
@@ -92,4 +92,4 @@ def filter_of_speed(memory: float) -> tuple[Array, Array]:
 def innovations(signal: Array, memory: float) -> Array:
     """What the filter did not foresee of a signal (n,), from its first sample on."""
     _, denominator = filter_of_speed(memory)
-    return np.asarray(lfilter([1.0, -2.0, 1.0], denominator, signal - signal[0]))
+    return np.asarray(scipy.signal.lfilter([1.0, -2.0, 1.0], denominator, signal - signal[0]))

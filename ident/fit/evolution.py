@@ -6,8 +6,8 @@ import warnings
 from collections.abc import Callable
 
 import numpy as np
+import scipy  # optimize, which takes a third of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
-from scipy.optimize import differential_evolution as scipy_differential_evolution
 
 Array = NDArray[np.float64]
 Errors = Callable[[Array], Array]
@@ -24,7 +24,7 @@ def differential_evolution(axes: int, seed: int, errors: Errors) -> list[tuple[A
         history.append((points.copy(), cost))
         return cost
 
-    scipy_differential_evolution(
+    scipy.optimize.differential_evolution(
         vectorised, [(0.0, 1.0)] * axes, maxiter=GENERATIONS["differential-evolution"], popsize=max(1, 120 // axes),
         tol=1e-4, rng=np.random.default_rng(seed), polish=False, vectorized=True, updating="deferred",
     )  # fmt: skip

@@ -13,8 +13,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+import scipy  # signal, which takes most of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 from ident.chain.chain import linear_model
 from ident.chain.conditions import zeros
@@ -71,7 +71,7 @@ def unforeseen(residual: Array) -> float:
     that stays.
     """
     level = residual - residual[0]
-    wander = (float(np.mean(lfilter([1.0, -1.0], [1.0, gain - 1.0], level) ** 2)) for gain in _GAINS)
+    wander = (float(np.mean(scipy.signal.lfilter([1.0, -1.0], [1.0, gain - 1.0], level) ** 2)) for gain in _GAINS)
     return min(float(np.var(residual)), *wander)
 
 

@@ -12,8 +12,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import scipy  # optimize, which takes a third of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from ident.chain.conditions import conditions
 from ident.errors import Unusable
@@ -94,7 +94,7 @@ def gain_limit(plant: Plant) -> float:
         grid = np.geomspace(*_REACH, 101)
         first = next((i for i, gain in enumerate(grid) if growth(gain, about) > 0), 0)
         if first:
-            limits.append(float(brentq(growth, grid[first - 1], grid[first], args=(about,), rtol=1e-6)))
+            limits.append(float(scipy.optimize.brentq(growth, grid[first - 1], grid[first], args=(about,), rtol=1e-6)))
     return min(limits)
 
 

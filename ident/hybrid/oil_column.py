@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy  # optimize, which takes a third of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from ident.fit.result import Starts
 from ident.hybrid.changed_machine import ChangedMachine
@@ -135,8 +135,10 @@ def _solved(problem: PeakProblem, x: Array, cost: Any, further: Sequence[Mapping
         *further,
     ]
     with np.errstate(all="ignore"):
-        ended = minimize(cost, x, jac=True, method="SLSQP", bounds=problem.bounds(WIDEST), constraints=conditions,
-                         options={"maxiter": 120, "ftol": 1e-8})  # fmt: skip
+        ended = scipy.optimize.minimize(
+            cost, x, jac=True, method="SLSQP", bounds=problem.bounds(WIDEST), constraints=conditions,
+            options={"maxiter": 120, "ftol": 1e-8},
+        )  # fmt: skip
     x = np.asarray(ended.x)
     if not np.all(np.isfinite(x)) or problem.judged(x[: len(problem.names)]) is None:
         return None

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # signal, which takes most of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
-from scipy.signal import find_peaks
 
 Array = NDArray[np.float64]
 PROMINENCE = 1.01
@@ -27,7 +27,7 @@ def peaks(frequency: Array, magnitude: Array) -> tuple[Peak, ...]:
     The parabola is one of ln|G| over ln f. What rises to either end of the frequencies is no peak.
     """
     level, place = np.log(magnitude), np.log(frequency)
-    found, _ = find_peaks(level, prominence=np.log(PROMINENCE))
+    found, _ = scipy.signal.find_peaks(level, prominence=np.log(PROMINENCE))
     return tuple(_top(place[at - 1 : at + 2], level[at - 1 : at + 2]) for at in found)
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import scipy  # optimize, which takes a third of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from ident.errors import Unusable
 from ident.fit.bulk_modulus import BulkModulus, bulk_modulus
@@ -194,7 +194,9 @@ def _critical_gain(machine: ChangedMachine, ends: tuple[float | None, ...]) -> f
     if not len(lost):
         return None
     at = lost[0]
-    found = brentq(lambda log: float(_growth(machine, np.exp([log]))[0]), *np.log(gain[[at, at + 1]]), xtol=1e-10)
+    found = scipy.optimize.brentq(
+        lambda log: float(_growth(machine, np.exp([log]))[0]), *np.log(gain[[at, at + 1]]), xtol=1e-10
+    )
     return float(np.exp(found))
 
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.fft
-import scipy.signal
+import scipy  # its parts are loaded where they are first used: signal takes most of a second
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]

@@ -339,6 +339,13 @@ def mode_of(plant, f, cell, s):
     return 1 if force > 0 else -1
 
 
+@njit(cache=True)
+def copy(source, target):
+    """Value by value: what a whole array's assignment could raise would take seconds to compile."""
+    for i in range(len(source)):
+        target[i] = source[i]
+
+
 @njit(nogil=True, cache=True)
 def integrate(  # noqa: PLR0912, PLR0915  the whole story of a step in one place
     plant, f, cell, command, rate, substeps, linear_hold, outputs
@@ -373,7 +380,7 @@ def integrate(  # noqa: PLR0912, PLR0915  the whole story of a step in one place
             history[here, 0] = seen
             bent = 1 + 3 * f.sensor_nonlinearity_s * (s[Y] if f.sensor_lag_T > 0 else s[X]) ** 2
             history[here, 1] = bent * (k[0, Y] if f.sensor_lag_T > 0 else s[V])
-            history[here + 1] = history[here]
+            copy(history[here], history[here + 1])
             if step == 0:
                 recorded = s[YR] if f.acquisition_lag_T > 0 else seen
                 outputs[0, sample] = recorded * (1 + f.sensor_gain_g)
@@ -385,7 +392,7 @@ def integrate(  # noqa: PLR0912, PLR0915  the whole story of a step in one place
                 outputs[2, sample] = s[P]
             left = h
             for _ in range(4):
-                keep[:] = s
+                copy(s, keep)
                 begun = t + h - left
                 kutta(plant, f, cell, begun, left, u0 + slope * (h - left), slope, history, mode, play, s, k, trial)
                 if abs(mode) != 1 or s[V] * mode > 0:
@@ -394,12 +401,12 @@ def integrate(  # noqa: PLR0912, PLR0915  the whole story of a step in one place
                 reached = s[V]
                 before = keep[V]
                 if before * mode <= 0:  # pushed back at once: it sticks
-                    s[:] = keep
+                    copy(keep, s)
                     s[V] = 0.0
                     mode = 0
                     continue
                 part = left * before / (before - reached)
-                s[:] = keep
+                copy(keep, s)
                 kutta(plant, f, cell, begun, part, u0 + slope * (h - left), slope, history, mode, play, s, k, trial)
                 s[V] = 0.0
                 left -= part

@@ -74,7 +74,7 @@ def derivative(plant, cell, o, warm, t, u, s, out):
     out[3] = v
 
 
-@njit(nogil=True)
+@njit(nogil=True, cache=True)
 def integrate(plant, cell, o, warm, command, rate):
     """Displacement (m), shape (n,), of one run."""
     s, trial, k = np.zeros(4), np.empty(4), np.empty((4, 4))

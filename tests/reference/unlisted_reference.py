@@ -182,7 +182,7 @@ def derivative(plant, cell, h, t, u, s, held, out):
         out[4], out[5] = s[5], h.a**2 * (x - s[4]) - h.b * s[5]
 
 
-@njit(nogil=True)
+@njit(nogil=True, cache=True)
 def integrate(plant, cell, h, command, rate):
     """Displacement (m), shape (n,), of one run; beyond any stroke it stays where it is."""
     s, trial, k = np.zeros(6), np.empty(6), np.empty((4, 6))

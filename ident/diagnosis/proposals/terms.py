@@ -12,8 +12,8 @@ from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
+import scipy  # signal, which takes most of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
-from scipy.signal import bilinear, lfilter
 
 from ident.equations.equation import Equation
 from ident.equations.interpolation import interpolated
@@ -219,8 +219,8 @@ class Library:
 
             def beside(signals: Signals, rate: float, w: float = w) -> Array:
                 warped = 0.5 * w / np.tan(0.5 * w / rate)  # the bilinear rule, right at w
-                over, under = bilinear([1.0], [1 / w**2, 2 * _DAMPED / w, 1.0], warped)
-                return np.asarray(lfilter(over, under, signals[a]) - signals[a])
+                over, under = scipy.signal.bilinear([1.0], [1 / w**2, 2 * _DAMPED / w, 1.0], warped)
+                return np.asarray(scipy.signal.lfilter(over, under, signals[a]) - signals[a])
 
             yield Term(
                 place, at, f"lag2({a}, a1, a2) - {a}", "resonance", (a,), self._unit((a, 1)), (a1, a2), (), beside
@@ -317,7 +317,7 @@ class Library:
 def _lagging(x: Array, rate: float, T: float) -> Array:
     """x behind a lag of T."""
     decay = np.exp(-1.0 / rate / T)
-    return np.asarray(lfilter([1 - decay], [1, -decay], x))
+    return np.asarray(scipy.signal.lfilter([1 - decay], [1, -decay], x))
 
 
 def _factor(by: str, signals: Signals) -> Array | float:
