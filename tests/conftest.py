@@ -27,14 +27,17 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 LONGEST = (
     "diagnosis/test_diagnose", "browser/test_workbench", "browser/test_linked", "browser/test_pages",
+    "diagnosis/proposals/test_free_curves", "test_project", "faults/test_workers", "cli/test_postgresql",
+    "app/test_hybrid", "app/test_own_effects", "test_site", "app/test_contract", "fit/test_fifth_order",
+    "app/test_older_database", "cli/test_service_commands", "test_wheel", "test_windows", "test_additions",
     "bench/test_diagnosis",
     "acceptance/test_any_lab", "presets/test_composed", "diagnosis/test_structures", "browser/test_proposals",
-    "browser/test_matrix_page", "diagnosis/test_far_starts", "fit/test_disturbance", "test_project",
+    "browser/test_matrix_page", "diagnosis/test_far_starts", "fit/test_disturbance",
     "fit/test_beginnings", "cli/test_any_machine", "presets/test_machines", "app/test_diagnoses",
     "diagnosis/test_measured", "diagnosis/proposals/test_search", "cli/test_diagnose",
     "acceptance/test_identification", "bench/test_model", "effects/test_contract", "app/test_bench",
     "bench/test_figures", "cli/test_commands", "fit/test_recovery", "bench/test_identification",
-    "residuals/test_curves", "faults/test_kill", "cli/test_postgresql", "fit/test_nonlinear_core", "fit/test_outputs",
+    "residuals/test_curves", "faults/test_kill", "fit/test_nonlinear_core", "fit/test_outputs",
     "fit/test_custom_fit", "figures/test_figures", "acceptance/test_measured", "app/test_contract",
     "reference/test_nonlinear_reference", "effects/test_pairs",
 )  # fmt: skip
