@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 from pathlib import Path
+from typing import cast
 
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Browser, expect
 
 from tests.browser import story
 from tests.browser.looks import everywhere
+from tests.browser.window import Window
 from tests.hidden_dead_zone import zipped
 from tests.running import Service, command, free_port
 
@@ -26,6 +28,17 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     """The demo, as a new user starts it."""
     with command("demo", "--port", free_port(), "--data", tmp_path_factory.mktemp("demo"), until="token=") as line:
         yield Service.that_said(line)
+
+
+@pytest.fixture(scope="module")
+def window(
+    launch_browser: Callable[..., Browser], browser_type_launch_args: dict[str, object], site: Service
+) -> Iterator[Window]:
+    """A window of its own: the demo is not the service of the other files, and ends with these tests."""
+    args = cast("list[str]", browser_type_launch_args["args"])
+    made = Window(launch_browser, args, f"{site.address}/?token={site.token}")
+    yield made
+    made.end()
 
 
 def the_next_run_is_proposed(page):
