@@ -29,6 +29,7 @@ NAME = "fit"
 _OPEN = ("ENQUEUED", "DELAYED", "PENDING")
 _DONE = "SUCCESS"
 _PATIENCE = 2  # s for a step to end by itself when the service stops
+_POLL = 0.2  # s between two looks into the queue: oftener an idle service would keep a twentieth of a core busy
 _LOOK = 0.05  # s between two looks whether the engine has noted the end of a job
 _AT_A_TIME = 20  # jobs removed in one transaction: one of an earlier version may have left megabytes
 _log = logging.getLogger("servoident")
@@ -97,7 +98,6 @@ class Jobs:
             "executor_id": settings.executor,
             "serializer": JsonSerializer(),
             "log_level": "WARNING",
-            "notification_listener_polling_interval_sec": 0.1,
             # A process that is frozen within a transaction holds up the others no longer.
             "sys_db_idle_transaction_timeout_sec": 8.0,
         }
@@ -114,7 +114,7 @@ class Jobs:
     def launch(self) -> None:
         """Start the engine; it takes up this executor's unfinished jobs by itself."""
         DBOS.launch()
-        DBOS.register_queue(QUEUE, worker_concurrency=1, polling_interval_sec=0.1)
+        DBOS.register_queue(QUEUE, worker_concurrency=1, polling_interval_sec=_POLL)
         self.running = True
         self._tidying.start()
 
