@@ -38,7 +38,7 @@ LONGEST = (
     "acceptance/test_identification", "bench/test_model", "effects/test_contract", "app/test_bench",
     "bench/test_figures", "cli/test_commands", "fit/test_recovery", "bench/test_identification",
     "residuals/test_curves", "faults/test_kill", "fit/test_nonlinear_core", "fit/test_outputs",
-    "fit/test_custom_fit", "figures/test_figures", "acceptance/test_measured", "app/test_contract",
+    "fit/test_custom_fit", "figures/test_figures", "acceptance/test_measured",
     "reference/test_nonlinear_reference", "effects/test_pairs",
 )  # fmt: skip
 """Files that take longest, the longest first."""
