@@ -11,7 +11,7 @@ from pathlib import Path
 def processor(pid: int) -> float:
     """Processor time (s) of a process and of all that came of it and runs."""
     total = 0.0
-    for one in _family(pid):
+    for one in family(pid):
         with suppress(FileNotFoundError, ProcessLookupError):
             fields = Path(f"/proc/{one}/stat").read_text().rpartition(")")[2].split()
             # Its own, and what its ended children used.
@@ -31,21 +31,21 @@ def peak(pid: int) -> int:
 
 def reset(pid: int) -> None:
     """Count the peaks from here."""
-    for one in _family(pid):
+    for one in family(pid):
         with suppress(FileNotFoundError, ProcessLookupError):
             Path(f"/proc/{one}/clear_refs").write_text("5")
 
 
 def _memory(pid: int, entry: str) -> int:
     total = 0
-    for one in _family(pid):
+    for one in family(pid):
         with suppress(FileNotFoundError, ProcessLookupError):
             lines = Path(f"/proc/{one}/status").read_text().splitlines()
             total += next((int(line.split()[1]) for line in lines if line.startswith(entry)), 0)
     return 1024 * total
 
 
-def _family(pid: int) -> Iterator[int]:
+def family(pid: int) -> Iterator[int]:
     """A process, and all that came of it and run."""
     waiting = [pid]
     while waiting:

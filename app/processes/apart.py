@@ -16,7 +16,7 @@ from ident.progress import Report
 
 Made = TypeVar("Made")
 Context = SpawnContext | ForkServerContext
-_TRIES = 2  # a process that was ended from outside is begun again, once: want of memory would end it for ever
+_TRIES = 3  # a process that was ended from outside is begun again, twice: want of memory would end it for ever
 _PATIENCE = 2.0  # s for a process to end
 
 
@@ -36,7 +36,10 @@ class Apart:
         """As :class:`app.processes.place.Place` says."""
         with self._turn:
             for _ in range(_TRIES):
-                child = self._taken()
+                try:
+                    child = self._taken()
+                except (OSError, EOFError):  # what begins them was ended, too: it is begun again
+                    continue
                 try:
                     made: Made = child.call(act, given, report)
                 except Ended:

@@ -21,7 +21,7 @@ class Place(Protocol):
         """What a function returns; where a report is given it is the last argument, and is called here.
 
         What either raises is raised: the report's in the function first, which may end by it. Raises MemoryError where
-        the system ended the process twice, Stopped where the place is stopped.
+        the system ended the process again and again, Stopped where the place is stopped.
         """
         ...
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import random
 import signal
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import httpx
 
@@ -53,6 +56,7 @@ class Strikes:
             (self._clock_ahead, self.world.shim is not None),
             (self._clock_behind, self.world.shim is not None),
             (self._disks_full, bool(self.world.disks)),
+            (self._beside_killed, Path("/proc").is_dir()),
         ]
 
     def _kill(self) -> None:
@@ -124,6 +128,13 @@ class Strikes:
         if self.world.server:
             time.sleep(1)
             self.world.server.revive()
+
+    def _beside_killed(self) -> None:
+        """kill -9 of what reads uploads or works on jobs for the service, or of what begins those."""
+        beside = self.world.beside(self.world.names[0])
+        if beside:
+            with suppress(ProcessLookupError):
+                os.kill(self.draw.choice(beside), signal.SIGKILL)
 
     def _clock_ahead(self) -> None:
         self._clock(3600)

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import httpx
 
+from benchmarks.process import family
 from tests.faults.disk import Disk, disk
 from tests.faults.nursery import Nursery
 from tests.running import TOKEN, free_port
@@ -71,6 +72,10 @@ class World:
 
     def signal(self, name: str, what: signal.Signals) -> None:
         os.kill(self.processes[name], what)
+
+    def beside(self, name: str) -> list[int]:
+        """What works for a process beside it."""
+        return [number for number in family(self.processes[name]) if number != self.processes[name]]
 
     def kept(self) -> None:
         """Take from the disk what is to be looked at later."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
+import signal
 import subprocess
 import sys
 import threading
@@ -83,11 +85,22 @@ def test_reports_are_made_here_and_end_the_work_there(place: Place) -> None:
     assert place.call(acts.told, 1, report=report) == "all told"
 
 
-def test_work_whose_process_was_ended_is_done_again_once(apart: Apart, tmp_path: Path) -> None:
+def test_work_whose_process_was_ended_is_done_again(apart: Apart, tmp_path: Path) -> None:
     assert apart.call(acts.ended_at_first, tmp_path) == "lives"
     with pytest.raises(MemoryError):
         apart.call(acts.dies)
     assert apart.call(acts.told, 1, report=lambda _: None) == "all told"
+
+
+@pytest.mark.skipif("forkserver" not in multiprocessing.get_all_start_methods(), reason="each is begun by itself here")
+def test_what_begins_processes_is_begun_again() -> None:
+    """It was ended, and then what works was, too."""
+    place = Apart(1, "ident.progress")
+    first, _ = place.call(acts.where)
+    os.kill(_begun_by(first), signal.SIGKILL)
+    os.kill(first, signal.SIGKILL)
+    assert place.call(acts.where)[0] != first
+    place.stop()
 
 
 def test_what_is_under_way_is_let_go_at_the_stop(tmp_path: Path) -> None:
@@ -123,6 +136,11 @@ Apart(1, "ident.progress").call(acts.sleeps, Path({str(tmp_path)!r}))
     parent.kill()
     parent.wait()
     assert _gone(pid)
+
+
+def _begun_by(pid: int) -> int:
+    """The process that forked another."""
+    return int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1])
 
 
 def _worker(folder: Path) -> int:
