@@ -17,20 +17,31 @@ from ident.progress import Report
 Made = TypeVar("Made")
 Context = SpawnContext | ForkServerContext
 _TRIES = 3  # a process that was ended from outside is begun again, twice: want of memory would end it for ever
+_LATER = 5.0  # s after the start at which what they need is imported, if nothing has asked for it
 _PATIENCE = 2.0  # s for a process to end
 
 
 class Apart:
-    """So many processes, each of which works one call out at a time; begun when they are needed first."""
+    """So many processes, each of which works one call out at a time; begun when they are needed first.
+
+    What they need is imported when the first is, or some seconds after the start, when a service has been opened.
+    """
 
     def __init__(self, count: int, ready: str) -> None:
-        """`ready` names a module that they have imported when they begin: it is imported meanwhile."""
+        """`ready` names a module that they have imported when they begin."""
         self._context = _context(ready)
         self._turn = threading.BoundedSemaphore(count)
         self._lock = threading.Lock()
         self._idle: list[Child] = []
         self._all: set[Child] = set()
         self._stopped = False
+        self._ahead = threading.Timer(_LATER, self._import)
+        self._ahead.daemon = True
+        self._ahead.start()
+
+    def _import(self) -> None:
+        if isinstance(self._context, ForkServerContext):
+            forkserver.ensure_running()
 
     def call(self, act: Callable[..., Made], *given: Any, report: Report | None = None) -> Made:
         """As :class:`app.processes.place.Place` says."""
@@ -56,6 +67,7 @@ class Apart:
 
     def stop(self) -> None:
         """End the processes: what is being worked out raises Stopped where it was asked for."""
+        self._ahead.cancel()
         with self._lock:
             self._stopped = True
             children = list(self._all)
@@ -92,7 +104,6 @@ def _context(ready: str) -> Context:
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload([ready])
-    forkserver.ensure_running()
     return context
 
 
