@@ -8,11 +8,12 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
-from sqlalchemy import Engine
+from sqlalchemy import Engine, Table
 
+from app.backup.repository import number_on
 from app.database import connect, migrate
 from app.tables import ActuatorRow, ApprovalRow, Base, FitRow, MatrixRow, SetRow, ValueRow
 
@@ -54,6 +55,8 @@ def fill(url: str, sets: int, batches: int = 1000, per_serial: float = 10 / 3, s
                             "[]", "d" * 64, 0, "1.0", "e" * 64, "lab") for n in range(1, sets + 1)))  # fmt: skip
         copy(raw, ValueRow, _values(sets, seed))
         copy(raw, ApprovalRow, _approvals(sets, serials))
+        for table in (SetRow, ApprovalRow):
+            number_on(connection, cast(Table, table.__table__))
         for index in indexes:
             index.create(connection)
     with engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:

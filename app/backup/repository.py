@@ -62,6 +62,11 @@ def fill(connection: Connection, table: Table, rows: Iterable[bytes]) -> None:
     entries = (_row(json.loads(line), binary) for line in rows)
     while some := list(islice(entries, _AT_A_TIME)):
         connection.execute(insert(table), some)
+    number_on(connection, table)
+
+
+def number_on(connection: Connection, table: Table) -> None:
+    """Have the database number rows from the last one that is there, where it numbers them."""
     (column, *others) = table.primary_key
     if connection.dialect.name == "postgresql" and not others and column.type.python_type is int:
         last = select(func.max(column)).scalar_subquery()
