@@ -56,10 +56,7 @@ def _compared(matrix: Matrix, report: Report) -> tuple[tuple[Structure, ...], Fi
         why = "the matrix describes it" if matrix.machine else shown
         return (Structure(only.name, {"held_out": None}, len(only.parameters), why),), None
     fitted = _all_fitted(models, matrix, report)
-    # One measure for all: over windows where one of them is fitted so, for what a machine integrated meanwhile is not
-    # a matter of its structure.
-    windows = [one.fit.window for one in fitted.values() if one.fit.window]
-    longest = max(windows, key=lambda window: window.horizon, default=None)
+    longest = _measure([one.fit for one in fitted.values()])
     tried = [one.judged(longest) for one in fitted.values()]
     least = min(_error(one) for one in tried)
     good = [one for one in tried if _error(one) <= _WORSE * least]
@@ -68,6 +65,18 @@ def _compared(matrix: Matrix, report: Report) -> tuple[tuple[Structure, ...], Fi
     over = "" if longest is None else f" over {longest.horizon:.3g} s"
     others = (_said(one, over, "") for one in tried if one is not best)
     return (_said(best, over, "the simplest that is not worse"), *others), fitted[best.machine].fit
+
+
+def _measure(fits: Sequence[FitResult]) -> Window | None:
+    """What all are judged over: the longest of the windows over which one of them is fitted, None for whole runs.
+
+    What a machine integrated meanwhile is no matter of its structure. But where one that settles follows whole runs
+    more closely than those that integrate follow windows, begun anew all the time, nothing was integrated.
+    """
+    windows = [fit.window for fit in fits if fit.window]
+    least = min((_known(window.error["fit"]) for window in windows), default=0.0)
+    followed = any(_known(fit.error["fit"]) <= least for fit in fits if not fit.window)
+    return None if followed else max(windows, key=lambda window: window.horizon, default=None)
 
 
 def _all_fitted(models: Sequence[Preset], matrix: Matrix, report: Report) -> dict[str, _Fitted]:
@@ -171,7 +180,10 @@ class _Fitted:
 
 
 def _error(one: Structure) -> float:
-    error = one.error["held_out"]
+    return _known(one.error["held_out"])
+
+
+def _known(error: float | None) -> float:
     return float("inf") if error is None else error
 
 

@@ -6,7 +6,9 @@ position, tells of the samples up to there (Kalata 1984): with Λ = (1/memory)²
 
     r = (4 + Λ − √(8Λ + Λ²))/4,   α = 1 − r²,   β = 2(2 − α) − 4√(1 − α),
 
-    ν[k] = e[k] − x̂[k−1] − v̂[k−1],   x̂[k] = x̂[k−1] + v̂[k−1] + αν[k],   v̂[k] = v̂[k−1] + βν[k].
+    ν[k] = e[k] − x̂[k−1] − v̂[k−1],   x̂[k] = x̂[k−1] + v̂[k−1] + αν[k],   v̂[k] = v̂[k−1] + βν[k],
+
+from x̂ = e[0], v̂ = 0 on: where a record begins is no speed.
 """
 
 from __future__ import annotations
@@ -54,6 +56,7 @@ class Stream:
     def __init__(self, anchoring: Anchoring) -> None:
         self._of = anchoring
         self._state: Array | None = None
+        self._origin = np.zeros(())
 
     def __call__(self, rows: Array) -> Array:
         """The next rows (n, …) of it."""
@@ -70,8 +73,8 @@ class Stream:
     def _speeds(self, rows: Array) -> Array:
         numerator, denominator = filter_of_speed(self._of.memory)
         if self._state is None:
-            self._state = np.zeros((2, *rows.shape[1:]))
-        speeds, self._state = scipy.signal.lfilter(numerator, denominator, rows, axis=0, zi=self._state)
+            self._state, self._origin = np.zeros((2, *rows.shape[1:])), rows[0]
+        speeds, self._state = scipy.signal.lfilter(numerator, denominator, rows - self._origin, axis=0, zi=self._state)
         return np.asarray(speeds)
 
 

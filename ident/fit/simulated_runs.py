@@ -1,7 +1,8 @@
 """Runs under a chain that is not linear, simulated at given values: outputs, and what a fit needs of them.
 
 The first state of a record that starts moving is a nuisance of its run: it begins at the linear model's and follows
-with each step of a fit, by the sensitivities to it.
+with each step of a fit, by the sensitivities to it. What was recorded of it is none: the position of a machine that is
+moved begins where it was measured. Were it free, what hangs on the position could be another thing in every run.
 """
 
 from __future__ import annotations
@@ -162,12 +163,13 @@ class SimulatedRuns:
 
     def released(self, runs: tuple[Run, ...], values: Mapping[str, Array], steps: int) -> Simulation:
         """A simulation of vectors and, where runs start moving, of the first with each of its first states moved."""
-        if runs[0].begins != "moving":
+        free = self._free(runs[0])
+        if not len(free):
             return self.simulation(runs, values, steps)
-        vectors, states = len(next(iter(values.values()))), len(self.chain.states)
+        vectors, states = len(next(iter(values.values()))), len(free)
         wide = {name: np.concatenate([value, np.repeat(value[:1], states)]) for name, value in values.items()}
         start = np.repeat(np.array([self.start(run) for run in runs])[:, None], vectors + states, axis=1)
-        start[:, vectors:] += np.diag(self._reach)
+        start[:, vectors + np.arange(states), free] += self._reach[free]
         return self.simulation(runs, wide, steps, start)
 
     def simulation(
@@ -180,7 +182,7 @@ class SimulatedRuns:
         at = stacked | {name: value[None] for name, value in values.items()}
         if start is None and runs[0].begins == "standing":
             start = self._standing(runs, at)
-        elif start is None and runs[0].begins == "moving":
+        elif start is None and (runs[0].begins == "moving" or self._recorded(runs[0])):
             start = np.repeat(np.array([self.start(run) for run in runs])[:, None], vectors, axis=1)
         return Simulation(self.chain, runs, at, steps, start)
 
@@ -191,7 +193,8 @@ class SimulatedRuns:
         if run.begins == "standing":
             return self._standing((run,), values)
         vectors = np.broadcast_shapes(*(np.shape(value) for value in values.values()))[1]
-        return np.repeat(self.start(run)[None, None], vectors, axis=1) if run.begins == "moving" else None
+        known = run.begins == "moving" or self._recorded(run)
+        return np.repeat(self.start(run)[None, None], vectors, axis=1) if known else None
 
     def _standing(self, runs: tuple[Run, ...], values: Mapping[str, Array]) -> Array:
         """The states in which runs of one kind stand at first, near those of the linear chain, (runs, v, n)."""
@@ -203,11 +206,27 @@ class SimulatedRuns:
         linear = core.linearise({name: values[name] for name in core.symbols}, output).standing(u, y)
         near = np.zeros((*linear.shape[:-1], len(self.chain.states)))
         near[..., [self.chain.states.index(name) for name in core.states]] = linear
-        return equilibrium(self.chain, output, values, u, runs[0].sample_rate, near)
+        found = equilibrium(self.chain, output, values, u, runs[0].sample_rate, near)
+        for i, run in enumerate(runs):
+            for state, value in self._recorded(run).items():
+                found[i, :, state] = value
+        return found
 
     def start(self, run: Run) -> Array:
-        """The states in which a run begins, (n,)."""
-        return self.starts.get(run.id, np.zeros(len(self.chain.states)))
+        """The states in which a run begins, (n,), those that were recorded as they were."""
+        found, recorded = self.starts.get(run.id, np.zeros(len(self.chain.states))).copy(), self._recorded(run)
+        found[list(recorded)] = list(recorded.values())
+        return found
+
+    def _recorded(self, run: Run) -> dict[int, float]:
+        """The places of the states that were recorded, and where the run begins in them."""
+        known = {state: run.channels[of] for state, of in self.preset.imposed.items() if of in run.channels}
+        return {self.chain.states.index(state): float(samples[0]) for state, samples in known.items()}
+
+    def _free(self, run: Run) -> NDArray[np.intp]:
+        """The places of the first states that are to be found: of a run that starts moving those not recorded."""
+        count = len(self.chain.states) if run.begins == "moving" else 0
+        return np.setdiff1d(np.arange(count), list(self._recorded(run))).astype(np.intp)
 
     def begin(self, values: Mapping[str, float]) -> None:
         """Take the first states that are not known yet from the linear model at `values`."""
@@ -219,8 +238,11 @@ class SimulatedRuns:
                 self.starts[run.id] = np.array([known.get(name, 0.0) for name in self.chain.states])
 
     def _follow(self, run: Run, found: NormalMatrices) -> None:
+        free = self._free(run)
         if len(found.release) and np.all(np.isfinite(found.release)):
-            self.starts[run.id] = self.start(run) + self._reach * found.release
+            start = self.start(run)
+            start[free] += self._reach[free] * found.release
+            self.starts[run.id] = start
 
     @cached_property
     def _reach(self) -> Array:
@@ -233,10 +255,11 @@ class SimulatedRuns:
     # Shares ------------------------------------------------------------------------------------------------------
 
     def together(self, vectors: int, lanes: int = _TOGETHER) -> Iterator[tuple[Run, ...]]:
-        """Runs that are simulated in one go: of one length, sample rate, output and kind of start."""
+        """Runs that are simulated in one go: of one length, sample rate, output, kind of start and recorded states."""
         groups: dict[tuple[object, ...], list[Run]] = {}
         for run in self.runs:
-            groups.setdefault((run.length, run.sample_rate, run.output, run.begins), []).append(run)
+            begun = (run.begins, *self._recorded(run))
+            groups.setdefault((run.length, run.sample_rate, run.output, *begun), []).append(run)
         for runs in groups.values():
             most = max(1, lanes // vectors)
             shares = -(-len(runs) // most)

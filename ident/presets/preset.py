@@ -156,6 +156,12 @@ class Preset:
         return in_reading_order(_in_order(found, (*self.searched, *(p.in_equations for p in self.parameters))))
 
     @property
+    def imposed(self) -> Mapping[str, str]:
+        """The states that go with what moves the machine, and the channels that may have recorded them."""
+        moved = self.driven_by in MOTIONS and "x" in self.chain.states
+        return {"x": "displacement"} if moved else {}
+
+    @property
     def _sizes(self) -> dict[str, str]:
         """Of drive signal, its zones, force and time, in the words of a scale: see :func:`scale_of`."""
         drive = self.drive_scale or "Kp*L"

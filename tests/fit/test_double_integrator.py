@@ -92,6 +92,13 @@ def test_a_speed_that_was_there_before_is_taken_away_and_no_other():
     assert kinked[119] == pytest.approx(9.0)
 
 
+def test_where_a_record_begins_is_no_speed():
+    """It was one of the whole first sample, so that the first window led far away."""
+    assert np.abs(Anchoring(20, 1.2)(np.full((60, 2), 3.0))).max() < 1e-9
+    signal = np.random.default_rng(5).standard_normal(100)
+    assert np.allclose(Anchoring(20, 1.2)(signal + 7.0), Anchoring(20, 1.2)(signal))
+
+
 def test_the_gains_are_those_of_the_steady_riccati_equation():
     """Of x, v with white acceleration: the Kalman gain of scipy's discrete Riccati equation."""
     for memory in (2.0, 10.0):

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ident.chain.chain import linear_model
 from ident.chain.conditions import conditions
+from ident.diagnosis.proposals.recorded import of_run
 from ident.diagnosis.refit import Refit
 from ident.fit.anchoring import Anchoring
 from ident.fit.responses import Sensitivities
@@ -31,7 +32,8 @@ class Record:
     Sensitivities to the parameters (n, p), what is `free` in the run (n, s), the residual (n,), all counted from where
     each window of the `anchoring` begins, where there are such.
 
-    `signals` are those inside the model, the conditions of the run and the time, by name, (n,).
+    `signals` are those inside the model, the conditions of the run, what was recorded beside it and the time, by name,
+    (n,).
     """
 
     run: Run
@@ -66,6 +68,7 @@ def records(refit: Refit, names: Sequence[str], instead_of: Sequence[str] = ()) 
         shown = {name: averaged(inner[name][run.id], count)[:most] for name in names}
         n, rate = len(coarse), run.sample_rate / count
         known = {name: np.full(n, value) for name, value in conditions(run, fitness.matrix.actuator).items()}
+        known |= {name: averaged(samples, count)[:most] for name, samples in of_run(run).items()}
         time = {"t": (np.arange(n) + 0.5) / rate}
         p = len(point)
         residual = coarse[:, -1] + coarse[:, :p] @ put_back

@@ -2,8 +2,8 @@
 
 Three disjoint sets of the fitted runs: terms are ranked on the first, by one linear regression, and refitted to it;
 the second chooses between the refits; the third confirms. What passes the bar is refitted to all fitted runs, and the
-next term sought beside it. Of one run or two each serves for all three, with stretches of it held out in turn, and what
-comes of it is a hypothesis. Runs to verify only report.
+next term sought beside it. Of few runs all serve for all three, with stretches of them and whole runs held out in turn,
+and what comes of it is a hypothesis. Runs to verify only report.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from ident.diagnosis.proposals.own import as_found, curves, definition, searched
 from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.proposals.shown import shown_in
 from ident.diagnosis.proposals.sight import Sight, sight
-from ident.diagnosis.refit import Refit
+from ident.diagnosis.refit import Refit, carries_over
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.standing import Contradiction, contradiction
 from ident.diagnosis.ties import first_least, in_order
@@ -44,7 +44,7 @@ _EVIDENCE = 5.0  # nats beyond the logarithm of how many were looked at
 _CLOSE, _MOST_CLOSE = 1.1, 8  # times the least error of the rough refits, and how many: carried to their end
 _PLAIN = 4  # terms without shapes that are, too: held-out data may prefer them
 _AS_GOOD = 1.02  # times the least error: a simpler one is taken
-_FEWEST = 3  # runs, of which one each searches, chooses and confirms
+_FEWEST = 6  # runs, of which two each search, choose and confirm: one tells nothing of what differs between runs
 
 
 @dataclass
@@ -111,7 +111,7 @@ class Search:
         candidate, refit, family = min(good, key=lambda one: one[0].simplicity)
         if few:
             gain = improvement(base.held_out, refit.held_out)
-            gained, sound = gain.nats, gain.beyond_chance
+            gained, sound = gain.nats, gain.beyond_chance and carries_over(base, refit)
         else:
             integrated = self.models.horizon is not None
             told = evidence(confirming, _left(base, confirming), _left(refit, confirming), self.models.band, integrated)

@@ -12,6 +12,7 @@ from ident.chain.conditions import CONDITIONS
 from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.proposals import free_curves
 from ident.diagnosis.proposals.candidate import Candidate, offered
+from ident.diagnosis.proposals.recorded import recorded_beside, units_of
 from ident.diagnosis.proposals.records import paths, records
 from ident.diagnosis.proposals.regression import regression
 from ident.diagnosis.proposals.terms import Library
@@ -49,12 +50,13 @@ def sight(models: ModelFamily, base: Refit, instead_of: Effect | None = None, cu
     numbers = [p.in_equations for p in instead_of.added] if instead_of else []
     runs = records(base, list(dict.fromkeys((*names, *places.values()))), numbers)
     typical = {name: np.concatenate([record.signals[name] for record in runs]) for name in runs[0].signals}
-    units = {name: quantity.unit for name, quantity in CONDITIONS.items()} | dict(preset.chain.units)
+    units = {name: quantity.unit for name, quantity in CONDITIONS.items()}
+    units |= {**units_of(models.runs[0]), **preset.chain.units}
     shortest = min(run.duration for run in models.runs)
     varied = [name for name in _VARIED if np.ptp(typical[name]) > 0]
     names = _distinct(names, typical)
     there = {place: [name for name in names if _known_there(preset, place, at, name)] for place, at in places.items()}
-    library = Library(places, there, typical, units, models.band, shortest, varied)
+    library = Library(places, there, typical, units, models.band, shortest, varied, recorded_beside(models))
     responses = {at: paths(preset, base.values, models.matrix.actuator, at, runs) for at in places.values()}
     if curves:
         drawn = free_curves.free_curves(library)

@@ -1,8 +1,8 @@
 """What may be missing at a place: a term of the signals there, written as an equation and worked out on samples.
 
 Terms are drawn from forms: powers, roots, absolute values, signs, one-sided parts and thresholds of one signal;
-products of two; hills of the position; lags and play. Each becomes an effect of its own, ``at = at + s term``, whose
-strength s has the unit of the signal that it acts on over that of the term.
+products of two; hills of the position; lags and play; what was recorded beside the machine. Each becomes an effect of
+its own, ``at = at + s term``, whose strength s has the unit of the signal that it acts on over that of the term.
 """
 
 from __future__ import annotations
@@ -126,7 +126,8 @@ class Library:
     """All terms for the places of a chain: `places` maps a place to the signal that is added to.
 
     `signals` are those that terms there may be of, `typical` all their samples, `units` as the chain has them; `band`
-    is the end of the command's, rad/s, `seconds` the length of the shortest run, `varied` the conditions that differ.
+    is the end of the command's, rad/s, `seconds` the length of the shortest run, `varied` the conditions that differ,
+    `recorded` the channels beside the machine.
     """
 
     places: Mapping[str, str]
@@ -136,6 +137,7 @@ class Library:
     band: float
     seconds: float
     varied: Sequence[str] = ()
+    recorded: Sequence[str] = ()
 
     def terms(self) -> Iterator[Term]:
         """Every term, the simplest forms first."""
@@ -265,8 +267,10 @@ class Library:
                 yield self._dragging(rubbing, "v", hill)
 
     def _with_conditions(self, place: str, at: str) -> Iterator[Term]:
-        """Terms that grow with a condition of the run, where it differs, or with time."""
-        for name in (*self.varied, "t"):
+        """Terms that grow with a condition of the run, where it differs, with a recorded channel, or with time."""
+        for name in self.recorded:
+            yield Term(place, at, name, "recorded", (name,), self._unit((name, 1)))
+        for name in (*self.varied, *self.recorded, "t"):
             unit = {"t": "s"}.get(name) or self.units.get(name, "1")
             for a in self.signals[place]:
                 powers = _multiplied(self._unit((a, 1)), powers_of(unit) or {}, 1)
