@@ -56,27 +56,31 @@ def _compared(matrix: Matrix, report: Report) -> tuple[tuple[Structure, ...], Fi
         why = "the matrix describes it" if matrix.machine else shown
         return (Structure(only.name, {"held_out": None}, len(only.parameters), why),), None
     fitted = _all_fitted(models, matrix, report)
-    longest = _measure([one.fit for one in fitted.values()])
-    tried = [one.judged(longest) for one in fitted.values()]
+    over, tried = _judged(list(fitted.values()))
     least = min(_error(one) for one in tried)
     good = [one for one in tried if _error(one) <= _WORSE * least]
     strange = {model.name for model in models if unusual(model, matrix.runs)}
     best = min(good, key=lambda one: (one.machine in strange, one.parameters))
-    over = "" if longest is None else f" over {longest.horizon:.3g} s"
     others = (_said(one, over, "") for one in tried if one is not best)
     return (_said(best, over, "the simplest that is not worse"), *others), fitted[best.machine].fit
 
 
-def _measure(fits: Sequence[FitResult]) -> Window | None:
-    """What all are judged over: the longest of the windows over which one of them is fitted, None for whole runs.
+def _judged(fitted: Sequence[_Fitted]) -> tuple[str, list[Structure]]:
+    """The models by one measure for all, and in words over what: the longest windows of one that is fitted so.
 
-    What a machine integrated meanwhile is no matter of its structure. But where one that settles follows whole runs
-    more closely than those that integrate follow windows, begun anew all the time, nothing was integrated.
+    What a machine integrated meanwhile is no matter of its structure. But where one that settles leaves less of whole
+    runs than any leaves of windows, each begun anew where it was measured, nothing was integrated: whole runs count.
     """
-    windows = [fit.window for fit in fits if fit.window]
-    least = min((_known(window.error["fit"]) for window in windows), default=0.0)
-    followed = any(_known(fit.error["fit"]) <= least for fit in fits if not fit.window)
-    return None if followed else max(windows, key=lambda window: window.horizon, default=None)
+    windows = [one.fit.window for one in fitted if one.fit.window]
+    longest = max(windows, key=lambda window: window.horizon, default=None)
+    tried = [one.judged(longest) for one in fitted]
+    if longest is None:
+        return "", tried
+    if len(windows) < len(fitted):
+        whole = [one.judged(None) for one in fitted]
+        if min(map(_error, whole)) < min(map(_error, tried)):
+            return "", whole
+    return f" over {longest.horizon:.3g} s", tried
 
 
 def _all_fitted(models: Sequence[Preset], matrix: Matrix, report: Report) -> dict[str, _Fitted]:
@@ -180,10 +184,7 @@ class _Fitted:
 
 
 def _error(one: Structure) -> float:
-    return _known(one.error["held_out"])
-
-
-def _known(error: float | None) -> float:
+    error = one.error["held_out"]
     return float("inf") if error is None else error
 
 

@@ -66,10 +66,8 @@ def test_where_a_machine_that_is_moved_begins_is_no_parameter_of_the_run():
 @pytest.mark.parametrize("first", [0, 10], ids=["moving", "at a turn"])
 def test_its_position_begins_where_it_was_measured(first):
     matrix = replace(seals(), runs=tuple(run.part(first, run.length) for run in seals().runs))
-    work = Identification(matrix, Settings(model="specimen", effects=("position_friction",)))
-    runs = work.objective.fresh(matrix.of_use("fit"))
-    values = {p.in_equations: p.value for p in work.preset.parameters}
-    runs.settle(values | {"cS": DAMPING})
+    runs = Identification(matrix, Settings(model="specimen", effects=("position_friction",))).objective
+    runs.settle({p.in_equations: p.value for p in runs.preset.parameters})
     place = runs.chain.states.index("x")
     assert [runs.start(run)[place] for run in runs.runs] == [run.channels["displacement"][0] for run in runs.runs]
 
