@@ -14,6 +14,7 @@ from ident.diagnosis.advice import error_budget, next_run
 from ident.diagnosis.course import Course
 from ident.diagnosis.elsewhere import Other, elsewhere, others
 from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.late import lateness
 from ident.diagnosis.proposals.outcome import Proposals
 from ident.diagnosis.proposals.search import Search
 from ident.diagnosis.ranking import Candidate
@@ -23,7 +24,7 @@ from ident.diagnosis.significance import improvement
 from ident.diagnosis.standing import Contradiction, contradiction, standing
 from ident.diagnosis.stepwise import USUAL, StepwiseSelection
 from ident.diagnosis.suspects import suspects
-from ident.diagnosis.words import as_well, verdict_text, why
+from ident.diagnosis.words import as_well, told_late, verdict_text, why
 from ident.effects.effect import Effect
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.result import FitResult
@@ -66,11 +67,11 @@ class Diagnoser:
         if doubted:
             selection = self._added(self.models.without(suspect.run for suspect in doubted))
             doubted = self._doubted(selection)
-        told = self._elsewhere(selection)
+        told, late = self._elsewhere(selection), self._late(selection)
         proposed = self._proposed(selection) if self._is_proposing(selection) else Proposals()
         self.course.conclude()
         found = self._said(selection, doubted)
-        verdict = replace(found.verdict, elsewhere=told, text=" ".join([found.verdict.text, *as_well(told)]))
+        verdict = replace(found.verdict, elsewhere=told, text=" ".join([found.verdict.text, *late, *as_well(told)]))
         return replace(
             found, verdict=verdict, proposals=proposed.found, complete=found.complete and proposed.complete,
             looked_at=proposed.looked_at, notes=(*found.notes, *_refused(proposed, self.course.propose)),
@@ -83,6 +84,17 @@ class Diagnoser:
         except TimeIsUp:
             selection.complete = False
             return ()
+
+    def _late(self, selection: StepwiseSelection) -> tuple[str, ...]:
+        """How late the machine answers, where the data do not tell by which lag or delay, and there was time."""
+        try:
+            self.course.tell(Progress("lags and delays", 0, 1))
+        except TimeIsUp:
+            selection.complete = False
+        if not selection.complete:
+            return ()
+        models = selection.models
+        return tuple(told_late(lateness(models, selection.base, selection.found), models.spoken))
 
     def _is_proposing(self, selection: StepwiseSelection) -> bool:
         """Whether terms that no list holds are to be searched for.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,7 +13,9 @@ from ident.diagnosis.cross_validation import CrossValidation, cross_validated
 from ident.diagnosis.estimate import Found
 from ident.diagnosis.significance import improvement
 from ident.fit.fitness import Local
+from ident.fit.result import Combination
 from ident.fit.simulated_fitness import SimulatedFitness
+from ident.fit.slow_answer import slow_lag
 from ident.fit.space import Space
 from ident.fit.uncertainty import Covariance, covariance
 from ident.matrix import Run, over_runs
@@ -109,6 +111,10 @@ class Refit:
             return None
         error = self._known.deviation(lambda points: self.space.values(points)[parameter])
         return error if np.isfinite(error) and error < _KNOWN * max(abs(self.values[parameter]), 1e-300) else None
+
+    def slow_lags(self) -> Iterator[Combination]:
+        """How late it answers to a slow command, where that is determined."""
+        return slow_lag(self.fitness, self._known)
 
     @property
     def parameters(self) -> dict[str, Found]:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
+from ident.diagnosis.late import Lateness
 from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.result import Explanation, Suspect
 from ident.diagnosis.significance import Improvement
 from ident.diagnosis.standing import Contradiction
 from ident.effects.effect import Effect
+from ident.fit.result import Combination
 from ident.words.percent import percent
 from ident.words.titles import title
 
@@ -108,6 +110,22 @@ def as_well(elsewhere: Sequence[Explanation]) -> Iterator[str]:
         yield f"Another model explains more: {', '.join(told[True])} (--model)."
     if told[False]:
         yield f"These data cannot tell it from other models: {', '.join(told[False])}."
+
+
+def told_late(late: Lateness | None, spoken: Callable[[str], str] = title) -> Iterator[str]:
+    """How late the machine answers, and what the data cannot tell it from, in a sentence; nothing where all is told."""
+    if late is None:
+        return
+    names = ", ".join((f"{late.parameter.name} ({late.parameter.meaning})", *map(spoken, late.in_place)))
+    before = f", {_seconds(late.before)} by the fitted model" if late.before else ""
+    yield (
+        f"A slow command is answered {_seconds(late.found)} late{before}; "
+        f"by which lag or delay these data cannot tell: {names}."
+    )
+
+
+def _seconds(of: Combination) -> str:
+    return f"{of.value:.3g} ± {of.std_error:.2g} s"
 
 
 def _told(one: Explanation) -> str:

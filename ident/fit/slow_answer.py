@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from ident.chain.chain import Chain
 from ident.chain.conditions import conditions
+from ident.effects.effect import Effect
 from ident.equations.equation import Equation
 from ident.fit.fitness import Fitness
 from ident.fit.result import Combination
@@ -64,6 +65,15 @@ def lags(objective: Fitness, run: Run, points: Array) -> Array:
 def _times(chain: Chain, output: str) -> Iterator[ast.expr]:
     """The times of lags and delays that effects bring on the way to an output: a core has its lags as states."""
     for equation in chain.needed(output):
-        for node in ast.walk(equation.tree):
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in _LATE:
-                yield node.args[1]
+        yield from _times_in(equation)
+
+
+def is_late(effect: Effect) -> bool:
+    """Whether an effect is a lag or a delay of its own."""
+    return any(True for equation in effect.equations for _ in _times_in(equation))
+
+
+def _times_in(equation: Equation) -> Iterator[ast.expr]:
+    for node in ast.walk(equation.tree):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in _LATE:
+            yield node.args[1]

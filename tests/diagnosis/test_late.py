@@ -1,0 +1,54 @@
+"""Whether the data tell a lag from a delay: a cylinder in open loop whose records wander, and one that is still."""
+
+from __future__ import annotations
+
+import re
+
+from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.late import lateness
+from ident.diagnosis.words import told_late
+from ident.fit.settings import Settings
+from ident.matrix import Matrix
+from ident.workflows import diagnose, identify
+from tests.fit.test_windows import LAG, cylinder
+
+SETTINGS = Settings(model="open_valve")
+
+
+def judged(matrix: Matrix):
+    """The lag of the fitted model, and what does as well in its place."""
+    fit = identify(matrix, SETTINGS)
+    over = (fit.window.horizon, fit.window.memory) if fit.window else (None, None)
+    models = ModelFamily.of(matrix, SETTINGS, (), *over)
+    refit = models.refit((), {models.preset.parameter(name).in_equations: v for name, v in fit.values.items()})
+    return lateness(models, refit, refit)
+
+
+def test_where_disturbances_hide_the_shape_of_the_answer_lag_and_delay_are_one_group():
+    late = judged(cylinder(4, wander=3e-3))
+    assert late.parameter.name == "tau"
+    assert {"command_delay", "acquisition_lag"} <= set(late.in_place)
+    assert abs(late.found.value - LAG) < 4 * late.found.std_error
+    (said,) = told_late(late)
+    assert re.search(r"answered 0\.1\d* ± 0\.0\d+ s late", said)
+    assert "tau" in said
+    assert "command delay" in said
+
+
+def test_a_clean_record_tells_a_lag_from_a_delay():
+    late = judged(cylinder(4, wander=0.0))
+    assert late is None or "command_delay" not in late.in_place
+    assert list(told_late(None)) == []
+
+
+def test_a_diagnosis_says_it():
+    matrix = cylinder(4, wander=3e-3)
+    found = diagnose(matrix, identify(matrix, SETTINGS), most=1, propose=False)
+    assert "by which lag or delay these data cannot tell: tau" in found.verdict.text
+
+
+def test_of_a_model_without_a_time_constant_of_its_own_nothing_is_said():
+    matrix = cylinder(4, wander=3e-3, seconds=30.0)
+    models = ModelFamily.of(matrix, Settings(model="motor"))
+    refit = models.refit((), {})
+    assert lateness(models, refit, refit) is None
