@@ -18,11 +18,12 @@ from schemas.limits import JudgedView, LineVerdictView
 def judge(context: Context, serial: str) -> LineVerdictView:
     """Pass, fail, or unknown with the reasons; raises Failure 404."""
     with context.sessions() as session:
-        actuator, row = find(session, serial), in_force(session, [serial]).get(serial)
+        row = in_force(session, [serial]).get(serial)
+        limits = repository.in_batch(session, row.model, row.batch) if row else {}
+        actuator = None if row else find(session, serial)
+    if row is None:
         if actuator is None:
             raise missing("actuator", serial)
-        limits = repository.in_batch(session, row.model, row.batch) if row else {}
-    if row is None:
         return _unknown(serial, actuator.batch, None, "no parameter set is in force: approve a fit")
     if not limits:
         of = f"model {row.model}, batch {row.batch}" if row.batch else f"model {row.model}"

@@ -20,6 +20,7 @@ from app.parameters.wanted import Wanted
 
 FEW = 20_000
 """Sets of one condition that are collected at most, and of the newest that are looked through first."""
+_SAMPLE = 2000  # of the newest, which tell whether it is worth while to look through so many
 _TESTED = 1000  # of those that were collected, tested at once for what is left
 
 
@@ -32,9 +33,12 @@ def numbers(session: Session, wanted: Wanted, before: int | None, limit: int) ->
         lead = next((one for one in asked if one.walk is not None), None)
         others = [*tests, *(one.test for one in asked if one is not lead)]
         top = before if before is not None else (session.scalar(select(func.max(SET))) or 0) + 1
-        found = _numbers(session, _walk(lead, others, before, top - FEW).limit(limit))
-        if len(found) == limit or top <= FEW:
-            return found
+        for newest in (_SAMPLE, FEW):
+            found = _numbers(session, _walk(lead, others, before, top - newest).limit(limit))
+            if len(found) == limit or top <= newest:
+                return found
+            if 2 * len(found) * (FEW // newest) < limit:  # not among so many either
+                break
         narrow = _collected(session, asked)
         if not narrow:
             return _numbers(session, _walk(lead, others, before).limit(limit))

@@ -36,6 +36,7 @@ def many(tmp_path_factory: pytest.TempPathFactory) -> Iterator[sessionmaker[Sess
 @pytest.fixture(autouse=True)
 def _small(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(found, "FEW", FEW)
+    monkeypatch.setattr(found, "_SAMPLE", FEW // 10)
     monkeypatch.setattr(found, "_TESTED", FEW // 20)
 
 
