@@ -24,7 +24,7 @@ from app.context import Context
 from app.database import connect, sessions
 from app.main import create_app
 from app.parameters import export
-from app.parameters.found import numbers
+from app.parameters.repository.found import numbers
 from app.parameters.wanted import Wanted
 from app.settings import Settings
 from benchmarks import figures, process

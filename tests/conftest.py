@@ -48,6 +48,7 @@ ALONE = ("browser/test_workbench",)
 """Files of the browser's that have a service of their own."""
 
 
+@pytest.hookimpl(tryfirst=True)  # before xdist looks at the groups
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Long files go first, so that no core is left alone with one at the end.
 

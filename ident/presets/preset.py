@@ -20,6 +20,7 @@ from ident.errors import Unusable
 from ident.matrix import DISTURBANCES, MOTIONS, Matrix
 from ident.parameter import Parameter
 from ident.presets.convention import Convention
+from ident.presets.effect_scales import scale_of
 from ident.presets.neutral import from_neutral
 from ident.presets.passivity import passive
 from ident.presets.stated import refuse_unstated
@@ -319,36 +320,3 @@ def _in_order(found: Mapping[str, T], first: Iterable[str]) -> tuple[T, ...]:
 
 
 _TIME = "max(1/W, H/6)"  # a step may be late by half the time that it is held
-_OWN = ("1", None)
-_SCALES = {
-    "1": _OWN, "Pa": _OWN, "m/s": _OWN, "s": ("T", 3.0), "1/s": ("W", 1.0), "m": ("Z", 1.0), "1/m": ("1/D", 3.0),
-    "s/m": ("T/D", 5.0), "N": ("F", 0.3), "N/m^3": ("F/L**3", 0.3), "N*s^2/m^2": ("F/V**2", 1.0),
-    "m/Pa": ("D*A/F", 1.0), "1/Pa": ("A/F", 1.0), "s/m^3": ("1/(A*V)", 1.0), "1/m^2": ("1/L**2", 1.0),
-    "m^3/(s*Pa^0.5)": ("A*V/sqrt(F/A)", 1.0), "m/N": ("L/F", 1.0), "m^3/(s*Pa)": ("A*V/(F/A)", 1.0),
-    "N/m^2": ("F/L**2", 1.0), "N/m": ("F/L", 1e3),
-}  # fmt: skip
-"""For a machine of unknown size: what a strength of each unit is measured by, and how much of it is searched.
-
-D and F stand for the sizes of its drive signal and its forces, Z for the widest zone that lets some of the drive signal
-through, T for the time of an answer; L and V, as W, are typical of the runs: the deviations of motion and speed.
-`_OWN`: within its own bounds.
-"""
-
-
-def scale_of(effect: Effect, parameter: Parameter, sizes: Mapping[str, str]) -> Scale:
-    """How to search an effect's parameter for a machine of another size than its bounds were stated for.
-
-    A user's effect states its own bounds, which hold. So they do where the model has no force.
-    """
-    text, reach = _SCALES.get(parameter.unit, _OWN)
-    if effect.place not in ("valve", "spool") and parameter.unit == "m":
-        text, reach = "L", 0.5
-    if effect.place == "load" and parameter.unit == "1/m":
-        text, reach = "1/L", 1.0
-    if effect.own or reach is None or ("F" in text and not sizes["F"]):
-        return Scale.by_bounds(parameter, logarithmic=False)
-    text = re.sub(r"\b[DZFT]\b", lambda found: f"({sizes[found[0]]})", text)
-    lower = -reach if parameter.lower < 0 else 0.0
-    if parameter.searched:  # as many decades as between its bounds
-        lower = reach * parameter.lower / parameter.upper
-    return Scale(parameter.in_equations, text, lower, reach, logarithmic=parameter.searched and parameter.logarithmic)

@@ -17,7 +17,8 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from app.context import Context
 from app.database import sessions
-from app.parameters import export, found
+from app.parameters import export
+from app.parameters.repository import found
 from app.parameters.wanted import Wanted
 from benchmarks.line_filled import PARAMETERS, fill
 

@@ -1,4 +1,4 @@
-"""Every query on parameter sets: the production line's questions."""
+"""Parameter sets as they are read."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 from sqlalchemy import BindParameter, bindparam, func, select
 from sqlalchemy.orm import Session
 
-from app.parameters import found
-from app.parameters.conditions import APPROVAL, SET, approvals
+from app.parameters.repository import found
+from app.parameters.repository.conditions import APPROVAL, SET, approvals
 from app.parameters.wanted import Wanted
 from app.tables import ApprovalRow, SetRow, ValueRow
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sqlalchemy import String, cast, func, select
 from sqlalchemy.orm import Session
 
-from app.parameters.conditions import SET, Condition, Numbers, Test, conditions, never_approved
+from app.parameters.repository.conditions import SET, Condition, Numbers, Test, conditions, never_approved
 from app.parameters.wanted import Wanted
 
 FEW = 20_000
