@@ -23,7 +23,7 @@ def test_the_service_from_its_start_to_its_end(monkeypatch: pytest.MonkeyPatch, 
     for name in ("start", "stop"):
         monkeypatch.setattr(main, name, lambda *_: seen.append(threads()))
     settings = Settings(data=tmp_path)
-    monkeypatch.setattr(main, "make_context", lambda _: SimpleNamespace(settings=settings))
+    monkeypatch.setattr(main, "make_context", lambda *_: SimpleNamespace(settings=settings))
     with TestClient(main.create_app(settings)):
         seen.append(threads())
     assert seen == [{1}, {1}, {1}]
@@ -41,7 +41,7 @@ def test_a_worker_from_its_start_to_its_end(monkeypatch: pytest.MonkeyPatch) -> 
         seen.append(threads())
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(main, "make_context", lambda _: SimpleNamespace(jobs=SimpleNamespace(running=True)))
+    monkeypatch.setattr(main, "make_context", lambda *_: SimpleNamespace(jobs=SimpleNamespace(running=True)))
     for name in ("start", "stop"):
         monkeypatch.setattr(main, name, note)
     monkeypatch.setattr(sys.modules[worker.__module__], "time", SimpleNamespace(sleep=interrupted))

@@ -53,6 +53,7 @@ def diagnosed() -> Diagnosis:
     return diagnose(matrix, identify(matrix, Settings(model="specimen")))
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_where_a_machine_that_is_moved_begins_is_no_parameter_of_the_run():
     """With the start free each run had a friction of its own: that of a place, far away, where it never was."""
     left = {
@@ -72,6 +73,7 @@ def test_its_position_begins_where_it_was_measured(first):
     assert [runs.start(run)[place] for run in runs.runs] == [run.channels["displacement"][0] for run in runs.runs]
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_friction_that_grows_with_a_recorded_pressure_is_proposed():
     found = diagnosed()
     assert found.verdict.unexplained
