@@ -38,7 +38,7 @@ if __name__ == "__main__":
     install_system_packages()
     # A worker a core, and one more while others wait; the tests of a file share what they set up; files in the order
     # of tests/conftest.py.
-    everything = ["-n", str((os.cpu_count() or 1) + 1), "--dist", "loadgroup", "--no-loadscope-reorder"]
+    everything = ["-n", str((os.cpu_count() or 1) + 1), "--dist", "loadfile", "--no-loadscope-reorder"]
     chosen = sys.argv[1:]
     whole = [*everything, *chosen] if chosen in ([], ["--full"]) else chosen
     enter("requirements-tests.lock", ["-m", "pytest", *whole])

@@ -44,31 +44,10 @@ LONGEST = (
 """Files that take longest, the longest first."""
 
 
-ALONE = ("browser/test_workbench",)
-"""Files of the browser's that have a service of their own."""
-
-
-@pytest.hookimpl(tryfirst=True)  # before xdist looks at the groups
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Long files go first, so that no core is left alone with one at the end.
-
-    The tests of a file stay together, and all of the browser's: one Chromium and one service are enough.
-    """
-    place = {name: number for number, name in enumerate(LONGEST)}
-    for item in items:
-        name = _name(item)
-        together = name.startswith("browser/") and name not in ALONE
-        item.add_marker(pytest.mark.xdist_group("browser" if together else name))
-    first = min((place.get(_name(item), len(place)) for item in items if "browser" in _groups(item)), default=0)
-    items.sort(key=lambda item: first if "browser" in _groups(item) else place.get(_name(item), len(place)))
-
-
-def _name(item: pytest.Item) -> str:
-    return item.path.relative_to(ROOT / "tests").with_suffix("").as_posix()
-
-
-def _groups(item: pytest.Item) -> tuple[str, ...]:
-    return tuple(mark.args[0] for mark in item.iter_markers("xdist_group"))
+    """Long files go first, so that no core is left alone with one at the end."""
+    place = {f"{name}.py": number for number, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: place.get(item.path.relative_to(ROOT / "tests").as_posix(), len(place)))
 
 
 @pytest.fixture(scope="session", autouse=True)
