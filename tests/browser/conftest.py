@@ -6,13 +6,12 @@ import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import cast
 
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page
 
 from tests.app.conftest import zipped
-from tests.browser.window import Window
+from tests.browser.window import Window, signed_in
 from tests.running import CHROMIUM, Service, process
 
 HERE = Path(__file__).resolve().parent
@@ -72,10 +71,7 @@ def window(
     launch_browser: Callable[..., Browser], browser_type_launch_args: dict[str, object], site: Service
 ) -> Iterator[Window]:
     """Where someone has signed in."""
-    args = cast("list[str]", browser_type_launch_args["args"])
-    made = Window(launch_browser, args, f"{site.address}/?token={site.token}")
-    yield made
-    made.end()
+    yield from signed_in(launch_browser, browser_type_launch_args, site)
 
 
 @pytest.fixture(scope="module")

@@ -7,14 +7,13 @@ import shutil
 from collections.abc import Callable, Iterator
 from itertools import pairwise
 from pathlib import Path
-from typing import cast
 
 import pytest
 from playwright.sync_api import Browser, expect
 
 from tests.browser import story
 from tests.browser.looks import everywhere
-from tests.browser.window import Window
+from tests.browser.window import Window, signed_in
 from tests.hidden_dead_zone import zipped
 from tests.running import Service, command, free_port
 
@@ -35,10 +34,7 @@ def window(
     launch_browser: Callable[..., Browser], browser_type_launch_args: dict[str, object], site: Service
 ) -> Iterator[Window]:
     """A window of its own: the demo is not the service of the other files, and ends with these tests."""
-    args = cast("list[str]", browser_type_launch_args["args"])
-    made = Window(launch_browser, args, f"{site.address}/?token={site.token}")
-    yield made
-    made.end()
+    yield from signed_in(launch_browser, browser_type_launch_args, site)
 
 
 def the_next_run_is_proposed(page):

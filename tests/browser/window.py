@@ -7,8 +7,11 @@ import subprocess
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import cast
 
 from playwright.sync_api import Browser, BrowserContext, Error, Page
+
+from tests.running import Service
 
 LONGEST = 30.0  # s for what takes milliseconds
 
@@ -67,3 +70,10 @@ class Window:
                 raise
         finally:
             hung.cancel()
+
+
+def signed_in(launch: Callable[..., Browser], launch_args: dict[str, object], site: Service) -> Iterator[Window]:
+    """A window of a service for as long as its fixture lasts."""
+    made = Window(launch, cast("list[str]", launch_args["args"]), f"{site.address}/?token={site.token}")
+    yield made
+    made.end()

@@ -39,7 +39,7 @@ def numbers(session: Session, wanted: Wanted, before: int | None, limit: int) ->
                 return found
             if 2 * len(found) * (FEW // newest) < limit:  # not among so many either
                 break
-        narrow = _collected(session, asked)
+        narrow = _collected(session, [one for one in asked if not one.few])
         if not narrow:
             return _numbers(session, _walk(lead, others, before).limit(limit))
     common = np.sort(reduce(partial(np.intersect1d, assume_unique=True), narrow.values()))
