@@ -17,7 +17,7 @@ from dbos import DBOS, DBOSConfig, Serializer, SetWorkflowID
 from dbos import error as failures
 
 from app.database import HEEDFUL, connect
-from app.jobs.generations import added, whole
+from app.jobs.generations import whole
 from app.jobs.lease import Superseded
 from app.jobs.work import State
 from app.settings import Settings
@@ -43,7 +43,7 @@ class Steps(Protocol):
         ...
 
     def advance(self, state: State) -> State:
-        """A block of the search."""
+        """A block of the search: what it added (see app/jobs/generations.py)."""
         ...
 
     def finish(self, state: State) -> State:
@@ -208,7 +208,7 @@ def _workflow(runs: Runs, under_way: set[str], ended: SimpleQueue[str | None]) -
 
     @DBOS.step(name="advance")
     def advance(turn: Steps, state: State) -> State:
-        return added(state, turn.advance(state))
+        return turn.advance(state)
 
     @DBOS.step(name="finish")
     def finish(turn: Steps, state: State) -> State:

@@ -12,11 +12,10 @@ from app.jobs.work import State
 def added(before: State, made: State) -> State:
     """What a step made of the state `before`, without the generations that this knew.
 
-    The first new generation is the population that was waiting in the state before: it is not stored again. What says
-    already how much was known is left as it is.
+    The first new generation is the population that was waiting in the state before: it is not stored again.
     """
     history = made["state"].get("history")
-    if history is None or "history" not in before or "known" in made:
+    if history is None or "history" not in before:
         return made
     known = len(before["history"])
     new = [dict(entry) for entry in history[known:]]
