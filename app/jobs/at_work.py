@@ -1,7 +1,7 @@
 """The work of jobs where it is done, which may be a process of its own: what a turn has prepared stays there.
 
 So does the state of a search, which holds its whole history: a step is sent by how much of it is known, and returns
-what it added.
+what it added, with its arrays packed (app/jobs/packed.py).
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from app.jobs.generations import added
+from app.jobs.packed import packed, unpacked
 from app.jobs.work import Search, State, Task, Work
 from app.lru import LRU
 from ident.progress import Progress, Report
@@ -35,7 +36,8 @@ class _Turn:
     def whole(self, state: State) -> State:
         """The state that a short one stands for. Raises Unheld."""
         if _HELD not in state:
-            return state
+            whole: State = unpacked(state)
+            return whole
         if self.state is None or len(self.state["history"]) != state[_HELD]:
             raise Unheld
         return self.state
@@ -53,7 +55,7 @@ def begin(turn: str, make: Make, task: Task, report: Report) -> State:
     """Begin; work without a search is done but for its finish."""
     here = _here(turn, make, task, report)
     here.state = here.work.begin() if isinstance(here.work, Search) else {"done": True}
-    return _made(here.state)
+    return _sent(_made(here.state))
 
 
 def advance(turn: str, make: Make, task: Task, state: State, report: Report) -> State:
@@ -62,7 +64,7 @@ def advance(turn: str, make: Make, task: Task, state: State, report: Report) -> 
     before = here.whole(state)
     assert isinstance(here.work, Search)
     here.state = here.work.advance(before)
-    return added(before, _made(here.state))
+    return _sent(added(before, _made(here.state)))
 
 
 def finish(turn: str, make: Make, task: Task, state: State, report: Report) -> State:
@@ -78,6 +80,11 @@ def leave(turn: str) -> None:
 
 def _made(state: State) -> State:
     return {"outcome": None, "state": state}
+
+
+def _sent(step: State) -> State:
+    sent: State = packed(step)
+    return sent
 
 
 def _here(turn: str, make: Make, task: Task, report: Report) -> _Turn:

@@ -10,6 +10,7 @@ import pytest
 
 from app.jobs import at_work
 from app.jobs.generations import whole
+from app.jobs.packed import unpacked
 from app.jobs.work import Search, State, Task
 from app.storage import Storage
 from app.tables import MatrixRow
@@ -63,7 +64,16 @@ def searched(task: Task, turn: str, lost_after: int | None = None) -> tuple[Any,
             at_work.leave(turn)
         now = whole(now["state"], asked(at_work.advance, now["state"]))
         steps += 1
-    return (now["state"], asked(at_work.finish, now["state"])), sent
+    result = asked(at_work.finish, now["state"])
+    assert numbers_in(now) < 50  # nothing long is kept by who asks
+    return (unpacked(now["state"]), result), sent
+
+
+def numbers_in(value: Any) -> int:
+    """How many numbers the interpreter keeps of it."""
+    if isinstance(value, dict):
+        value = list(value.values())
+    return sum(map(numbers_in, value)) if isinstance(value, list) else isinstance(value, int | float)
 
 
 def test_what_is_known_there_is_not_sent_again(task: Task) -> None:
