@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.equations.grammar import statement_of
+from ident.simulation.kernel.kept import kept
 
 LANES = 16
 WIDE = 8
@@ -260,19 +261,30 @@ def _target() -> llvm.Target:
     return llvm.Target.from_default_triple()
 
 
-def _machine() -> llvm.TargetMachine:
-    """This processor, or the one that numba is told to compile for."""
+def _processor() -> tuple[str, str]:
+    """Name and features of this processor, or of the one that numba is told to compile for."""
     asked = os.environ.get("NUMBA_CPU_NAME")
-    features = os.environ.get("NUMBA_CPU_FEATURES", "") if asked else llvm.get_host_cpu_features().flatten()
-    return _target().create_target_machine(cpu=asked or llvm.get_host_cpu_name(), features=features, opt=2, jit=True)
+    if asked:
+        return asked, os.environ.get("NUMBA_CPU_FEATURES", "")
+    return llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
 
 
 def _engine(program: str) -> llvm.ExecutionEngine:
     """The program, compiled; it lives as long as the engine does."""
-    module, machine = llvm.parse_assembly(program), _machine()
-    tuning = llvm.create_pipeline_tuning_options(speed_level=2)
-    builder = llvm.create_pass_builder(machine, tuning)
-    builder.getModulePassManager().run(module, builder)
-    engine = llvm.create_mcjit_compiler(module, machine)
+    processor, features = _processor()
+    machine = _target().create_target_machine(cpu=processor, features=features, opt=2, jit=True)
+    decides = (".".join(map(str, llvm.llvm_version_info)), machine.triple, processor, features, program)
+    code = kept("\n".join(decides), lambda: _object(program, machine))
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
+    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
     engine.finalize_object()
     return engine
+
+
+def _object(program: str, machine: llvm.TargetMachine) -> bytes:
+    """The program as an object file."""
+    module = llvm.parse_assembly(program)
+    builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=2))
+    builder.getModulePassManager().run(module, builder)
+    code: bytes = machine.emit_object(module)
+    return code
