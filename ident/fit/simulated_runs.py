@@ -225,8 +225,10 @@ class SimulatedRuns:
 
     def _free(self, run: Run) -> NDArray[np.intp]:
         """The places of the first states that are to be found: of a run that starts moving those not recorded."""
-        count = len(self.chain.states) if run.begins == "moving" else 0
-        return np.setdiff1d(np.arange(count), list(self._recorded(run))).astype(np.intp)
+        if run.begins != "moving":
+            return np.empty(0, np.intp)
+        recorded = self._recorded(run)
+        return np.array([state for state in range(len(self.chain.states)) if state not in recorded], np.intp)
 
     def begin(self, values: Mapping[str, float]) -> None:
         """Take the first states that are not known yet from the linear model at `values`."""

@@ -264,8 +264,11 @@ def _target() -> llvm.Target:
 def _processor() -> tuple[str, str]:
     """Name and features of this processor, or of the one that numba is told to compile for."""
     asked = os.environ.get("NUMBA_CPU_NAME")
-    if asked:
-        return asked, os.environ.get("NUMBA_CPU_FEATURES", "")
+    return (asked, os.environ.get("NUMBA_CPU_FEATURES", "")) if asked else _host()
+
+
+@cache
+def _host() -> tuple[str, str]:
     return llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
 
 
