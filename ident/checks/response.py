@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy  # signal, which takes most of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.matrix import Run, Samples
+from ident.noise.power_density import hann
 
 LONGEST_FRAME = 8192
 FRAMES = 8  # at least: with fewer, chance alone makes a coherence of 0.4
@@ -63,13 +63,19 @@ def response(u: Samples, y: Samples, sample_rate: float) -> Response | None:
     length = min(LONGEST_FRAME, 1 << max(len(u) // (FRAMES // 2 + 1), 1).bit_length() - 1)
     if length < SHORTEST_FRAME:
         return None
-    frames = scipy.signal.ShortTimeFFT(scipy.signal.get_window("hann", length), length // 2, sample_rate)
-    inside = frames.lower_border_end[1], frames.upper_border_begin(len(u))[1]
-    one, two = (frames.stft_detrend(signal, "constant", *inside)[1:] for signal in (u, y))
-    uy = (one.conj() * two).mean(axis=1)
-    return Response(frames.f[1:], _power(one), _power(two), uy, one.shape[1])
+    one, two = (_spectra(signal, hann(length)) for signal in (u, y))
+    uy = (one.conj() * two).mean(axis=0)
+    frequency = np.asarray(np.fft.rfftfreq(length, 1 / sample_rate)[1:], np.float64)
+    return Response(frequency, _power(one), _power(two), uy, len(one))
+
+
+def _spectra(signal: Samples, window: Samples) -> NDArray[np.complex128]:
+    """Those of the frames that lie whole in the signal, without 0 Hz, (frames, F)."""
+    frames = np.lib.stride_tricks.sliding_window_view(signal, len(window))[:: len(window) // 2]
+    found = np.fft.rfft((frames - frames.mean(axis=1, keepdims=True)) * window)
+    return np.asarray(found[:, 1:], np.complex128)
 
 
 def _power(frames: NDArray[np.complex128]) -> Samples:
     """The mean power of the frames, (F,), never 0 so that it may divide."""
-    return np.asarray((np.abs(frames) ** 2).mean(axis=1) + np.finfo(float).tiny, np.float64)
+    return np.asarray((np.abs(frames) ** 2).mean(axis=0) + np.finfo(float).tiny, np.float64)

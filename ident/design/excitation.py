@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-import scipy  # signal, which takes most of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -40,7 +39,7 @@ def _shape(signal: str, samples: int, rate: float, frequency: float, seed: int) 
         case "sine":
             u = np.sin(2 * np.pi * frequency * t)
         case _:
-            u = scipy.signal.sawtooth(2 * np.pi * frequency * t + 0.5 * np.pi, width=0.5)
+            u = np.arcsin(np.sin(2 * np.pi * frequency * t))
     u = u * _ramp(samples)
     return np.asarray(u / np.sqrt(np.mean(u**2)))
 
@@ -63,4 +62,6 @@ def _sines(t: Array, edge: float, rng: np.random.Generator) -> Array:
 
 
 def _ramp(samples: int) -> Array:
-    return np.asarray(scipy.signal.windows.tukey(samples, 2 * _RAMP))
+    """Half a cosine from 0 to 1 and back (Tukey 1967)."""
+    from_end = np.minimum(np.arange(samples), np.arange(samples)[::-1]) / (_RAMP * (samples - 1))
+    return np.asarray(0.5 - 0.5 * np.cos(np.pi * np.minimum(from_end, 1.0)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy  # its parts are loaded where they are first used: signal takes most of a second
+import scipy
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -15,10 +15,7 @@ def power_density(signal: Array, sample_rate: float, segment: int) -> tuple[Arra
     Hann windows of `segment` samples, each overlapping the next by half, each without its own mean (Welch 1967). As
     :func:`scipy.signal.welch`, segment by segment in memory that stays in the cache.
     """
-    window, starts = (
-        scipy.signal.get_window("hann", segment),
-        range(0, len(signal) - segment + 1, segment - segment // 2),
-    )
+    window, starts = hann(segment), range(0, len(signal) - segment + 1, segment - segment // 2)
     part, power = np.empty(segment), np.zeros(segment // 2 + 1)
     for first in starts:
         piece = signal[first : first + segment]
@@ -30,3 +27,11 @@ def power_density(signal: Array, sample_rate: float, segment: int) -> tuple[Arra
     scale = sample_rate * np.sum(window**2) * len(starts)
     frequency = np.arange(len(power)) * (sample_rate / segment)
     return np.asarray(frequency, dtype=np.float64), np.asarray(power / scale, dtype=np.float64)
+
+
+def hann(samples: int) -> Array:
+    """A Hann window whose period is its length, as spectra need it: sin²(π n / N), (N,).
+
+    That of :mod:`scipy.signal`, which takes most of a second to load, for every command and every process.
+    """
+    return np.hanning(samples + 1)[:-1]
