@@ -50,6 +50,8 @@ def within(share: float, *names: str, **others: Any) -> Wanted:
 
 
 BY_VALUE, BY_NUMBER = "ix_set_values_name_value", "ix_set_values_name_number"
+SOUND = ("SCAN some", "SCAN CONSTANT ROW")
+"""Not of a table: what was found by an index already, and nothing at all."""
 CASES = {
     "serial": (Wanted(serial="SW-000042"), "ix_parameter_sets_serial"),
     "batch": (Wanted(batch="B0042"), "ix_parameter_sets_batch"),
@@ -89,7 +91,9 @@ def test_a_page_is_found_by_the_index_that_suits(many: sessionmaker[Session], ca
         each = plans(session, wanted, before)
     steps = [step for one in each for step in one]
     assert [step for step in (each[-1] if index in (BY_VALUE, BY_NUMBER) else steps) if index in step], each
-    assert not [step for step in steps if step.startswith("SCAN") and "INDEX" not in step and step != "SCAN some"], each
+    assert not [
+        step for step in steps if step.startswith("SCAN") and not step.startswith(SOUND) and "INDEX" not in step
+    ]
     assert not [step for step in steps if "TEMP B-TREE" in step], each
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import ColumnElement, Select, func, select
+from sqlalchemy import BindParameter, ColumnElement, Select, bindparam, func, select
 from sqlalchemy.orm import aliased
 
 from app.parameters.wanted import Wanted
@@ -15,6 +15,7 @@ from app.tables import ApprovalRow, SetRow, ValueRow
 Numbers = Select[Any]
 Number = ColumnElement[Any]
 Test = Callable[[Number], ColumnElement[bool]]
+_READ = ("ids", "serial", "batch", "model", "approved_after", "approved_before")
 SET, VALUE, APPROVAL = SetRow.number.expression, ValueRow.number.expression, ApprovalRow.number.expression
 
 
@@ -33,22 +34,47 @@ class Condition:
     few: bool = False
 
 
-def conditions(wanted: Wanted) -> Iterator[Condition]:
-    """What is asked, but for `approved=False`, which no index finds."""
-    if wanted.ids is not None:
-        yield _of_set(SetRow.fit.in_(wanted.ids), few=True)
-    if wanted.serial is not None:
-        yield _of_set(SetRow.serial == wanted.serial, few=True)
-    if wanted.batch is not None:
-        yield _of_set(SetRow.batch == wanted.batch, few=True)
-    for name, (lower, upper) in wanted.ranges.items():
-        yield _in_range(name, lower, upper)
-    if wanted.current is not None:
-        yield _in_force() if wanted.current else _of_set(~_in_force().test(SET))
-    if wanted.approved_after is not None or wanted.approved_before is not None or wanted.approved:
-        yield _approved_between(wanted.approved_after, wanted.approved_before)
-    if wanted.model is not None:
-        yield _of_set(SetRow.model == wanted.model)
+@dataclass(frozen=True)
+class Shape:
+    """What is asked without the values: whatever has the same shape is answered by the same queries."""
+
+    given: frozenset[str]
+    ranges: int
+    current: bool | None
+    approved: bool | None
+
+
+def values(wanted: Wanted) -> dict[str, Any]:
+    """What is asked, by the names under which the conditions read it."""
+    found: dict[str, Any] = {name: getattr(wanted, name) for name in _READ if getattr(wanted, name) is not None}
+    for at, (name, (lower, upper)) in enumerate(wanted.ranges.items()):
+        found |= {f"name_{at}": name, f"lower_{at}": lower, f"upper_{at}": upper}
+    return found
+
+
+def shape(wanted: Wanted) -> Shape:
+    """The shape of what is asked."""
+    given = frozenset(name for name in _READ if getattr(wanted, name) is not None)
+    return Shape(given, len(wanted.ranges), wanted.current, wanted.approved)
+
+
+def conditions(asked: Shape) -> Iterator[Condition]:
+    """What is asked, but for `approved=False`, which no index finds. The queries read :func:`values`."""
+    if "ids" in asked.given:
+        yield _of_set(SetRow.fit.in_(bindparam("ids", expanding=True)), few=True)
+    if "serial" in asked.given:
+        yield _of_set(SetRow.serial == bindparam("serial"), few=True)
+    if "batch" in asked.given:
+        yield _of_set(SetRow.batch == bindparam("batch"), few=True)
+    for at in range(asked.ranges):
+        yield _in_range(at)
+    if asked.current is not None:
+        yield _in_force() if asked.current else _of_set(~_in_force().test(SET))
+    times = asked.given & {"approved_after", "approved_before"}
+    if times or asked.approved:
+        yield _approved_between(times)
+    if "model" in asked.given:
+        yield _of_set(SetRow.model == bindparam("model"))
 
 
 def never_approved(number: Number) -> ColumnElement[bool]:
@@ -70,8 +96,11 @@ def _of_set(is_so: ColumnElement[bool], few: bool = False) -> Condition:
     return Condition(SET, hits, test, hits, few)
 
 
-def _in_range(name: str, lower: float, upper: float) -> Condition:
+def _in_range(at: int) -> Condition:
     """A parameter between two values. Plus 0, the value is none that an index by value could be searched for."""
+    name: BindParameter[str] = bindparam(f"name_{at}")
+    lower: BindParameter[float] = bindparam(f"lower_{at}")
+    upper: BindParameter[float] = bindparam(f"upper_{at}")
     of_name = select(VALUE).where(ValueRow.name == name)
     other = aliased(ValueRow)
 
@@ -89,11 +118,13 @@ def _in_force() -> Condition:
     return Condition(APPROVAL, hits, lambda number: approvals(number, lambda row: [row.until.is_(None)]), hits)
 
 
-def _approved_between(after: str | None, before: str | None) -> Condition:
+def _approved_between(given: frozenset[str]) -> Condition:
     """A set that was approved, in this time."""
 
     def times(row: Any) -> list[ColumnElement[bool]]:
-        return [*([] if after is None else [row.since > after]), *([] if before is None else [row.since < before])]
+        ends = {"approved_after": row.since > bindparam("approved_after"),
+                "approved_before": row.since < bindparam("approved_before")}  # fmt: skip
+        return [ends[name] for name in sorted(given)]
 
     hits = select(APPROVAL).where(APPROVAL.is_not(None), *times(ApprovalRow)).distinct()
     return Condition(APPROVAL, hits, lambda number: approvals(number, times))
