@@ -7,14 +7,16 @@ from functools import cache
 
 import pytest
 
+from ident.bench.missing import _longer_first
 from ident.diagnosis.result import Diagnosis, Verdict
 from ident.diagnosis.rivals import rivals
+from ident.effects.second_lag import SECOND_LAG
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.workflows import diagnose, identify
-from tests.bench.sets import as_matrix
+from tests.bench.sets import as_matrix, true_model
 from tests.reference import kononykhin_reference as reference
 
 SEED = 66
@@ -115,3 +117,11 @@ def test_runs_to_verify_report_only(full):
 def test_no_run_is_proposed_for_a_bench():
     with pytest.raises(Unusable, match="bench"):
         rivals(Diagnosis(model="kononykhin", candidates=(), verdict=Verdict()))
+
+
+@pytest.mark.parametrize(("T", "second"), [(0.003, 0.005), (0.005, 0.003)])
+def test_of_two_lags_the_longer_one_is_called_t(T, second):
+    """In series they may change places, and the model does the same: whichever way the refit ends."""
+    (added,) = SECOND_LAG.added
+    named = _longer_first(replace(true_model(reference.scattered(SEED)), T=T).with_values({added.in_equations: second}))
+    assert (named.T, named.strengths[added.in_equations]) == (0.005, 0.003)
