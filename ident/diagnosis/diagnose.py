@@ -111,14 +111,14 @@ class Diagnoser:
 
         What was found may stand for something else: with the term itself it is not needed.
         """
-        given = selection.base.effects
-        alone = Search(selection.models, selection.base, self.course.tell, given).run()
+        given, asked = selection.base.effects, self.course.propose is True
+        alone = Search(selection.models, selection.base, self.course.tell, given, asked).run()
         if not selection.added:
             return alone
         alone = alone.instead(selection.found, selection.added, self.models.matrix.of_use("verify"))
         if not alone.complete or self.models.is_noise(alone.left(selection.base.error)):
             return alone
-        beside = Search(selection.models, selection.found, self.course.tell, given).run()
+        beside = Search(selection.models, selection.found, self.course.tell, given, asked).run()
         before, found = (refit.held_out.error for refit in (selection.base, selection.found))
         with_both = beside.left(found, "held_out")
         return alone if alone.left(before, "held_out") < min(with_both * _SIMPLER, found) else beside

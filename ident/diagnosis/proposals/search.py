@@ -58,6 +58,7 @@ class Search:
     base: Refit
     report: Report
     given: tuple[str, ...]
+    asked: bool = True
     most: int = MOST
     looked_at: int = 0
     found: list[Proposal] = field(default_factory=list)
@@ -68,12 +69,15 @@ class Search:
         self.beside = self.base.effects
 
     def run(self) -> Proposals:
-        """One term on top of the other until none passes the bar, or the noise is reached; then one free curve."""
+        """One term on top of the other until none passes the bar, or the noise is reached; then one free curve.
+
+        Of few runs, where nothing could confirm it, only where it was asked for: it takes longer than all terms.
+        """
         begun = Search(self.models, self.base, self.report, self.given)
         with suppress(TimeIsUp):
             while len(self.found) < self.most and not self.models.at_floor(self.base) and self._added():
                 pass
-            if not self.models.at_floor(self.base):
+            if (self.asked or not _few(self.models.runs)) and not self.models.at_floor(self.base):
                 self._drawn(begun)
             self.complete = True
         return Proposals(

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
+from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.proposals.search import Search
 from ident.diagnosis.result import Diagnosis
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
+from ident.progress import silent
 from ident.workflows import identify
 from tests.blind.machines import matrix_of
 from tests.diagnosis.proposals.test_search import NOISE, PLANT, proposed
@@ -54,3 +58,23 @@ def test_a_free_curve_is_an_effect_that_anyone_may_add():
     customs = tuple(one.effect for one in found.proposals)
     fit = identify(matrix, Settings(model="qian2014", effects=tuple(c["name"] for c in customs), custom=customs))
     assert fit.error["verify"] == pytest.approx(last.error["verify"], rel=1e-2)
+
+
+@pytest.mark.parametrize(("count", "asked", "drawn"), [(3, False, False), (3, True, True), (12, False, True)])
+def test_of_few_runs_a_curve_is_drawn_only_where_it_is_asked_for(count, asked, drawn, monkeypatch):
+    """Nothing could confirm it there, and it takes longer than all terms."""
+    matrix = replace(with_noise(), runs=with_noise().runs[:count])
+    models = ModelFamily.of(matrix, Settings(model="qian2014"))
+    sought: list[bool] = []
+    monkeypatch.setattr(Search, "_added", lambda _self, curves=False: bool(sought.append(curves)))
+    monkeypatch.setattr(ModelFamily, "at_floor", lambda *_: False)
+    Search(models, models.refit((), {}), silent, (), asked).run()
+    assert (True in sought) is drawn
+    assert False in sought
+
+
+@cache
+def with_noise() -> Matrix:
+    """Twelve runs of the model itself."""
+    small = [trial for trial in linear.trials() if trial.use == "fit"][:12]
+    return matrix_of(measure_all(Outside(), small, PLANT, seconds=0.5, noise=NOISE, seed=2), PLANT)
