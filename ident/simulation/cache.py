@@ -55,6 +55,20 @@ def used(path: Path) -> None:
         os.utime(path, ns=(time.time_ns(), path.stat().st_mtime_ns))
 
 
+def write(path: Path, content: bytes) -> None:
+    """Whole or not at all, also with two processes at it. Raises OSError."""
+    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+        os.replace(temporary, path)
+    except OSError as error:
+        os.unlink(temporary)
+        # Windows, while the other process reads what it has written: the same
+        if not (isinstance(error, PermissionError) and path.exists()):
+            raise
+
+
 def tidy(folder: Path, largest: int = LARGEST) -> None:
     """Remove what was not used for long and, where the rest is too large, what was unused longest."""
     kernels = defaultdict(list)

@@ -8,16 +8,14 @@ from __future__ import annotations
 
 import hashlib
 import importlib.util
-import os
 import sys
-import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from ident.simulation.cache import cache_folder, tidy, used
+from ident.simulation.cache import cache_folder, tidy, used, write
 
 _watchers: list[Callable[[], None]] = []
 
@@ -51,7 +49,7 @@ def function(name: str, source: str) -> Callable[..., Any]:
 def _loaded(name: str, path: Path, source: str) -> Callable[..., Any]:
     """The function from its file, which is written first where it is not there."""
     if not path.exists() or path.read_text(encoding="utf-8") != source:
-        _write(path, source)
+        write(path, source.encode())
     used(path)
     spec = importlib.util.spec_from_file_location(path.stem, path)
     if spec is None or spec.loader is None:
@@ -61,19 +59,6 @@ def _loaded(name: str, path: Path, source: str) -> Callable[..., Any]:
     spec.loader.exec_module(module)
     compiled: Callable[..., Any] = getattr(module, name)
     return compiled
-
-
-def _write(path: Path, source: str) -> None:
-    """Whole or not at all, also with two processes at it."""
-    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
-    with os.fdopen(handle, "w", encoding="utf-8") as file:
-        file.write(source)
-    try:
-        os.replace(temporary, path)
-    except PermissionError:  # Windows, while the other process reads what it has written: the same
-        os.unlink(temporary)
-        if not path.exists():
-            raise
 
 
 def is_compiled(function: Any) -> bool:

@@ -64,7 +64,7 @@ def test_where_nothing_can_be_kept_it_is_compiled_each_time(answer, folder, monk
     def full(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(kept.os, "replace", full)
+    monkeypatch.setattr(cache.os, "replace", full)
     first, _ = answer()
     assert answer() == (first, 1)
     assert not list(folder.iterdir())

@@ -7,14 +7,12 @@ the hash of what it holds: a change of one equation is another file, and what wa
 from __future__ import annotations
 
 import hashlib
-import os
-import tempfile
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from ident.simulation.cache import cache_folder, tidy, used
+from ident.simulation.cache import cache_folder, tidy, used, write
 
 _MARK = hashlib.sha256().digest_size  # bytes before the code: its hash
 
@@ -27,7 +25,7 @@ def kept(text: str, compiled: Callable[[], bytes]) -> bytes:
         return found
     code = compiled()
     with suppress(OSError):  # a full disk, or a folder that may only be read: it is compiled the next time again
-        _write(path, hashlib.sha256(code).digest() + code)
+        write(path, hashlib.sha256(code).digest() + code)
         _tidied(path.parent)
     return code
 
@@ -42,18 +40,6 @@ def _read(path: Path) -> bytes | None:
         return None
     used(path)
     return code
-
-
-def _write(path: Path, content: bytes) -> None:
-    """Whole or not at all, also with two processes at it."""
-    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        os.replace(temporary, path)
-    except OSError:
-        os.unlink(temporary)
-        raise
 
 
 @cache
