@@ -62,12 +62,14 @@ class LinearModel:
         """
         A, B, C = self.A, self.B, self.C
         idle = np.all(A == 0, axis=tuple(range(A.ndim - 1)))
-        z, kept = np.zeros(B.shape), np.flatnonzero(~idle)
+        # One machine may be held at many commands: its matrices are then of fewer points than these.
+        points = np.broadcast_shapes(B.shape[:-1], np.shape(u), np.shape(y))
+        z, kept = np.zeros((*points, B.shape[-1])), np.flatnonzero(~idle)
         with np.errstate(all="ignore"):
             drive = -B[..., kept, None] * np.asarray(u)[..., None, None]
             z[..., kept] = np.linalg.solve(A[..., kept[:, None], kept], drive)[..., 0]
         z = np.where(np.isfinite(z), z, 0.0)
-        left, shown = np.asarray(y) - (C * z).sum(axis=-1) - self.D * u, C[..., idle]
+        left, shown = np.asarray(y) - (C * z).sum(axis=-1) - self.D * u, np.broadcast_to(C, z.shape)[..., idle]
         z[..., idle] = np.divide(left[..., None], shown, out=np.zeros(shown.shape), where=shown != 0)
         return z
 
