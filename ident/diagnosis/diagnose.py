@@ -33,7 +33,6 @@ from ident.matrix import Matrix
 from ident.progress import Expected, Progress
 
 _SIMPLER = 1.05  # times the error that terms may leave without what was found, and still come before those beside it
-_NOISE_LIKE = 0.5  # correlation of neighbouring residuals that noise may have, where there is no floor
 Steps = Sequence[tuple[str | None, Refit]]
 """From the fitted model to the last, what each step added."""
 
@@ -104,7 +103,7 @@ class Diagnoser:
         if self.course.propose is not None:
             return self.course.propose
         exhausted = self.course.most >= USUAL or len(selection.added) < self.course.most
-        return selection.complete and exhausted and self._unexplained(selection)
+        return selection.complete and exhausted and selection.models.something_left(selection.found)
 
     def _proposed(self, selection: StepwiseSelection) -> Proposals:
         """What no list holds: beside the fitted model as it was and, where that is not all, beside what was found.
@@ -150,7 +149,7 @@ class Diagnoser:
     ) -> Verdict:
         """What is said of what was added."""
         models, added, errors = selection.models, selection.added, steps[-1][1].errors
-        unexplained = self._unexplained(selection)
+        unexplained = selection.models.something_left(selection.found)
         groups = tuple(tuple(c.effect for c in group) for group in selection.groups.values() if len(group) > 1)
         against = tuple(self._contradictions(models, steps))
         bounded = tuple(name for name in added if models.at_bound(selection.found, name))
@@ -229,16 +228,6 @@ class Diagnoser:
             if added and before and (found := contradiction(added, runs, before, after)):
                 yield found
             before = after
-
-    def _unexplained(self, selection: StepwiseSelection) -> bool:
-        """Whether the error is still above the noise: its floor, or where that is not known, its lack of memory."""
-        found, models = selection.found, selection.models
-        if models.floor is not None:
-            return not models.at_floor(found)
-        outputs = found.fitness.outputs(found.point)
-        residuals = [found.fitness.left(run, outputs[run.id]) for run in models.runs]
-        memory = [float(np.corrcoef(r[1:], r[:-1])[0, 1]) for r in residuals]
-        return bool(np.median(memory) > _NOISE_LIKE)
 
 
 def _refused(proposed: Proposals, asked: bool | None) -> Iterator[str]:

@@ -41,6 +41,7 @@ _OFF = 0.01  # of the largest strength
 _BETTER = 0.99  # times the error: a new optimum, not the same one
 _AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be noise, beside
 _CHANCE = 3.0  # standard deviations
+_NOISE_LIKE = 0.5  # correlation of neighbouring residuals that noise may have, where there is no floor
 
 
 @dataclass
@@ -198,6 +199,15 @@ class ModelFamily:
             return False
         chance = _CHANCE * self.floors.spread(sum(run.length for run in self.runs))
         return error < (1.0 + _AT_FLOOR + chance) * self.floor
+
+    def something_left(self, refit: Refit) -> bool:
+        """Whether the error is still above the noise: its floor, or where that is not known, its lack of memory."""
+        if self.floor is not None:
+            return not self.at_floor(refit)
+        outputs = refit.fitness.outputs(refit.point)
+        residuals = [refit.fitness.left(run, outputs[run.id]) for run in self.runs]
+        memory = [float(np.corrcoef(r[1:], r[:-1])[0, 1]) for r in residuals]
+        return bool(np.median(memory) > _NOISE_LIKE)
 
     def best_of(self, refit: Refit, starts: Sequence[Mapping[str, float]]) -> Refit | None:
         """The best refit of the same model from other starts, where one is better than `refit`."""

@@ -272,11 +272,16 @@ class StepwiseSelection:
         return False
 
     def _in_place_of_each(self, added: Sequence[str]) -> list[list[Candidate]]:
-        """What could stand in the place of added effects, ranked: what one was chosen from, where it came first."""
+        """What could stand in the place of added effects, ranked: what one was chosen from, where it came first.
+
+        Nothing stands in the place of one without which the model goes astray.
+        """
         if added and self.ranking[0].refit is self.found:
             return [self.ranking for _ in added]
         bases = each(self._less, added)
-        return rank_each(self.models, [(base, self._others(base)) for base in bases], self.report, thorough=False)
+        sound = [(base, self._others(base)) for base in bases if base.finite]
+        ranked = iter(rank_each(self.models, sound, self.report, thorough=False) if sound else ())
+        return [next(ranked) if base.finite else [] for base in bases]
 
 
 def _without(values: Mapping[str, float], effect: str) -> dict[str, float]:

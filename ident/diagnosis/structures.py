@@ -1,11 +1,18 @@
-"""Which machine fits, where no model is named: those that the channels allow, compared on held-out data."""
+"""Which machine fits, where no model is named: those that the channels allow, compared on held-out data.
+
+Where the first of them leaves more than noise, something is missing, and a machine with more parameters may have made
+up for a part of it. So another with no more parameters comes before it that, with one effect of the catalogue, leaves
+much less than the first with its own.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.ranking import rank
+from ident.diagnosis.refit import Refit
 from ident.errors import Unusable
 from ident.fit.identification import Identification, StepwiseFit, completed
 from ident.fit.result import FitResult, Structure, Window
@@ -15,10 +22,12 @@ from ident.fit.summary import noticed
 from ident.matrix import Matrix
 from ident.presets.preset import Preset
 from ident.presets.suited import in_question, unusual
-from ident.progress import Report, silent
+from ident.progress import Progress, Report, silent
 from ident.words.percent import percent
+from ident.words.titles import title
 
 _WORSE = 1.02  # times the least error on held-out data: less is no reason for another parameter
+_MUCH_LESS = 0.7  # times what the first machine leaves with its best effect: so much has a simpler one to leave
 
 
 @dataclass(frozen=True)
@@ -57,15 +66,37 @@ def _compared(matrix: Matrix, report: Report) -> tuple[tuple[Structure, ...], Fi
         return (Structure(only.name, {"held_out": None}, len(only.parameters), why),), None
     fitted = _all_fitted(models, matrix, report)
     over, tried = _judged(list(fitted.values()))
-    least = min(_error(one) for one in tried)
-    good = [one for one in tried if _error(one) <= _WORSE * least]
+    least = min(one.error for one in tried)
+    good = [one for one in tried if one.error <= _WORSE * least]
     strange = {model.name for model in models if unusual(model, matrix.runs)}
-    best = min(good, key=lambda one: (one.machine in strange, one.parameters))
-    others = (_said(one, over, "") for one in tried if one is not best)
-    return (_said(best, over, "the simplest that is not worse"), *others), fitted[best.machine].fit
+    first = min(good, key=lambda one: (one.machine in strange, one.parameters))
+    with_effects = _with_an_effect_each(first, tried, report)
+    best = _better(with_effects[first.machine], list(with_effects.values()))
+    others = (with_effects.get(one.machine, one) for one in tried if one.machine != best.machine)
+    why = "the simplest that is not worse" if best.machine == first.machine else "much less with one effect"
+    said = (best.structure(over, why), *(one.structure(over, "") for one in others))
+    return said, fitted[best.machine].fit
 
 
-def _judged(fitted: Sequence[_Fitted]) -> tuple[str, list[Structure]]:
+def _with_an_effect_each(first: _Judged, tried: Sequence[_Judged], report: Report) -> dict[str, _Judged]:
+    """The first model and those with no more parameters, each with the effect that helps it most.
+
+    But the first alone, and as it is, where it leaves nothing that an effect could explain.
+    """
+    if not first.refit.finite or not first.models.something_left(first.refit):
+        return {first.machine: first}
+    return {one.machine: one.helped(report) for one in tried if one.parameters <= first.parameters}
+
+
+def _better(first: _Judged, others: Collection[_Judged]) -> _Judged:
+    """The simplest of those that leave much less than the first one, the first where none does."""
+    least = min((one.error for one in others), default=first.error)
+    if least > _MUCH_LESS * first.error:
+        return first
+    return min((one for one in others if one.error <= _WORSE * least), key=lambda one: one.parameters)
+
+
+def _judged(fitted: Sequence[_Fitted]) -> tuple[str, list[_Judged]]:
     """The models by one measure for all, and in words over what: the longest windows of one that is fitted so.
 
     What a machine integrated meanwhile is no matter of its structure. But where one that settles leaves less of whole
@@ -78,7 +109,7 @@ def _judged(fitted: Sequence[_Fitted]) -> tuple[str, list[Structure]]:
         return "", tried
     if len(windows) < len(fitted):
         whole = [one.judged(None) for one in fitted]
-        if min(map(_error, whole)) < min(map(_error, tried)):
+        if min(one.error for one in whole) < min(one.error for one in tried):
             return "", whole
     return f" over {longest.horizon:.3g} s", tried
 
@@ -173,21 +204,56 @@ class _Fitted:
         work = Identification(matrix, self.settings, report)
         self.fit, self.parameters = completed(work), len(work.objective.space.axes)
 
-    def judged(self, window: Window | None) -> Structure:
-        """Its error on held-out data, over windows where such are given."""
+    def judged(self, window: Window | None) -> _Judged:
+        """By its error on held-out data, over windows where such are given."""
         over = (window.horizon, window.memory) if window else (None, None)
         family = ModelFamily.of(self.matrix, self.settings, (), *over)
         start = {family.preset.parameter(name).in_equations: value for name, value in self.fit.values.items()}
-        refit = family.refit((), start)
-        held_out = refit.held_out.error if refit.finite else None
-        return Structure(self.settings.model, {"held_out": held_out}, self.parameters, values=self.fit.values)
+        return _Judged(family, self.parameters, self.fit.values, family.refit((), start))
 
 
-def _error(one: Structure) -> float:
-    error = one.error["held_out"]
-    return float("inf") if error is None else error
+@dataclass(frozen=True)
+class _Judged:
+    """A model in question by the measure of all, and with the effect that helps it most."""
+
+    models: ModelFamily
+    parameters: int
+    values: Mapping[str, float]
+    refit: Refit
+    with_effect: Refit | None = None
+
+    @property
+    def machine(self) -> str:
+        """Its name."""
+        return self.models.given.model
+
+    @property
+    def error(self) -> float:
+        """What it leaves of held-out data; infinite where it cannot be followed."""
+        return _held_out(self.with_effect or self.refit)
+
+    def helped(self, report: Report) -> _Judged:
+        """The same with the effect of the catalogue that helps it most, as it is where none does."""
+        if not self.refit.finite:
+            return self
+
+        def told(progress: Progress) -> None:
+            report(replace(progress, stage="models with an effect", expected=()))
+
+        ranking = rank(self.models, self.refit, list(self.models.effects), told, thorough=False)
+        refits = [one.refit for one in ranking if one.refit is not None and one.helps]
+        return replace(self, with_effect=min(refits, key=_held_out, default=None))
+
+    def structure(self, over: str, more: str) -> Structure:
+        """What is told of it, and `more` why it was taken."""
+        alone = _held_out(self.refit)
+        what = f"leaves {percent(alone)} of held-out data{over} with {self.parameters} parameters"
+        if self.with_effect is not None:
+            what += f", {percent(self.error)} with {title(self.with_effect.effects[-1])}"
+        why = f"{what}: {more}" if more else what
+        held_out = alone if self.refit.finite else None
+        return Structure(self.machine, {"held_out": held_out}, self.parameters, why, self.values)
 
 
-def _said(one: Structure, over: str, more: str) -> Structure:
-    what = f"leaves {percent(one.error['held_out'])} of held-out data{over} with {one.parameters} parameters"
-    return replace(one, why=f"{what}: {more}" if more else what)
+def _held_out(refit: Refit) -> float:
+    return refit.held_out.error if refit.finite else float("inf")

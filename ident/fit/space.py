@@ -129,14 +129,15 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     fixed = {name: value for name, value in known.items() if name not in given} | fixed
     convention = None
     forced = force or preset.driven_by != "command"
-    free = {scale.name for scale in preset.scales} - fixed.keys() - given.keys()
+    scales = preset.scales_by_position if _shown(runs) == "displacement" else preset.scales
+    free = {scale.name for scale in scales} - fixed.keys() - given.keys()
     if free & set(preset.share_force[:1]) and not (same or forced or _loaded(runs)):
         convention = preset.share_force[0]
         fixed[convention] = typical["mL"]
     held = tuple(one for one in of_runs(preset.conventions, runs) if not {*one.held} & {*fixed, *given})
     fixed = {name: value for one in held for name, value in one.held.items()} | fixed
     axes, fastest = [], FASTEST * min(run.sample_rate for run in runs)
-    for scale in preset.scales:
+    for scale in scales:
         if scale.name in fixed:
             continue
         if scale.name in given or same:
@@ -148,7 +149,7 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
             axes.append(Axis(scale.name, *scale.slower_than(fastest / band), scale.logarithmic, scale.equation))
     of_any_sign = {*preset.crossing, *(name for one in held for name in one.held)}
     _refuse_bad_values(fixed, {p.in_equations for p in of_effects} | known.keys() | of_any_sign)
-    order = tuple(scale.name for scale in preset.scales)
+    order = tuple(scale.name for scale in scales)
     bounded = {*settings.bounds, *settings.fixed} - {p.name for p in of_effects}
     return Space(tuple(axes), order, fixed, typical, convention, held, not same, not (same or bounded))
 
@@ -204,10 +205,13 @@ def _speed(runs: tuple[Run, ...]) -> float:
 
 def _size(runs: tuple[Run, ...], of: Callable[[Run], float]) -> float:
     """Of the displacements, where some runs record them and others something else; else of the first run's output."""
-    outputs = {run.output for run in runs}
-    first = "displacement" if "displacement" in outputs else runs[0].output
-    moved = tuple(run for run in runs if run.output == first)
-    return float(np.mean([of(run) for run in moved]))
+    first = _shown(runs)
+    return float(np.mean([of(run) for run in runs if run.output == first]))
+
+
+def _shown(runs: tuple[Run, ...]) -> str:
+    """The channel by which a machine is measured."""
+    return "displacement" if any(run.output == "displacement" for run in runs) else runs[0].output
 
 
 def _refuse_bad_values(fixed: Mapping[str, float], of_effects: AbstractSet[str]) -> None:

@@ -51,9 +51,10 @@ class Preset:
     """A model by name: the stages of `chain`, with the parameters and scales that they bring.
 
     `stated` are parameters and `rescaled` scales that take the place of the stages', where a paper states other bounds
-    or a machine is measured otherwise. Results list the parameters named in `listed` first, then the stated ones, then
-    those of the stages along the chain; a search takes those named in `searched` first, then the others as they are
-    listed, each after those that its scale reads.
+    or a machine is measured otherwise; `rescaled_by_position` theirs where a position is recorded. Results
+    list the parameters named in `listed` first, then the stated ones, then those of the stages along the chain; a
+    search takes those named in `searched` first, then the others as they are listed, each after those that its scale
+    reads.
 
     `bounds_hold_for` is the piston area (m²) of the machine that the parameters' bounds were stated for; another
     machine is searched over `scales`. `without_area` gives the name and unit of what a parameter becomes when the
@@ -85,6 +86,7 @@ class Preset:
     chain: Chain
     stated: tuple[Parameter, ...] = ()
     rescaled: tuple[Scale, ...] = ()
+    rescaled_by_position: tuple[Scale, ...] = ()
     listed: tuple[str, ...] = ()
     searched: tuple[str, ...] = ()
     bounds_hold_for: float | None = None
@@ -121,7 +123,12 @@ class Preset:
         if twice := {name for name in own if own.count(name) > 1}:
             raise Unusable("bad-preset", f"its stages mean different parameters by {', '.join(sorted(twice))}", where,
                            "rename one of them")  # fmt: skip
-        stated = {*self.listed, *self.searched, *(p.name for p in self.stated), *(s.name for s in self.rescaled)}
+        stated = {
+            *self.listed,
+            *self.searched,
+            *(p.name for p in self.stated),
+            *(s.name for s in (*self.rescaled, *self.rescaled_by_position)),
+        }
         if idle := stated - set(own):
             raise Unusable("bad-preset", f"no stage brings {', '.join(sorted(idle))}, which it states", where,
                            "leave it out, or let a stage bring it")  # fmt: skip
@@ -130,7 +137,7 @@ class Preset:
             readers = ", ".join(stage.place for stage in self.chain.stages if stage.reads & unknown)
             raise Unusable("bad-preset", f"no stage brings {', '.join(sorted(unknown))}, read at {readers}",
                            where, "let a stage bring it as a parameter or publish it")  # fmt: skip
-        for scale in self.scales:
+        for scale in (*self.scales, *self.rescaled_by_position):
             if strange := scale.equation.names - known - OF_THE_RUNS:
                 raise Unusable("bad-preset", f"no stage brings {', '.join(sorted(strange))}, read by a scale",
                                f"{where}, scale of {scale.name}", "measure it by something else")  # fmt: skip
@@ -151,8 +158,16 @@ class Preset:
     @cached_property
     def scales(self) -> tuple[Scale, ...]:
         """How its parameters are searched for a machine of unknown size, in the order of the search."""
+        return self._scales(())
+
+    @property
+    def scales_by_position(self) -> tuple[Scale, ...]:
+        """The same where a position is recorded."""
+        return self._scales(self.rescaled_by_position)
+
+    def _scales(self, others: tuple[Scale, ...]) -> tuple[Scale, ...]:
         found = {scale.name: scale for stage in self.chain.stages for scale in stage.scales}
-        found |= {scale.name: scale for scale in self.rescaled}
+        found |= {scale.name: scale for scale in (*self.rescaled, *others)}
         found |= {p.in_equations: scale_of(effect, p, self._sizes) for effect in self.effects for p in effect.added}
         return in_reading_order(_in_order(found, (*self.searched, *(p.in_equations for p in self.parameters))))
 

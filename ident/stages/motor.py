@@ -11,5 +11,5 @@ TORQUE = stage(
     parameters=(
         Parameter("Kt", "K_t", "N/m", 1e-12, 1e12, 1.0, "force for each unit of the drive signal", ORDER_OF_MAGNITUDE),
     ),
-    scales=(Scale("Kt", "c0 * X / U", 1e-2, 1e2),),
+    scales=(Scale("Kt", "c0 * V / U", 1e-5, 1e2),),
 )

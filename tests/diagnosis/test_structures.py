@@ -14,6 +14,7 @@ from ident.fit.result import FitResult, Structure
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run
 from ident.workflows import identify
+from tests.blind.any_machine import Lab, sound
 from tests.fit.test_windows import cylinder
 from tests.presets.test_machines import motor, specimen
 
@@ -111,3 +112,23 @@ def test_structures_are_compared_over_one_time():
     assert len(over) == 3
     assert len(set(over)) == 1
     assert lag.error["held_out"] > 1.02 * first.error["held_out"]
+
+
+def test_more_parameters_do_not_make_up_for_an_effect():
+    """A motor with a dead zone: a valve's and an oil's lags leave a little less than the motor, all of them far more
+    than the noise; with the dead zone the motor leaves the noise.
+    """
+    lab = Lab.drawn(963, hidden=True)
+    first, *others = structures(lab.measured())
+    assert first.machine == "motor"
+    assert first.error["held_out"] > min(one.error["held_out"] for one in others)
+    assert first.why.endswith("with dead zone: much less with one effect")
+
+
+@pytest.mark.parametrize("model", ["motor", "open_valve"])
+def test_a_cylinder_is_found_at_any_rate_of_samples(model):
+    """At 4.6 kHz: the gain of a position in one of a drive was bounded by the position, as if it were a speed."""
+    lab = sound(Lab.drawn(964, hidden=True))
+    assert lab.rate > 4000
+    fit = identify(lab.measured(), Settings(model=model))
+    assert max(fit.error["fit"], fit.error["verify"]) < 2.0 * lab.noise

@@ -15,6 +15,7 @@ from scipy.integrate import solve_ivp
 from ident.diagnosis.family import ModelFamily
 from ident.fit.identification import Identification, completed
 from ident.fit.settings import Settings
+from ident.linear import LinearModel
 from ident.matrix import Actuator, Matrix, Run
 from ident.simulation.steps import FASTEST
 from ident.workflows import compare, diagnose, identify
@@ -89,6 +90,16 @@ def test_a_motor_that_runs_at_first_is_found_and_its_offset_is_nothing():
     assert fit.values["m0"] / fit.values["c0"] == pytest.approx(0.3, rel=0.01)
     assert max(fit.error["fit"], fit.error["verify"]) < 0.0115
     assert abs(fit.offset["fit"]) < 0.01
+
+
+def test_one_machine_stands_under_many_commands():
+    """z' = −2 z + 4 u, y = 3 z, and a position that nothing holds: matrices of one point, commands of three."""
+    system = np.array([[-2.0, 0.0, 4.0], [0.0, 0.0, 0.0], [3.0, 1.0, 0.0]])[:, :, None, None]
+    u, y = np.array([[1.0], [2.0], [-1.0]]), np.array([[7.0], [12.0], [0.0]])
+    standing = LinearModel(system).standing(u, y)
+    assert standing.shape == (3, 1, 2)
+    assert standing[..., 0] == pytest.approx(2.0 * u)
+    assert standing[..., 1] == pytest.approx(y - 6.0 * u)
 
 
 @pytest.mark.parametrize("first", [3.0, 0.0])
