@@ -142,12 +142,26 @@ def proposed_text(terms: Sequence[Proposal]) -> str:
     doubt += ", at last a free curve" if any(one.free_curve for one in terms) else ""
     instead = f" in place of {', '.join(map(title, last.instead_of))}" if last.instead_of else ""
     it = "it" if len(terms) == 1 else "them"
-    against = [one.contradicted.told(one.equation) for one in terms if one.contradicted]
+    against = [one.contradicted.told(one.equation) for one in terms if one.contradicted and not _mended(one, last)]
     return " ".join([
         *against,
         f"Beyond the catalogue a search proposes{doubt}{instead}: {told}.",
         f"With {it} the error is {percent(last.error['fit'])}{verify}.",
+        *(_alone(one) for one in terms if _mended(one, last)),
     ])  # fmt: skip
+
+
+def _mended(one: Proposal, last: Proposal) -> bool:
+    """Whether the terms that came after one bring down the error on verify runs that it raised."""
+    left = last.error.get("verify")
+    return one.contradicted is not None and left is not None and left < one.contradicted.before
+
+
+def _alone(one: Proposal) -> str:
+    against = one.contradicted
+    assert against is not None
+    rise = f"from {percent(against.before)} to {percent(against.after)}"
+    return f"Without those after it {one.equation} would let the error on verify runs rise {rise}."
 
 
 def _told_once(spoken: Callable[[str], str]) -> Callable[[str], str]:
