@@ -49,7 +49,8 @@ class Choice:
 def structures(matrix: Matrix, report: Report = silent) -> tuple[Structure, ...]:
     """The models in question, the one to take first: the simplest whose held-out error is not worse.
 
-    Of a machine that moves along a way the simplest that is not a motor, where one is no worse.
+    Of a machine that moves along a way the simplest that is not a motor, where one is no worse. Before it comes one
+    with no more parameters that leaves much less with one effect.
 
     Raises Unusable where the channels allow none.
     """
