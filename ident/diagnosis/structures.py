@@ -82,11 +82,12 @@ def _compared(matrix: Matrix, report: Report) -> tuple[tuple[Structure, ...], Fi
 def _with_an_effect_each(first: _Judged, tried: Sequence[_Judged], report: Report) -> dict[str, _Judged]:
     """The first model and those with no more parameters, each with the effect that helps it most.
 
-    But the first alone, and as it is, where it leaves nothing that an effect could explain.
+    But the first alone, and as it is, where it is the only one or leaves nothing that an effect could explain.
     """
-    if not first.refit.finite or not first.models.something_left(first.refit):
+    simple = [one for one in tried if one.parameters <= first.parameters]
+    if len(simple) == 1 or not first.refit.finite or not first.models.something_left(first.refit):
         return {first.machine: first}
-    return {one.machine: one.helped(report) for one in tried if one.parameters <= first.parameters}
+    return {one.machine: one.helped(report) for one in simple}
 
 
 def _better(first: _Judged, others: Collection[_Judged]) -> _Judged:
