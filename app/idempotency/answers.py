@@ -75,9 +75,14 @@ def _claimed(sessions: sessionmaker[Session], key: str, asked: str) -> tuple[Ans
         if row.fingerprint != asked:
             raise Failure(409, "key-in-use", "this Idempotency-Key belongs to another request", "Idempotency-Key",
                           "draw a new key for a new request")  # fmt: skip
-        mine = row.status is None and row.created_at < before(DEAD) and repository.take_over(session, row)
+        mine = row.status is None and _is_dead(row) and repository.take_over(session, row)
         session.commit()
         return repository.known(session, key) or row, mine
+
+
+def _is_dead(row: AnswerRow) -> bool:
+    """Whether whoever claimed a key has had its time; a claim of a time to come was made by a clock set back since."""
+    return not before(DEAD) <= row.created_at <= before(-DEAD)
 
 
 def _acted(sessions: sessionmaker[Session], row: AnswerRow, act: Act, find: Find) -> Answer:

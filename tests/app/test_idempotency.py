@@ -137,6 +137,18 @@ def test_a_dead_claim_is_taken_over_after_a_minute_and_does_not_do_the_work_twic
     assert jobs(here).count("decided-before") == 1
 
 
+def test_a_claim_of_a_clock_that_was_ahead_is_taken_over(here: Context, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its process was killed too, and the clock set right since: nobody waits until it has caught up."""
+    posted(here, "once")
+    change(here, status=None, body={}, location="", subject="decided-before", created_at=ago(hours=-1))
+
+    def sleep(_seconds: float) -> None:
+        raise AssertionError("it waits")
+
+    monkeypatch.setattr(answers, "time", SimpleNamespace(sleep=sleep))
+    assert posted(here, "once")["location"].endswith("/decided-before")
+
+
 def test_a_claim_younger_than_a_minute_is_waited_for(here: Context, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is done while it lives; here the one who holds it answers while the retry looks for the third time."""
     posted(here, "once")
