@@ -15,6 +15,7 @@ from ident.diagnosis.course import Course
 from ident.diagnosis.elsewhere import Other, elsewhere, others
 from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.late import lateness
+from ident.diagnosis.longer import over_longer
 from ident.diagnosis.proposals.outcome import Proposals
 from ident.diagnosis.proposals.search import Search
 from ident.diagnosis.ranking import Candidate
@@ -24,7 +25,7 @@ from ident.diagnosis.significance import improvement
 from ident.diagnosis.standing import Contradiction, contradiction, standing
 from ident.diagnosis.stepwise import USUAL, StepwiseSelection
 from ident.diagnosis.suspects import suspects
-from ident.diagnosis.words import as_well, told_late, verdict_text, why
+from ident.diagnosis.words import as_well, told_late, told_longer, verdict_text, why
 from ident.effects.effect import Effect
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.result import FitResult
@@ -46,7 +47,7 @@ def diagnose(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], course: C
     given = replace(Settings.from_json(dict(fit.settings)), effects=()) if fit.settings else Settings(model=fit.model)
     over = (fit.window.horizon, fit.window.memory) if fit.window else (None, None)
     models = ModelFamily.of(matrix, given, custom, *over)
-    found = Diagnoser(models, fit, course, others(matrix, fit, models, custom)).diagnosis()
+    found = Diagnoser(models, fit, course, others(matrix, fit, custom)).diagnosis()
     course.tell(Progress("next run", 0, 1))
     if found.complete:
         found = replace(found, next_experiment=next_run(matrix, found, custom))
@@ -64,13 +65,15 @@ class Diagnoser:
         selection = self._added(self.models)
         doubted = self._doubted(selection)
         if doubted:
-            selection = self._added(self.models.without(suspect.run for suspect in doubted))
+            selection = self._added(selection.models.without(suspect.run for suspect in doubted))
             doubted = self._doubted(selection)
         told, late = self._elsewhere(selection), self._late(selection)
         proposed = self._proposed(selection) if self._is_proposing(selection) else Proposals()
         self.course.conclude()
         found = self._said(selection, doubted)
-        verdict = replace(found.verdict, elsewhere=told, text=" ".join([found.verdict.text, *late, *as_well(told)]))
+        over = () if found.horizon == self.models.horizon else told_longer(self.models.horizon, found.horizon)
+        text = " ".join([found.verdict.text, *over, *late, *as_well(told)])
+        verdict = replace(found.verdict, elsewhere=told, text=text)
         return replace(
             found, verdict=verdict, proposals=proposed.found, complete=found.complete and proposed.complete,
             looked_at=proposed.looked_at, notes=(*found.notes, *_refused(proposed, self.course.propose)),
@@ -126,13 +129,13 @@ class Diagnoser:
         """What a search found so far."""
         steps = selection.ladder()
         ladder, base = self._ladder(steps), selection.base
-        floor = selection.models.floors.of_use(self.models.matrix)
+        floor = selection.models.floors.of_use(selection.models.matrix)
         return Diagnosis(
             model=self.fit.model,
             effects=base.effects,
             baseline=Baseline(dict(ladder[0].error), base.offset),
             noise_floor=floor,
-            horizon=self.models.horizon,
+            horizon=selection.models.horizon,
             candidates=tuple(self._ranked(selection, floor["fit"])),
             ladder=tuple(ladder),
             verdict=self._verdict(selection, steps, doubted, floor["fit"]),
@@ -160,12 +163,25 @@ class Diagnoser:
         return Verdict(added, stands, against_by, groups, tuple(doubted), unexplained, text, bounded)
 
     def _added(self, models: ModelFamily) -> StepwiseSelection:
+        """The search over these models, or over longer windows where with an effect these are the more likely ones."""
+        selection = self._begun(models)
+        try:
+            longer = over_longer(selection, self.course.tell)
+        except TimeIsUp:
+            return selection
+        if longer is not None:
+            found = self._begun(longer.models, longer.better).run()
+            if found.added:
+                return found
+        return selection.run()
+
+    def _begun(self, models: ModelFamily, known: Refit | None = None) -> StepwiseSelection:
         preset = models.model(self.fit.effects)
         start = {preset.parameter(name).in_equations: value for name, value in self.fit.values.items()}
         base = models.refit(tuple(self.fit.effects), start)
         if not base.stable:
             raise Unusable("bad-fit", "the fitted model is unstable on a run", "fit", "fit the model to this matrix")
-        return StepwiseSelection(models, base, self.course.most, self.course.tell, self._heard).run()
+        return StepwiseSelection(models, base, self.course.most, self.course.tell, self._heard, known=known)
 
     def _heard(self, selection: StepwiseSelection) -> None:
         """Tell of a step."""
@@ -181,7 +197,7 @@ class Diagnoser:
             selection.complete = False
         if not selection.complete:
             return []
-        return suspects(selection.models, selection.found, self.models.floors.by_run)
+        return suspects(selection.models, selection.found, selection.models.floors.by_run)
 
     # What is said ----------------------------------------------------------------------------------------------
 

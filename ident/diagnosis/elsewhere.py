@@ -34,8 +34,9 @@ class Other:
     values: Mapping[str, float]
 
     def explanations(self, found: Refit, without: frozenset[str], report: Report) -> Iterator[Explanation]:
-        """What explains as well as what was found: nothing, or one effect; runs `without` are doubted."""
-        models = self.models.without(without)
+        """What explains as well as what was found over its windows: nothing or one effect, `without` doubted runs."""
+        over = found.fitness
+        models = replace(self.models.without(without), horizon=over.horizon, memory=over.memory)
         base = models.refit((), self.values)
         if not base.finite:
             return
@@ -51,12 +52,12 @@ class Other:
             yield Explanation(models.given.model, refit.effects, refit.errors, bool(better))
 
 
-def others(matrix: Matrix, fit: FitResult, models: ModelFamily, custom: Iterable[Effect]) -> tuple[Other, ...]:
-    """The models that were compared with the one of a fit, where it tells their values, over its windows."""
+def others(matrix: Matrix, fit: FitResult, custom: Iterable[Effect]) -> tuple[Other, ...]:
+    """The models that were compared with the one of a fit, where it tells their values."""
     found = []
     for one in fit.structures:
         if one.machine != fit.model and one.values:
-            family = ModelFamily.of(matrix, Settings(model=one.machine), custom, models.horizon, models.memory)
+            family = ModelFamily.of(matrix, Settings(model=one.machine), custom)
             values = {family.preset.parameter(name).in_equations: value for name, value in one.values.items()}
             found.append(Other(family, values))
     return tuple(found)

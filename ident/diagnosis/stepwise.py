@@ -37,8 +37,8 @@ class StepwiseSelection:
 
     `steps` are the refits, the fitted model first; `ranking` the first ranking; `groups` for each added effect the
     effects that the data cannot tell from it, itself included, best first. `report` may end the search with TimeIsUp:
-    then not `complete`, it has what was found until there. `heard` hears of each step; `between` are refits of the
-    ladder that were no step of the search.
+    then not `complete`, it has what was found until there. `heard` hears of each step; `known` is a refit with effects
+    that was met before; `between` are refits of the ladder that were no step of the search.
     """
 
     models: ModelFamily
@@ -46,6 +46,7 @@ class StepwiseSelection:
     most: int
     report: Report
     heard: Callable[[StepwiseSelection], None] = lambda _selection: None
+    known: Refit | None = None
     steps: list[Refit] = field(default_factory=list)
     ranking: list[Candidate] = field(default_factory=list)
     groups: dict[str, list[Candidate]] = field(default_factory=dict)
@@ -62,14 +63,22 @@ class StepwiseSelection:
         """The effects that the last step has over the fitted model."""
         return tuple(name for name in self.found.effects if name not in self.base.effects)
 
+    def __post_init__(self) -> None:
+        self.steps = [self.base]
+
     def run(self) -> StepwiseSelection:
         """Add, take out, replace, until nothing helps; where the noise is not reached, look farther and go on."""
-        self.steps = [self.base]
         with suppress(TimeIsUp):
             self._search()
             self.complete = True
         self._learned()
         return self
+
+    def look(self) -> list[Candidate]:
+        """The first ranking. Raises TimeIsUp."""
+        if not self.ranking:
+            self.ranking = self._rank(self.base, thorough=True)
+        return self.ranking
 
     def _search(self) -> None:
         self._rounds()
@@ -129,11 +138,11 @@ class StepwiseSelection:
 
     def _forward(self) -> None:
         while len(self.added) < self.most:
-            first = not self.ranking
-            ranking = self._rank(self.found, thorough=first)
-            if first:
-                self.ranking = ranking
+            first = len(self.steps) == 1
+            ranking = self.look() if first else self._rank(self.found, thorough=False)
             best = next((candidate for candidate in ranking if candidate.helps), None)
+            if first and self._known_is_better(best):
+                continue
             if best is None or best.refit is None:
                 break
             if self._settled(best.refit):
@@ -143,6 +152,15 @@ class StepwiseSelection:
                 self._anywhere()
             elif self._backward(best.effect):
                 break
+
+    def _known_is_better(self, best: Candidate | None) -> bool:
+        """Begin with the effects that were known before, where they do better than the best of the first ranking."""
+        if self.known is None or not self.known.finite or not helps(self.found, self.known):
+            return False
+        if best is not None and best.refit is not None and best.refit.held_out.score < self.known.held_out.score:
+            return False
+        self._step(self.known)
+        return True
 
     def _weighed(self) -> bool:
         """Weigh as many effects as are not weighed otherwise, once; True where one was replaced."""

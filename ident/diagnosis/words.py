@@ -112,6 +112,15 @@ def as_well(elsewhere: Sequence[Explanation]) -> Iterator[str]:
         yield f"These data cannot tell it from other models: {', '.join(told[False])}."
 
 
+def told_longer(fitted: float | None, horizon: float | None) -> Iterator[str]:
+    """Over what errors are those of the diagnosis, where these are not the windows of the fit."""
+    over = "whole runs" if horizon is None else f"windows of {horizon:.3g} s"
+    yield (
+        f"These are errors over {over}, where the fit was made over windows of {fitted or 0.0:.3g} s: chosen without "
+        "what was found, those forgave what it adds up to."
+    )
+
+
 def told_late(late: Lateness | None, spoken: Callable[[str], str] = title) -> Iterator[str]:
     """How late the machine answers, and what the data cannot tell it from, in a sentence; nothing where all is told."""
     if late is None:

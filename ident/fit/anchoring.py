@@ -13,6 +13,7 @@ from x̂ = e[0], v̂ = 0 on: where a record begins is no speed.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,13 +63,17 @@ class Stream:
         """The next rows (n, …) of it."""
         if not self._of.window:
             return rows
-        places = np.arange(len(rows))
-        first = places // self._of.window * self._of.window
-        counted = rows - rows[first]
-        if not self._of.memory:
-            return np.asarray(counted)
-        since = (places - first).reshape(-1, *[1] * (rows.ndim - 1))
-        return np.asarray(counted - since * self._speeds(rows)[first])
+        window, speeds = self._of.window, self._speeds(rows) if self._of.memory else None
+        counted = np.empty(rows.shape)
+        since = np.arange(window).reshape(-1, *[1] * (rows.ndim - 1))
+        for first, last, size in _windows(len(rows), window):
+            shape = (-1, size, *rows.shape[1:])
+            of, begun = rows[first:last].reshape(shape), rows[first:last:size][:, None]
+            counted[first:last] = (of - begun).reshape(last - first, *rows.shape[1:])
+            if speeds is not None:
+                moved = since[:size] * speeds[first:last:size][:, None]
+                counted[first:last] -= moved.reshape(last - first, *rows.shape[1:])
+        return counted
 
     def _speeds(self, rows: Array) -> Array:
         numerator, denominator = filter_of_speed(self._of.memory)
@@ -76,6 +81,15 @@ class Stream:
             self._state, self._origin = np.zeros((2, *rows.shape[1:])), rows[0]
         speeds, self._state = scipy.signal.lfilter(numerator, denominator, rows - self._origin, axis=0, zi=self._state)
         return np.asarray(speeds)
+
+
+def _windows(samples: int, window: int) -> Iterator[tuple[int, int, int]]:
+    """Where windows of one size begin and end, and the size: all whole ones, and what is left behind them."""
+    whole = samples // window * window
+    if whole:
+        yield 0, whole, window
+    if whole < samples:
+        yield whole, samples, samples - whole
 
 
 def gains(memory: float) -> tuple[float, float]:

@@ -127,8 +127,12 @@ class SimulatedRuns:
         q = released.shape[1] + 1
         sums = np.zeros((-(-runs[0].length // length), len(runs), q, q))
         anchored = anchoring.from_start()
-        for block, (rows, first, last) in enumerate(released.outputs(length)):
-            add_products(anchored(rows), records[first:last], q - 2, sums[block])
+        together = max(1, _BLOCK // length) * length
+        for rows, begin, end in released.outputs(together):
+            shown = anchored(rows)
+            for first in range(begin, end, length):
+                last = min(first + length, end)
+                add_products(shown[first - begin : last - begin], records[first:last], q - 2, sums[first // length])
         if window or not free:
             sums[..., -2, :] = sums[..., :, -2] = 0.0  # no mean is free: each window begins where it was measured
         return completed(sums, strides).transpose(1, 0, 2, 3)

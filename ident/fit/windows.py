@@ -31,6 +31,7 @@ _TIMES = (1.0, 3.0, 10.0)  # of the slowest time constant that does not integrat
 _LEAST = 16  # samples of a window
 _PARTS = 4  # windows of a record at least
 _GAINS = np.logspace(-4.0, 0.0, 25)
+_LONGER = 1.5  # times a horizon: another one
 _STILL = 1e-6  # of the fastest mode: it integrates
 _BRIEFEST, _MEMORIES = 0.3, 25  # samples of the briefest memory of a speed's filter, and how many are tried
 
@@ -73,6 +74,24 @@ def unforeseen(residual: Array) -> float:
     level = residual - residual[0]
     wander = (float(np.mean(scipy.signal.lfilter([1.0, -1.0], [1.0, gain - 1.0], level) ** 2)) for gain in _GAINS)
     return min(float(np.var(residual)), *wander)
+
+
+def likelihood(fitness: SimulatedFitness, point: Array, memory: float | None) -> float:
+    """How likely what could not be foretold makes the runs at a point, in nats but for a constant: −½ n ⟨ln v⟩.
+
+    n are the samples of all runs, v is the mean square of :func:`unforeseen`, averaged over runs. It compares windows
+    of any length with each other and with whole runs; with a `memory` of a level whose speed wanders.
+    """
+    return -0.5 * sum(run.length for run in fitness.runs) * _left(fitness, point, memory)
+
+
+def longer(fitness: SimulatedFitness, point: Array) -> list[float | None]:
+    """The horizons longer than a fit's own that are to be tried, s, by its time constants; None for whole runs."""
+    own = fitness.horizon
+    if own is None:
+        return []
+    _, horizons = _begun_anew(fitness, point)
+    return [*(each for each in horizons if each > _LONGER * own), None]
 
 
 def _left(fitness: SimulatedFitness, point: Array, memory: float | None) -> float:

@@ -1,0 +1,83 @@
+"""Longer windows, weighed with an effect in the model.
+
+The windows of a machine that integrates were chosen without the effect that is missing. What that effect adds up to
+looks then like what a disturbance adds up to: short windows forgive both, and over them the effect is worth little.
+With it in the model longer windows, or whole runs, may make the records more likely than the short ones do with any
+effect. Then these are what effects are to be judged by.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.ranking import rank
+from ident.diagnosis.refit import Refit
+from ident.diagnosis.significance import BEYOND_CHANCE
+from ident.diagnosis.stepwise import StepwiseSelection
+from ident.diagnosis.ties import in_order
+from ident.fit.windows import likelihood, longer
+from ident.parallel import each
+from ident.progress import Progress, Report
+
+_CARRIED = 4  # models that are taken to the next longer windows
+
+
+@dataclass(frozen=True)
+class Longer:
+    """The models over longer windows, and one of them, with an effect, that makes the records more likely."""
+
+    models: ModelFamily
+    better: Refit
+
+
+def over_longer(selection: StepwiseSelection, report: Report) -> Longer | None:
+    """The models over windows by which, with one effect, the records are most likely, where those are longer ones.
+
+    Weighed are the finalists of the first ranking over the fitted windows, refitted over longer ones, and what ranks
+    first of whole runs. More likely than by the fitted model they are to be beyond chance for the best of all that was
+    looked at. None where the fitted windows stay, or leave nothing to explain. Raises TimeIsUp.
+    """
+    base, models = selection.base, selection.models
+    horizons = longer(base.fitness, base.point)
+    if not horizons or not models.something_left(base):
+        return None
+    carried = [base, *(one.refit for one in selection.look() if one.refit is not None)]
+    chance = BEYOND_CHANCE + float(np.log(len(models.effects) * len(horizons)))
+    asked = max(_likely(base, models.memory) + chance, *(_likely(one, models.memory) for one in carried))
+    best: Longer | None = None
+    for number, horizon in enumerate(horizons):
+        report(Progress("longer windows", number, len(horizons)))
+        far = replace(models, horizon=horizon, memory=models.memory if horizon else None, _known={})
+        carried = _refitted(far, carried, base.values)
+        if horizon is None:
+            carried += _ranked(far, base, report)
+        carried = in_order(carried, lambda one: -_likely(one, models.memory))[:_CARRIED]
+        ahead = next((one for one in carried if len(one.effects) > len(base.effects)), None)
+        if ahead is not None and _likely(ahead, models.memory) > asked:
+            asked, best = _likely(ahead, models.memory), Longer(far, ahead)
+    return best
+
+
+def _refitted(models: ModelFamily, found: Sequence[Refit], fitted: Mapping[str, float]) -> list[Refit]:
+    """What was found over other windows, found again over those of these models: from there, and from the fit."""
+    starts = [(one.effects, {**one.values, **of}) for one in found for of in ({}, fitted)]
+    return [one for one in each(lambda start: models.refit(*start), starts) if one.stable]
+
+
+def _ranked(models: ModelFamily, base: Refit, report: Report) -> list[Refit]:
+    """The finalists among the effects beside the fitted model."""
+    start = models.refit(base.effects, base.values)
+    if not start.finite:
+        return []
+    names = [name for name in models.effects if name not in start.effects]
+    return [one.refit for one in rank(models, start, names, report, thorough=False) if one.refit is not None]
+
+
+def _likely(refit: Refit, memory: float | None) -> float:
+    """How likely a refit makes the records, nats but for a constant; with a `memory` of a speed that wanders."""
+    found = likelihood(refit.fitness, refit.point, memory)
+    return found if np.isfinite(found) else -np.inf
