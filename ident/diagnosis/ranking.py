@@ -173,7 +173,14 @@ def ranked(models: ModelFamily, candidates: Iterable[Candidate]) -> list[Candida
     """Best first: by how far they came, then by their score; of those that tie the simplest, then as listed."""
     listed = sorted(candidates, key=lambda candidate: (candidate.stage, *models.simplicity(candidate.effect)))
     by_stage = groupby(listed, key=lambda candidate: candidate.stage)
-    return [one for _, group in by_stage for one in in_order(list(group), lambda candidate: candidate.score)]
+    return [one for _, group in by_stage for one in in_order(list(group), lambda one: one.score, _alike)]
+
+
+def _alike(best: Candidate, other: Candidate) -> bool:
+    """Whether of two refits the better one is better by no more than chance."""
+    if best.refit is None or other.refit is None:
+        return False
+    return improvement(other.refit.held_out, best.refit.held_out).within_chance
 
 
 def _elsewhere(models: ModelFamily, base: Refit, candidate: Candidate) -> Candidate:

@@ -2,7 +2,7 @@
 
 Where the first of them leaves more than noise, something is missing, and a machine with more parameters may have made
 up for a part of it. So another with no more parameters comes before it that, with one effect of the catalogue, leaves
-much less than the first with its own.
+much less than the first with its own; and one with fewer that leaves as little.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def structures(matrix: Matrix, report: Report = silent) -> tuple[Structure, ...]
     """The models in question, the one to take first: the simplest whose held-out error is not worse.
 
     Of a machine that moves along a way the simplest that is not a motor, where one is no worse. Before it comes one
-    with no more parameters that leaves much less with one effect.
+    with no more parameters that leaves much less with one effect, or with fewer that leaves as little.
 
     Raises Unusable where the channels allow none.
     """
@@ -72,9 +72,8 @@ def _compared(matrix: Matrix, report: Report) -> tuple[tuple[Structure, ...], Fi
     strange = {model.name for model in models if unusual(model, matrix.runs)}
     first = min(good, key=lambda one: (one.machine in strange, one.parameters))
     with_effects = _with_an_effect_each(first, tried, report)
-    best = _better(with_effects[first.machine], list(with_effects.values()))
+    best, why = _better(with_effects[first.machine], list(with_effects.values()), strange)
     others = (with_effects.get(one.machine, one) for one in tried if one.machine != best.machine)
-    why = "the simplest that is not worse" if best.machine == first.machine else "much less with one effect"
     said = (best.structure(over, why), *(one.structure(over, "") for one in others))
     return said, fitted[best.machine].fit
 
@@ -90,12 +89,25 @@ def _with_an_effect_each(first: _Judged, tried: Sequence[_Judged], report: Repor
     return {one.machine: one.helped(report) for one in simple}
 
 
-def _better(first: _Judged, others: Collection[_Judged]) -> _Judged:
-    """The simplest of those that leave much less than the first one, the first where none does."""
+def _better(first: _Judged, others: Collection[_Judged], strange: Collection[str]) -> tuple[_Judged, str]:
+    """The one to take of models with an effect each, and why: the first, or a simpler one that says as much or more.
+
+    Much less is left by one that nothing else tells of; as little by one that is not strange where the first is not.
+    """
     least = min((one.error for one in others), default=first.error)
-    if least > _MUCH_LESS * first.error:
-        return first
-    return min((one for one in others if one.error <= _WORSE * least), key=lambda one: one.parameters)
+    if least <= _MUCH_LESS * first.error:
+        good = (one for one in others if one.error <= _WORSE * least)
+        return min(good, key=lambda one: one.parameters), "much less with one effect"
+    simpler = [
+        one
+        for one in others
+        if one.parameters < first.parameters
+        and one.error <= _WORSE * first.error
+        and (one.machine in strange) <= (first.machine in strange)
+    ]
+    if first.with_effect is not None and simpler:
+        return min(simpler, key=lambda one: one.parameters), "as little with one effect, and simpler"
+    return first, "the simplest that is not worse"
 
 
 def _judged(fitted: Sequence[_Fitted]) -> tuple[str, list[_Judged]]:

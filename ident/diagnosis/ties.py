@@ -1,7 +1,8 @@
 """What differs by rounding alone is a tie, broken by the order in which things stand: simpler first, then as listed.
 
 So the same matrix leads to the same answer on every processor: two refits that end at one error are as good as each
-other, whichever of them a processor happens to see below the other.
+other, whichever of them a processor happens to see below the other. A refit in a flat valley ends where rounding leads
+it, some hundredths off: refits that the data cannot tell apart tie, too.
 """
 
 from __future__ import annotations
@@ -13,16 +14,19 @@ Item = TypeVar("Item")
 TIE = 1e-4  # relative difference of two errors: refits end within about a hundredth of it
 
 
-def in_order(items: Sequence[Item], size: Callable[[Item], float]) -> list[Item]:
-    """The items from the least size on; those that tie with the least of them as they stood."""
+def in_order(
+    items: Sequence[Item], size: Callable[[Item], float], alike: Callable[[Item, Item], bool] = lambda *_: False
+) -> list[Item]:
+    """The items from the least size on; what ties with the least of them, or is `alike` with it, as it stood."""
     rest = sorted(enumerate(items), key=lambda one: size(one[1]))
     found: list[Item] = []
     while rest:
-        bound = _bound(size(rest[0][1]))
-        count = next((n for n, (_, item) in enumerate(rest) if size(item) > bound), len(rest))
-        tied = sorted(rest[: max(count, 1)], key=lambda one: one[0])
-        found += [item for _, item in tied]
-        rest = rest[max(count, 1) :]
+        least = rest[0][1]
+        bound = _bound(size(least))
+        behind = (n for n, (_, item) in enumerate(rest) if n and size(item) > bound and not alike(least, item))
+        count = next(behind, len(rest))
+        found += [item for _, item in sorted(rest[:count], key=lambda one: one[0])]
+        rest = rest[count:]
     return found
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from ident.diagnosis import stepwise
+from ident.diagnosis import ranking, stepwise
 from ident.diagnosis.stepwise import StepwiseSelection
 
 
@@ -120,7 +120,8 @@ def searched(monkeypatch):
         judged = Judged(scores, needed, far, late, off)
         monkeypatch.setattr(stepwise, "rank", judged.rank)
         monkeypatch.setattr(stepwise, "rank_each", judged.rank_each)
-        monkeypatch.setattr(stepwise, "improvement", judged.improvement)
+        for module in (stepwise, ranking):
+            monkeypatch.setattr(module, "improvement", judged.improvement)
         monkeypatch.setattr(stepwise, "helps", judged.helps)
         return StepwiseSelection(judged, judged.refit((), {}), 2, lambda *_: None).run()  # type: ignore[arg-type]
 
