@@ -39,6 +39,7 @@ _SIGHT = 32_768  # samples that they are judged by
 _SIDE_BY_SIDE = 8  # effects of a chain of which each lane carries one
 _OFF = 0.01  # of the largest strength
 _BETTER = 0.99  # times the error: a new optimum, not the same one
+_ROUNDS = 5  # of going on with a refit
 _AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be noise, beside
 _CHANCE = 3.0  # standard deviations
 _NOISE_LIKE = 0.5  # correlation of neighbouring residuals that noise may have, where there is no floor
@@ -262,6 +263,15 @@ class ModelFamily:
         off = {p.in_equations for name, e in self.effects.items() if name not in effects for p in e.added}
         values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}
         return Refit(effects, values, fitness.space, point, here, fitness)
+
+    def settled(self, refit: Refit) -> Refit:
+        """A refit on all records, gone on with until it stays: in a long narrow valley one is stopped on its way."""
+        for _ in range(_ROUNDS):
+            further = self.refit(refit.effects, refit.values)
+            if not further.finite or further.here.error > _BETTER * refit.here.error:
+                break
+            refit = further
+        return refit
 
     def tried(self, refit: Refit) -> float:
         """What a first refit has to beat: the error of a refit on the beginnings of the records."""

@@ -59,7 +59,7 @@ def over_longer(selection: StepwiseSelection, report: Report) -> Longer | None:
         ahead = next((one for one in carried if len(one.effects) > len(base.effects)), None)
         if ahead is not None and _likely(ahead, models.memory) > asked:
             asked, best = _likely(ahead, models.memory), Longer(far, ahead)
-    return best
+    return best and replace(best, better=best.models.settled(best.better))
 
 
 def _refitted(models: ModelFamily, found: Sequence[Refit], fitted: Mapping[str, float]) -> list[Refit]:

@@ -87,7 +87,7 @@ class StepwiseSelection:
                 self._rounds()
 
     def _step(self, refit: Refit) -> None:
-        self.steps.append(refit)
+        self.steps.append(self.models.settled(refit))
         self.heard(self)
 
     def _learned(self) -> None:
@@ -157,7 +157,7 @@ class StepwiseSelection:
         """Begin with the effects that were known before, where they do better than the best of the first ranking."""
         if self.known is None or not self.known.finite or not helps(self.found, self.known):
             return False
-        if best is not None and best.refit is not None and best.refit.held_out.score < self.known.held_out.score:
+        if best is not None and best.refit is not None and helps(self.known, best.refit):
             return False
         self._step(self.known)
         return True

@@ -28,7 +28,7 @@ from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.simulated_runs import is_simulated
 from ident.fit.space import search_space
 from ident.fit.summary import noticed, summarise
-from ident.fit.windows import in_windows
+from ident.fit.windows import in_longer_windows, in_windows
 from ident.matrix import Matrix, Run
 from ident.noise.floor import noise_floors
 from ident.presets import PRESETS, Preset
@@ -169,8 +169,11 @@ class Identification:
             drawn = np.array(state["history"][0]["population"])[: -max(_FURTHER, count) - 1 : -1]
             found = multistart(self.searched, objective, distinct(members, _CANDIDATES), self.report, drawn, count)
             # A measured motion that a specimen integrates is known; only what a command drives is disturbed on its way.
-            if self._integrates and self.preset.driven_by == "command" and not state.get("horizon"):
-                found = in_windows(found, self.report, whole=not self._fed_back)
+            if self._integrates and self.preset.driven_by == "command":
+                if not state.get("horizon"):
+                    found = in_windows(found, self.report, whole=not self._fed_back)
+                elif not self._fed_back:
+                    found = in_longer_windows(found, self.report)
         self.report(Progress("uncertainty", 0, 1, found.here.error))
         seconds = time.monotonic() - self._started
         result = with_bulk_modulus(summarise(self.settings, found, state, self.floors, seconds))

@@ -9,7 +9,7 @@ too, as it was found before: see :mod:`ident.fit.anchoring`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -48,8 +48,34 @@ def in_windows(optimum: Optimum, report: Report, whole: bool = True) -> Optimum:
     memory, horizons = _begun_anew(objective, optimum.point)
     whole = whole and (memory is None or memory > _longest(objective))
     best, least = optimum, _left(objective, optimum.point, memory) if whole else np.inf
+    return _best(best, objective, least, horizons, memory, report)
+
+
+def in_longer_windows(optimum: Optimum, report: Report) -> Optimum:
+    """The optimum of a model with effects, found over the windows of the model without them, or over longer ones.
+
+    What the effects add up to looked like disturbances without them.
+    """
+    objective = optimum.fitness
+    if not isinstance(objective, SimulatedFitness) or not len(optimum.point) or objective.horizon is None:
+        return optimum
+    least = _left(objective, optimum.point, objective.memory)
+    return _best(optimum, objective, least, longer(objective, optimum.point), objective.memory, report)
+
+
+def _best(
+    optimum: Optimum,
+    objective: SimulatedFitness,
+    least: float,
+    horizons: Iterable[float | None],
+    memory: float | None,
+    report: Report,
+) -> Optimum:
+    """The optimum of an objective, which leaves so much, or the one over other windows that leaves least."""
+    best = optimum
     for horizon in horizons:
-        trial = replace(objective, horizon=horizon, memory=memory, starts={}, evaluations=0, unstable=0)
+        over = memory if horizon else None
+        trial = replace(objective, horizon=horizon, memory=over, starts={}, evaluations=0, unstable=0)
 
         def progress(count: int, error: float) -> None:
             report(Progress("windows", count, STEPS, error))

@@ -56,6 +56,10 @@ class Judged:
 
     trial = refit
 
+    def settled(self, refit):
+        """It stays."""
+        return refit
+
     def tried(self, refit):
         """Its score again."""
         return refit.held_out.score
