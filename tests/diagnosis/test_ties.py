@@ -16,6 +16,15 @@ def test_those_that_tie_stand_as_they_were_given():
     assert in_order(["a", "b"], {"a": np.inf, "b": 1.0}.__getitem__) == ["b", "a"]
 
 
+def test_those_that_are_alike_with_the_least_stand_as_they_were_given():
+    """But not those behind the first that is not: what is alike is told of the best alone."""
+    assert in_order(list("abce"), SIZES.__getitem__, lambda best, other: {best, other} <= {"b", "c", "e"}) == list(
+        "bcea"
+    )
+    assert in_order(list("abe"), SIZES.__getitem__, lambda best, other: (best, other) == ("b", "a")) == list("bea")
+    assert in_order(list("eb"), SIZES.__getitem__, lambda *_: True) == list("eb")
+
+
 def test_of_those_that_tie_for_the_least_the_first_is_taken():
     assert first_least(["e", "b", "c"], SIZES.__getitem__) == "b"
     assert first_least(["c", "b", "e"], SIZES.__getitem__) == "c"

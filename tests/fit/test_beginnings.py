@@ -19,6 +19,7 @@ from ident.linear import LinearModel
 from ident.matrix import Actuator, Matrix, Run
 from ident.simulation.steps import FASTEST
 from ident.workflows import compare, diagnose, identify
+from tests.rounding import perturbed_run
 
 RATE = 50.0
 
@@ -75,6 +76,8 @@ def test_the_three_ways_to_begin():
     first = motor(1, 3.0).runs[0]
     assert first.begins == "standing"
     assert first.stands == 150
+    assert perturbed_run(first, 1).begins == "standing"  # a held command is held but for rounding
+    assert perturbed_run(first, 1).stands == 150
     assert motor(1, 0.0).runs[0].begins == "at rest"
     assert first.part(155, first.length).begins == "moving"
     assert first.part(290, first.length).begins == "moving"  # it stands, but for fewer samples than a late step needs
