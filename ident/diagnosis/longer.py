@@ -55,17 +55,28 @@ def over_longer(selection: StepwiseSelection, report: Report) -> Longer | None:
         carried = _refitted(far, carried, base.values)
         if horizon is None:
             carried += _ranked(far, base, report)
-        carried = in_order(carried, lambda one: -_likely(one, models.memory))[:_CARRIED]
+        carried = _foremost(in_order(carried, lambda one: -_likely(one, models.memory)))
         ahead = next((one for one in carried if len(one.effects) > len(base.effects)), None)
         if ahead is not None and _likely(ahead, models.memory) > asked:
             asked, best = _likely(ahead, models.memory), Longer(far, ahead)
-    return best and replace(best, better=best.models.settled(best.better))
+    return best
 
 
 def _refitted(models: ModelFamily, found: Sequence[Refit], fitted: Mapping[str, float]) -> list[Refit]:
-    """What was found over other windows, found again over those of these models: from there, and from the fit."""
-    starts = [(one.effects, {**one.values, **of}) for one in found for of in ({}, fitted)]
-    return [one for one in each(lambda start: models.refit(*start), starts) if one.stable]
+    """What was found over other windows, found again over those of these models: from there, and from the fit.
+
+    One or the other way may be barred, and over longer windows either leads far.
+    """
+    starts = [(one.effects, start) for one in found for start in (one.values, fitted)]
+    return [one for one in each(lambda start: models.settled(models.refit(*start)), starts) if one.stable]
+
+
+def _foremost(refits: Sequence[Refit]) -> list[Refit]:
+    """The best of each set of effects, of refits in order; no more than go on."""
+    found: dict[tuple[str, ...], Refit] = {}
+    for one in refits:
+        found.setdefault(one.effects, one)
+    return list(found.values())[:_CARRIED]
 
 
 def _ranked(models: ModelFamily, base: Refit, report: Report) -> list[Refit]:
@@ -74,7 +85,8 @@ def _ranked(models: ModelFamily, base: Refit, report: Report) -> list[Refit]:
     if not start.finite:
         return []
     names = [name for name in models.effects if name not in start.effects]
-    return [one.refit for one in rank(models, start, names, report, thorough=False) if one.refit is not None]
+    refits = [one.refit for one in rank(models, start, names, report, thorough=False) if one.refit is not None]
+    return each(models.settled, refits)
 
 
 def _likely(refit: Refit, memory: float | None) -> float:

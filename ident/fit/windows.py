@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from ident.chain.chain import linear_model
 from ident.chain.conditions import zeros
+from ident.effects.effect import off_values
 from ident.fit.anchoring import innovations
 from ident.fit.ends import End
 from ident.fit.levenberg_marquardt import STEPS, levenberg_marquardt
@@ -80,7 +81,11 @@ def _best(
         def progress(count: int, error: float) -> None:
             report(Progress("windows", count, STEPS, error))
 
-        point, here = levenberg_marquardt(trial.exact, optimum.point, report=progress, accept=trial.accept)
+        tried = [
+            levenberg_marquardt(trial.exact, start, report=progress, accept=trial.accept)
+            for start in _starts(objective, optimum.point)
+        ]
+        point, here = min(tried, key=lambda one: one[1].error)
         trial.evaluations += best.fitness.evaluations
         left = _left(trial, point, memory)
         if left < least:
@@ -88,6 +93,15 @@ def _best(
             ends = (End(here.error, values, point),)
             best, least = replace(optimum, fitness=trial, point=point, here=here, as_good=point[None], ends=ends), left
     return best
+
+
+def _starts(fitness: SimulatedFitness, point: Array) -> list[Array]:
+    """The points to set out from over other windows: the optimum, and the same with its effects off."""
+    effects = fitness.preset.effects
+    if not effects:
+        return [point]
+    values = {name: float(value[0]) for name, value in fitness.space.values(point[None]).items()}
+    return [point, fitness.space.point({**values, **off_values(effects), **fitness.space.fixed})]
 
 
 def unforeseen(residual: Array) -> float:
