@@ -70,8 +70,7 @@ class Controller:
     kv: float
 
 
-_LEAST = 16
-_ROUNDING = 1e-9  # of the largest value
+_LEAST, _ROUNDING = 16, 1e-9  # samples that a command is held; of a value: it is held but for rounding
 Beginning = Literal["at rest", "standing", "moving"]
 
 
@@ -117,13 +116,13 @@ class Run:
     @property
     def stepped(self) -> bool:
         """Whether the command is held from the first sample to the last: a step from nothing, before the record."""
-        return not np.any(changes(self.command))
+        return bool(np.all(np.isclose(self.command, self.command[0], rtol=_ROUNDING, atol=0.0)))
 
     @cached_property
     def dwell(self) -> float:
         """The lower quartile of the times between changes of the command, s; 0 of one that changes less than thrice."""
-        edges = np.flatnonzero(changes(self.command))
-        return float(np.quantile(np.diff(edges), 0.25)) / self.sample_rate if len(edges) > 2 else 0.0
+        changes = np.flatnonzero(~np.isclose(self.command[1:], self.command[:-1], rtol=_ROUNDING, atol=0.0))
+        return float(np.quantile(np.diff(changes), 0.25)) / self.sample_rate if len(changes) > 2 else 0.0
 
     @property
     def drive(self) -> float:
@@ -234,8 +233,8 @@ class Run:
         """
         x = self._first_seen
         command = self.channels.get("command", x)
-        edges = np.flatnonzero(changes(command))
-        count = int(edges[0]) + 1 if len(edges) else 0
+        changes = np.flatnonzero(~np.isclose(command, command[0], rtol=_ROUNDING, atol=0.0))
+        count = int(changes[0]) if len(changes) else 0
         if count < _LEAST:
             return 0
         parts = (x[: self._first], *np.array_split(x[:count], 4))
@@ -251,11 +250,6 @@ class Run:
     def _first(self) -> int:
         """The samples by which the beginning is told."""
         return min(self.length, max(4, round(0.001 * self.sample_rate)))
-
-
-def changes(samples: Samples) -> NDArray[np.bool_]:
-    """Where samples (n,) differ from those before by more than rounding, (n − 1,): elsewhere they are held."""
-    return np.asarray(np.abs(np.diff(samples)) > _ROUNDING * np.abs(samples).max(initial=0.0))
 
 
 def output_id(record: str, output: str) -> str:

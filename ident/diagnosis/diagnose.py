@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
@@ -165,10 +166,9 @@ class Diagnoser:
     def _added(self, models: ModelFamily) -> StepwiseSelection:
         """The search over these models, or over longer windows where with an effect these are the more likely ones."""
         selection = self._begun(models)
-        try:
+        longer = None
+        with suppress(TimeIsUp):  # the search ends as it is told so again, with the first of what was found
             longer = over_longer(selection, self.course.tell)
-        except TimeIsUp:
-            return selection
         if longer is not None:
             found = self._begun(longer.models, longer.better).run()
             if found.added:
