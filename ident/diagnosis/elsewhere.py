@@ -35,8 +35,7 @@ class Other:
 
     def explanations(self, found: Refit, without: frozenset[str], report: Report) -> Iterator[Explanation]:
         """What explains as well as what was found over its windows: nothing or one effect, `without` doubted runs."""
-        over = found.fitness
-        models = replace(self.models.without(without), horizon=over.horizon, memory=over.memory)
+        models = self.models.without(without).over(found.fitness.horizon, found.fitness.memory)
         base = models.refit((), self.values)
         if not base.finite:
             return

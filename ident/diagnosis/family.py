@@ -98,6 +98,10 @@ class ModelFamily:
         """The same models, fitted to fewer runs."""
         return replace(self, left_out=self.left_out | frozenset(runs), _known={})
 
+    def over(self, horizon: float | None, memory: float | None) -> ModelFamily:
+        """The same models, fitted over other windows."""
+        return replace(self, horizon=horizon, memory=memory, _known={})
+
     def model(self, effects: Iterable[str]) -> Preset:
         """The preset with these effects, in the order of the catalogue."""
         on = set(effects)

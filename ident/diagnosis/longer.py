@@ -9,7 +9,7 @@ effect. Then these are what effects are to be judged by.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -51,14 +51,15 @@ def over_longer(selection: StepwiseSelection, report: Report) -> Longer | None:
     best: Longer | None = None
     for number, horizon in enumerate(horizons):
         report(Progress("longer windows", number, len(horizons)))
-        far = replace(models, horizon=horizon, memory=models.memory if horizon else None, _known={})
+        far = models.over(horizon, models.memory if horizon else None)
         carried = _refitted(far, carried, base.values)
         if horizon is None:
             carried += _ranked(far, base, report)
-        carried = _foremost(in_order(carried, lambda one: -_likely(one, models.memory)))
-        ahead = next((one for one in carried if len(one.effects) > len(base.effects)), None)
-        if ahead is not None and _likely(ahead, models.memory) > asked:
-            asked, best = _likely(ahead, models.memory), Longer(far, ahead)
+        judged = _foremost([(_likely(one, models.memory), one) for one in carried])
+        carried = [one for _, one in judged]
+        likely, ahead = next((one for one in judged if len(one[1].effects) > len(base.effects)), (-np.inf, base))
+        if likely > asked:
+            asked, best = likely, Longer(far, ahead)
     return best
 
 
@@ -71,11 +72,11 @@ def _refitted(models: ModelFamily, found: Sequence[Refit], fitted: Mapping[str, 
     return [one for one in each(lambda start: models.settled(models.refit(*start)), starts) if one.stable]
 
 
-def _foremost(refits: Sequence[Refit]) -> list[Refit]:
-    """The best of each set of effects, of refits in order; no more than go on."""
-    found: dict[tuple[str, ...], Refit] = {}
-    for one in refits:
-        found.setdefault(one.effects, one)
+def _foremost(judged: Sequence[tuple[float, Refit]]) -> list[tuple[float, Refit]]:
+    """The likeliest of each set of effects, each with how likely it is, in that order; no more than go on."""
+    found: dict[tuple[str, ...], tuple[float, Refit]] = {}
+    for likely, one in in_order(judged, lambda one: -one[0]):
+        found.setdefault(one.effects, (likely, one))
     return list(found.values())[:_CARRIED]
 
 

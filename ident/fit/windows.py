@@ -48,8 +48,8 @@ def in_windows(optimum: Optimum, report: Report, whole: bool = True) -> Optimum:
         return optimum
     memory, horizons = _begun_anew(objective, optimum.point)
     whole = whole and (memory is None or memory > _longest(objective))
-    best, least = optimum, _left(objective, optimum.point, memory) if whole else np.inf
-    return _best(best, objective, least, horizons, memory, report)
+    least = _left(objective, optimum.point, memory) if whole else np.inf
+    return _best(optimum, objective, least, horizons, memory, report)
 
 
 def in_longer_windows(optimum: Optimum, report: Report) -> Optimum:
