@@ -35,7 +35,7 @@ _TOGETHER = 256  # lanes simulated in one go: memory stays small, the cores stay
 _BLOCKS = 32  # of a record: see ident.fit.normal_matrices
 _REACH = 1e-3  # of a state's size, for sensitivities to the first state
 _BLOCK = 4096  # samples simulated at a time
-_SETTLING = 3  # rounds in which the first states of a model are found
+_SETTLING = 10  # rounds at most in which the first states of a model are found
 
 
 @dataclass
