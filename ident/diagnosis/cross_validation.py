@@ -13,7 +13,7 @@ step is too long for one linearisation the other folds are fitted in full.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,6 +42,8 @@ class CrossValidation:
 
     `means` (runs,) are the runs' offsets over their standard deviations, less what they have in common: the zero of
     the transducer. `independent` is how many of the `samples` tell something new, the residual being correlated.
+    `unforetold` (runs, chunks) are the Σ of squares of what the residual's own past does not foretell, where known;
+    `in_windows` tells whether the errors are of windows.
     """
 
     squares: Array
@@ -49,6 +51,8 @@ class CrossValidation:
     means: Array
     samples: int
     independent: float
+    unforetold: Array | None = None
+    in_windows: bool = False
 
     @cached_property
     def errors(self) -> Array:
@@ -102,6 +106,11 @@ def cross_validated(
     means = np.array([run.offset for run in here.runs])
     totals = np.array([run.total for run in here.runs])
     return CrossValidation(squares, totals, means - means.mean(), sum(run.length for run in here.runs), independent)
+
+
+def by_chunk(signals: Sequence[Array], count: int) -> Array:
+    """Σ of squares of each signal (n,) over each of its chunks, (signals, count)."""
+    return np.array([[float(part @ part) for part in np.array_split(signal, count)] for signal in signals])
 
 
 def _folds_of_chunks(runs: int, count: int) -> Indices:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
-from ident.diagnosis.cross_validation import CrossValidation, cross_validated
+from ident.diagnosis.cross_validation import CrossValidation, by_chunk, cross_validated
 from ident.diagnosis.estimate import Found
 from ident.diagnosis.significance import improvement
 from ident.fit.fitness import Local
@@ -19,6 +19,7 @@ from ident.fit.slow_answer import slow_lag
 from ident.fit.space import Space
 from ident.fit.uncertainty import Covariance, covariance
 from ident.matrix import Run, over_runs
+from ident.noise.autoregression import prediction_errors
 from ident.noise.effective_sample_size import independent_samples
 
 Array = NDArray[np.float64]
@@ -40,7 +41,9 @@ class Refit:
     @cached_property
     def held_out(self) -> CrossValidation:
         """Its errors on blocks that were left out in turn."""
-        return cross_validated(self.point, self.here, self.fitness.exact, self._simulated.independent)
+        found = cross_validated(self.point, self.here, self.fitness.exact, self._simulated.independent)
+        unforetold = self._simulated.unforetold(found.squares.shape[1])
+        return replace(found, unforetold=unforetold, in_windows=self.fitness.horizon is not None)
 
     @cached_property
     def between_runs(self) -> CrossValidation | None:
@@ -147,10 +150,14 @@ def carries_over(less: Refit, more: Refit) -> bool:
 
 @dataclass(frozen=True)
 class _Simulated:
-    """What a simulation leaves of runs: eq. (17) averaged over them, and how many of its samples tell something new."""
+    """What a simulation leaves of runs: eq. (17) averaged over them, and how many of its samples tell something new.
+
+    `whole` (n,) is what it leaves of each from its first sample to its last.
+    """
 
     error: float
     independent: float
+    whole: list[Array]
 
     @classmethod
     def of(cls, fitness: SimulatedFitness, point: Array) -> _Simulated:
@@ -158,4 +165,9 @@ class _Simulated:
         outputs, runs = fitness.outputs(point), fitness.runs
         left = [fitness.left(run, outputs[run.id]) for run in runs]
         errors = [np.sqrt(np.mean(r**2)) / np.std(run.measured) for r, run in zip(left, runs, strict=True)]
-        return cls(float(over_runs(errors, runs)), sum(map(independent_samples, left)))
+        whole = [run.measured - outputs[run.id] for run in runs]
+        return cls(float(over_runs(errors, runs)), sum(map(independent_samples, left)), whole)
+
+    def unforetold(self, chunks: int) -> Array:
+        """Σ of squares of what the past of each residual does not foretell, by chunk, (runs, chunks)."""
+        return by_chunk([prediction_errors(residual) for residual in self.whole], chunks)

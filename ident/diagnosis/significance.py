@@ -7,7 +7,14 @@ much the held-out data become more likely is, with n the number of samples that 
 
 and the mean gain of a chunk over its standard error says how steadily. Either may be beyond chance: G counts where the
 residual is noise and a few chunks gain much, the other where the residual is a slow pattern, of which few samples tell
-something new. A parameter that is of no use lowers both. What helps has to help without the run that gains most, too,
+something new. A parameter that is of no use lowers both. Such a pattern may be a sensor's drift, or what disturbances
+added up to, which half a dozen effects meet halfway: whatever helps has to leave less of what the residual's own past
+does not foretell, too,
+
+    L = ½ n log(ν² before / ν² after)   in nats, with ν of :mod:`ident.noise.autoregression`
+
+and over windows, which begin anew where they were measured and hide what adds up, much less of that is enough by
+itself. What helps has to help without the run that gains most, too,
 or without that chunk, where there are few runs: what only one run asks for is a doubt about that run, not physics.
 """
 
@@ -27,7 +34,8 @@ ALIKE = 3.0  # standard deviations below which two refits differ by chance
 _OFFSET_ALIKE = 4.5  # nats: three deviations
 _ALIKE_NATS = 2 * ALIKE**2  # where white noise of σ separates outputs f, g by ALIKE deviations: |f − g|² = 36 σ²
 VISIBLE = 3e-4  # of the standard deviation: offsets below are nobody's concern
-_SINGLE = 5.0  # nats that are to be left without the run that gains most
+_SINGLE = 5.0  # nats that are to be left without the run that gains most, and the least of L
+_FORETOLD = 15.0  # nats of L: a drift that its past does not quite foretell makes ten
 _STEADY = 3.0  # deviations of the mean gain of the chunks that are beyond chance by themselves
 _SINGLE_STEADY = 2.5  # deviations that are to be left without the run that gains most
 _UNSTEADY = 1.5  # deviations below which few chunks gain
@@ -41,7 +49,8 @@ class Improvement:
     `share` is the relative fall of the error, `nats` by how much the data become more likely, `deviations` the mean
     gain of a chunk over its standard error, both also without the run that gains most; `lost` what the chunks that get
     worse lose of that which the others gain, without that run. `offset` are the nats of the runs' offsets, `visible`
-    whether these are large enough to matter.
+    whether these are large enough to matter. `likelier` are the nats of what the residuals' own past does not foretell,
+    also without the run or chunk that gains most; None where that is not known. `in_windows` as of what is compared.
     """
 
     share: float
@@ -52,6 +61,9 @@ class Improvement:
     lost: float
     offset: float
     visible: bool
+    likelier: float | None = None
+    likelier_without: float | None = None
+    in_windows: bool = False
 
     @property
     def beyond_chance(self) -> bool:
@@ -59,8 +71,17 @@ class Improvement:
         few = self.deviations > _UNSTEADY or self.lost < _LOST
         likely = self.nats > BEYOND_CHANCE and self.nats_without > _SINGLE and few
         steady = self.deviations > _STEADY and self.deviations_without > _SINGLE_STEADY
-        of_error = self.share > WORTHWHILE and (likely or steady)
-        return of_error or (self.visible and self.offset > BEYOND_CHANCE and self.nats > -_SINGLE)
+        likelier = self.likelier is None or self.likelier > _SINGLE
+        of_error = self.share > WORTHWHILE and (likely or steady) and likelier
+        of_offset = self.visible and self.offset > BEYOND_CHANCE and self.nats > -_SINGLE
+        return of_error or of_offset or self._unforetold_beyond_chance
+
+    @property
+    def _unforetold_beyond_chance(self) -> bool:
+        """Whether of windows less is unforetold than by chance."""
+        if not self.in_windows or self.likelier is None or self.likelier_without is None:
+            return False
+        return self.likelier > _FORETOLD and self.likelier_without > _SINGLE
 
     @property
     def within_chance(self) -> bool:
@@ -73,11 +94,7 @@ def improvement(before: CrossValidation, after: CrossValidation) -> Improvement:
     """What `after` gains over `before`."""
     weights = 1.0 / (np.maximum(np.minimum(before.errors, after.errors), 1e-12) * before.totals)
     difference = (before.squares - after.squares) * weights[:, None]
-    best = np.zeros(difference.shape, dtype=bool)
-    if len(difference) > 2:
-        best[int(np.argmax(difference.sum(axis=1)))] = True
-    else:
-        best.flat[int(np.argmax(difference))] = True
+    best = _foremost(difference)
     n = len(before.means)
     offset = n * float(np.log(max(before.offset, 1e-12) / max(after.offset, 1e-12))) if n > 2 else 0.0
     share = 1.0 - after.error / before.error if before.error > 0 else 0.0
@@ -92,7 +109,41 @@ def improvement(before: CrossValidation, after: CrossValidation) -> Improvement:
         _lost(difference[~best]),
         offset,
         visible,
+        *_likelier(before, after),
+        before.in_windows,
     )
+
+
+def _likelier(before: CrossValidation, after: CrossValidation) -> tuple[float | None, float | None]:
+    """The nats of what is unforetold, ½ Σ n ln(ν² before / ν² after) over runs; without the chunk that gains most.
+
+    Of three runs or more without the run.
+    """
+    if before.unforetold is None or after.unforetold is None:
+        return None, None
+    length = before.samples / before.unforetold.size
+    sums = [np.maximum(side.unforetold, 1e-300) for side in (before, after)]
+    power = np.minimum(*(side.mean(axis=1, keepdims=True) for side in sums))
+    best = _foremost((sums[0] - sums[1]) / power)
+    kept = np.where(best, 0.0, 1.0)
+
+    def nats(weights: Array) -> float:
+        left = [(side * weights).sum(axis=1) for side in sums]
+        counted = length * weights.sum(axis=1)
+        logs = np.log(np.maximum(left[0], 1e-300) / np.maximum(left[1], 1e-300))
+        return 0.5 * float(counted @ logs)
+
+    return nats(np.ones_like(kept)), nats(kept)
+
+
+def _foremost(gains: Array) -> NDArray[np.bool_]:
+    """Of the gains (runs, chunks) those of the run that gains most; of two runs or one those of the chunk."""
+    best = np.zeros(gains.shape, dtype=bool)
+    if len(gains) > 2:
+        best[int(np.argmax(gains.sum(axis=1)))] = True
+    else:
+        best.flat[int(np.argmax(gains))] = True
+    return best
 
 
 def _nats(before: CrossValidation, after: CrossValidation, but: NDArray[np.bool_]) -> float:

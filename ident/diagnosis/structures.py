@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.ranking import rank
 from ident.diagnosis.refit import Refit
+from ident.diagnosis.significance import improvement
 from ident.errors import Unusable
 from ident.fit.identification import Identification, StepwiseFit, completed
 from ident.fit.result import FitResult, Structure, Window
@@ -92,7 +93,8 @@ def _with_an_effect_each(first: _Judged, tried: Sequence[_Judged], report: Repor
 def _better(first: _Judged, others: Collection[_Judged], strange: Collection[str]) -> tuple[_Judged, str]:
     """The one to take of models with an effect each, and why: the first, or a simpler one that says as much or more.
 
-    Much less is left by one that nothing else tells of; as little by one that is not strange where the first is not.
+    Much less is left by one that nothing else tells of; as little, and no more than by chance, by one that is not
+    strange where the first is not.
     """
     least = min((one.error for one in others), default=first.error)
     if least <= _MUCH_LESS * first.error:
@@ -104,6 +106,7 @@ def _better(first: _Judged, others: Collection[_Judged], strange: Collection[str
         if one.parameters < first.parameters
         and one.error <= _WORSE * first.error
         and (one.machine in strange) <= (first.machine in strange)
+        and not improvement(one.best.held_out, first.best.held_out).beyond_chance
     ]
     if first.with_effect is not None and simpler:
         return min(simpler, key=lambda one: one.parameters), "as little with one effect, and simpler"
@@ -244,7 +247,12 @@ class _Judged:
     @property
     def error(self) -> float:
         """What it leaves of held-out data; infinite where it cannot be followed."""
-        return _held_out(self.with_effect or self.refit)
+        return _held_out(self.best)
+
+    @property
+    def best(self) -> Refit:
+        """With the effect, where there is one."""
+        return self.with_effect or self.refit
 
     def helped(self, report: Report) -> _Judged:
         """The same with the effect of the catalogue that helps it most, as it is where none does."""

@@ -12,8 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
+from ident.diagnosis.family import ModelFamily
+from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.fit.windows import unforeseen
+from ident.matrix import Matrix
 from ident.workflows import compare, identify
 from tests.blind.any_machine import Lab
 
@@ -28,11 +31,24 @@ def nats(lab: Lab) -> float:
     lab = replace(lab, jitter=0.0)
     sound, noisy = lab.measured(noisy=False), lab.measured()
     fit = identify(sound, Settings(model=TRUE[lab.structure]))
-    withheld = compare(sound, fit).runs[-1]
-    left = withheld.run.measured - withheld.modelled
-    noise = noisy.runs[-1].measured - withheld.run.measured
+    left = _left(sound, fit)
+    noise = noisy.runs[-1].measured - sound.runs[-1].measured
     without, with_it = (unforeseen(_whitened(lab, signal)) for signal in (noise, noise + left))
     return _WITHHELD * len(noise) / 2 * float(np.log(with_it / without))
+
+
+def _left(sound: Matrix, fit: FitResult) -> NDArray[np.float64]:
+    """What the best fit leaves of the last run: over windows only where whole runs leave more.
+
+    Without noise windows take what the model lacks for a disturbance, and begin anew to be rid of it.
+    """
+    last = compare(sound, fit).runs[-1]
+    models = ModelFamily.of(sound, Settings(model=fit.model))
+    known = {models.preset.parameter(name).in_equations: value for name, value in fit.values.items()}
+    whole = models.settled(models.refit((), known))
+    run = models.matrix.runs[-1]
+    outputs = whole.fitness.fresh((run,)).outputs(whole.point)
+    return min(last.run.measured - last.modelled, run.measured - outputs[run.id], key=lambda left: float(np.std(left)))
 
 
 def _whitened(lab: Lab, signal: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -166,6 +166,41 @@ def test_what_one_run_alone_asks_for_is_not_beyond_chance(rng):
     assert improvement(before, CrossValidation(better, np.full(20, 1e6), np.zeros(20), 20_000, 20_000.0)).beyond_chance
 
 
+def judged(squares: np.ndarray, independent: float, unforetold: np.ndarray, in_windows: bool) -> CrossValidation:
+    """Held-out errors of three runs of 1,000 samples, and what of the residuals their own past does not foretell."""
+    return CrossValidation(squares, np.full(3, 1e4), np.zeros(3), 3000, independent, unforetold, in_windows)
+
+
+def test_a_slow_pattern_that_falls_is_nothing_where_the_data_become_no_likelier(rng):
+    """A sensor that drifts, of which 40 samples of 3,000 tell something new, is met halfway by what has kinks."""
+    squares = 100.0 + rng.standard_normal((3, 8))
+    before = judged(squares, 40.0, np.full((3, 8), 1.0), False)
+    kinked, smooth = (judged(0.8 * squares, 40.0, np.full((3, 8), new), False) for new in (1.01, 0.99))
+    assert improvement(before, kinked).deviations > 10
+    assert improvement(before, kinked).nats < 10
+    assert improvement(before, kinked).likelier == pytest.approx(-0.5 * 3000 * np.log(1.01))
+    assert not improvement(before, kinked).beyond_chance
+    assert improvement(before, smooth).beyond_chance
+
+
+def test_over_windows_what_is_unforetold_decides(rng):
+    """They begin anew where they were measured, with its noise, and hide what adds up; a whole run's residual does not.
+
+    Half the samples times the logarithm of the squares: 1.5 % less of 3,000 are 23 nats, 0.8 % twelve.
+    """
+    squares = 100.0 + rng.standard_normal((3, 8))
+    new = np.full((3, 8), 1.0)
+    before = judged(squares, 300.0, new, True)
+    assert improvement(before, judged(squares, 300.0, 0.985 * new, True)).beyond_chance
+    assert not improvement(before, judged(squares, 300.0, 0.992 * new, True)).beyond_chance
+    assert not improvement(before, judged(0.5 * squares, 300.0, 1.001 * new, True)).beyond_chance
+    assert improvement(before, judged(0.5 * squares, 300.0, 0.995 * new, True)).beyond_chance
+    of_one = new.copy()
+    of_one[1] *= 0.95
+    assert improvement(before, judged(squares, 300.0, of_one, True)).likelier > 20
+    assert not improvement(before, judged(squares, 300.0, of_one, True)).beyond_chance
+
+
 def test_white_noise_is_all_new_and_a_slow_one_is_not(rng):
     white = rng.standard_normal(4096)
     assert independent_samples(white) > 2000

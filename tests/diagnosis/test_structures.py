@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from ident.diagnosis.structures import structures
+from ident.diagnosis.cross_validation import CrossValidation
+from ident.diagnosis.structures import _better, structures
 from ident.fit.result import FitResult, Structure
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run
@@ -123,6 +125,21 @@ def test_more_parameters_do_not_make_up_for_an_effect():
     assert first.machine == "motor"
     assert first.error["held_out"] > min(one.error["held_out"] for one in others)
     assert first.why.endswith("with dead zone: much less with one effect")
+
+
+@pytest.mark.parametrize(("unforetold", "taken"), [(1.03, "open_valve"), (1.0, "first_order")])
+def test_one_that_leaves_as_little_of_windows_has_to_be_as_likely(unforetold, taken):
+    """A lag follows a cylinder over windows, each begun where it was measured, and leaves all of a whole run."""
+
+    def model(machine: str, parameters: int, new: float) -> SimpleNamespace:
+        held_out = CrossValidation(
+            np.ones((2, 8)), np.full(2, 1e3), np.zeros(2), 3000, 300.0, np.full((2, 8), new), True
+        )
+        best = SimpleNamespace(held_out=held_out)
+        return SimpleNamespace(machine=machine, parameters=parameters, error=0.03, best=best, with_effect=best)
+
+    first, lag = model("open_valve", 6, 1.0), model("first_order", 2, unforetold)
+    assert _better(first, [first, lag], set())[0].machine == taken
 
 
 @pytest.mark.parametrize("model", ["motor", "open_valve"])
