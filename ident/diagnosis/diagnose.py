@@ -270,6 +270,7 @@ def _evidence(candidate: Candidate, effect: Effect) -> dict[str, Any]:
         "nats": found.nats if found else None,
         "nats_without_best_run": found.nats_without if found else None,
         "offset_nats": found.offset if found else None,
+        "unforetold_nats": found.likelier if found else None,
         "beyond_chance": found.beyond_chance if found else None,
         "carries_over": candidate.carries_over if found and found.beyond_chance else None,
         "looks": effect.looks,

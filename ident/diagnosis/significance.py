@@ -68,16 +68,24 @@ class Improvement:
     @property
     def beyond_chance(self) -> bool:
         """Whether the better one would be chosen again with other noise."""
+        of_error = self._error_beyond_chance and not self.follows_drift
+        of_offset = self.visible and self.offset > BEYOND_CHANCE and self.nats > -_SINGLE
+        return of_error or of_offset or self.unforetold_beyond_chance
+
+    @property
+    def follows_drift(self) -> bool:
+        """Whether the error falls beyond chance, and as much as before is left that its own past does not foretell."""
+        return self._error_beyond_chance and self.likelier is not None and not self.likelier > _SINGLE
+
+    @property
+    def _error_beyond_chance(self) -> bool:
         few = self.deviations > _UNSTEADY or self.lost < _LOST
         likely = self.nats > BEYOND_CHANCE and self.nats_without > _SINGLE and few
         steady = self.deviations > _STEADY and self.deviations_without > _SINGLE_STEADY
-        likelier = self.likelier is None or self.likelier > _SINGLE
-        of_error = self.share > WORTHWHILE and (likely or steady) and likelier
-        of_offset = self.visible and self.offset > BEYOND_CHANCE and self.nats > -_SINGLE
-        return of_error or of_offset or self._unforetold_beyond_chance
+        return self.share > WORTHWHILE and (likely or steady)
 
     @property
-    def _unforetold_beyond_chance(self) -> bool:
+    def unforetold_beyond_chance(self) -> bool:
         """Whether of windows less is unforetold than by chance."""
         if not self.in_windows or self.likelier is None or self.likelier_without is None:
             return False

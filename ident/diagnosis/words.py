@@ -8,7 +8,7 @@ from ident.diagnosis.late import Lateness
 from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.result import Explanation, Suspect
-from ident.diagnosis.significance import Improvement
+from ident.diagnosis.significance import WORTHWHILE, Improvement
 from ident.diagnosis.standing import Contradiction
 from ident.effects.effect import Effect
 from ident.fit.result import Combination
@@ -23,6 +23,11 @@ _BOUNDED = (
 _TELLS_APART = (
     "It does better on stretches of the runs that it was fitted to, but on whole runs that were left out the error "
     "rises from {} to {}: it tells runs apart, and does not explain them."
+)
+
+_DRIFT = (
+    "as much is left that the record's own past does not foretell: it follows a drift, or what disturbances added up "
+    "to, and does not explain it."
 )
 
 
@@ -41,12 +46,17 @@ def why_of_gain(
 ) -> str:  # fmt: skip
     """The same of an effect that was refitted; `errors` are those on held-out data without it and with it."""
     change = "On data held out from the fit the error goes from {} to {}".format(*map(percent, errors))
+    if gain.follows_drift and not gain.beyond_chance:
+        return f"{change}, but {_DRIFT}"
     if not gain.beyond_chance:
         return (
             f"{change}, {gain.deviations:.1f} standard errors: no more than chance. It would show as: {effect.looks}."
         )
     near = f", with the noise floor at {percent(floor)}" if floor is not None else ""
     first = "No other effect does better. " if best else ""
+    if gain.unforetold_beyond_chance and gain.share < WORTHWHILE:
+        foretold = f"of whole runs {gain.likelier:.3g} nats less is left that their own past does not foretell"
+        return f"{first}{change} over windows; {foretold}. It shows as: {effect.looks}."
     if abs(gain.share) < 1e-3:
         return f"{first}The error stays, but the runs' offsets become explained: {effect.looks}."
     return f"{change}{near}. {first}It shows as: {effect.looks}."

@@ -9,8 +9,10 @@ import pytest
 
 from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.proposals.proposal import Proposal
+from ident.diagnosis.significance import Improvement
 from ident.diagnosis.standing import Contradiction
-from ident.diagnosis.words import proposed_text, verdict_text
+from ident.diagnosis.words import proposed_text, verdict_text, why_of_gain
+from ident.effects import EFFECTS
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run, Specimen
 
@@ -71,3 +73,29 @@ def test_what_later_terms_bring_down_is_not_said_first(last, mended):
     assert text.startswith("Beyond the catalogue") is mended
     assert text.endswith(alone) is mended
     assert text.startswith("With R = R + s * v the error on verify runs rises") is not mended
+
+
+def gained(**more: float | bool) -> Improvement:
+    """A fall of the error by a tenth, steady, of which few samples tell something new."""
+    plain = {"share": 0.1, "nats": 5.3, "nats_without": 4.7, "deviations": 3.2, "deviations_without": 3.1, "lost": 0.3,
+             "offset": 0.0, "visible": False}  # fmt: skip
+    return Improvement(**{**plain, **more})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("gain", "said", "unsaid"),
+    [
+        (gained(likelier=-31.0, likelier_without=-30.0), "it follows a drift", "no more than chance"),
+        (gained(likelier=90.0, likelier_without=80.0), "It shows as", "drift"),
+        (gained(likelier=-31.0, deviations=1.0), "no more than chance", "drift"),
+        (
+            gained(share=-0.4, likelier=21.4, likelier_without=15.0, in_windows=True),
+            "of whole runs 21.4 nats",
+            "offsets",
+        ),
+    ],
+)
+def test_an_effect_says_why_it_helps_or_does_not(gain, said, unsaid):
+    text = why_of_gain(gain, EFFECTS[0], (0.0275, 0.0249), 0.02, best=False)
+    assert said in text
+    assert unsaid not in text
