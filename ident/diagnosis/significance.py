@@ -8,13 +8,13 @@ much the held-out data become more likely is, with n the number of samples that 
 and the mean gain of a chunk over its standard error says how steadily. Either may be beyond chance: G counts where the
 residual is noise and a few chunks gain much, the other where the residual is a slow pattern, of which few samples tell
 something new. A parameter that is of no use lowers both. Such a pattern may be a sensor's drift, or what disturbances
-added up to, which half a dozen effects meet halfway: whatever helps has to leave less of what the residual's own past
-does not foretell, too,
+added up to, which half a dozen effects meet halfway: what helps steadily has to leave less of what the residual's own
+past does not foretell, too,
 
     L = ½ n log(ν² before / ν² after)   in nats, with ν of :mod:`ident.noise.autoregression`
 
-and over windows, which begin anew where they were measured and hide what adds up, much less of that is enough by
-itself. What helps has to help without the run that gains most, too,
+and so has all that helps over windows, which begin anew where they were measured and hide what adds up: there much
+less of that is enough by itself. What helps has to help without the run that gains most, too,
 or without that chunk, where there are few runs: what only one run asks for is a doubt about that run, not physics.
 """
 
@@ -36,6 +36,7 @@ _ALIKE_NATS = 2 * ALIKE**2  # where white noise of σ separates outputs f, g by 
 VISIBLE = 3e-4  # of the standard deviation: offsets below are nobody's concern
 _SINGLE = 5.0  # nats that are to be left without the run that gains most, and the least of L
 _FORETOLD = 15.0  # nats of L: a drift that its past does not quite foretell makes ten
+_NEW = 0.2  # of what is left that is not foretold: less, and it is no noise
 _STEADY = 3.0  # deviations of the mean gain of the chunks that are beyond chance by themselves
 _SINGLE_STEADY = 2.5  # deviations that are to be left without the run that gains most
 _UNSTEADY = 1.5  # deviations below which few chunks gain
@@ -50,7 +51,8 @@ class Improvement:
     gain of a chunk over its standard error, both also without the run that gains most; `lost` what the chunks that get
     worse lose of that which the others gain, without that run. `offset` are the nats of the runs' offsets, `visible`
     whether these are large enough to matter. `likelier` are the nats of what the residuals' own past does not foretell,
-    also without the run or chunk that gains most; None where that is not known. `in_windows` as of what is compared.
+    also without the run or chunk that gains most, None where that is not known, and `new` the share of what is left
+    that it does not foretell. `in_windows` as of what is compared.
     """
 
     share: float
@@ -63,26 +65,36 @@ class Improvement:
     visible: bool
     likelier: float | None = None
     likelier_without: float | None = None
+    new: float = 0.0
     in_windows: bool = False
 
     @property
     def beyond_chance(self) -> bool:
         """Whether the better one would be chosen again with other noise."""
-        of_error = self._error_beyond_chance and not self.follows_drift
+        of_error = self._likely or self._steady
         of_offset = self.visible and self.offset > BEYOND_CHANCE and self.nats > -_SINGLE
-        return of_error or of_offset or self.unforetold_beyond_chance
+        return (of_error and not self.follows_drift) or of_offset or self.unforetold_beyond_chance
 
     @property
     def follows_drift(self) -> bool:
-        """Whether the error falls beyond chance, and as much as before is left that its own past does not foretell."""
-        return self._error_beyond_chance and self.likelier is not None and not self.likelier > _SINGLE
+        """Whether the error falls, but as much as before is left that its own past does not foretell.
+
+        Not where the data become more likely by themselves, nor where next to nothing of a whole run's residual is new:
+        it is a pattern far above the noise, whose steps a model that is better all over may foretell less well.
+        """
+        asked = self.in_windows or (not self._likely and self.new > _NEW)
+        falls = self._likely or self._steady
+        return falls and asked and self.likelier is not None and not self.likelier > _SINGLE
 
     @property
-    def _error_beyond_chance(self) -> bool:
+    def _likely(self) -> bool:
         few = self.deviations > _UNSTEADY or self.lost < _LOST
-        likely = self.nats > BEYOND_CHANCE and self.nats_without > _SINGLE and few
-        steady = self.deviations > _STEADY and self.deviations_without > _SINGLE_STEADY
-        return self.share > WORTHWHILE and (likely or steady)
+        return self.share > WORTHWHILE and self.nats > BEYOND_CHANCE and self.nats_without > _SINGLE and few
+
+    @property
+    def _steady(self) -> bool:
+        sure = self.deviations > _STEADY and self.deviations_without > _SINGLE_STEADY
+        return self.share > WORTHWHILE and sure
 
     @property
     def unforetold_beyond_chance(self) -> bool:
@@ -118,8 +130,16 @@ def improvement(before: CrossValidation, after: CrossValidation) -> Improvement:
         offset,
         visible,
         *_likelier(before, after),
+        _new(after),
         before.in_windows,
     )
+
+
+def _new(after: CrossValidation) -> float:
+    """The share of what is left that its own past does not foretell, averaged over the runs."""
+    if after.unforetold is None:
+        return 0.0
+    return float(np.mean(after.unforetold.sum(axis=1) / np.maximum(after.squares.sum(axis=1), 1e-300)))
 
 
 def _likelier(before: CrossValidation, after: CrossValidation) -> tuple[float | None, float | None]:

@@ -174,13 +174,25 @@ def judged(squares: np.ndarray, independent: float, unforetold: np.ndarray, in_w
 def test_a_slow_pattern_that_falls_is_nothing_where_the_data_become_no_likelier(rng):
     """A sensor that drifts, of which 40 samples of 3,000 tell something new, is met halfway by what has kinks."""
     squares = 100.0 + rng.standard_normal((3, 8))
-    before = judged(squares, 40.0, np.full((3, 8), 1.0), False)
-    kinked, smooth = (judged(0.8 * squares, 40.0, np.full((3, 8), new), False) for new in (1.01, 0.99))
+    before = judged(squares, 40.0, np.full((3, 8), 40.0), False)
+    kinked, smooth = (judged(0.8 * squares, 40.0, np.full((3, 8), new), False) for new in (40.4, 39.6))
     assert improvement(before, kinked).deviations > 10
     assert improvement(before, kinked).nats < 10
     assert improvement(before, kinked).likelier == pytest.approx(-0.5 * 3000 * np.log(1.01))
     assert not improvement(before, kinked).beyond_chance
     assert improvement(before, smooth).beyond_chance
+
+
+def test_of_a_pattern_far_above_the_noise_its_past_is_no_judge(rng):
+    """A dead zone that takes two thirds off the error of a motor's steps foretells their edges a little less well."""
+    squares = 100.0 + rng.standard_normal((3, 8))
+    before = judged(squares, 8.0, np.full((3, 8), 1.0), False)
+    little, much = (improvement(before, judged(0.1 * squares, 8.0, np.full((3, 8), new), False)) for new in (1.1, 2.2))
+    assert little.nats < 10
+    assert max(little.likelier, much.likelier) < -100
+    assert (little.new, much.new) == pytest.approx((0.11, 0.22), rel=0.01)
+    assert little.beyond_chance
+    assert much.follows_drift
 
 
 def test_over_windows_what_is_unforetold_decides(rng):
