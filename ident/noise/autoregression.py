@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 _ORDER = 32  # samples of the past; of a short record a tenth
+_BLOCK = 65_536  # samples at a time: records may be long
 _FLAT = 1e-12  # of the largest: a combination of past values that does not move
 
 
@@ -29,10 +30,23 @@ def prediction_errors(residual: Array) -> Array:
         return np.full(n, 0.0 if size == 0 else np.nan)
     level /= size
     steps = np.diff(level, prepend=level[0])
-    # the last value and the steps before it: the same past as p values, told apart better where these hardly differ
-    past = np.lib.stride_tricks.sliding_window_view(steps[: n - 1], order)[:, 1:]
-    past = np.column_stack([level[order - 1 : n - 1], past])
-    past /= np.maximum(np.abs(past).max(axis=0), _FLAT)
-    known = steps[order:]
-    found[order:] = known - past @ np.linalg.lstsq(past.T @ past, past.T @ known, rcond=_FLAT)[0]
+    scaled = steps / max(float(np.abs(steps).max()), _FLAT)
+    gram, cross = np.zeros((order, order)), np.zeros(order)
+    blocks = [slice(first, min(first + _BLOCK, n)) for first in range(order, n, _BLOCK)]
+    for block in blocks:
+        past = _past(level, scaled, order, block)
+        gram += past.T @ past
+        cross += past.T @ steps[block]
+    a = np.linalg.lstsq(gram, cross, rcond=_FLAT)[0]
+    for block in blocks:
+        found[block] = steps[block] - _past(level, scaled, order, block) @ a
     return size * found
+
+
+def _past(level: Array, steps: Array, order: int, block: slice) -> Array:
+    """What is known before each sample of a block, (n, order): the last value, and the steps that led there.
+
+    It is the same past as that many values, told apart better where these hardly differ.
+    """
+    led = np.lib.stride_tricks.sliding_window_view(steps[block.start - order : block.stop - 1], order)[:, 1:]
+    return np.column_stack([level[block.start - 1 : block.stop - 1], led])

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from ident.noise import autoregression
 from ident.noise.autoregression import prediction_errors
 
 N = 4000
@@ -57,3 +58,11 @@ def test_what_runs_away_is_foretold_and_of_what_is_infinite_nothing_is_known():
         assert np.abs(prediction_errors(np.geomspace(1.0, 1e300, 500))).max() < 1e295
     with np.errstate(invalid="ignore"):
         assert np.isnan(prediction_errors(np.append(np.zeros(499), np.inf))).all()
+
+
+def test_a_long_record_is_taken_in_blocks(rng, monkeypatch):
+    """What the records before a block foretell of its first samples is not lost."""
+    residual = coloured(rng.standard_normal(N)) + np.cumsum(rng.standard_normal(N))
+    at_once = prediction_errors(residual)
+    monkeypatch.setattr(autoregression, "_BLOCK", 300)
+    np.testing.assert_allclose(prediction_errors(residual), at_once, atol=1e-10)
