@@ -147,10 +147,11 @@ def _likelier(before: CrossValidation, after: CrossValidation) -> tuple[float | 
 
     Of three runs or more without the run.
     """
-    if before.unforetold is None or after.unforetold is None:
+    known = [side.unforetold for side in (before, after) if side.unforetold is not None]
+    if len(known) < 2:
         return None, None
-    length = before.samples / before.unforetold.size
-    sums = [np.maximum(side.unforetold, 1e-300) for side in (before, after)]
+    length = before.samples / known[0].size
+    sums = [np.maximum(one, 1e-300) for one in known]
     power = np.minimum(*(side.mean(axis=1, keepdims=True) for side in sums))
     best = _foremost((sums[0] - sums[1]) / power)
     kept = np.where(best, 0.0, 1.0)
