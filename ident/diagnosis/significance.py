@@ -154,15 +154,12 @@ def _likelier(before: CrossValidation, after: CrossValidation) -> tuple[float | 
     sums = [np.maximum(one, 1e-300) for one in known]
     power = np.minimum(*(side.mean(axis=1, keepdims=True) for side in sums))
     best = _foremost((sums[0] - sums[1]) / power)
-    kept = np.where(best, 0.0, 1.0)
 
-    def nats(weights: Array) -> float:
-        left = [(side * weights).sum(axis=1) for side in sums]
-        counted = length * weights.sum(axis=1)
-        logs = np.log(np.maximum(left[0], 1e-300) / np.maximum(left[1], 1e-300))
-        return 0.5 * float(counted @ logs)
+    def nats(but: NDArray[np.bool_]) -> float:
+        left = [np.maximum(np.where(but, 0.0, side).sum(axis=1), 1e-300) for side in sums]
+        return 0.5 * length * float((~but).sum(axis=1) @ np.log(left[0] / left[1]))
 
-    return nats(np.ones_like(kept)), nats(kept)
+    return nats(np.zeros_like(best)), nats(best)
 
 
 def _foremost(gains: Array) -> NDArray[np.bool_]:
