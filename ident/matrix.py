@@ -113,7 +113,7 @@ class Run:
         """The command u (m), shape (n,)."""
         return self.channels["command"]
 
-    @property
+    @cached_property
     def stepped(self) -> bool:
         """Whether the command is held from the first sample to the last: a step from nothing, before the record."""
         return bool(np.all(np.isclose(self.command, self.command[0], rtol=_ROUNDING, atol=0.0)))
@@ -124,7 +124,7 @@ class Run:
         changes = np.flatnonzero(~np.isclose(self.command[1:], self.command[:-1], rtol=_ROUNDING, atol=0.0))
         return float(np.quantile(np.diff(changes), 0.25)) / self.sample_rate if len(changes) > 2 else 0.0
 
-    @property
+    @cached_property
     def drive(self) -> float:
         """The size of the command: its standard deviation, of a step its height."""
         return abs(float(self.command[0])) if self.stepped else float(np.std(self.command))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from functools import lru_cache
 from typing import Any, Generic, TypeVar
@@ -14,6 +14,7 @@ import numpy as np
 import scipy.linalg  # noqa: F401  its library is held too, and only what is loaded is found
 from threadpoolctl import ThreadpoolController
 
+_DEEP = 16  # threads a core: most of them wait for work inside of their work
 Item = TypeVar("Item")
 Outcome = TypeVar("Outcome")
 
@@ -81,33 +82,35 @@ def one_thread() -> Iterator[None]:
 
 @lru_cache
 def _pool() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(max(cores() - 1, 1), thread_name_prefix="servoident")
+    return ThreadPoolExecutor(_DEEP * cores(), thread_name_prefix="servoident")
 
 
 @lru_cache
 def _idle() -> threading.Semaphore:
-    """The threads of the pool that wait for work: nobody queues for one that is busy."""
+    """The cores that wait for work: nobody queues for one that is busy, and who waits for another's work lends his."""
     return threading.Semaphore(cores() - 1)
 
 
 class _Work(Generic[Item, Outcome]):
-    """Items that whoever has time takes one by one: the caller, and threads that were idle when it began."""
+    """Items that whoever has time takes one by one: the caller, and whatever core is idle as another one is begun."""
 
     def __init__(self, function: Callable[[Item], Outcome], items: Sequence[Item]) -> None:
         self._function, self._items = function, items
         self._outcomes: dict[int, Outcome] = {}
         self._failures: dict[int, BaseException] = {}
+        self._helpers: list[Future[None]] = []
         self._next = iter(range(len(items)))  # taking from it is atomic
 
     def outcomes(self) -> list[Outcome]:
         """All of them in order; after a failure nothing more is begun, and the first in order is raised."""
-        helpers = [_pool().submit(self._help) for _ in self._items[1:] if _idle().acquire(blocking=False)]
         try:
             self._carry_out()
         finally:
             self._next = iter(())
-            for helper in helpers:
-                helper.result()
+            if not all(helper.done() for helper in self._helpers):
+                _idle().release()
+                wait(self._helpers)
+                _idle().acquire()
         if self._failures:
             raise self._failures[min(self._failures)]
         return [self._outcomes[i] for i in range(len(self._items))]
@@ -120,6 +123,10 @@ class _Work(Generic[Item, Outcome]):
 
     def _carry_out(self) -> None:
         while (i := next(self._next, None)) is not None and not self._failures:
+            for _ in self._items[i + 1 :]:  # as many as there is work for
+                if not _idle().acquire(blocking=False):
+                    break
+                self._helpers.append(_pool().submit(self._help))
             try:
                 self._outcomes[i] = self._function(self._items[i])
             except BaseException as failure:

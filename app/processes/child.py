@@ -15,8 +15,8 @@ from typing import Any
 from ident.parallel import one_thread
 from ident.progress import Progress
 
-LESS = 10
-"""By how much such a process stands behind one that answers, as `nice` counts."""
+LESS = 5
+"""By how much such a process stands behind one that answers, as `nice` counts: a third of its share of a busy core."""
 
 
 def serve(pipe: Connection) -> None:

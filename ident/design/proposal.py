@@ -28,6 +28,7 @@ from ident.fit.bounded_step import bounded_step
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.reduction import excited_band
 from ident.matrix import Matrix, Run
+from ident.parallel import each
 
 Array = NDArray[np.float64]
 _TRIAL = 4096  # samples on which runs are judged
@@ -107,13 +108,14 @@ def _judged(rivals: Sequence[Rival], experiments: Sequence[Experiment]) -> list[
     first = rivals[0].matrix.runs[0]
     length = min(_TRIAL / first.sample_rate, experiments[0].seconds)
     runs = [_run(e.lasting(length), str(i), first) for i, e in enumerate(experiments)]
-    outputs = [rival.outputs(runs) for rival in rivals]
+    outputs = each(lambda rival: rival.outputs(runs), rivals)
     sound = [i for i, run in enumerate(runs) if all(_sound(y[run.id], run) for y in outputs)]
     if not sound:
         return []
     kept = [runs[i] for i in sound]
     pairs = _pairs(rivals, kept, outputs, experiments[0].seconds / length)
-    own = [rival.normal_matrices(_recorded(kept, y)) for rival, y in zip(rivals, outputs, strict=True)]
+    told = list(zip(rivals, outputs, strict=True))
+    own = each(lambda one: one[0].normal_matrices(_recorded(kept, one[1])), told)
     worths = []
     for place, i in enumerate(sound):
         tells = [_told(c, m[place], runs[i], y, experiments[i].seconds / length)
@@ -146,8 +148,9 @@ def _pairs(
 ) -> Array:  # fmt: skip
     """χ² of each run and each pair of models, (runs, pairs), the mean of both being the machine."""
     found: dict[frozenset[int], Array] = {}
-    for a, b in permutations(range(len(rivals)), 2):
-        moments = rivals[b].normal_matrices(_recorded(runs, outputs[a]))
+    two = list(permutations(range(len(rivals)), 2))
+    beside = each(lambda ab: rivals[ab[1]].normal_matrices(_recorded(runs, outputs[ab[0]])), two)
+    for (a, b), moments in zip(two, beside, strict=True):
         sigma = [rivals[b].deviation(float(np.std(outputs[a][run.id]))) for run in runs]
         known, point = rivals[b].information, rivals[b].point
         chi = [_chi_squared(longer * m.gram / s**2, known, point) for m, s in zip(moments, sigma, strict=True)]

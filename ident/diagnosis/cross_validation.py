@@ -92,8 +92,7 @@ def cross_validated(
 
     Chunks of every record are left out in turn, or `whole_runs`, of which there have to be two at least.
     """
-    few = len(here.runs) < CHUNKS
-    count = min(_FINER, *(len(run.blocks) for run in here.runs)) if few else CHUNKS
+    count = _chunks(here)
     chunks = [_chunk_of(run, count) for run in here.runs]
     squares = np.zeros((len(here.runs), count))
     fold_of = (_folds_of_runs if whole_runs else _folds_of_chunks)(len(here.runs), count)
@@ -103,6 +102,24 @@ def cross_validated(
         for i, (run, of) in enumerate(zip(there.runs, chunks, strict=True)):
             inside = fold_of[i] == fold
             squares[i, inside] = _by_chunk(run, of, count, step)[inside]
+    return _over_chunks(here, squares, independent)
+
+
+def not_held_out(here: Local, independent: float) -> CrossValidation:
+    """The errors at an optimum with nothing left out: as fair between models of as many parameters, and at once."""
+    count = _chunks(here)
+    still = np.zeros(len(here.gradient))
+    squares = np.array([_by_chunk(run, _chunk_of(run, count), count, still) for run in here.runs])
+    return _over_chunks(here, squares, independent)
+
+
+def _chunks(here: Local) -> int:
+    """The chunks of a record: more where there are few records."""
+    few = len(here.runs) < CHUNKS
+    return min(_FINER, *(len(run.blocks) for run in here.runs)) if few else CHUNKS
+
+
+def _over_chunks(here: Local, squares: Array, independent: float) -> CrossValidation:
     means = np.array([run.offset for run in here.runs])
     totals = np.array([run.total for run in here.runs])
     return CrossValidation(squares, totals, means - means.mean(), sum(run.length for run in here.runs), independent)

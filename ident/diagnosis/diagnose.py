@@ -32,6 +32,7 @@ from ident.errors import TimeIsUp, Unusable
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
+from ident.parallel import each
 from ident.progress import Expected, Progress
 
 _SIMPLER = 1.05  # times the error that terms may leave without what was found, and still come before those beside it
@@ -205,6 +206,8 @@ class Diagnoser:
         base, models = selection.base, selection.models
         alike = tuple(candidate.effect for candidate in selection.alike())
         group = alike if len(alike) > 1 else ()
+        weighed = selection.weighed()
+        each(lambda c: _judged(c, c.effect in weighed), selection.ranking)  # side by side, not one by one below
         listed = []
         for i, candidate in enumerate(selection.ranking):
             refit = candidate.refit
@@ -216,8 +219,9 @@ class Diagnoser:
                 predicted_error=base.error * candidate.prediction.share,
                 parameters=refit.parameters if refit else {},
                 group=group if candidate.effect in group else (),
-                evidence=_evidence(candidate, models.effects[candidate.effect]),
-                why=why(candidate, models.effects[candidate.effect], base.held_out.error, floor, i == 0),
+                evidence=_evidence(candidate, models.effects[candidate.effect], candidate.effect in weighed),
+                why=why(candidate, models.effects[candidate.effect], base.held_out.error, floor, i == 0,
+                        candidate.effect in weighed),
             ))  # fmt: skip
         return listed
 
@@ -260,7 +264,13 @@ def _refused(proposed: Proposals, asked: bool | None) -> Iterator[str]:
         yield "No term was looked for: the error is the noise's."
 
 
-def _evidence(candidate: Candidate, effect: Effect) -> dict[str, Any]:
+def _judged(candidate: Candidate, weighed: bool) -> tuple[object, object]:
+    """What is told of a candidate and takes simulations, which it keeps."""
+    return candidate.refit and candidate.refit.errors, weighed and candidate.helps
+
+
+def _evidence(candidate: Candidate, effect: Effect, weighed: bool) -> dict[str, Any]:
+    """The figures behind a candidate; whether it holds from run to run is asked of those that were `weighed`."""
     found = candidate.gain
     return {
         "predicted_fall": candidate.prediction.fall,
@@ -272,6 +282,6 @@ def _evidence(candidate: Candidate, effect: Effect) -> dict[str, Any]:
         "offset_nats": found.offset if found else None,
         "unforetold_nats": found.likelier if found else None,
         "beyond_chance": found.beyond_chance if found else None,
-        "carries_over": candidate.carries_over if found and found.beyond_chance else None,
+        "carries_over": candidate.carries_over if weighed and found and found.beyond_chance else None,
         "looks": effect.looks,
     }

@@ -62,6 +62,7 @@ class ModelFamily:
     horizon: float | None = None
     memory: float | None = None
     _known: dict[tuple[tuple[str, ...], int], SimulatedFitness] = field(default_factory=dict)
+    _records: dict[int, tuple[Run, ...]] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -96,7 +97,7 @@ class ModelFamily:
 
     def without(self, runs: Iterable[str]) -> ModelFamily:
         """The same models, fitted to fewer runs."""
-        return replace(self, left_out=self.left_out | frozenset(runs), _known={})
+        return replace(self, left_out=self.left_out | frozenset(runs), _known={}, _records={})
 
     def over(self, horizon: float | None, memory: float | None) -> ModelFamily:
         """The same models, fitted over other windows."""
@@ -173,12 +174,16 @@ class ModelFamily:
             bounds = {name: of for name, of in self.given.bounds.items() if name.partition(".")[0] not in out}
             given = replace(self.given, bounds=bounds)
             space = search_space(model, self.matrix, given, self.band)
-            runs = shortened(self.runs, samples) if samples else self.runs
+            runs = self._shortened(samples) if samples else self.runs
             self._known[key] = SimulatedFitness(
                 model, self.matrix, runs, self.band, space, horizon=self.horizon, memory=self.memory
             )
         known = self._known[key]
         return known.fresh(known.runs)  # no search goes on from the first states in which another one ended
+
+    def _shortened(self, samples: int) -> tuple[Run, ...]:
+        """The records at that length, the same ones for every model: what is known of a record is found once."""
+        return self._records.setdefault(samples, self._records.get(samples) or shortened(self.runs, samples))
 
     @cached_property
     def floors(self) -> Floors:
@@ -214,22 +219,30 @@ class ModelFamily:
         memory = [float(np.corrcoef(r[1:], r[:-1])[0, 1]) for r in residuals]
         return bool(np.median(memory) > _NOISE_LIKE)
 
-    def best_of(self, refit: Refit, starts: Sequence[Mapping[str, float]]) -> Refit | None:
-        """The best refit of the same model from other starts, where one is better than `refit`."""
-        best = self.searched(refit, starts)
-        if best.here.error > _BETTER * self.tried(refit):
+    def best_of(
+        self, refit: Refit, starts: Sequence[Mapping[str, float]], aim: float = np.inf
+    ) -> Refit | None:  # fmt: skip
+        """The best refit of the same model from other starts, where one is better than `refit` and comes below `aim`.
+
+        Both are judged on the beginnings of the records.
+        """
+        asked = min(_BETTER * self.tried(refit), aim)
+        best = self.searched(refit, starts, asked)
+        if best.here.error > asked:
             return None
         found = self.refit(refit.effects, best.values)
         return found if found.here.error < refit.here.error else None
 
-    def searched(self, refit: Refit, starts: Sequence[Mapping[str, float]]) -> Refit:
+    def searched(self, refit: Refit, starts: Sequence[Mapping[str, float]], aim: float = np.inf) -> Refit:
         """The best first refit of the same model from other starts, far off: on the beginnings of the records.
 
-        All set out, and the one that is ahead goes on.
+        All set out, and the one that is ahead goes on, as long as it may come below `aim`.
         """
-        tried = [self.refit(refit.effects, start, _TRIAL, _SETTING_OUT) for start in starts]
+        setting_out = replace(_SETTING_OUT, aim=aim)
+        tried = each(lambda start: self.refit(refit.effects, start, _TRIAL, setting_out), starts)
         ahead = first_least(tried, lambda one: one.here.error)
-        return self.refit(refit.effects, ahead.values, _TRIAL, _SEARCHING) if ahead.finite else ahead
+        on = replace(_SEARCHING, aim=aim)
+        return self.refit(refit.effects, ahead.values, _TRIAL, on) if ahead.finite else ahead
 
     def scattered(self, effects: tuple[str, ...]) -> list[Refit]:
         """First steps of a model from where in its whole search space the error is least, on the records' beginnings.
@@ -242,14 +255,15 @@ class ModelFamily:
         starts = [{name: float(v[0]) for name, v in fitness.space.values(point[None]).items()} for point in best]
         return [self.refit(effects, start, _TRIAL, _FIRST_STEPS) for start in starts]
 
-    def ahead(self, refits: Iterable[Refit]) -> list[Refit]:
-        """Those of first steps that left least, as first refits: the others cannot win."""
+    def ahead(self, refits: Iterable[Refit], aim: float) -> list[Refit]:
+        """Those of first steps that left least, as first refits that have to come below `aim`: others cannot win."""
         rest = in_order([one for one in refits if one.stable], lambda one: one.here.error)
         leading: list[Refit] = []
         while rest and len(leading) < _AHEAD:  # only of those that lead it is asked whether they keep their promise
             asked, rest = rest[: _AHEAD - len(leading)], rest[_AHEAD - len(leading) :]
             leading += [one for one, kept in zip(asked, each(lambda one: one.finite, asked), strict=True) if kept]
-        return each(lambda one: self.refit(one.effects, one.values, _TRIAL), leading)
+        on = replace(TRYING, aim=aim)
+        return each(lambda one: self.refit(one.effects, one.values, _TRIAL, on), leading)
 
     def refit(
         self,
@@ -281,11 +295,16 @@ class ModelFamily:
         """What a first refit has to beat: the error of a refit on the beginnings of the records."""
         return self.fitness(refit.effects, _TRIAL).exact(refit.point, sensitivities=False).error
 
-    def trial(self, effects: tuple[str, ...], starts: Sequence[Mapping[str, float]]) -> Refit:
-        """A first refit on the beginnings of the records, from the one of the starts where the error is least."""
+    def trial(
+        self, effects: tuple[str, ...], starts: Sequence[Mapping[str, float]], aim: float = np.inf
+    ) -> Refit:  # fmt: skip
+        """A first refit on the beginnings of the records, from the one of the starts where the error is least.
+
+        It is given up where it cannot come below `aim`.
+        """
         fitness = self.fitness(effects, _TRIAL)
         errors = fitness.errors(
             np.array([fitness.space.point({**self.off, **s, **fitness.space.fixed}) for s in starts])
         )
         start, _ = first_least(list(zip(starts, errors.tolist(), strict=True)), lambda one: one[1])
-        return self.refit(effects, start, _TRIAL)
+        return self.refit(effects, start, _TRIAL, replace(TRYING, aim=aim))

@@ -13,10 +13,14 @@ from dataclasses import dataclass, replace
 from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.refit import Refit
 from ident.diagnosis.significance import improvement
+from ident.fit.levenberg_marquardt import Way
 from ident.fit.result import Combination
 from ident.fit.slow_answer import is_late
 from ident.parallel import each
 from ident.parameter import Parameter
+
+_NEAR = 1.05  # times the model's error: what cannot come below it does not as well
+_ROUGHLY = Way(1e-4, 12, rough=1e-3)  # of a refit that is only asked whether it does
 
 
 @dataclass(frozen=True)
@@ -49,12 +53,15 @@ def lateness(models: ModelFamily, base: Refit, refit: Refit) -> Lateness | None:
 
     def other(effect: str) -> Refit:
         at = {models.strength(effect): refit.values[constant.in_equations]}
-        return short.refit((*refit.effects, effect), start | at)
+        return short.refit((*refit.effects, effect), start | at, way=way)
 
+    way = replace(_ROUGHLY, aim=_NEAR * refit.here.error)
     names = [name for name, effect in models.effects.items() if is_late(effect) and name not in refit.effects]
     names = [name for name in names if models.fit_together((*refit.effects, name))]
     tried = [one for one in each(other, names) if one.finite]
-    alike = tuple(one.effects[-1] for one in tried if improvement(one.held_out, refit.held_out).within_chance)
+    alike = tuple(
+        one.effects[-1] for one in tried if improvement(one.not_held_out, refit.not_held_out).within_chance
+    )  # a time constant less, a lag or delay more
     before = next(base.slow_lags(), None) if base is not refit else None
     return Lateness(found, constant, alike, before) if alike else None
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import groupby
 from typing import TypeVar
+
+import numpy as np
 
 from ident.cached import cached_property
 from ident.diagnosis.family import ModelFamily
@@ -94,21 +96,31 @@ def rank(
 
 
 def rank_each(
-    models: ModelFamily, bases: Sequence[Base], report: Report, thorough: bool = True, strong: bool = False
-) -> list[list[Candidate]]:
-    """The same for several models, with what is refitted for all of them side by side."""
+    models: ModelFamily, bases: Sequence[Base], report: Report, thorough: bool = True, strong: bool = False,
+    beside: Refit | None = None,
+) -> list[list[Candidate]]:  # fmt: skip
+    """The same for several models, with what is refitted for all of them side by side.
+
+    Where only what is about as good as a model `beside` them counts, the others are given up on the way; that model
+    itself stands among the candidates as it is.
+    """
     promised = [_promised(models, base, names, report) for base, names in bases]
     models_of = [base for base, _ in bases]
+    met = [_met(base, of, beside) for base, of in zip(models_of, promised, strict=True)]
     contenders = [
-        of[:_CONTENDERS] if thorough else _near(models, base, of) for base, of in zip(models_of, promised, strict=True)
+        [one for one in (of[:_CONTENDERS] if thorough else _near(models, base, of)) if one.effect not in known]
+        for base, of, known in zip(models_of, promised, met, strict=True)
     ]
     sure, done = _FINALISTS if thorough else 2, 0
+    asked = {base.effects: _asked(models, base, beside) for base in models_of}
 
     def trial(base: Refit, prediction: Prediction) -> Candidate:
         nonlocal done
-        refit = models.trial((*base.effects, prediction.effect), prediction.starts)
+        aim = asked[base.effects]
+        refit = models.trial((*base.effects, prediction.effect), prediction.starts, aim)
         if strong:
-            refit = first_least([refit, models.searched(refit, _strong(models, base, refit))], lambda r: r.here.error)
+            other = models.searched(refit, _strong(models, base, refit), min(aim, refit.here.error))
+            refit = first_least([refit, other], lambda r: r.here.error)
         done += 1
         report(Progress("trying", done, sum(map(len, contenders)) + sure * len(bases)))
         return Candidate(prediction, refit if refit.finite else None)
@@ -127,10 +139,11 @@ def rank_each(
     found = [ranked(models, ones) for ones in _side_by_side(final, models_of, finalists)]
     report(Progress("confirming", done, done + 1))
     deeper = _DEEPER if thorough else 1
-    farther = _side_by_side(partial(_elsewhere, models), models_of, [ones[:deeper] for ones in found])
+    elsewhere = partial(_elsewhere, models, asked if beside else {})
+    farther = _side_by_side(elsewhere, models_of, [ones[:deeper] for ones in found])
     rankings = []
-    for of, first, then, last in zip(promised, tried, found, farther, strict=True):
-        confirmed = {candidate.effect: candidate for candidate in (*first, *then, *last)}
+    for of, known, first, then, last in zip(promised, met, tried, found, farther, strict=True):
+        confirmed = known | {candidate.effect: candidate for candidate in (*first, *then, *last)}
         rankings.append(ranked(models, [confirmed.get(one.effect, Candidate(one)) for one in of]))
     return rankings
 
@@ -160,6 +173,22 @@ def _finalists(models: ModelFamily, base: Refit, tried: Sequence[Candidate], sur
     return [one for i, one in enumerate(tried) if one.trial and (i < sure or one.score < good)]
 
 
+def _met(base: Refit, predictions: Sequence[Prediction], beside: Refit | None) -> dict[str, Candidate]:
+    """The candidate, if any, with which a base is the model that stands beside it."""
+    found = {}
+    for one in predictions:
+        effects = (*base.effects, one.effect)
+        if beside is not None and set(effects) == set(beside.effects):
+            known = beside.listed(effects)
+            found[one.effect] = Candidate(one, known).refitted(base, known)
+    return found
+
+
+def _asked(models: ModelFamily, base: Refit, beside: Refit | None) -> float:
+    """The error below which a trial has to come to be of use, on the beginnings of the records."""
+    return (1.0 - _PROMISING) * models.tried(base) if beside is None else _CLOSE * models.tried(beside)
+
+
 def _near(models: ModelFamily, base: Refit, predictions: Sequence[Prediction]) -> list[Prediction]:
     """The contenders for a further effect: those that promise anything near what the best promises."""
     near = _NEAR * predictions[0].after.error
@@ -183,12 +212,17 @@ def _alike(best: Candidate, other: Candidate) -> bool:
     return improvement(other.refit.held_out, best.refit.held_out).within_chance
 
 
-def _elsewhere(models: ModelFamily, base: Refit, candidate: Candidate) -> Candidate:
-    """The candidate, refitted from strong effects too where its error stays above the noise: there are local optima."""
+def _elsewhere(
+    models: ModelFamily, asked: Mapping[tuple[str, ...], float], base: Refit, candidate: Candidate
+) -> Candidate:  # fmt: skip
+    """The candidate, refitted from strong effects too where its error stays above the noise: there are local optima.
+
+    Given up is what does not come below what is `asked` beside a base.
+    """
     refit = candidate.refit
     if refit is None or models.at_floor(refit):
         return candidate
-    other = models.best_of(refit, _strong(models, base, refit))
+    other = models.best_of(refit, _strong(models, base, refit), asked.get(base.effects, np.inf))
     return candidate if other is None else candidate.refitted(base, other)
 
 

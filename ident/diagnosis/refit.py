@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
-from ident.diagnosis.cross_validation import CrossValidation, by_chunk, cross_validated
+from ident.diagnosis.cross_validation import CrossValidation, by_chunk, cross_validated, not_held_out
 from ident.diagnosis.estimate import Found
 from ident.diagnosis.significance import improvement
 from ident.fit.fitness import Local
@@ -42,8 +43,22 @@ class Refit:
     def held_out(self) -> CrossValidation:
         """Its errors on blocks that were left out in turn."""
         found = cross_validated(self.point, self.here, self.fitness.exact, self._simulated.independent)
+        return self._with_the_past(found)
+
+    @cached_property
+    def not_held_out(self) -> CrossValidation:
+        """The same with nothing left out: to compare models of as many parameters."""
+        return self._with_the_past(not_held_out(self.here, self._simulated.independent))
+
+    def _with_the_past(self, found: CrossValidation) -> CrossValidation:
         unforetold = self._simulated.unforetold(found.squares.shape[1])
         return replace(found, unforetold=unforetold, in_windows=self.fitness.horizon is not None)
+
+    def listed(self, effects: tuple[str, ...]) -> Refit:
+        """The same model with its effects in another order; what is known of it stays known."""
+        other = copy(self)
+        other.__dict__["effects"] = effects
+        return other
 
     @cached_property
     def between_runs(self) -> CrossValidation | None:

@@ -115,6 +115,11 @@ class StepwiseSelection:
             return []
         return [c for c in self.ranking if c.refit and improvement(c.refit.held_out, best.held_out).within_chance]
 
+    def weighed(self) -> frozenset[str]:
+        """The effects of the first ranking in question: down to the first that helps, and what is as good as it."""
+        first = next((i for i, candidate in enumerate(self.ranking) if candidate.helps), len(self.ranking))
+        return frozenset(candidate.effect for candidate in (*self.ranking[: first + 1], *self.alike()))
+
     def ladder(self) -> list[tuple[str | None, Refit]]:
         """From the fitted model to the last, one effect a step, without the detours: what was added, and the refit."""
         rungs: list[tuple[str | None, Refit]] = [(None, self.base)]
@@ -197,7 +202,8 @@ class StepwiseSelection:
             self.report(Progress("looking farther", done, len(names)))
             return refits
 
-        self._better(self.models.ahead(refit for found in each(scattered, names) for refit in found))
+        tried = (refit for found in each(scattered, names) for refit in found)
+        self._better(self.models.ahead(tried, self.models.tried(self.found)))
 
     def _better(self, tried: Sequence[Refit]) -> bool:
         """Go on with the best of first refits, where it is better beyond chance on all records."""
@@ -232,21 +238,21 @@ class StepwiseSelection:
         finalists = [c.refit for c in self.ranking if c.refit is not None and c.effect != begun][:_PAIRED]
         if self.most < 2 or len(finalists) < 2:
             return False
-        pairs = list(combinations(finalists, 2))
+        pairs, asked = list(combinations(finalists, 2)), self.models.tried(self.found)
         tried: list[Refit] = []
         for i, pair in enumerate(pairs):
             self.report(Progress("trying pairs", i, len(pairs)))
-            tried.append(self._both(*pair))
+            tried.append(self._both(*pair, asked))
         return self._better(tried)
 
-    def _both(self, first: Refit, second: Refit) -> Refit:
-        """A first refit with two effects, from where either is alone and from halfway to both."""
+    def _both(self, first: Refit, second: Refit, aim: float) -> Refit:
+        """A first refit with two effects that has to come below `aim`, from either alone and from halfway to both."""
         starts = []
         for alone, other in ((first, second), (second, first)):
             here, there = (self.models.strength(refit.effects[-1]) for refit in (alone, other))
             starts += [{**alone.values, there: share * other.values[there]} for share in _SHARES]
             starts.append({**alone.values, here: 0.5 * alone.values[here], there: 0.5 * other.values[there]})
-        return self.models.trial((*first.effects, second.effects[-1]), starts)
+        return self.models.trial((*first.effects, second.effects[-1]), starts, aim)
 
     def _backward(self, latest: str) -> bool:
         """Take out what the model can do without; True where that leads back to where it was.
@@ -298,7 +304,7 @@ class StepwiseSelection:
             return [self.ranking for _ in added]
         bases = each(self._less, added)
         sound = [(base, self._others(base)) for base in bases if base.finite]
-        ranked = iter(rank_each(self.models, sound, self.report, thorough=False) if sound else ())
+        ranked = iter(rank_each(self.models, sound, self.report, thorough=False, beside=self.found) if sound else ())
         return [next(ranked) if base.finite else [] for base in bases]
 
 

@@ -31,12 +31,17 @@ _DRIFT = (
 )
 
 
-def why(candidate: Candidate, effect: Effect, before: float, floor: float | None, best: bool) -> str:
-    """Why the data speak for or against an effect; `before` is the held-out error without it."""
+def why(
+    candidate: Candidate, effect: Effect, before: float, floor: float | None, best: bool, weighed: bool = True
+) -> str:
+    """Why the data speak for or against an effect; `before` is the held-out error without it.
+
+    Of one that was not `weighed` nobody asked whether it holds from run to run.
+    """
     if candidate.refit is None or candidate.gain is None:
         share = 100 * candidate.prediction.fall
         return f"Predicted to take {share:.2g} % off the error, less than others; it was not refitted."
-    if candidate.gain.beyond_chance and not candidate.carries_over:
+    if weighed and candidate.gain.beyond_chance and not candidate.carries_over:
         return _TELLS_APART.format(*map(percent, candidate.between_runs))
     return why_of_gain(candidate.gain, effect, (before, candidate.refit.held_out.error), floor, best)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 STEPS = 200  # at most: along a curved valley it takes more than 60
 _LEAST, _MOST = 1e-12, 1e6  # damping
+_HOPE = 4.0  # times what a step takes off: what a few more may
 
 
 class Shape(Protocol):
@@ -42,7 +43,8 @@ class Way:
 
     `converged` is the relative decrease of the error below which no further step is worth it, `most` the number of
     steps, `within` the bounds of every axis or of each, `longest` the longest step along one. Below a promise of
-    `rough` the error is not smooth: a step that failed and promised less is the last one.
+    `rough` the error is not smooth: a step that failed and promised less is the last one. Who has to come below `aim`
+    to be of any use gives up where neither the last steps nor the next one's promise come anywhere near it.
     """
 
     converged: float = 1e-10
@@ -50,6 +52,11 @@ class Way:
     within: tuple[float | Array, float | Array] = (0.0, 1.0)
     longest: float = np.inf
     rough: float = 0.0
+    aim: float = np.inf
+
+    def is_lost(self, error: float, promised: float, gained: Sequence[float]) -> bool:
+        """Whether what is missing is many times what the last two steps `gained`, and what the next one promises."""
+        return len(gained) > 1 and error - self.aim > _HOPE * max(promised, *gained[-2:])
 
 
 def levenberg_marquardt(
@@ -66,19 +73,23 @@ def levenberg_marquardt(
     """
     way = way or Way()
     point, here, damping = start.copy(), evaluate(start), 1e-4
+    gained: list[float] = []
     accept(here)
     for count in range(way.most):
         report(count, here.error)
         free_step = np.clip(_step(point, here, damping, way.within), -way.longest, way.longest)
         trial = np.clip(point + free_step, *way.within)
         step = trial - point
-        promised = -(here.gradient @ step + 0.5 * step @ here.curvature @ step)
+        promised = -float(here.gradient @ step + 0.5 * step @ here.curvature @ step)
         # A step cut at a bound may promise nothing where a shorter one does.
         cut = bool(np.any(trial != point + free_step))
         if not promised > way.converged * here.error and not cut:
             break
+        if way.is_lost(here.error, promised, gained):
+            break
         there = _better(evaluate, error, trial, here.error) if promised > 0 else None
         if there is not None:
+            gained.append(here.error - there.error)
             point, here, damping = trial, there, max(damping / 10, _LEAST)
             accept(here)
         elif damping > _MOST or 0 < promised < way.rough * here.error:

@@ -43,6 +43,14 @@ def add_products(rows: Array, measured: Array, moved: int, sums: Array) -> None:
                     sums[run, i, j] += total
 
 
+@njit(cache=True, nogil=True)
+def add_block_products(rows: Array, measured: Array, moved: int, length: int, sums: Array) -> None:
+    """The same for blocks of `length` samples one after the other, each into its own `sums`, (blocks, runs, q, q)."""
+    for block in range(-(-len(rows) // length)):
+        begin, end = block * length, min((block + 1) * length, len(rows))
+        add_products(rows[begin:end], measured[begin:end], moved, sums[block])
+
+
 def completed(sums: Array, strides: Array) -> Array:
     """Both triangles of sums of products (…, q, q) of [J, N, 1, r], the differences J over the strides (p,)."""
     scale = np.append(strides, np.ones(sums.shape[-1] - len(strides)))

@@ -21,7 +21,7 @@ from ident.effects.effect import Effect
 from ident.fit.anchoring import Anchoring
 from ident.fit.modes import extreme, fastest
 from ident.fit.normal_matrices import NormalMatrices, first_state, normal_matrices_of
-from ident.fit.products import add_products, completed
+from ident.fit.products import add_block_products, completed
 from ident.fit.reduction import excited_band
 from ident.matrix import Matrix, Run
 from ident.parallel import cores, each
@@ -129,10 +129,7 @@ class SimulatedRuns:
         anchored = anchoring.from_start()
         together = max(1, _BLOCK // length) * length
         for rows, begin, end in released.outputs(together):
-            shown = anchored(rows)
-            for first in range(begin, end, length):
-                last = min(first + length, end)
-                add_products(shown[first - begin : last - begin], records[first:last], q - 2, sums[first // length])
+            add_block_products(anchored(rows), records[begin:end], q - 2, length, sums[begin // length :])
         if window or not free:
             sums[..., -2, :] = sums[..., :, -2] = 0.0  # no mean is free: each window begins where it was measured
         return completed(sums, strides).transpose(1, 0, 2, 3)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
-from numba import types
+from numba import njit, types
 from numba.core import cgutils
 from numba.extending import intrinsic
+from numpy.typing import NDArray
 
+Array = NDArray[np.float64]
 _POINTERS, _NUMBERS = 5, 3  # arguments of `advance` before its output and the output's stride
 
 
@@ -41,3 +44,19 @@ advance_at: Any = intrinsic(_typed)
 Called as ``advance_at(code, b, u, …)``; arguments as in :class:`ident.simulation.kernel.layout.Kernel`, arrays
 contiguous.
 """
+
+
+@njit(cache=True, nogil=True)
+def advance_groups(
+    code: int, groups: tuple[int, int], buffers: Array, u: Array, fm: Array, u_at: NDArray[np.int64],
+    fm_at: NDArray[np.int64], first: int, last: int, every: int, out: Array, lanes: int
+) -> None:  # fmt: skip
+    """Advance a kernel of eight lanes over the groups of eight from one to before another, without Python in between.
+
+    `buffers` are those of sixteen lanes, one after the other; a step of all `lanes` is a row of `out`.
+    """
+    size = 16 * len(buffers) // lanes  # of a buffer
+    for group in range(groups[0], groups[1]):
+        lane = 8 * group
+        b = buffers[lane // 16 * size + lane % 16 :]
+        advance_at(code, b, u, fm, u_at[lane:], fm_at[lane:], first, last, every, out[lane:], lanes)

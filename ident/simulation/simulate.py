@@ -16,9 +16,10 @@ from ident.chain.chain import INPUT, MEASURED, STEP, Chain
 from ident.chain.channels import READABLE
 from ident.equations.grammar import TIME
 from ident.matrix import Run
-from ident.parallel import each
+from ident.parallel import cores, each
 from ident.simulation.inputs import fine, jump_share
 from ident.simulation.kernel import HELD, LANES, SHARE, WIDE, Filter, Kernel, constant, kernel
+from ident.simulation.machine_call import advance_groups
 
 Array = NDArray[np.float64]
 _CHUNK = 1 << 20  # outputs that are simulated in one go
@@ -80,7 +81,8 @@ class Simulation:
         forces = np.column_stack(measured).ravel()
         force_at = inputs[built.measured[0]].begin if built.measured else command.begin
         lane_values |= {HELD: self._held(lanes), SHARE: command.share}
-        buffers = self._packed(built, lane_values, lanes, inputs)
+        buffers, groups = self._packed(built, lane_values, lanes, inputs), -(-count * vectors // WIDE)
+        code, _kept = built.address(WIDE)
         chunk = (
             max(1, _CHUNK // (length * lanes)) * length
         )  # blocks are simulated together, as far as memory stays small
@@ -88,16 +90,15 @@ class Simulation:
             end = min(begin + chunk, samples)
             out = np.empty((end - begin) * lanes)
 
-            def advance(lane: int, begin: int = begin, end: int = end, out: Array = out) -> None:
-                buffer, group = buffers[lane // LANES][lane % LANES :], slice(lane, lane + WIDE)
-                driven = buffer, command.record, forces, command.begin[group], force_at[group]
-                ends = begin * self.steps, (end - 1) * self.steps + 1
-                built.advance(*driven, *ends, self.steps, out[lane:], lanes)
+            def advance(share: NDArray[np.intp], begin: int = begin, end: int = end, out: Array = out) -> None:
+                groups, ends = (int(share[0]), int(share[-1]) + 1), (begin * self.steps, (end - 1) * self.steps + 1)
+                at = command.begin, force_at
+                advance_groups(code, groups, buffers, command.record, forces, *at, *ends, self.steps, out, lanes)
                 if end < samples:  # on to the first step of the next chunk
-                    rest = ends[1], end * self.steps
-                    built.advance(*driven, *rest, 1 << 40, np.empty(LANES), LANES)
+                    rest, spare = (ends[1], end * self.steps), np.empty(lanes)
+                    advance_groups(code, groups, buffers, command.record, forces, *at, *rest, 1 << 40, spare, lanes)
 
-            each(advance, range(0, count * vectors, WIDE))
+            each(advance, np.array_split(np.arange(groups), min(groups, cores())))
             rows = out.reshape(-1, lanes)[:, : count * vectors].reshape(-1, count, vectors)
             for first in range(begin, end, length):
                 last = min(first + length, end)
@@ -140,9 +141,8 @@ class Simulation:
         known = _filled(np.repeat(past, self.shape[1]).astype(float), lanes) > 0
         return _Input(np.concatenate(records) if records[1:] else records[0], begin - whole, delay, known)
 
-    def _packed(
-        self, built: Kernel, values: Mapping[str, Array], lanes: int, inputs: Mapping[str, _Input]
-    ) -> list[Array]:
+    def _packed(self, built: Kernel, values: Mapping[str, Array], lanes: int, inputs: Mapping[str, _Input]) -> Array:
+        """The kernel's buffers, one of sixteen lanes after the other, flat."""
         rows = np.zeros((built.rows, lanes))
         for row, node in built.constants:
             rows[row] = constant(node, values)
@@ -163,7 +163,7 @@ class Simulation:
             self._settle(rows, built, values, inputs[INPUT].first)
         elif set(READABLE) & set(self.chain.symbols):  # what remembers a pressure begins with what it was
             self._settle(rows, built, values, np.zeros(lanes))
-        return [np.ascontiguousarray(rows[:, i : i + LANES]).ravel() for i in range(0, lanes, LANES)]
+        return rows.reshape(built.rows, -1, LANES).transpose(1, 0, 2).ravel()
 
     def _settle(self, rows: Array, built: Kernel, values: Mapping[str, Array], command: Array) -> None:
         """What remembers, as if the machine had stood where it starts."""

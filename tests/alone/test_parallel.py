@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from threading import Barrier, Event, Thread
+from threading import Barrier, Event, Thread, current_thread
 
 import numpy as np
 import pytest
@@ -142,3 +142,23 @@ def test_work_inside_of_the_only_item_is_shared_out() -> None:
         return number
 
     assert each(outer, [0]) == [[0, 1]]
+
+
+def test_who_waits_for_the_last_of_the_work_lends_a_core_to_what_is_inside_of_it() -> None:
+    """The others are done, and one is at work on two things that can only end side by side."""
+    if cores() == 1:
+        pytest.skip("nothing is side by side on one core")
+    caller, begun, both = current_thread(), Event(), Barrier(2)
+
+    def side_by_side(number: int) -> int:
+        both.wait(30)
+        return number
+
+    def work(number: int) -> int:
+        if current_thread() is caller:
+            assert begun.wait(30)
+            return number
+        begun.set()
+        return number + sum(each(lambda one: time.sleep(0.5) or 0 if one == 0 else side_by_side(one), range(3)))
+
+    assert sum(each(work, range(2))) == 4

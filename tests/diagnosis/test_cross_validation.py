@@ -8,7 +8,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ident.diagnosis.cross_validation import CrossValidation, _folds_of_runs, bounded_step, cross_validated
+from ident.diagnosis.cross_validation import (
+    CrossValidation,
+    _folds_of_runs,
+    bounded_step,
+    cross_validated,
+    not_held_out,
+)
 from ident.diagnosis.refit import carries_over, helps
 from ident.diagnosis.significance import improvement
 from ident.fit.fitness import Local, local
@@ -73,6 +79,20 @@ def test_held_out_errors_of_a_line_are_those_of_fits_without_each_fold(rng):
             left = run.measured - run.measured.mean() - (J - J.mean(axis=0)) @ best
             expected = [np.sum(left[chunk == c] ** 2) for c in range(8) if c % 4 == fold]
             assert found.squares[i, fold::4] == pytest.approx(expected, rel=1e-6)
+
+
+def test_with_nothing_left_out_the_errors_are_those_of_the_fit(rng):
+    """Chunk by chunk, and below those of data that were held out: the parameters have seen what they are judged by."""
+    data = records(rng, 9)
+    here = objective(data, np.array([0.8, 0.3]))
+    point = np.array([0.8, 0.3]) - np.linalg.solve(here.curvature, here.gradient)
+    here = objective(data, point)
+    found = not_held_out(here, 1.0)
+    assert found.errors == pytest.approx([run.error for run in here.runs], rel=1e-9)
+    assert found.error < cross_validated(point, here, lambda p: objective(data, p), 1.0).error
+    for i, (run, J) in enumerate(data):
+        left = run.measured - run.measured.mean() - (J - J.mean(axis=0)) @ (point - 0.5)
+        assert found.squares[i] == pytest.approx([float(part @ part) for part in np.split(left, 8)], rel=1e-6)
 
 
 def test_errors_between_runs_are_those_of_fits_without_each_fold_of_runs(rng):

@@ -52,8 +52,10 @@ def test_of_first_steps_the_eight_that_leave_least_go_on():
                         stable=np.isfinite(error), finite=np.isfinite(error) and error != lying)
         for error in errors
     ]  # fmt: skip
-    family = SimpleNamespace(refit=lambda _effects, values, _samples: values["s"])
-    assert ModelFamily.ahead(family, steps) == [error for error in sorted(errors) if error != lying][:8]
+    family = SimpleNamespace(refit=lambda _effects, values, _samples, way: (values["s"], way.aim))
+    found = ModelFamily.ahead(family, steps, 0.45)
+    assert [aim for _, aim in found] == 8 * [0.45]
+    assert [error for error, _ in found] == [error for error in sorted(errors) if error != lying][:8]
 
 
 @pytest.mark.parametrize(("equation", "joined"), [("R = R + s * (v**3)", 3.0), ("R = R + s * (v**2)", 2.0)])

@@ -54,7 +54,9 @@ class Judged:
         here = SimpleNamespace(error=score)
         return SimpleNamespace(effects=tuple(effects), values=values, finite=True, held_out=held_out, here=here)
 
-    trial = refit
+    def trial(self, effects, starts, _aim):
+        """The same from any start."""
+        return self.refit(effects, starts)
 
     def settled(self, refit):
         """It stays."""
@@ -72,7 +74,7 @@ class Judged:
         """An effect that no start near the fit leads to is found from anywhere."""
         return [self.refit(effects, {})]
 
-    def ahead(self, refits):
+    def ahead(self, refits, _aim):
         """All of them go on."""
         return list(refits)
 
@@ -100,7 +102,7 @@ class Judged:
 
         return stepwise.ranked(self, map(judged, names))
 
-    def rank_each(self, models, bases, report, thorough):
+    def rank_each(self, models, bases, report, thorough, **_beside):
         """Each for itself."""
         return [self.rank(models, base, names, report, thorough, strong=False) for base, names in bases]
 
@@ -170,6 +172,13 @@ def test_an_effect_that_was_met_on_the_way_is_ranked_by_what_was_met(searched):
     assert found.added == ("b",)
     assert [candidate.effect for candidate in found.ranking] == ["b", "a", "c"]
     assert found.ranking[0].refit is found.found
+
+
+def test_in_question_is_what_ranks_before_the_first_that_helps_and_what_is_as_good(searched):
+    """b and c come behind a, which helps: nobody asks more of them."""
+    found = searched({"": 1.0, "a": 0.05, "b": 0.7, "c": 0.8, "ab": 0.05}, needed={"a"})
+    assert [candidate.effect for candidate in found.ranking] == ["a", "b", "c"]
+    assert found.weighed() == {"a"}
 
 
 def test_what_a_replacement_makes_needless_is_taken_out(added):

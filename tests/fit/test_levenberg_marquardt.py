@@ -1,0 +1,54 @@
+"""A search that goes to the optimum near its start, or gives up where that is of no use."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
+
+Array = NDArray[np.float64]
+START, END, LEAST = np.array([0.1, 0.9]), np.array([0.6, 0.5]), 1.0  # what is left at the end
+
+
+@dataclass
+class Flat:
+    """Squares of squares about a point, and what is left there: each step halves the way."""
+
+    evaluations: int = 0
+
+    def __call__(self, point: Array) -> Here:
+        """The objective at a point."""
+        self.evaluations += 1
+        away = point - END
+        residual, slope = 10.0 * away**2, np.diag(20.0 * away)
+        return Here(LEAST + 0.5 * float(residual @ residual), slope.T @ residual, slope.T @ slope)
+
+
+@dataclass(frozen=True)
+class Here:
+    """Error, gradient and curvature."""
+
+    error: float
+    gradient: Array
+    curvature: Array
+
+
+def test_what_has_to_come_below_an_error_that_it_reaches_goes_all_the_way():
+    plain, asked = Flat(), Flat()
+    point, here = levenberg_marquardt(plain, START)
+    same, there = levenberg_marquardt(asked, START, Way(aim=1.05 * LEAST))
+    assert point == pytest.approx(END, abs=1e-2)
+    assert np.array_equal(same, point)
+    assert there.error == here.error == pytest.approx(LEAST)
+
+
+def test_what_cannot_come_below_an_error_is_given_up_on_the_way():
+    plain, asked = Flat(), Flat()
+    _, best = levenberg_marquardt(plain, START)
+    _, here = levenberg_marquardt(asked, START, Way(aim=0.1 * LEAST))
+    assert asked.evaluations < plain.evaluations
+    assert here.error >= best.error
