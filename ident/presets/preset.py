@@ -291,7 +291,7 @@ class Preset:
         """
         return not self.effects and self.chain.is_linear
 
-    @property
+    @cached_property
     def core(self) -> Chain:
         """The chain without effects."""
         return self.chain.with_effects(())
