@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import groupby
+from itertools import chain, groupby
 from typing import TypeVar
 
 import numpy as np
@@ -109,43 +109,54 @@ def rank_each(
     met = [_met(base, of, beside) for base, of in zip(models_of, promised, strict=True)]
     contenders = [
         [one for one in (of[:_CONTENDERS] if thorough else _near(models, base, of)) if one.effect not in known]
-        for base, of, known in zip(models_of, promised, met, strict=True)
+        for base, of, known in zip(models_of, promised, ([c.effect for c in of] for of in met), strict=True)
     ]
     sure, done = _FINALISTS if thorough else 2, 0
     asked = {base.effects: _asked(models, base, beside) for base in models_of}
 
     def trial(base: Refit, prediction: Prediction) -> Candidate:
         nonlocal done
-        aim = asked[base.effects]
-        refit = models.trial((*base.effects, prediction.effect), prediction.starts, aim)
-        if strong:
-            other = models.searched(refit, _strong(models, base, refit), min(aim, refit.here.error))
-            refit = first_least([refit, other], lambda r: r.here.error)
+        candidate = _tried(models, base, prediction, asked[base.effects], strong)
         done += 1
         report(Progress("trying", done, sum(map(len, contenders)) + sure * len(bases)))
-        return Candidate(prediction, refit if refit.finite else None)
+        return candidate
 
     tried = [ranked(models, ones) for ones in _side_by_side(trial, models_of, contenders)]
     finalists = [_finalists(models, base, ones, sure) for base, ones in zip(models_of, tried, strict=True)]
 
     def final(base: Refit, candidate: Candidate) -> Candidate:
         nonlocal done
-        assert candidate.trial is not None
-        refit = models.refit((*base.effects, candidate.effect), candidate.trial.values)
+        confirmed = _confirmed(models, base, candidate)
         done += 1
         report(Progress("confirming", done, sum(map(len, contenders)) + sum(map(len, finalists))))
-        return candidate.refitted(base, refit) if refit.finite else replace(candidate, trial=None)
+        return confirmed
 
     found = [ranked(models, ones) for ones in _side_by_side(final, models_of, finalists)]
     report(Progress("confirming", done, done + 1))
     deeper = _DEEPER if thorough else 1
     elsewhere = partial(_elsewhere, models, asked if beside else {})
     farther = _side_by_side(elsewhere, models_of, [ones[:deeper] for ones in found])
-    rankings = []
-    for of, known, first, then, last in zip(promised, met, tried, found, farther, strict=True):
-        confirmed = known | {candidate.effect: candidate for candidate in (*first, *then, *last)}
-        rankings.append(ranked(models, [confirmed.get(one.effect, Candidate(one)) for one in of]))
-    return rankings
+    came = [{one.effect: one for one in chain(*of)} for of in zip(met, tried, found, farther, strict=True)]
+    return [
+        ranked(models, [known.get(one.effect, Candidate(one)) for one in of])
+        for of, known in zip(promised, came, strict=True)
+    ]
+
+
+def _tried(models: ModelFamily, base: Refit, prediction: Prediction, aim: float, strong: bool) -> Candidate:
+    """A candidate after its first refit, which has to come below `aim`; from strong effects, too, where asked."""
+    refit = models.trial((*base.effects, prediction.effect), prediction.starts, aim)
+    if strong:
+        other = models.searched(refit, _strong(models, base, refit), min(aim, refit.here.error))
+        refit = first_least([refit, other], lambda r: r.here.error)
+    return Candidate(prediction, refit if refit.finite else None)
+
+
+def _confirmed(models: ModelFamily, base: Refit, candidate: Candidate) -> Candidate:
+    """A candidate refitted to every sample."""
+    assert candidate.trial is not None
+    refit = models.refit((*base.effects, candidate.effect), candidate.trial.values)
+    return candidate.refitted(base, refit) if refit.finite else replace(candidate, trial=None)
 
 
 def _side_by_side(
@@ -173,14 +184,14 @@ def _finalists(models: ModelFamily, base: Refit, tried: Sequence[Candidate], sur
     return [one for i, one in enumerate(tried) if one.trial and (i < sure or one.score < good)]
 
 
-def _met(base: Refit, predictions: Sequence[Prediction], beside: Refit | None) -> dict[str, Candidate]:
+def _met(base: Refit, predictions: Sequence[Prediction], beside: Refit | None) -> list[Candidate]:
     """The candidate, if any, with which a base is the model that stands beside it."""
-    found = {}
+    found = []
     for one in predictions:
         effects = (*base.effects, one.effect)
         if beside is not None and set(effects) == set(beside.effects):
             known = beside.listed(effects)
-            found[one.effect] = Candidate(one, known).refitted(base, known)
+            found.append(Candidate(one, known).refitted(base, known))
     return found
 
 
