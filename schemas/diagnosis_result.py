@@ -139,12 +139,15 @@ class ProposalView(BaseModel):
 
 
 class RiseView(BaseModel):
-    """The error on runs to verify without an effect and with it, and by how many standard errors it rises."""
+    """The error on runs to verify without an effect and with it, and by how many standard errors it rises.
+
+    The last two are null where a run to verify cannot be followed with the effect.
+    """
 
     effect: str
     before: float
-    after: float
-    deviations: float
+    after: float | None
+    deviations: float | None
 
 
 class TermView(BaseModel):

@@ -217,10 +217,11 @@ def ranked(models: ModelFamily, candidates: Iterable[Candidate]) -> list[Candida
 
 
 def _alike(best: Candidate, other: Candidate) -> bool:
-    """Whether of two refits the better one is better by no more than chance."""
+    """Whether of two refits the better one is better by no more than chance, nor by what would be worth a parameter."""
     if best.refit is None or other.refit is None:
         return False
-    return improvement(other.refit.held_out, best.refit.held_out).within_chance
+    gained = improvement(other.refit.held_out, best.refit.held_out)
+    return gained.within_chance and gained.share < WORTHWHILE
 
 
 def _elsewhere(

@@ -32,22 +32,28 @@ _RESAMPLED = 400
 class Contradiction:
     """An effect with which the verify error rises, from and to which, and by how many of its standard errors.
 
+    `after` and `deviations` are None where the model is unstable on a verify run with it, and was not without.
     `instead_of` are the effects that the model has which it rises from, where that has others.
     """
 
     effect: str
     before: float
-    after: float
-    deviations: float
+    after: float | None
+    deviations: float | None
     instead_of: tuple[str, ...] = ()
 
     def told(self, named: str) -> str:
         """In a sentence on what is `named`."""
         others = f" in place of {', '.join(map(title, self.instead_of))}" if self.instead_of else ""
-        return (
-            f"With {named}{others} the error on verify runs rises from {percent(self.before)} to "
-            f"{percent(self.after)}, {self.deviations:.1f} standard errors: it may stand for something else."
-        )
+        sure = "" if self.deviations is None else f", {self.deviations:.1f} standard errors"
+        return f"With {named}{others} {self.rise}{sure}: it may stand for something else."
+
+    @property
+    def rise(self) -> str:
+        """What becomes of the verify runs, in words."""
+        if self.after is None:
+            return f"a verify run cannot be followed, the error there was {percent(self.before)}"
+        return f"the error on verify runs rises from {percent(self.before)} to {percent(self.after)}"
 
 
 def contradiction(
@@ -59,8 +65,11 @@ def contradiction(
     over windows. The standard error
     is that of the difference, by a bootstrap over chunks of ten correlation times (Künsch 1989), at least four a run.
     """
-    if not all(np.isfinite(r).all() for r in (*before, *after)):
+    if not all(np.isfinite(r).all() for r in before):
         return None
+    if not all(np.isfinite(r).all() for r in after):
+        sizes = [float(np.std(r) / np.std(run.measured)) for run, r in zip(runs, before, strict=True)]
+        return Contradiction(effect, float(over_runs(sizes, runs)), None, None)
     random = np.random.default_rng(0)
     drawn = {"before": np.empty((len(runs), _RESAMPLED)), "after": np.empty((len(runs), _RESAMPLED))}
     whole = {"before": np.empty(len(runs)), "after": np.empty(len(runs))}

@@ -184,8 +184,7 @@ def _mended(one: Proposal, last: Proposal) -> bool:
 def _alone(one: Proposal) -> str:
     against = one.contradicted
     assert against is not None
-    rise = f"from {percent(against.before)} to {percent(against.after)}"
-    return f"Without those after it {one.equation} would let the error on verify runs rise {rise}."
+    return f"So it is with all of them; with {one.equation} and what comes before it alone {against.rise}."
 
 
 def _told_once(spoken: Callable[[str], str]) -> Callable[[str], str]:

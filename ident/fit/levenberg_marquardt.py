@@ -67,12 +67,14 @@ def levenberg_marquardt(
     """The point with the least error near `start`, and the objective there.
 
     A step solves (H + λ diag H) δ = −g on the axes that are free: those at a bound with a gradient that points
-    outwards stay. λ falls tenfold after a step that helped and rises tenfold after one that did not. `report` is told
-    the number of steps and the error, `accept` of each point that is gone on from; `error` is the objective without
-    its shape, where that alone costs less.
+    outwards stay. λ falls by as much as a step kept what it promised, at most tenfold, and rises twofold after one that
+    did not help, fourfold after the next, and so on (Nielsen 1999): along a curved valley, where one λ serves for many
+    steps, every other step failed that was a fixed factor longer. `report` is told the number of steps and the error,
+    `accept` of each point that is gone on from; `error` is the objective without its shape, where that alone costs
+    less.
     """
     way = way or Way()
-    point, here, damping = start.copy(), evaluate(start), 1e-4
+    point, here, damping, rise = start.copy(), evaluate(start), 1e-4, 2.0
     gained: list[float] = []
     accept(here)
     for count in range(way.most):
@@ -90,13 +92,19 @@ def levenberg_marquardt(
         there = _better(evaluate, error, trial, here.error) if promised > 0 else None
         if there is not None:
             gained.append(here.error - there.error)
-            point, here, damping = trial, there, max(damping / 10, _LEAST)
+            damping, rise = max(damping * _fall(gained[-1] / promised), _LEAST), 2.0
+            point, here = trial, there
             accept(here)
         elif damping > _MOST or 0 < promised < way.rough * here.error:
             break
         else:
-            damping *= 10
+            damping, rise = damping * rise, 2.0 * rise
     return point, here
+
+
+def _fall(kept: float) -> float:
+    """By what the damping is multiplied after a step that kept a share of its promise: by more than one below half."""
+    return max(0.1, 1.0 - (2.0 * kept - 1.0) ** 3)
 
 
 def _better(

@@ -93,7 +93,7 @@ def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Norma
     totals = np.array([np.sum((run.measured - mean) ** 2) for run, mean in zip(runs, means, strict=True)])
     gram = blocks.sum(axis=1)
     sound = np.all(np.isfinite(gram), axis=(1, 2)) & ~(gram[:, -1, -1] > _ESCAPED * totals)
-    remove = removal(np.where(sound[:, None, None], gram, 0.0), p)
+    remove = removal(np.where(sound[:, None, None], gram, 0.0), p, totals)
     with np.errstate(invalid="ignore", over="ignore"):
         projected = without(remove, gram)
         scores = np.einsum("rai,rbac,rc->rbi", remove[:, :, :p], blocks, remove[:, :, -1], optimize=True)

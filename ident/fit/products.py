@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 _BLIND = 1e-12  # relative to the largest eigenvalue: nuisances that do the same
+_ROUNDING = 1e-11  # of a record's deviation: a small step of a first state that shows by less is not seen there
 CHUNK = 256  # samples turned at a time, so that the sums run along contiguous memory
 
 
@@ -57,27 +58,31 @@ def completed(sums: Array, strides: Array) -> Array:
     return np.asarray((sums + np.swapaxes(np.tril(sums, -1), -1, -2)) / scale[:, None] / scale)
 
 
-def removal(gram: Array, p: int) -> Array:
+def removal(gram: Array, p: int, totals: Array) -> Array:
     """What takes the nuisances N and 1 off J and r, (runs, q, p+1): Rᵀ G R are the products of what is left.
 
-    `gram` (runs, q, q) holds G, Σ of products of [J, N, 1, r]. Each column is one of [J, r] less its least-squares
-    share of the nuisances; the share of the constant stands in the last row but one.
+    `gram` (runs, q, q) holds G, Σ of products of [J, N, 1, r], `totals` (runs,) Σ (x_m − mean)². Each column is one of
+    [J, r] less its least-squares share of the nuisances; the share of the constant stands in the last row but one.
     """
     last = gram.shape[-1] - 1
     kept, free = np.array([*range(p), last]), np.arange(p, last)
-    shares = shares_of(gram[:, free[:, None], free], gram[:, free[:, None], kept])
+    shares = shares_of(gram[:, free[:, None], free], gram[:, free[:, None], kept], totals)
     remove = np.zeros((len(gram), last + 1, p + 1))
     remove[:, kept, range(p + 1)] = 1.0
     remove[:, free] = -shares
     return remove
 
 
-def shares_of(inner: Array, columns: Array) -> Array:
+def shares_of(inner: Array, columns: Array, totals: Array) -> Array:
     """The least-squares shares of k nuisances in m columns, (runs, k, m).
 
-    `inner` (runs, k, k) are the products of the nuisances, `columns` (runs, k, m) theirs with the columns.
+    `inner` (runs, k, k) are the products of the nuisances, `columns` (runs, k, m) theirs with the columns, `totals`
+    (runs,) as for :func:`removal`. What does not show in the record has no share: where each window begins at the
+    measured position, a first position is rounding alone, and a share of rounding would lead it kilometres away.
     """
-    size = np.sqrt(np.maximum(np.diagonal(inner, axis1=1, axis2=2), 1e-300))
+    power = np.diagonal(inner, axis1=1, axis2=2)
+    shown = power > _ROUNDING**2 * totals[:, None]
+    size = np.where(shown, np.sqrt(np.maximum(power, 1e-300)), np.inf)
     outer = size[:, :, None] * size[:, None, :]
     return np.asarray((np.linalg.pinv(inner / outer, rcond=_BLIND, hermitian=True) / outer) @ columns)
 

@@ -38,11 +38,12 @@ class Responses:
 
 @dataclass(frozen=True)
 class _Columns:
-    """Z = [J, N, 1, r] of a run, (q, samples), ZᵀZ, and what takes N and 1 off J and r, (q, p+1)."""
+    """Z = [J, N, 1, r] of a run, (q, samples), ZᵀZ, what takes N and 1 off J and r, (q, p+1), and Σ (x_m − mean)²."""
 
     Z: Array
     gram: Array
     remove: Array
+    total: float
 
 
 @dataclass(frozen=True)
@@ -81,7 +82,9 @@ class Sensitivities:
             Z[unsound] = 0.0
             gram[unsound] = 0.0
             gram.transpose(0, 2, 1)[unsound] = 0.0
-            return [_Columns(*parts) for parts in zip(Z, gram, removal(gram, len(strides)), strict=True)]
+            totals = np.sum(measured**2, axis=1)
+            remove = removal(gram, len(strides), totals)
+            return [_Columns(*parts) for parts in zip(Z, gram, remove, totals.tolist(), strict=True)]
 
         todo = list(fitness.together(len(strides) + 1 + len(fitness.chain.states)))
         parts = zip(todo, each(of_share, todo), strict=True)
@@ -140,7 +143,8 @@ class Sensitivities:
         cross, power = np.where(sound[:, None], cross, 0.0), np.where(sound, power, 0.0)
         free = np.arange(len(self.strides), Z.shape[1] - 1)
         gram = np.array([columns.gram for columns in known])
-        shares = shares_of(gram[:, free[:, None], free], cross[:, free])
+        totals = np.array([columns.total for columns in known])
+        shares = shares_of(gram[:, free[:, None], free], cross[:, free], totals)
         left = np.maximum(power - np.einsum("rkn,rkn->rn", shares, cross[:, free]), 0.0)
         remove = np.array([columns.remove for columns in known])
         return remove.transpose(0, 2, 1) @ cross, left, shares[:, -1]
