@@ -70,7 +70,7 @@ class Controller:
     kv: float
 
 
-_LEAST, _ROUNDING = 16, 1e-9  # samples that a command is held; of a value: it is held but for rounding
+_LEAST, _ROUNDING = 16, 1e-9  # samples that a command is held; of its largest value: it is held but for rounding
 Beginning = Literal["at rest", "standing", "moving"]
 
 
@@ -116,12 +116,12 @@ class Run:
     @cached_property
     def stepped(self) -> bool:
         """Whether the command is held from the first sample to the last: a step from nothing, before the record."""
-        return bool(np.all(np.isclose(self.command, self.command[0], rtol=_ROUNDING, atol=0.0)))
+        return bool(np.ptp(self.command) <= _ROUNDING * np.abs(self.command).max())
 
     @cached_property
     def dwell(self) -> float:
         """The lower quartile of the times between changes of the command, s; 0 of one that changes less than thrice."""
-        changes = np.flatnonzero(~np.isclose(self.command[1:], self.command[:-1], rtol=_ROUNDING, atol=0.0))
+        changes = np.flatnonzero(np.abs(np.diff(self.command)) > _ROUNDING * np.abs(self.command).max())
         return float(np.quantile(np.diff(changes), 0.25)) / self.sample_rate if len(changes) > 2 else 0.0
 
     @cached_property
@@ -233,7 +233,7 @@ class Run:
         """
         x = self._first_seen
         command = self.channels.get("command", x)
-        changes = np.flatnonzero(~np.isclose(command, command[0], rtol=_ROUNDING, atol=0.0))
+        changes = np.flatnonzero(np.abs(command - command[0]) > _ROUNDING * np.abs(command).max())
         count = int(changes[0]) if len(changes) else 0
         if count < _LEAST:
             return 0

@@ -42,6 +42,7 @@ OPEN_VALVE = Preset(
     # V, where no speed is recorded, is the largest that the band allows.
     rescaled_by_position=(Scale("Z0", "A**2 * V / U", -1.0, 1.0, logarithmic=False),),
     force_scale="(c0 + m0*W)*W*L",
+    share_force=("m0", "c0", "Ka", "Cl"),
     drive_scale="U",
     without_area={"Z0": ("Z0/A^3", "1/(m^2*s)"), "Ka": ("Ka/A^2", "m/N"), "Cl": ("Cl/A^2", "m/(N*s)"),
                   "m0": ("m0/A^2", "kg/m^4")},

@@ -227,6 +227,8 @@ class Preset:
             preset = replace(preset, drive_unit=matrix.runs[0].units.get("command", "m"))
         if preset.force_scale and {run.output for run in matrix.runs} == {"load_pressure"}:
             preset = replace(preset, force_scale="A*X")  # its forces are measured
+        if "displacement" in preset.chain.outputs and any(run.output not in MOTIONS for run in matrix.runs):
+            preset = replace(preset, share_force=())
         preset = preset.disturbed_as(matrix, load)
         if preset.kind == "chain":
             preset = replace(preset, chain=varying(preset.chain, matrix.runs))
