@@ -14,7 +14,7 @@ from ident.chain.chain import Chain
 from ident.chain.conditions import conditions
 from ident.matrix import Actuator, Run
 from ident.simulation.simulate import responses
-from ident.simulation.steps import rates, steps_needed
+from ident.simulation.steps import fastest_mode, steps_needed
 
 Array = NDArray[np.float64]
 SHOWN = {"position": "y", "pressure": "P", "after_play": "wb"}
@@ -36,8 +36,8 @@ def chain_response(
     )
     vectors = len(next(iter(values.values())))
     stacked = {name: np.broadcast_to(at[name], (1, vectors)) for name in shown.symbols}
-    fastest = float(np.max(rates(shown, {name: value[0] for name, value in stacked.items()}, what))) / rate
-    steps = int(steps_needed(shown, np.array(fastest), hold, chain.effects))
+    fastest = fastest_mode(shown, {name: value[0] for name, value in stacked.items()}, what) / rate
+    steps = int(steps_needed(shown, fastest, hold, chain.effects).max())
     states = np.zeros((1, vectors, len(shown.states)))
     for name, value in (("q1", current[0]), ("x", start)):
         states[..., shown.states.index(name)] = value

@@ -33,7 +33,7 @@ CHUNKS, FOLDS = 8, 4
 _FINER = 32  # chunks of a record where there are fewer records than CHUNKS
 _DEALT = 0  # seed by which runs are dealt to folds: a matrix lists them in an order of its own
 _FAR = 0.01  # of an axis: a longer step is beyond what one linearisation tells
-_CLOSE = Way(converged=1e-4, most=5)  # of a fit without a fold: it starts close by, and one linearisation ends it
+_CLOSE = Way(converged=1e-4, most=20)  # of a fit without a fold: it starts close by, and one linearisation ends it
 
 
 @dataclass(frozen=True)

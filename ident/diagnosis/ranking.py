@@ -25,6 +25,7 @@ _QUICK = 200_000  # steps of a matrix so small that every promise can be tried
 _NEAR = 1.3  # times the best predicted error: the contenders for a further effect
 _FINALISTS = 5
 _CLOSE = 1.05  # times the best trial's error: also a finalist, where it promises anything
+_AS_GOOD = 1.02  # times the error: what is no better by chance, nor by more than that, stands as listed
 _DEEPER = 2  # of the finalists are looked for elsewhere, too
 _STRONG = (1.0, 0.6, 0.3)  # of the largest strength, from where
 _PROMISING = 0.3 * WORTHWHILE  # relative fall of the score that is worth a refit
@@ -217,11 +218,13 @@ def ranked(models: ModelFamily, candidates: Iterable[Candidate]) -> list[Candida
 
 
 def _alike(best: Candidate, other: Candidate) -> bool:
-    """Whether of two refits the better one is better by no more than chance, nor by what would be worth a parameter."""
-    if best.refit is None or other.refit is None:
+    """Whether of two refits the better one is better by no more than chance, nor by much on the data of the fit.
+
+    Errors on held-out data hang on where the fits without them ended, which in a flat valley rounding decides.
+    """
+    if best.refit is None or other.refit is None or other.refit.error > _AS_GOOD * best.refit.error:
         return False
-    gained = improvement(other.refit.held_out, best.refit.held_out)
-    return gained.within_chance and gained.share < WORTHWHILE
+    return improvement(other.refit.held_out, best.refit.held_out).within_chance
 
 
 def _elsewhere(

@@ -16,7 +16,7 @@ from ident.fit.result import FitResult
 from ident.matrix import MOTIONS, Actuator, Run, Specimen
 from ident.presets import Preset
 from ident.simulation.stepper import PackedKernel, packed_kernel
-from ident.simulation.steps import rates, steps_needed
+from ident.simulation.steps import fastest_mode, steps_needed
 
 USUAL_RATE = 4096.0
 """Hz: the sample rate of an export that names none."""
@@ -118,6 +118,6 @@ def _check_driven(fit: FitResult, preset: Preset, specimen: Specimen) -> None:
 def _steps(preset: Preset, values: Mapping[str, float], sample_rate: float) -> int:
     """The steps a sample for commands of any band."""
     known = {name: np.array([value]) for name, value in values.items()}
-    fastest = rates(preset.chain, known, next(iter(preset.chain.outputs))) / sample_rate
+    fastest = fastest_mode(preset.chain, known, next(iter(preset.chain.outputs))) / sample_rate
     on = [effect for effect in preset.effects if values.get(effect.added[0].in_equations)]
     return int(steps_needed(preset.chain, fastest, "zoh", on, kinks=preset.steps)[0])

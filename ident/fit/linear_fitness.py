@@ -97,7 +97,8 @@ class LinearFitness:
         if not self.space.followed:
             return np.ones(len(points), dtype=bool)
         values = self.space.values(points)
-        found: NDArray[np.bool_] = fastest(self.preset.chain, self._extreme, self.matrix.actuator, values) < FOLLOWED
+        modes = fastest(self.preset.chain, self._extreme, self.matrix.actuator, values)
+        found: NDArray[np.bool_] = np.abs(modes) < FOLLOWED
         return found
 
     @cached_property

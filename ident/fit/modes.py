@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ident.chain.chain import Chain
 from ident.chain.conditions import conditions
 from ident.matrix import Actuator, Run
-from ident.simulation.steps import MOST, rates
+from ident.simulation.steps import MOST, Modes, fastest_mode
 
 Array = NDArray[np.float64]
 FOLLOWED = 2.5 * MOST
@@ -27,15 +27,16 @@ def extreme(runs: Iterable[Run]) -> tuple[Run, ...]:
     return tuple(chosen.values())
 
 
-def fastest(chain: Chain, runs: Iterable[Run], actuator: Actuator, values: Mapping[str, Array]) -> Array:
-    """Radians a sample of each vector's fastest mode at small signals on any of the runs, (v,)."""
+def fastest(chain: Chain, runs: Iterable[Run], actuator: Actuator, values: Mapping[str, Array]) -> Modes:
+    """Each vector's fastest mode at small signals on any of the runs, its eigenvalue in radians a sample, (v,)."""
     by_output: dict[str, list[Run]] = {}
     for run in runs:
         by_output.setdefault(run.output, []).append(run)
-    found = np.zeros(len(next(iter(values.values()))))
+    found = np.zeros((1, len(next(iter(values.values())))), complex)
     for output, alike in by_output.items():
         known = [conditions(run, actuator) for run in alike]
         stacked = {name: np.array([entry[name] for entry in known])[:, None] for name in known[0]}
-        modes = rates(chain, stacked | {name: value[None] for name, value in values.items()}, output)
-        found = np.maximum(found, np.max(modes / np.array([[run.sample_rate] for run in alike]), axis=0))
-    return found
+        modes = fastest_mode(chain, stacked | {name: value[None] for name, value in values.items()}, output)
+        modes = np.concatenate([found, modes / np.array([[run.sample_rate] for run in alike])])
+        found = np.take_along_axis(modes, np.abs(modes).argmax(axis=0)[None], axis=0)
+    return np.asarray(found[0])

@@ -28,7 +28,7 @@ from ident.parallel import cores, each
 from ident.presets import Preset
 from ident.simulation.equilibrium import equilibrium
 from ident.simulation.simulate import Simulation
-from ident.simulation.steps import steps_needed
+from ident.simulation.steps import Modes, steps_needed
 
 Array = NDArray[np.float64]
 _TOGETHER = 256  # lanes simulated in one go: memory stays small, the cores stay busy
@@ -278,8 +278,8 @@ class SimulatedRuns:
         needed = [steps_needed(self.chain, found, hold, on, band, least) for hold, band in kinds]
         return np.asarray(np.max(needed, axis=0))
 
-    def fastest(self, values: Mapping[str, Array]) -> Array:
-        """Radians a sample of each vector's fastest mode, of the linear core and the effects at small signals.
+    def fastest(self, values: Mapping[str, Array]) -> Modes:
+        """Each vector's fastest mode in radians a sample, of the linear core and the effects at small signals.
 
         Beyond :data:`ident.simulation.steps.FASTEST` it is followed only roughly.
         """

@@ -303,10 +303,10 @@ def _fast_modes(objective: Fitness, point: Array, state: Mapping[str, Any]) -> I
         return
     roughly = f"beyond {FASTEST:.3g} radians a sample it is followed only roughly, with {MOST} steps a sample."
     tried = (objective.space.values(np.array(entry["population"])) for entry in state["history"])
-    count = sum(int(np.sum(objective.fastest(values) > FASTEST)) for values in tried)
+    count = sum(int(np.sum(np.abs(objective.fastest(values)) > FASTEST)) for values in tried)
     if count:
         yield f"{count} of the vectors that the search tried had a mode too fast: {roughly}"
-    here = float(objective.fastest(objective.space.values(point[None]))[0])
+    here = float(np.abs(objective.fastest(objective.space.values(point[None]))[0]))
     if here > FASTEST:
         yield f"The fastest mode at these values goes {here:.3g} radians a sample: {roughly}"
 

@@ -22,7 +22,7 @@ from ident.hybrid.inverse import Inverse
 from ident.matrix import Actuator, Run, Specimen
 from ident.presets.strano import STRANO
 from ident.simulation.simulate import responses
-from ident.simulation.steps import rates, steps_needed
+from ident.simulation.steps import fastest_mode, steps_needed
 
 Array = NDArray[np.float64]
 _SIDES = ((("q1", "vep - ve0"), ("u", "1")), (("q1", "ven - ve0 - 1e-6"), ("u", "-1")))
@@ -102,7 +102,7 @@ def followed(plant: Plant, commanded: Array, sample_rate: float) -> Array:
     """The position (m) of each machine of a plant under a command (m), (v, n), from rest."""
     known = {name: np.atleast_1d(np.asarray(value, dtype=float)) for name, value in plant.known.items()}
     symbols = {name: known[name] for name in STRANO.chain.symbols}
-    fastest = rates(STRANO.chain, symbols, "displacement") / sample_rate
+    fastest = fastest_mode(STRANO.chain, symbols, "displacement") / sample_rate
     steps = int(steps_needed(STRANO.chain, np.atleast_1d(fastest), "linear", (), kinks=STRANO.steps).max())
     run = Run("", "", sample_rate, {"command": commanded, "displacement": commanded}, gain=plant.gain)
     wide = {name: value[None] for name, value in symbols.items()}

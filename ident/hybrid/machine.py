@@ -17,7 +17,7 @@ from ident.fit.result import FitResult
 from ident.hybrid.case import Case
 from ident.matrix import Actuator, Run
 from ident.presets import Preset
-from ident.simulation.steps import rates, steps_needed
+from ident.simulation.steps import fastest_mode, steps_needed
 from ident.stages import MASS_SPRING_DAMPER, Quantity
 from ident.stages.stage import Stage, stage
 
@@ -62,7 +62,7 @@ class Machine:
     def steps(self, case: Case) -> int:
         """Into how many steps a sample is divided."""
         known = {name: np.array([value]) for name, value in self.at(case).items()}
-        fastest = rates(self.chain, known, DISPLACEMENT) / case.sample_rate
+        fastest = fastest_mode(self.chain, known, DISPLACEMENT) / case.sample_rate
         band = 2 * np.pi * _BAND / case.sample_rate
         on = [effect for effect in self.chain.effects if known[effect.added[0].in_equations][0]]
         return int(steps_needed(self.chain, fastest, "zoh", on, band, self.kinks)[0])

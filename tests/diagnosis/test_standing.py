@@ -13,6 +13,7 @@ from ident.diagnosis.standing import contradiction, standing
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Run
+from ident.words.percent import percent
 from ident.workflows import diagnose
 from tests.presets.test_machines import motor
 
@@ -37,7 +38,21 @@ def test_an_error_that_rises_beyond_chance_is_a_contradiction_and_one_that_falls
     assert (found.before, found.after) == pytest.approx((0.1, 0.15), rel=0.05)
     assert found.deviations > 2
     assert contradiction("lead", runs, before, better) is None
-    assert contradiction("lead", runs, before, [r * np.nan for r in before]) is None
+
+
+def test_a_run_that_cannot_be_followed_with_an_effect_is_a_contradiction_and_one_that_never_could_is_not():
+    runs, before = [run_of(1), run_of(2)], [residual(i, 0.1) for i in (3, 4)]
+    lost = [before[0], before[1] * np.nan]
+    found = contradiction("lead", runs, before, lost)
+    assert found is not None
+    assert (found.after, found.deviations) == (None, None)
+    assert found.before == pytest.approx(0.1, rel=0.05)
+    assert found.told("lead") == (
+        f"With lead a verify run cannot be followed, the error there was {percent(found.before)}: "
+        "it may stand for something else."
+    )
+    assert contradiction("lead", runs, lost, before) is None
+    assert contradiction("lead", runs, lost, lost) is None
 
 
 def test_chance_contradicts_seldom():

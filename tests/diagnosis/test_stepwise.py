@@ -52,7 +52,9 @@ class Judged:
         held_out = SimpleNamespace(score=score, effects=set(effects))
         values = dict.fromkeys(effects, 1.0)
         here = SimpleNamespace(error=score)
-        return SimpleNamespace(effects=tuple(effects), values=values, finite=True, held_out=held_out, here=here)
+        return SimpleNamespace(
+            effects=tuple(effects), values=values, finite=True, held_out=held_out, here=here, error=score
+        )
 
     def trial(self, effects, starts, _aim):
         """The same from any start."""

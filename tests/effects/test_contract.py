@@ -66,7 +66,7 @@ def ours(
     known = {p.in_equations: p.value for p in model.parameters} | conditions(run, Actuator("", piston_area=PLANT.A))
     known |= {model.parameter(name).in_equations: value for name, value in values.items()}
     batch = {name: np.array([[value]]) for name, value in known.items()}
-    count = steps or int(steps_needed(model.chain, np.array([0.2]), hold, model.effects)[0])
+    count = steps or int(steps_needed(model.chain, np.array([-0.2]), hold, model.effects)[0])
     return responses(model.chain, [run], batch, count)[:, 0, 0]
 
 

@@ -43,8 +43,8 @@ def test_a_valve_that_only_follows_needs_few_steps(run, effect, strength, radian
     """Its lag is 1/radians of a sample: the output is that of the finest steps, to a five hundredth of the noise's."""
     tau = 1.0 / radians / RATE
     model = preset("qian2014", (effect,))
-    few = int(steps_needed(model.chain, np.array([radians]), "linear", model.effects, BAND / RATE)[0])
-    closely = int(steps_needed(model.chain, np.array([radians]), "linear", model.effects)[0])
+    few = int(steps_needed(model.chain, np.array([-radians]), "linear", model.effects, BAND / RATE)[0])
+    closely = int(steps_needed(model.chain, np.array([-radians]), "linear", model.effects)[0])
     assert few <= closely
     assert few <= max(2, 1.5 * radians)
     finest = output(run, effect, strength, tau, MOST)
@@ -55,5 +55,17 @@ def test_what_the_band_holds_is_followed_closely():
     """A mode within four times the band gets steps of 0.4 radians, whatever the sample time."""
     chain = preset("qian2014").chain
     for band in (0.1, 0.3, 0.6):
-        (steps,) = steps_needed(chain, np.array([2 * band]), "linear", (), band)
+        (steps,) = steps_needed(chain, np.array([-2 * band]), "linear", (), band)
         assert 2 * band / steps <= 0.4
+
+
+@pytest.mark.parametrize("damping", [0.3, 0.03, 0.003, 6e-4])
+def test_what_rings_faster_than_the_samples_decays_as_fast_as_it_does(damping):
+    """An oil column at twelve radians a sample: the steps take off next to nothing that its damping does not."""
+    mode = 12.0 * complex(-damping, np.sqrt(1 - damping**2))
+    (steps,) = steps_needed(preset("qian2014").chain, np.array([mode]), "linear", (), 0.1)
+    z = mode / steps
+    kept = abs(1 + z + z**2 / 2 + z**3 / 6 + z**4 / 24) ** steps
+    assert kept == pytest.approx(abs(np.exp(mode)), abs=0.02)
+    lag = steps_needed(preset("qian2014").chain, np.array([-12.0]), "linear", (), 0.1)
+    assert steps >= lag[0]
