@@ -117,13 +117,13 @@ def test_structures_are_compared_over_one_time():
 
 
 def test_more_parameters_do_not_make_up_for_an_effect():
-    """A motor with a dead zone: a valve's and an oil's lags leave as little as the motor, all of them far more than the
-    noise; with the dead zone the motor leaves the noise.
+    """A motor with a dead zone: a valve's and an oil's lags leave a little less than the motor, all of them far more
+    than the noise; with the dead zone the motor leaves the noise.
     """
-    lab = Lab.drawn(963, hidden=True)
+    lab = Lab.drawn(1002, hidden=True)
     first, *others = structures(lab.measured())
     assert first.machine == "motor"
-    assert first.error["held_out"] == pytest.approx(min(one.error["held_out"] for one in others), rel=1e-3)
+    assert first.error["held_out"] > min(one.error["held_out"] for one in others)
     assert first.why.endswith("with dead zone: much less with one effect")
 
 
