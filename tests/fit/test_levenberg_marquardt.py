@@ -52,3 +52,18 @@ def test_what_cannot_come_below_an_error_is_given_up_on_the_way():
     _, here = levenberg_marquardt(asked, START, Way(aim=0.1 * LEAST))
     assert asked.evaluations < plain.evaluations
     assert here.error >= best.error
+
+
+def banana(point: Array) -> Here:
+    """A narrow valley that bends (Rosenbrock), as far below what is left as that of a machine's undetermined lags."""
+    x, y = 4.0 * point - 2.0
+    residual = np.array([300.0 * (y - x**2), 1.0 - x])
+    slope = 4.0 * np.array([[-600.0 * x, 300.0], [-1.0, 0.0]])
+    return Here(LEAST + 0.5 * float(residual @ residual), slope.T @ residual, slope.T @ slope)
+
+
+def test_a_valley_that_bends_is_followed_to_its_end():
+    """By a fixed factor every other step was too long, and 200 led a tenth of the way."""
+    point, here = levenberg_marquardt(banana, np.array([0.2, 0.75]))
+    assert 4.0 * point - 2.0 == pytest.approx([1.0, 1.0], abs=1e-3)
+    assert here.error == pytest.approx(LEAST, rel=1e-6)

@@ -186,3 +186,34 @@ def test_the_noise_floor_over_windows_has_the_noise_with_which_each_begins():
     whole = ModelFamily.of(matrix, Settings(model="motor"))
     assert whole.floor == pytest.approx(2e-4 / np.std(x), rel=0.05)
     assert whole.at_floor(whole.refit((), refit.values))
+
+
+def test_a_first_position_that_no_window_sees_stays_in_the_record_and_the_objective_is_smooth():
+    """Its share was one of rounding: kilometres within a few steps, of whose rounding the objective then was made."""
+    matrix = cylinder(1, wander=1e-3)
+    runs = tuple(run.part(75, run.length) for run in matrix.runs)
+    assert {run.begins for run in runs} == {"moving"}
+    family = ModelFamily.of(replace(matrix, runs=runs), Settings(model="open_valve"), horizon=1.0)
+    fitness = family.fitness(())
+    point = fitness.space.point({"m0": 1.0, "tau": 0.05, "c0": 8.0, "Ka": 1e-3, "Cl": 1e-3, "Z0": GAIN, "A": 1.0})
+    for _ in range(8):
+        fitness.accept(fitness.exact(point))
+    place = fitness.chain.states.index("x")
+    assert all(abs(fitness.start(run)[place]) < 10 * np.abs(run.measured).max() for run in fitness.runs)
+    here, step = fitness.exact(point), 1e-5
+    for axis in range(len(point)):
+        moved = np.eye(len(point))[axis] * step
+        errors = [fitness.exact(point + side * moved, sensitivities=False).error for side in (1.0, -1.0)]
+        assert (errors[0] - errors[1]) / (2 * step) == pytest.approx(here.gradient[axis], rel=1e-2, abs=1e-6)
+
+
+def test_a_command_held_at_nothing_but_for_rounding_is_held():
+    """Counted from its neutral a held command is rounding, of which every sample is another."""
+    run = cylinder(2, wander=0.0).runs[0]
+    u = run.command + 1e-15 * np.random.default_rng(0).standard_normal(run.length)
+    shaken = replace(run, channels={**run.channels, "command": u})
+    assert run.stands
+    assert shaken.stands == run.stands
+    assert shaken.dwell == run.dwell
+    assert shaken.begins == run.begins
+    assert replace(shaken, channels={**run.channels, "command": 1.0 + 1e-15 * u}).stepped
