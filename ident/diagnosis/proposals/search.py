@@ -32,6 +32,8 @@ from ident.diagnosis.standing import Contradiction, contradiction
 from ident.diagnosis.ties import first_least, in_order
 from ident.equations.mathml import mathml
 from ident.errors import TimeIsUp, Unusable
+from ident.fit.bounded_step import bounded_step
+from ident.fit.levenberg_marquardt import Way
 from ident.matrix import Run, over_runs
 from ident.parallel import each
 from ident.progress import Progress, Report
@@ -41,6 +43,8 @@ MOST = 3  # terms
 Tried = tuple[Candidate, Refit, ModelFamily]
 _PREFIX = "proposed_"
 _EVIDENCE = 5.0  # nats beyond the logarithm of how many were looked at
+_SETTING_OUT = Way(1e-5, 3)  # of a rough refit
+_NEAR = 1.15  # times the least error after the first steps: who promises that goes on
 _CLOSE, _MOST_CLOSE = 1.1, 8  # times the least error of the rough refits, and how many: carried to their end
 _PLAIN = 4  # terms without shapes that are, too: held-out data may prefer them
 _AS_GOOD = 1.02  # times the least error: a simpler one is taken
@@ -139,7 +143,8 @@ class Search:
         """
 
         def refits(candidates: Sequence[Candidate]) -> list[Tried]:
-            return [one for one in each(lambda c: self._tried(searching, base, name, c, seen), candidates) if one]
+            begun = [one for one in each(lambda c: self._tried(searching, base, name, c, seen), candidates) if one]
+            return _ahead(begun)
 
         tried = refits(seen.candidates)
         if not tried:
@@ -153,7 +158,7 @@ class Search:
         ranked = in_order(tried, lambda one: one[1].error)
         plain = [one for one in ranked[_MOST_CLOSE:] if not one[0].starts][:_PLAIN]
         close = [one for one in (*ranked[:_MOST_CLOSE], *plain) if one[1].error <= _CLOSE * ranked[0][1].error]
-        return [one for one in each(lambda one: _settled(*one), close) if one[1].finite]
+        return [one for one in each(lambda one: _gone_on(*one), close) if one[1].finite]
 
     def _prune(self, latest: str) -> None:
         """Leave out what the model does as well without since the latest term."""
@@ -208,7 +213,7 @@ class Search:
         )
 
     def _tried(self, searching: ModelFamily, base: Refit, name: str, candidate: Candidate, seen: Sight) -> Tried | None:
-        """A rough refit with a candidate to the runs that search; None where it cannot be added."""
+        """First steps with a candidate on the runs that search; None where it cannot be added, or leads nowhere."""
         own = definition(name, candidate.terms, candidate.signs, candidate.strength, seen.typical, seen.units)
         try:
             effect = read_effect(own, model=self.models.preset.name)
@@ -221,17 +226,33 @@ class Search:
             return None  # it closes a circle of signals with what was found before
         start = {**base.values, family.strength(name): candidate.strength}
         start |= {p.in_equations: p.value for p in effect.added[1:]}
-        refit = family.refit((*base.effects, name), start, way=TRYING)
-        return (candidate, refit, family) if refit.finite else None
+        refit = family.refit((*base.effects, name), start, way=_SETTING_OUT)
+        return (candidate, refit, family) if refit.stable else None
 
 
 def _held_out(search: Search) -> float:
     return search.base.held_out.error
 
 
-def _settled(candidate: Candidate, refit: Refit, family: ModelFamily) -> Tried:
-    """A refit carried to its end."""
-    return candidate, family.refit(refit.effects, refit.values), family
+def _ahead(begun: Sequence[Tried]) -> list[Tried]:
+    """Rough refits of those that may come near the one that is ahead after the first steps: by what they promise."""
+    if not begun:
+        return []
+    least = min(refit.here.error for _, refit, _ in begun)
+    near = [one for one in begun if _promise(one[1]) <= _NEAR * least]
+    on = replace(TRYING, aim=_CLOSE * least)
+    return [one for one in each(lambda one: _gone_on(*one, on), near) if one[1].finite]
+
+
+def _promise(refit: Refit) -> float:
+    """The error that one more step promises, within the bounds."""
+    step = bounded_step(refit.point, refit.here.curvature, refit.here.gradient)
+    return float(refit.here.error + refit.here.gradient @ step + 0.5 * step @ refit.here.curvature @ step)
+
+
+def _gone_on(candidate: Candidate, refit: Refit, family: ModelFamily, way: Way | None = None) -> Tried:
+    """A refit that is gone on with, to its end where no way is given."""
+    return candidate, family.refit(refit.effects, refit.values, way=way), family
 
 
 def _parts(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[Run, ...], tuple[Run, ...]]:
