@@ -32,7 +32,6 @@ from ident.diagnosis.standing import Contradiction, contradiction
 from ident.diagnosis.ties import first_least, in_order
 from ident.equations.mathml import mathml
 from ident.errors import TimeIsUp, Unusable
-from ident.fit.bounded_step import bounded_step
 from ident.fit.levenberg_marquardt import Way
 from ident.matrix import Run, over_runs
 from ident.parallel import each
@@ -44,7 +43,6 @@ Tried = tuple[Candidate, Refit, ModelFamily]
 _PREFIX = "proposed_"
 _EVIDENCE = 5.0  # nats beyond the logarithm of how many were looked at
 _SETTING_OUT = Way(1e-5, 3)  # of a rough refit
-_NEAR = 1.15  # times the least error after the first steps: who promises that goes on
 _CLOSE, _MOST_CLOSE = 1.1, 8  # times the least error of the rough refits, and how many: carried to their end
 _PLAIN = 4  # terms without shapes that are, too: held-out data may prefer them
 _AS_GOOD = 1.02  # times the least error: a simpler one is taken
@@ -235,19 +233,9 @@ def _held_out(search: Search) -> float:
 
 
 def _ahead(begun: Sequence[Tried]) -> list[Tried]:
-    """Rough refits of those that may come near the one that is ahead after the first steps: by what they promise."""
-    if not begun:
-        return []
-    least = min(refit.here.error for _, refit, _ in begun)
-    near = [one for one in begun if _promise(one[1]) <= _NEAR * least]
-    on = replace(TRYING, aim=_CLOSE * least)
-    return [one for one in each(lambda one: _gone_on(*one, on), near) if one[1].finite]
-
-
-def _promise(refit: Refit) -> float:
-    """The error that one more step promises, within the bounds."""
-    step = bounded_step(refit.point, refit.here.curvature, refit.here.gradient)
-    return float(refit.here.error + refit.here.gradient @ step + 0.5 * step @ refit.here.curvature @ step)
+    """Rough refits, given up where they cannot come near the one that is ahead after the first steps."""
+    on = replace(TRYING, aim=_CLOSE * min((refit.here.error for _, refit, _ in begun), default=np.inf))
+    return [one for one in each(lambda one: _gone_on(*one, on), begun) if one[1].finite]
 
 
 def _gone_on(candidate: Candidate, refit: Refit, family: ModelFamily, way: Way | None = None) -> Tried:
