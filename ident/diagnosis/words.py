@@ -184,7 +184,7 @@ def _mended(one: Proposal, last: Proposal) -> bool:
 def _alone(one: Proposal) -> str:
     against = one.contradicted
     assert against is not None
-    return f"So it is with all of them; with {one.equation} and what comes before it alone {against.rise}."
+    return f"With {one.equation} but without those after it {against.rise}."
 
 
 def _told_once(spoken: Callable[[str], str]) -> Callable[[str], str]:

@@ -69,10 +69,7 @@ def test_what_later_terms_bring_down_is_not_said_first(last, mended):
         Proposal(place=("force",), equation="R = R + s * x", effect={}, error={"fit": 0.1, "verify": last}, terms=2),
     ]
     text = proposed_text(terms)
-    alone = (
-        "So it is with all of them; with R = R + s * v and what comes before it alone the error on verify runs rises "
-        "from 24.0 % to 31.0 %."
-    )
+    alone = "With R = R + s * v but without those after it the error on verify runs rises from 24.0 % to 31.0 %."
     assert text.startswith("Beyond the catalogue") is mended
     assert text.endswith(alone) is mended
     assert text.startswith("With R = R + s * v the error on verify runs rises") is not mended
