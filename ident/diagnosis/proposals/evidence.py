@@ -25,6 +25,7 @@ Array = NDArray[np.float64]
 _SMOOTH = 16  # frequencies that are averaged
 _FEW = 3  # runs, below which their scatter tells nothing
 _STEADY = 3.0  # standard errors
+_LOST = 0.03  # of what is gained
 
 
 @dataclass(frozen=True)
@@ -42,8 +43,21 @@ class Evidence:
     @property
     def steady(self) -> bool:
         """Whether the runs agree: their mean gain is beyond chance, and so it is without the one that gains most."""
-        rest = np.delete(self.of_runs, int(np.argmax(self.of_runs)))
+        rest = self._rest
         return bool(len(rest) < _FEW or (_deviations(self.of_runs) > _STEADY and _deviations(rest) > _STEADY))
+
+    def beyond(self, bar: float) -> bool:
+        """Whether other runs than the one that gains most gain as much as is asked for, and next to none loses.
+
+        So with what only some runs reach, as a stop at the end of a way: their mean gain is unsteady.
+        """
+        gained, lost = np.maximum(self.of_runs, 0.0).sum(), np.maximum(-self.of_runs, 0.0).sum()
+        return bool(len(self._rest) >= _FEW and self._rest.sum() > bar and lost < _LOST * gained)
+
+    @property
+    def _rest(self) -> Array:
+        """The nats of the runs but the one that gains most."""
+        return np.delete(self.of_runs, int(np.argmax(self.of_runs)))
 
     @property
     def worthwhile(self) -> bool:

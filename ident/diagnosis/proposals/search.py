@@ -111,7 +111,7 @@ class Search:
         tried = self._all_tried(searching, base, name, seen, curves)
         if not tried:
             return False
-        few = _few(self.models.runs)
+        few, bar = _few(self.models.runs), float(np.log(self.looked_at)) + _EVIDENCE
         errors = [refit.held_out.error if few else _error(refit, chosen_by) for _, refit, _ in tried]
         good = [one for one, error in zip(tried, errors, strict=True) if error <= _AS_GOOD * min(errors)]
         candidate, refit, family = min(good, key=lambda one: one[0].simplicity)
@@ -121,8 +121,7 @@ class Search:
         else:
             integrated = self.models.horizon is not None
             told = evidence(confirming, _left(base, confirming), _left(refit, confirming), self.models.band, integrated)
-            gained, sound = told.nats, told.steady and told.worthwhile
-        bar = float(np.log(self.looked_at)) + _EVIDENCE
+            gained, sound = told.nats, told.worthwhile and (told.steady or told.beyond(bar))
         if not (gained > bar and sound):
             self.refused = self.refused or Refused(equation=candidate.equation, nats=gained, bar=bar)
             return False
