@@ -31,7 +31,7 @@ from ident.words.titles import title
 
 Array = NDArray[np.float64]
 _TRIAL = 131_072  # samples of a first refit; the finalists take every sample
-_FITTING, TRYING = Way(1e-7, 20, rough=1e-5), Way(1e-5, 10, rough=1e-4)  # of a refit, a first one
+FITTING, TRYING = Way(1e-7, 20, rough=1e-5), Way(1e-5, 10, rough=1e-4)  # of a refit, a first one
 _SETTING_OUT, _SEARCHING = TRYING, Way(1e-5, 20, rough=1e-4)  # of one far off, and where it is ahead of others
 _SCATTERED, _LEADING = 128, 4  # points of a whole search space, and those of them from which a refit begins
 _FIRST_STEPS, _AHEAD = Way(1e-5, 3), 8  # of it, and how many go on
@@ -276,7 +276,7 @@ class ModelFamily:
         fitness = self.fitness(effects, samples)
         known = {p.in_equations: p.value for p in fitness.preset.parameters} | dict(start)
         point = fitness.space.point({**known, **fitness.space.fixed})
-        way = way or (TRYING if samples else _FITTING)
+        way = way or (TRYING if samples else FITTING)
         point, here = levenberg_marquardt(fitness.exact, point, way, accept=fitness.accept)
         off = {p.in_equations for name, e in self.effects.items() if name not in effects for p in e.added}
         values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}

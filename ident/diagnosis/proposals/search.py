@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.custom.definition import read_effect
-from ident.diagnosis.family import TRYING, ModelFamily
+from ident.diagnosis.family import FITTING, TRYING, ModelFamily
 from ident.diagnosis.proposals.candidate import Candidate
 from ident.diagnosis.proposals.evidence import evidence
 from ident.diagnosis.proposals.meanings import meaning
@@ -112,7 +112,7 @@ class Search:
         if not tried:
             return False
         few, bar = _few(self.models.runs), float(np.log(self.looked_at)) + _EVIDENCE
-        errors = [refit.held_out.error if few else _error(refit, chosen_by) for _, refit, _ in tried]
+        errors = each(lambda one: one[1].held_out.error if few else _error(one[1], chosen_by), tried)
         good = [one for one, error in zip(tried, errors, strict=True) if error <= _AS_GOOD * min(errors)]
         candidate, refit, family = min(good, key=lambda one: one[0].simplicity)
         if few:
@@ -139,9 +139,9 @@ class Search:
         place is sought once more, with the signals of the model that has it.
         """
 
-        def refits(candidates: Sequence[Candidate]) -> list[Tried]:
+        def refits(candidates: Sequence[Candidate], least: float = np.inf) -> list[Tried]:
             begun = [one for one in each(lambda c: self._tried(searching, base, name, c, seen), candidates) if one]
-            return _ahead(begun)
+            return _ahead(begun, least)
 
         tried = refits(seen.candidates)
         if not tried:
@@ -151,11 +151,13 @@ class Search:
             again = sight(self.models, best[1], best[2].effects[name], curves)
             self.looked_at += again.looked_at
             known = {(one.equation, *one.starts) for one in seen.candidates}
-            tried += refits([one for one in again.candidates if (one.equation, *one.starts) not in known])
+            new = [one for one in again.candidates if (one.equation, *one.starts) not in known]
+            tried += refits(new, best[1].here.error)
         ranked = in_order(tried, lambda one: one[1].error)
         plain = [one for one in ranked[_MOST_CLOSE:] if not one[0].starts][:_PLAIN]
         close = [one for one in (*ranked[:_MOST_CLOSE], *plain) if one[1].error <= _CLOSE * ranked[0][1].error]
-        return [one for one in each(lambda one: _gone_on(*one), close) if one[1].finite]
+        on = replace(FITTING, aim=_AS_GOOD * ranked[0][1].here.error)
+        return _followed(each(lambda one: _gone_on(*one, on), close))
 
     def _prune(self, latest: str) -> None:
         """Leave out what the model does as well without since the latest term."""
@@ -231,14 +233,19 @@ def _held_out(search: Search) -> float:
     return search.base.held_out.error
 
 
-def _ahead(begun: Sequence[Tried]) -> list[Tried]:
-    """Rough refits, given up where they cannot come near the one that is ahead after the first steps."""
-    on = replace(TRYING, aim=_CLOSE * min((refit.here.error for _, refit, _ in begun), default=np.inf))
-    return [one for one in each(lambda one: _gone_on(*one, on), begun) if one[1].finite]
+def _ahead(begun: Sequence[Tried], least: float) -> list[Tried]:
+    """Rough refits, given up where they cannot come near what was `least` before, or is ahead after the first steps."""
+    on = replace(TRYING, aim=_CLOSE * min([least, *(refit.here.error for _, refit, _ in begun)]))
+    return _followed(each(lambda one: _gone_on(*one, on), begun))
 
 
-def _gone_on(candidate: Candidate, refit: Refit, family: ModelFamily, way: Way | None = None) -> Tried:
-    """A refit that is gone on with, to its end where no way is given."""
+def _followed(tried: Sequence[Tried]) -> list[Tried]:
+    """Those that a simulation follows: asked side by side."""
+    return [one for one, finite in zip(tried, each(lambda one: one[1].finite, tried), strict=True) if finite]
+
+
+def _gone_on(candidate: Candidate, refit: Refit, family: ModelFamily, way: Way) -> Tried:
+    """A refit that is gone on with."""
     return candidate, family.refit(refit.effects, refit.values, way=way), family
 
 
