@@ -36,6 +36,7 @@ from ident.parallel import each
 from ident.progress import Expected, Progress
 
 _SIMPLER = 1.05  # times the error that terms may leave without what was found, and still come before those beside it
+_LATE = 2  # models, the last one first, of which it is asked how late they answer
 Steps = Sequence[tuple[str | None, Refit]]
 """From the fitted model to the last, what each step added."""
 
@@ -90,15 +91,23 @@ class Diagnoser:
             return ()
 
     def _late(self, selection: StepwiseSelection) -> tuple[str, ...]:
-        """How late the machine answers, where the data do not tell by which lag or delay, and there was time."""
+        """How late the machine answers, where the data do not tell by which lag or delay, and there was time.
+
+        Where with the last effect they do, and something is left, it is told without that: one that makes the valve's
+        lag another, as its stiction, holds this lag in its place.
+        """
         try:
             self.course.tell(Progress("lags and delays", 0, 1))
         except TimeIsUp:
             selection.complete = False
         if not selection.complete:
             return ()
-        models = selection.models
-        return tuple(told_late(lateness(models, selection.base, selection.found), models.spoken))
+        models, steps = selection.models, [refit for _, refit in selection.ladder()][::-1]
+        for refit in steps[: _LATE if models.something_left(selection.found) else 1]:
+            if late := lateness(models, selection.base, refit):
+                without = tuple(name for name in selection.added if name not in refit.effects)
+                return (told_late(late, models.spoken, without),)
+        return ()
 
     def _is_proposing(self, selection: StepwiseSelection) -> bool:
         """Whether terms that no list holds are to be searched for.

@@ -136,14 +136,13 @@ def told_longer(fitted: float | None, horizon: float | None) -> Iterator[str]:
     )
 
 
-def told_late(late: Lateness | None, spoken: Callable[[str], str] = title) -> Iterator[str]:
-    """How late the machine answers, and what the data cannot tell it from, in a sentence; nothing where all is told."""
-    if late is None:
-        return
+def told_late(late: Lateness, spoken: Callable[[str], str] = title, without: Sequence[str] = ()) -> str:
+    """How late the machine answers `without` some effects, and what the data cannot tell it from, in a sentence."""
     names = ", ".join((f"{late.parameter.name} ({late.parameter.meaning})", *map(spoken, late.in_place)))
     before = f", {_seconds(late.before)} by the fitted model" if late.before else ""
-    yield (
-        f"A slow command is answered {_seconds(late.found)} late{before}; "
+    begin = f"Without {', '.join(map(title, without))} a slow" if without else "A slow"
+    return (
+        f"{begin} command is answered {_seconds(late.found)} late{before}; "
         f"by which lag or delay these data cannot tell: {names}."
     )
 
