@@ -34,7 +34,7 @@ _TRIAL = 131_072  # samples of a first refit; the finalists take every sample
 FITTING, TRYING = Way(1e-7, 20, rough=1e-5), Way(1e-5, 10, rough=1e-4)  # of a refit, a first one
 _SETTING_OUT, _SEARCHING = TRYING, Way(1e-5, 20, rough=1e-4)  # of one far off, and where it is ahead of others
 _SCATTERED, _LEADING = 128, 4  # points of a whole search space, and those of them from which a refit begins
-_FIRST_STEPS, _AHEAD = Way(1e-5, 3), 8  # of it, and how many go on
+FIRST_STEPS, _AHEAD = Way(1e-5, 3), 8  # of it, and how many go on
 _SIGHT = 32_768  # samples that they are judged by
 _SIDE_BY_SIDE = 8  # effects of a chain of which each lane carries one
 _OFF = 0.01  # of the largest strength
@@ -253,7 +253,7 @@ class ModelFamily:
         points = scipy.stats.qmc.Sobol(len(fitness.space.axes), rng=0).random(_SCATTERED)
         best = points[np.argsort(fitness.errors(points), kind="stable")[:_LEADING]]
         starts = [{name: float(v[0]) for name, v in fitness.space.values(point[None]).items()} for point in best]
-        return [self.refit(effects, start, _TRIAL, _FIRST_STEPS) for start in starts]
+        return [self.refit(effects, start, _TRIAL, FIRST_STEPS) for start in starts]
 
     def ahead(self, refits: Iterable[Refit], aim: float) -> list[Refit]:
         """Those of first steps that left least, as first refits that have to come below `aim`: others cannot win."""

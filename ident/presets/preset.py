@@ -228,7 +228,7 @@ class Preset:
         if preset.force_scale and {run.output for run in matrix.runs} == {"load_pressure"}:
             preset = replace(preset, force_scale="A*X")  # its forces are measured
         if "displacement" in preset.chain.outputs and any(run.output not in MOTIONS for run in matrix.runs):
-            preset = replace(preset, share_force=())
+            preset = replace(preset, share_force=())  # a force or a pressure is known beside the motion
         preset = preset.disturbed_as(matrix, load)
         if preset.kind == "chain":
             preset = replace(preset, chain=varying(preset.chain, matrix.runs))

@@ -67,5 +67,6 @@ def test_what_rings_faster_than_the_samples_decays_as_fast_as_it_does(damping):
     z = mode / steps
     kept = abs(1 + z + z**2 / 2 + z**3 / 6 + z**4 / 24) ** steps
     assert kept == pytest.approx(abs(np.exp(mode)), abs=0.02)
+    assert -np.log(kept) == pytest.approx(-mode.real, rel=0.11, abs=1e-3)
     lag = steps_needed(preset("qian2014").chain, np.array([-12.0]), "linear", (), 0.1)
     assert steps >= lag[0]

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.custom.definition import read_effect
-from ident.diagnosis.family import FITTING, TRYING, ModelFamily
+from ident.diagnosis.family import FIRST_STEPS, FITTING, TRYING, ModelFamily
 from ident.diagnosis.proposals.candidate import Candidate
 from ident.diagnosis.proposals.evidence import evidence
 from ident.diagnosis.proposals.meanings import meaning
@@ -42,7 +42,6 @@ MOST = 3  # terms
 Tried = tuple[Candidate, Refit, ModelFamily]
 _PREFIX = "proposed_"
 _EVIDENCE = 5.0  # nats beyond the logarithm of how many were looked at
-_SETTING_OUT = Way(1e-5, 3)  # of a rough refit
 _CLOSE, _MOST_CLOSE = 1.1, 8  # times the least error of the rough refits, and how many: carried to their end
 _PLAIN = 4  # terms without shapes that are, too: held-out data may prefer them
 _AS_GOOD = 1.02  # times the least error: a simpler one is taken
@@ -225,7 +224,7 @@ class Search:
             return None  # it closes a circle of signals with what was found before
         start = {**base.values, family.strength(name): candidate.strength}
         start |= {p.in_equations: p.value for p in effect.added[1:]}
-        refit = family.refit((*base.effects, name), start, way=_SETTING_OUT)
+        refit = family.refit((*base.effects, name), start, way=FIRST_STEPS)
         return (candidate, refit, family) if refit.stable else None
 
 

@@ -17,6 +17,7 @@ BAR = 14.0
         ([0.1, -0.2, 0.0, 900.0, 700.0, 0.3], False, True),  # a stop that two of six runs reach
         ([0.1, -0.2, 0.0, 900.0, 0.2, 0.3], False, False),  # one run alone
         ([40.0, -35.0, 50.0, -20.0, 45.0, -30.0], False, False),  # as many lose
+        ([400.0, -35.0, 500.0, -20.0, 0.1, -30.0], False, False),  # two gain much, the others lose
         ([4.0, 3.0, 2.0, 3.0, 2.0, 3.0], True, False),
     ],
 )
