@@ -71,6 +71,7 @@ class StepwiseSelection:
         with suppress(TimeIsUp):
             self._search()
             self.complete = True
+        self._shortened()
         self._learned()
         return self
 
@@ -85,6 +86,10 @@ class StepwiseSelection:
         for farther in (self._weighed, self._stronger, self._paired):
             if self.models.floor is not None and not self.models.at_floor(self.found) and farther():
                 self._rounds()
+        for _ in range(_ROUNDS):
+            if not self._shortened():
+                break
+            self._rounds()
 
     def _step(self, refit: Refit) -> None:
         self.steps.append(self.models.settled(refit))
@@ -123,7 +128,7 @@ class StepwiseSelection:
     def ladder(self) -> list[tuple[str | None, Refit]]:
         """From the fitted model to the last, one effect a step, without the detours: what was added, and the refit."""
         rungs: list[tuple[str | None, Refit]] = [(None, self.base)]
-        known = self.between | {frozenset(step.effects): step for step in self.steps}
+        known = self._met()
         for i, name in enumerate(self.added):
             effects = (*self.base.effects, *self.added[: i + 1])
             step = known.get(frozenset(effects))
@@ -134,6 +139,29 @@ class StepwiseSelection:
                 step = self.between[frozenset(effects)] = self.models.refit(effects, values)
             rungs.append((name, step))
         return rungs
+
+    def _met(self) -> dict[frozenset[str], Refit]:
+        """Of the refits that were steps, or stand in the ladder, the best with the same effects."""
+        best: dict[frozenset[str], Refit] = {}
+        for refit in (*self.between.values(), *self.steps):
+            other = best.get(frozenset(refit.effects))
+            if other is None or refit.held_out.score <= other.held_out.score:
+                best[frozenset(refit.effects)] = refit
+        return best
+
+    def _shortened(self) -> bool:
+        """End the ladder at the first of its rungs on which the last step does not improve; True where one was found.
+
+        A rung that is refitted from where the search ended may find a better optimum than the step that was added to.
+        Of what was a step itself the search has judged: it has to be better, not only as good.
+        """
+        for _, rung in self.ladder()[1:-1]:
+            better = rung.finite and rung.held_out.score < self.found.held_out.score
+            if rung.finite and (better or all(rung is not step for step in self.steps)) and not helps(rung, self.found):
+                self._step(rung)
+                self.groups = {name: group for name, group in self.groups.items() if name in self.added}
+                return True
+        return False
 
     def _rank(self, base: Refit, thorough: bool, strong: bool = False) -> list[Candidate]:
         return rank(self.models, base, self._others(base), self.report, thorough, strong)

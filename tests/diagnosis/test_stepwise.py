@@ -205,3 +205,20 @@ def test_one_effect_from_anywhere_takes_the_place_of_the_first(added):
     """b, which no start near the fit leads to, explains alone what a did not."""
     scores = {"": 1.0, "a": 0.7, "b": 0.05, "c": 0.8, "ab": 0.05}
     assert added(scores, needed={"b"}, far="b") == {"b"}
+
+
+def test_the_last_effect_goes_where_its_rung_refitted_does_better_without_it(monkeypatch):
+    """Four effects were added one by one; without the last, refitted from where the search ended, less is left."""
+    scores = {"": 1.0, "a": 0.9, "ab": 0.7, "abc": 0.4, "abcd": 0.5} | dict.fromkeys(("bcd", "acd", "abd"), 2.0)
+    judged = Judged(scores | {"b": 2.0, "d": 2.0}, needed={"b", "c"}, far="", late="", off="")
+    judged.effects = (*judged.effects, "d")
+    for module, name in ((stepwise, "rank"), (stepwise, "rank_each"), (stepwise, "improvement"), (stepwise, "helps"),
+                         (ranking, "improvement")):  # fmt: skip
+        monkeypatch.setattr(module, name, getattr(judged, name))
+    selection = StepwiseSelection(judged, judged.refit((), {}), 0, lambda *_: None)  # type: ignore[arg-type]
+    selection.look()
+    selection.steps.append(judged.refit("abcd", {}))
+    selection.groups = {"d": []}
+    found = selection.run()
+    assert (found.added, found.ladder()[-1][1].held_out.score) == (("a", "b", "c"), 0.4)
+    assert "d" not in found.groups
