@@ -153,12 +153,14 @@ class StepwiseSelection:
         """End the ladder at the first of its rungs on which the last step does not improve; True where one was found.
 
         A rung that is refitted from where the search ended may find a better optimum than the step that was added to.
-        Of what was a step itself the search has judged: it has to be better, not only as good.
+        Of what was a step itself the search has judged: it has to be better, not only as good. Where a step of as few
+        effects is better than that rung, the search goes back to it.
         """
         for _, rung in self.ladder()[1:-1]:
             better = rung.finite and rung.held_out.score < self.found.held_out.score
             if rung.finite and (better or all(rung is not step for step in self.steps)) and not helps(rung, self.found):
-                self._step(rung)
+                as_few = [step for step in self.steps if len(step.effects) <= len(rung.effects)]
+                self._step(first_least([rung, *as_few], lambda refit: refit.held_out.score))
                 self.groups = {name: group for name, group in self.groups.items() if name in self.added}
                 return True
         return False
