@@ -134,7 +134,9 @@ class Diagnoser:
         beside = Search(selection.models, selection.found, self.course.tell, given, asked).run()
         before, found = (refit.held_out.error for refit in (selection.base, selection.found))
         with_both = beside.left(found, "held_out")
-        return alone if alone.left(before, "held_out") < min(with_both * _SIMPLER, found) else beside
+        if alone.left(before, "held_out") < min(with_both * _SIMPLER, found):
+            return alone
+        return beside.or_refused(alone)
 
     def _said(self, selection: StepwiseSelection, doubted: Sequence[Suspect]) -> Diagnosis:
         """What a search found so far."""
@@ -264,11 +266,7 @@ def _refused(proposed: Proposals, asked: bool | None) -> Iterator[str]:
     if not proposed.complete:
         yield "The search for terms that no list holds was stopped before its end."
     if proposed.refused is not None:
-        best = proposed.refused
-        yield (
-            f"Of {proposed.looked_at} terms that were looked at the best that was refused is {best.equation}: "
-            f"{best.nats:.3g} nats on runs that it was not fitted to, {best.bar:.3g} are asked for."
-        )
+        yield proposed.refused.told(proposed.looked_at)
     elif asked and not proposed.looked_at:
         yield "No term was looked for: the error is the noise's."
 

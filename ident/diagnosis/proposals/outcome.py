@@ -5,19 +5,34 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from ident.diagnosis.proposals.proposal import Proposal
+from ident.diagnosis.proposals.proposal import Errors, Proposal
 from ident.diagnosis.refit import Refit
 from ident.diagnosis.standing import contradiction
 from ident.matrix import Run
+from ident.words.percent import percent
+from ident.words.titles import title
 
 
 @dataclass(frozen=True, kw_only=True)
 class Refused:
-    """The best term that stayed below the bar."""
+    """The best term that stayed below the bar, beside which effects, and the errors that it would leave."""
 
     equation: str
     nats: float
     bar: float
+    beside: tuple[str, ...]
+    error: Errors
+
+    def told(self, looked_at: int) -> str:
+        """In sentences."""
+        beside = f" beside {', '.join(map(title, self.beside))}" if self.beside else ""
+        verify = self.error["verify"]
+        of_verify = "" if verify is None else f" ({percent(verify)} on verify runs)"
+        return (
+            f"Of {looked_at} terms that were looked at the best that was refused is {self.equation}{beside}: "
+            f"{self.nats:.3g} nats on data that it was not fitted to, {self.bar:.3g} are asked for. "
+            f"It would leave {percent(self.error['fit'])}{of_verify}."
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,6 +47,13 @@ class Proposals:
     refused: Refused | None = None
     looked_at: int = 0
     complete: bool = True
+
+    def or_refused(self, other: Proposals) -> Proposals:
+        """The same where something was found; else with the better of what two searches refused."""
+        if self.found or other.refused is None:
+            return self
+        best = max((one.refused for one in (other, self) if one.refused is not None), key=lambda one: one.nats)
+        return replace(self, refused=best, looked_at=self.looked_at + other.looked_at)
 
     def left(self, before: float, what: str = "fit") -> float:
         """The error with all of it on the fitted runs, or "held_out" from the fit in turn; `before` without."""

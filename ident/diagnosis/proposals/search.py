@@ -8,10 +8,11 @@ and what comes of it is a hypothesis. Runs to verify only report.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import count
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -122,7 +123,7 @@ class Search:
             told = evidence(confirming, _left(base, confirming), _left(refit, confirming), self.models.band, integrated)
             gained, sound = told.nats, told.worthwhile and (told.steady or told.beyond(bar))
         if not (gained > bar and sound):
-            self.refused = self.refused or Refused(equation=candidate.equation, nats=gained, bar=bar)
+            self._refuse(next(one for one in family.given.custom if one["name"] == name), refit, gained, bar)
             return False
         self.models = replace(self.models, effects=family.effects, given=family.given, _known={})
         before, self.base = self.base, self.models.refit(refit.effects, refit.values)
@@ -130,6 +131,13 @@ class Search:
         proposal = self._proposal(candidate, seen, name, gained, bar, few)
         self.found.append(replace(proposal, contradicted=self._contradiction(name, before)))
         return True
+
+    def _refuse(self, own: Mapping[str, Any], refit: Refit, gained: float, bar: float) -> None:
+        """Keep what stayed below the bar, where it is the best of that."""
+        if self.refused is None or gained > self.refused.nats:
+            terms = {one["name"] for one in self.models.given.custom}
+            beside = tuple(name for name in self.base.effects if name not in terms and name not in self.given)
+            self.refused = Refused(equation=told(own), nats=gained, bar=bar, beside=beside, error=refit.errors)
 
     def _all_tried(self, searching: ModelFamily, base: Refit, name: str, seen: Sight, curves: bool) -> list[Tried]:
         """The refits with the candidates that come first after a rough one.

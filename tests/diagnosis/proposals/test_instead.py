@@ -8,7 +8,7 @@ from typing import cast
 import numpy as np
 import pytest
 
-from ident.diagnosis.proposals.outcome import Proposals
+from ident.diagnosis.proposals.outcome import Proposals, Refused
 from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.refit import Refit
 from ident.diagnosis.words import proposed_text
@@ -64,3 +64,27 @@ def test_one_that_is_no_worse_only_says_what_it_stands_instead_of(share: float) 
 
 def test_without_runs_to_verify_nothing_is_known() -> None:
     assert found(0.26).instead(cast(Refit, Leaving(0.16)), ("play",), ()).found[-1].contradicted is None
+
+
+def refused(equation: str, nats: float, *beside: str, verify: float | None = 0.4) -> Proposals:
+    error = {"fit": 0.3, "held_out": 0.31, "verify": verify}
+    best = Refused(equation=equation, nats=nats, bar=13.4, beside=beside, error=error)
+    return Proposals(refused=best, looked_at=4000)
+
+
+def test_of_two_searches_the_better_of_what_was_refused_is_told_with_what_it_would_leave() -> None:
+    plain, beside = refused("Q = Q + s * (max(Q, 0) * w)", 10.3), refused("R = R + s * (x)", 6.9, "dead_zone")
+    for told in (plain.or_refused(beside), beside.or_refused(plain)):
+        assert (told.refused, told.looked_at) == (plain.refused, 8000)
+    assert plain.refused is not None
+    assert beside.refused is not None
+    assert "max(Q, 0) * w): 10.3 nats" in plain.refused.told(8000)
+    assert plain.refused.told(8000).endswith("13.4 are asked for. It would leave 30.0 % (40.0 % on verify runs).")
+    assert "s * (x) beside dead zone: 6.9 nats" in beside.refused.told(8000)
+    assert found(0.1).or_refused(plain).refused is None
+
+
+def test_where_a_verify_run_cannot_be_followed_a_refused_term_tells_no_error_of_it() -> None:
+    best = refused("R = R + s * (x)", 6.9, verify=None).refused
+    assert best is not None
+    assert best.told(1).endswith("It would leave 30.0 %.")
