@@ -12,7 +12,7 @@ import numpy as np
 
 from ident.cached import cached_property
 from ident.diagnosis.family import ModelFamily
-from ident.diagnosis.refit import Refit, carries_over
+from ident.diagnosis.refit import Refit, alike, carries_over
 from ident.diagnosis.screening import Prediction, predict
 from ident.diagnosis.significance import VISIBLE, WORTHWHILE, Improvement, improvement
 from ident.diagnosis.ties import first_least, in_order
@@ -224,7 +224,7 @@ def _alike(best: Candidate, other: Candidate) -> bool:
     """
     if best.refit is None or other.refit is None or other.refit.error > _AS_GOOD * best.refit.error:
         return False
-    return improvement(other.refit.held_out, best.refit.held_out).within_chance
+    return alike(best.refit, other.refit)
 
 
 def _elsewhere(

@@ -13,7 +13,7 @@ from ident.cached import cached_property
 from ident.diagnosis.cross_validation import CrossValidation, by_chunk, cross_validated, not_held_out
 from ident.diagnosis.estimate import Found
 from ident.diagnosis.significance import improvement
-from ident.fit.fitness import Local
+from ident.fit.fitness import STEP, Local
 from ident.fit.result import Combination
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.slow_answer import slow_lag
@@ -25,6 +25,7 @@ from ident.noise.effective_sample_size import independent_samples
 
 Array = NDArray[np.float64]
 _FOLLOWED = 1.2  # times the promised error that a simulation may leave
+_JUMPS = 1.1  # times the held-out error: so far apart end refits with an effect that acts in jumps
 _KNOWN = 1e3  # times its value: the standard error beyond which nothing is known of a parameter
 
 
@@ -119,6 +120,11 @@ class Refit:
         outputs = self.fitness.fresh(tuple(runs)).outputs(self.point)
         return [self.fitness.left(run, outputs[run.id]) for run in runs]
 
+    @property
+    def jumping(self) -> frozenset[str]:
+        """Its effects that act in jumps."""
+        return frozenset(effect.name for effect in self.fitness.preset.effects if effect.stride > STEP)
+
     @cached_property
     def _known(self) -> Covariance:
         return covariance(self.here, self.point)
@@ -161,6 +167,16 @@ def carries_over(less: Refit, more: Refit) -> bool:
     """
     before, after = less.between_runs, more.between_runs
     return before is None or after is None or not improvement(after, before).beyond_chance
+
+
+def alike(best: Refit, other: Refit) -> bool:
+    """Whether of two refits the better one is better by chance only, or by no more than refits of it end apart.
+
+    What acts in jumps has an optimum behind every jump: moved by next to nothing it ends at another, some per cent off.
+    """
+    if improvement(other.held_out, best.held_out).within_chance:
+        return True
+    return best.jumping != other.jumping and other.held_out.score <= _JUMPS * best.held_out.score
 
 
 @dataclass(frozen=True)

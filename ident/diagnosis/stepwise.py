@@ -15,8 +15,7 @@ from itertools import combinations
 
 from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.ranking import Candidate, rank, rank_each, ranked
-from ident.diagnosis.refit import Refit, helps
-from ident.diagnosis.significance import improvement
+from ident.diagnosis.refit import Refit, alike, helps
 from ident.diagnosis.ties import first_least
 from ident.errors import TimeIsUp
 from ident.parallel import each
@@ -118,7 +117,7 @@ class StepwiseSelection:
         best = self.ranking[0].refit if self.ranking else None
         if best is None or not self.ranking[0].helps:
             return []
-        return [c for c in self.ranking if c.refit and improvement(c.refit.held_out, best.held_out).within_chance]
+        return [c for c in self.ranking if c.refit and alike(best, c.refit)]
 
     def weighed(self) -> frozenset[str]:
         """The effects of the first ranking in question: down to the first that helps, and what is as good as it."""
@@ -346,5 +345,5 @@ def _group(name: str, here: Refit, ranking: list[Candidate]) -> list[Candidate]:
     """The candidates that are no worse than the best but by chance, the effect itself first where it is among them."""
     refits = [c for c in ranking if c.refit is not None]
     best = min([here, *(c.refit for c in refits if c.refit)], key=lambda r: r.held_out.score)
-    alike = [c for c in refits if c.refit and improvement(c.refit.held_out, best.held_out).within_chance]
-    return sorted(alike, key=lambda c: c.effect != name)
+    as_good = [c for c in refits if c.refit and alike(best, c.refit)]
+    return sorted(as_good, key=lambda c: c.effect != name)

@@ -9,7 +9,8 @@ import pytest
 
 from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.proposals.search import Search
-from ident.diagnosis.refit import Refit
+from ident.diagnosis.refit import Refit, alike
+from ident.effects import effect
 
 MEASURED = np.sin(np.arange(1000) / 50.0)
 
@@ -70,3 +71,40 @@ def test_a_term_that_is_added_twice_is_tried_as_one_with_both_strengths(equation
     )
     assert Search._joined(search, "proposed_2", "proposed_1")["proposed_2__s"] == joined
     assert search.base.values["proposed_2__s"] == 2.0
+
+
+def judged(share: float, *effects: str) -> SimpleNamespace:
+    """A refit whose held-out error is so large a share of the record, the same all over it."""
+    squares = np.full((2, 16), share**2 * 0.5)
+    errors, totals = np.full(2, share), np.full(2, 8.0)
+    held_out = SimpleNamespace(
+        squares=squares,
+        totals=totals,
+        errors=errors,
+        means=np.zeros(2),
+        offset=0.0,
+        error=share,
+        score=share,
+        independent=1e5,
+        samples=1000,
+        unforetold=None,
+        in_windows=False,
+    )
+    jumping = Refit.jumping.fget(SimpleNamespace(fitness=SimpleNamespace(preset=SimpleNamespace(
+        effects=[effect(name) for name in effects]))))  # fmt: skip
+    return SimpleNamespace(held_out=held_out, jumping=jumping)
+
+
+@pytest.mark.parametrize(
+    ("better", "worse", "share", "same"),
+    [
+        (("backlash",), ("spool_stiction",), 1.08, True),  # refits with stiction end so far apart
+        (("spool_stiction",), ("backlash",), 1.08, True),
+        (("backlash",), ("spool_stiction",), 1.12, False),
+        (("backlash",), ("dead_zone",), 1.04, False),
+        (("backlash", "spool_stiction"), ("dead_zone", "spool_stiction"), 1.04, False),  # both scatter alike
+    ],
+)
+def test_what_acts_in_jumps_is_as_good_as_what_leaves_some_per_cent_less(better, worse, share, same):
+    """With 1e5 samples that tell something new, chance alone would tell a difference of a hundredth."""
+    assert alike(judged(0.1, *better), judged(0.1 * share, *worse)) is same

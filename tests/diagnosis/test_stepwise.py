@@ -113,9 +113,20 @@ class Judged:
         needed = bool((more.effects - less.effects) & self.needed) or more.score < 0.3 * less.score
         return SimpleNamespace(beyond_chance=needed, within_chance=False)
 
+    def alike(self, _best, _other):
+        """Each differs from the others beyond chance."""
+        return False
+
     def helps(self, less, more):
         """The same of refits."""
         return self.improvement(less.held_out, more.held_out).beyond_chance
+
+    def stand_in(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """For what a search asks of real refits."""
+        for module, names in ((stepwise, ("rank", "rank_each", "alike", "helps")),
+                              (ranking, ("alike", "improvement"))):  # fmt: skip
+            for name in names:
+                monkeypatch.setattr(module, name, getattr(self, name))
 
 
 @pytest.fixture
@@ -126,11 +137,7 @@ def searched(monkeypatch):
         scores: dict[str, float], needed: set[str], far: str = "", late: str = "", off: str = ""
     ) -> StepwiseSelection:
         judged = Judged(scores, needed, far, late, off)
-        monkeypatch.setattr(stepwise, "rank", judged.rank)
-        monkeypatch.setattr(stepwise, "rank_each", judged.rank_each)
-        for module in (stepwise, ranking):
-            monkeypatch.setattr(module, "improvement", judged.improvement)
-        monkeypatch.setattr(stepwise, "helps", judged.helps)
+        judged.stand_in(monkeypatch)
         return StepwiseSelection(judged, judged.refit((), {}), 2, lambda *_: None).run()  # type: ignore[arg-type]
 
     return of
@@ -212,9 +219,7 @@ def test_the_last_effect_goes_where_its_rung_refitted_does_better_without_it(mon
     scores = {"": 1.0, "a": 0.9, "ab": 0.7, "abc": 0.4, "abcd": 0.5} | dict.fromkeys(("bcd", "acd", "abd"), 2.0)
     judged = Judged(scores | {"b": 2.0, "d": 2.0}, needed={"b", "c"}, far="", late="", off="")
     judged.effects = (*judged.effects, "d")
-    for module, name in ((stepwise, "rank"), (stepwise, "rank_each"), (stepwise, "improvement"), (stepwise, "helps"),
-                         (ranking, "improvement")):  # fmt: skip
-        monkeypatch.setattr(module, name, getattr(judged, name))
+    judged.stand_in(monkeypatch)
     selection = StepwiseSelection(judged, judged.refit((), {}), 0, lambda *_: None)  # type: ignore[arg-type]
     selection.look()
     selection.steps.append(judged.refit("abcd", {}))
