@@ -102,7 +102,7 @@ class Diagnoser:
             selection.complete = False
         if not selection.complete:
             return ()
-        models, steps = selection.models, [refit for _, refit in selection.ladder()][::-1]
+        models, steps = selection.models, [refit for _, refit in selection.ladder() if refit.stable][::-1]
         for refit in steps[: _LATE if models.something_left(selection.found) else 1]:
             if late := lateness(models, selection.base, refit):
                 without = tuple(name for name in selection.added if name not in refit.effects)
@@ -198,7 +198,9 @@ class Diagnoser:
     def _heard(self, selection: StepwiseSelection) -> None:
         """Tell of a step."""
         steps = selection.ladder()
-        self.course.added = tuple(Expected(name, refit.held_out.error) for name, refit in steps if name)
+        self.course.added = tuple(
+            Expected(name, refit.held_out.error) for name, refit in steps if name and refit.stable
+        )
         if self.course.found is not None:
             self.course.found(replace(self._said(selection, ()), seconds=self.course.taken))
 
@@ -240,11 +242,16 @@ class Diagnoser:
         rungs: list[Rung] = []
         before: Refit | None = None
         for added, refit in steps:
-            found = None if before is None else improvement(before.held_out, refit.held_out).nats
-            rungs.append(Rung(
-                added=added, error=refit.errors, offset=refit.held_out.offset, nats=found,
-                parameters=refit.parameters,
-            ))  # fmt: skip
+            both = before is not None and before.stable and refit.stable
+            rungs.append(
+                Rung(
+                    added=added,
+                    error=refit.errors,
+                    offset=refit.held_out.offset if refit.stable else None,
+                    nats=improvement(before.held_out, refit.held_out).nats if before is not None and both else None,
+                    parameters=refit.parameters,
+                )
+            )
             before = refit
         return rungs
 
@@ -255,6 +262,8 @@ class Diagnoser:
             return
         before: list[NDArray[np.float64]] | None = None
         for added, refit in steps:
+            if not refit.stable:
+                continue  # a rung of the ladder that no search stood on
             after = refit.left(runs)
             if added and before and (found := contradiction(added, runs, before, after)):
                 yield found

@@ -217,6 +217,14 @@ def ranked(models: ModelFamily, candidates: Iterable[Candidate]) -> list[Candida
     return [one for _, group in by_stage for one in in_order(list(group), lambda one: one.score, _alike)]
 
 
+def group(name: str, here: Refit, ranking: Sequence[Candidate]) -> list[Candidate]:
+    """The candidates that are no worse than the best but by chance, the effect itself first where it is among them."""
+    refits = [c for c in ranking if c.refit is not None]
+    best = min([here, *(c.refit for c in refits if c.refit)], key=lambda refit: refit.held_out.score)
+    as_good = [c for c in refits if c.refit and alike(best, c.refit)]
+    return sorted(as_good, key=lambda c: c.effect != name)
+
+
 def _alike(best: Candidate, other: Candidate) -> bool:
     """Whether of two refits the better one is better by no more than chance, nor by much on the data of the fit.
 

@@ -112,7 +112,9 @@ class Refit:
 
     @property
     def errors(self) -> dict[str, float | None]:
-        """Its errors by what they are measured on."""
+        """Its errors by what they are measured on; None where it is unstable on a run that it is fitted to."""
+        if not self.stable:
+            return {"fit": None, "held_out": None, "verify": None}
         return {"fit": self.error, "held_out": self.held_out.error, "verify": self.on_verify}
 
     def left(self, runs: Sequence[Run]) -> list[Array]:

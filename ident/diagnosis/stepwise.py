@@ -13,8 +13,10 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import combinations
 
+import numpy as np
+
 from ident.diagnosis.family import ModelFamily
-from ident.diagnosis.ranking import Candidate, rank, rank_each, ranked
+from ident.diagnosis.ranking import Candidate, group, rank, rank_each, ranked
 from ident.diagnosis.refit import Refit, alike, helps
 from ident.diagnosis.ties import first_least
 from ident.errors import TimeIsUp
@@ -143,9 +145,9 @@ class StepwiseSelection:
         """Of the refits that were steps, or stand in the ladder, the best with the same effects."""
         best: dict[frozenset[str], Refit] = {}
         for refit in (*self.between.values(), *self.steps):
-            other = best.get(frozenset(refit.effects))
-            if other is None or refit.held_out.score <= other.held_out.score:
-                best[frozenset(refit.effects)] = refit
+            effects = frozenset(refit.effects)
+            if effects not in best or not best[effects].finite or _score(refit) <= _score(best[effects]):
+                best[effects] = refit
         return best
 
     def _shortened(self) -> bool:
@@ -159,7 +161,7 @@ class StepwiseSelection:
             better = rung.finite and rung.held_out.score < self.found.held_out.score
             if rung.finite and (better or all(rung is not step for step in self.steps)) and not helps(rung, self.found):
                 as_few = [step for step in self.steps if len(step.effects) <= len(rung.effects)]
-                self._step(first_least([rung, *as_few], lambda refit: refit.held_out.score))
+                self._step(first_least([rung, *as_few], _score))
                 self.groups = {name: group for name, group in self.groups.items() if name in self.added}
                 return True
         return False
@@ -299,7 +301,7 @@ class StepwiseSelection:
             known = [i for i, step in enumerate(self.steps) if set(step.effects) == set(less.effects)]
             self._step(less)
             if known:
-                self._step(first_least(self.steps[known[0] :], lambda step: step.held_out.score))
+                self._step(first_least(self.steps[known[0] :], _score))
                 return True
         return False
 
@@ -321,7 +323,7 @@ class StepwiseSelection:
                 self._step(best.refit)
                 self._backward(best.effect)
                 return True
-            self.groups[name] = _group(name, here, ranking)
+            self.groups[name] = group(name, here, ranking)
         return False
 
     def _in_place_of_each(self, added: Sequence[str]) -> list[list[Candidate]]:
@@ -337,13 +339,9 @@ class StepwiseSelection:
         return [next(ranked) if base.finite else [] for base in bases]
 
 
+def _score(refit: Refit) -> float:
+    return refit.held_out.score if refit.finite else np.inf
+
+
 def _without(values: Mapping[str, float], effect: str) -> dict[str, float]:
     return {name: value for name, value in values.items() if not name.startswith(f"{effect}__")}
-
-
-def _group(name: str, here: Refit, ranking: list[Candidate]) -> list[Candidate]:
-    """The candidates that are no worse than the best but by chance, the effect itself first where it is among them."""
-    refits = [c for c in ranking if c.refit is not None]
-    best = min([here, *(c.refit for c in refits if c.refit)], key=lambda r: r.held_out.score)
-    as_good = [c for c in refits if c.refit and alike(best, c.refit)]
-    return sorted(as_good, key=lambda c: c.effect != name)

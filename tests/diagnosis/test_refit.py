@@ -7,6 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from ident.diagnosis.course import Course
+from ident.diagnosis.diagnose import Diagnoser
 from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.proposals.search import Search
 from ident.diagnosis.refit import Refit, alike
@@ -108,3 +110,17 @@ def judged(share: float, *effects: str) -> SimpleNamespace:
 def test_what_acts_in_jumps_is_as_good_as_what_leaves_some_per_cent_less(better, worse, share, same):
     """With 1e5 samples that tell something new, chance alone would tell a difference of a hundredth."""
     assert alike(judged(0.1, *better), judged(0.1 * share, *worse)) is same
+
+
+def test_a_rung_at_which_the_model_is_unstable_tells_no_error_and_the_next_one_no_evidence(monkeypatch):
+    """What two effects make stable one of them need not; asked for its held-out error it would know none."""
+    monkeypatch.setattr(Refit, "parameters", {})
+    sound, unstable = refit("at rest", 0.1), refit("at rest", np.inf, promised=np.inf)
+    sound.__dict__["held_out"] = judged(0.1).held_out
+    course = Course(most=4)
+    diagnoser = Diagnoser(None, None, course)
+    steps = [(None, sound), ("dead_zone", unstable), ("backlash", sound), ("null_bias", sound)]
+    assert [rung.error["fit"] for rung in diagnoser._ladder(steps)] == [0.1, None, 0.1, 0.1]
+    assert [rung.nats for rung in diagnoser._ladder(steps)] == [None, None, None, 0.0]
+    diagnoser._heard(SimpleNamespace(ladder=lambda: steps))
+    assert [one.effect for one in course.added] == ["backlash", "null_bias"]
