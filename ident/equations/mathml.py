@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import math
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
 
@@ -53,6 +54,8 @@ def _symbol(name: str) -> str:
 
 def _render(node: ast.expr) -> str:
     match node:
+        case ast.Constant(value=math.pi):
+            return "<mi>π</mi>"
         case ast.Constant(value=int() | float() as value):
             return f"<mn>{float(value):g}</mn>"
         case ast.Name(id=name):

@@ -17,6 +17,8 @@ X_OVER_D = "<mfrac><mrow><mi>x</mi></mrow><mrow><mi>d</mi></mrow></mfrac>"
         ("F = delay(x/d, 0.1)", f"{OPEN}{X_OVER_D}{CLOSE}<mo>⁡</mo>"),
         ("F = (x + d)**2", f"<msup>{OPEN}<mrow><mi>x</mi></mrow><mo>+</mo><mrow><mi>d</mi></mrow>{CLOSE}"),
         ("F = x**2", "<msup><mrow><mi>x</mi></mrow><mrow><mn>2</mn></mrow></msup>"),
+        ("F = sin(2 * pi * f)", "<mrow><mn>2</mn></mrow><mo>·</mo><mrow><mi>π</mi></mrow>"),
+        ("F = 3.14 * x", "<mn>3.14</mn>"),
         ("F = 3*(x/d)", f"<mrow><mn>3</mn></mrow><mo>·</mo><mrow>{X_OVER_D}</mrow>"),
     ],
 )
