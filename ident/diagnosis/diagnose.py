@@ -36,6 +36,7 @@ from ident.parallel import each
 from ident.progress import Expected, Progress
 
 _SIMPLER = 1.05  # times the error that terms may leave without what was found, and still come before those beside it
+_RISES = 1.1  # times the least error on verify runs on the way: from there on it is told
 _LATE = 2  # models, the last one first, of which it is asked how late they answer
 Steps = Sequence[tuple[str | None, Refit]]
 """From the fitted model to the last, what each step added."""
@@ -170,7 +171,8 @@ class Diagnoser:
         against = tuple(self._contradictions(models, steps))
         bounded = tuple(name for name in added if models.at_bound(selection.found, name))
         text = verdict_text(added, groups, doubted, unexplained, errors, selection.base.error, models.floors.measured,
-                            floor, against, selection.complete, models.spoken, bounded)  # fmt: skip
+                            floor, against, selection.complete, models.spoken, bounded,
+                            None if against else _better_with_fewer(steps))  # fmt: skip
         stands = standing(added, unexplained, against, models.floor is not None or not bounded)
         against_by = tuple(one.effect for one in against)
         return Verdict(added, stands, against_by, groups, tuple(doubted), unexplained, text, bounded)
@@ -268,6 +270,15 @@ class Diagnoser:
             if added and before and (found := contradiction(added, runs, before, after)):
                 yield found
             before = after
+
+
+def _better_with_fewer(steps: Steps) -> tuple[float, tuple[str, ...]] | None:
+    """The least error on verify runs on the way, and what was added since; None where the last is about as small."""
+    errors = [refit.errors["verify"] for _, refit in steps]
+    last, least = errors[-1], min((error for error in errors if error is not None), default=None)
+    if last is None or least is None or last < _RISES * least:
+        return None
+    return least, tuple(name for name, _ in steps[errors.index(least) + 1 :] if name)
 
 
 def _refused(proposed: Proposals, asked: bool | None) -> Iterator[str]:

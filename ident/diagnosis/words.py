@@ -71,13 +71,14 @@ def verdict_text(
     added: Sequence[str], groups: Sequence[tuple[str, ...]], suspects: Sequence[Suspect], unexplained: bool,
     errors: Mapping[str, float | None], before: float, repeats: bool = True, floor: float | None = None,
     against: Sequence[Contradiction] = (), complete: bool = True, spoken: Callable[[str], str] = title,
-    bounded: Sequence[str] = (),
+    bounded: Sequence[str] = (), fewer: tuple[float, Sequence[str]] | None = None,
 ) -> str:  # fmt: skip
     """The verdict in a few sentences, what speaks against it first.
 
     Without `repeats` nobody knows how much noise lies in the command's band. Not `complete`, the search was stopped.
     `spoken` tells what an effect is the first time that it is named; `bounded` are those whose strength ended at the
-    bound of its search.
+    bound of its search. `fewer` is an error on verify runs without the last of what was added, where it is smaller
+    there, by no more than chance.
     """
     named = _told_once(spoken)
     parts = [one.told(named(one.effect)) for one in against]
@@ -91,7 +92,11 @@ def verdict_text(
         lacks = "What helps on the fitted runs is" if against or unexplained else "The model lacks"
         parts.append(
             f"{lacks} {names}: with {them} the error falls from {percent(before)} to {percent(errors['fit'])}"
-            + (f" ({percent(errors['verify'])} on verify runs)." if errors.get("verify") is not None else ".")
+            + (
+                f" ({percent(errors['verify'])} on verify runs{_fewer(fewer)})."
+                if errors.get("verify") is not None
+                else "."
+            )
         )
     elif not complete:
         parts.append(f"No effect was confirmed that lowers the error of {percent(before)}.")
@@ -116,6 +121,10 @@ def verdict_text(
             parts.append("No command was measured twice: part of it may be noise in the command's band, "
                          "which a repeated run would tell.")  # fmt: skip
     return " ".join(parts)
+
+
+def _fewer(of: tuple[float, Sequence[str]] | None) -> str:
+    return "" if of is None else f", within chance of the {percent(of[0])} without {', '.join(map(title, of[1]))}"
 
 
 def as_well(elsewhere: Sequence[Explanation]) -> Iterator[str]:
