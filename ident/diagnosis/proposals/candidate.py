@@ -10,7 +10,7 @@ import numpy as np
 from ident.diagnosis.proposals.meanings import meaning
 from ident.diagnosis.proposals.own import added, sticks
 from ident.diagnosis.proposals.regression import ALIKE, Regression
-from ident.diagnosis.proposals.terms import Term, ratio
+from ident.diagnosis.proposals.term import STATE, Term, ratio
 from ident.stages import PLACES
 from ident.units.quantity import known_powers, shape
 
@@ -35,7 +35,8 @@ class Candidate:
     def equation(self) -> str:
         """What is added where."""
         brakes = sticks(self.terms, self.strength)
-        return "; ".join(added(term, sign, brakes) for term, sign in zip(self.terms, self.signs, strict=True))
+        states = [f"{STATE}' = {term.state}" for term in self.terms if term.state]
+        return "; ".join([*states, *(added(t, sign, brakes) for t, sign in zip(self.terms, self.signs, strict=True))])
 
     @property
     def starts(self) -> tuple[float, ...]:
@@ -90,7 +91,7 @@ def _pairs(found: Regression, units: Mapping[str, str]) -> tuple[list[Candidate]
     """
     power = np.diag(found.products)
     dimensions = np.unique([repr(_dimension(term, units)) for term in found.terms], return_inverse=True)[1]
-    plain = np.array([not term.shapes and power[i] > 0 for i, term in enumerate(found.terms)])
+    plain = np.array([not term.shapes and not term.in_time and power[i] > 0 for i, term in enumerate(found.terms)])
     driven = np.array([term.place in _DRIVE for term in found.terms])
     rows, columns = np.flatnonzero(plain & driven), np.flatnonzero(plain & ~driven)
     of_rows, of_columns = np.nonzero(dimensions[rows, None] == dimensions[columns])

@@ -10,7 +10,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from ident.diagnosis.proposals.records import Record
-from ident.diagnosis.proposals.terms import Term
+from ident.diagnosis.proposals.term import Term
 from ident.residuals.decimation import Response
 
 Array = NDArray[np.float64]

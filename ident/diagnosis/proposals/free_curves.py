@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from ident.diagnosis.proposals.candidate import Candidate
 from ident.diagnosis.proposals.regression import Regression
-from ident.diagnosis.proposals.terms import Curve, Library, Term
+from ident.diagnosis.proposals.term import Curve, Term
+from ident.diagnosis.proposals.terms import Library
 from ident.units.grammar import powers_of
 
 Array = NDArray[np.float64]

@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ident.diagnosis.proposals.terms import Term
+from ident.diagnosis.proposals.term import Term
 
 _MEANINGS = {
+    ("e", "integral", ("e",)): "the controller integrates its error, too",
+    ("e", "rate", ("e",)): "the controller takes the rate of its error, too",
+    ("dq", "beyond", ("dq",)): "the spool's speed is limited",
+    ("dq", "saturation", ("dq",)): "the spool's speed saturates",
+    ("dq", "square", ("dq",)): "the spool's speed saturates",
     ("Q", "size", ("P",)): "leakage in one direction: the leak differs with the sign of the pressure",
     ("Q", "square", ("P",)): "leakage that grows with the square of the pressure",
     ("Q", "root", ("P",)): "leakage through an orifice, as the root of the pressure",
@@ -30,7 +35,8 @@ _MEANINGS = {
 }  # fmt: skip
 _KINDS = {
     "beyond": "acts beyond a threshold to both sides", "above": "acts above a threshold",
-    "below": "acts below a threshold", "lag": "acts late", "late": "acts late", "play": "has play",
+    "below": "acts below a threshold", "saturation": "saturates",
+    "lag": "acts late", "late": "acts late", "play": "has play",
     "friction at": "dry friction at one part of the way", "hill of": "acts at one part of the way",
     "hill": "acts at one part of the way",
     "condition": "changes with a condition of the run, with what was recorded beside it, or with time",

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ident.diagnosis.proposals.terms import CURVE, LIMIT, Signals, Term, ratio
+from ident.diagnosis.proposals.term import CURVE, LIMIT, STATE, Signals, Term, ratio
 from ident.effects.effect import Effect
 
 _REACH = 4.0  # times what makes a term as large as the signal that it adds to: bounds of a strength
@@ -54,7 +54,8 @@ def definition(
             shapes[shape.symbol] = {"unit": shape.unit, "lower": low, "upper": high, "value": shape.value}
     shown = first.samples(typical, 1.0) if first.worked_out is None else typical[first.of[0]]
     size = float(np.sqrt(np.mean(shown**2)))
-    bound = max(_REACH * float(np.std(typical[first.at])) / max(size, 1e-300), _FAR * abs(strength))
+    reach = 0.0 if first.in_time else _REACH * float(np.std(typical[first.at])) / max(size, 1e-300)
+    bound = max(reach, _FAR * abs(strength))
     found: dict[str, Any] = {
         "name": name, "place": terms[-1].place, "equation": lines,
         "strength": {"symbol": STRENGTH, "unit": ratio(units[first.at], first.unit), "lower": 0.0 if brakes else -bound,
@@ -65,7 +66,8 @@ def definition(
         knots, values = list(first.curve.knots), list(first.curve.values)
         found["curve"] = {"symbol": CURVE, "of": first.curve.of, "knots": knots, "values": values, "unit": "1",
                           "lower": -_STEEP, "upper": _STEEP}  # fmt: skip
-    return found | ({"shape": shapes} if shapes else {})
+    states = [{"symbol": STATE, "rate": term.state} for term in terms if term.state]
+    return found | ({"shape": shapes} if shapes else {}) | ({"state": states[0]} if states else {})
 
 
 def searched(own: Mapping[str, Any], terms: Sequence[Term]) -> dict[str, tuple[float, float]]:
@@ -84,11 +86,17 @@ def curves(own: Mapping[str, Any]) -> dict[str, str]:
 
 
 def told(own: Mapping[str, Any]) -> str:
-    """The equations in words: h of P is told as h(P)."""
-    text = "; ".join(own["equation"])
+    """The equations in words, the rate of a state of its own first: h of P is told as h(P)."""
+    text = "; ".join(lines_of(own))
     for symbol, of in curves(own).items():
         text = re.sub(rf"\b{symbol}\b", f"{symbol}({of})", text)
     return text
+
+
+def lines_of(own: Mapping[str, Any]) -> list[str]:
+    """Its equations, that of its own state among them."""
+    state = own.get("state")
+    return [*([f"{state['symbol']}' = {state['rate']}"] if state else []), *own["equation"]]
 
 
 def _bounds(of: Mapping[str, Any]) -> tuple[float, float]:

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from ident.cached import cached_property
 from ident.diagnosis.proposals.columns import Columns, blocks
 from ident.diagnosis.proposals.records import Record
-from ident.diagnosis.proposals.terms import Term
+from ident.diagnosis.proposals.term import Term
 from ident.parallel import each
 from ident.residuals.decimation import Response
 

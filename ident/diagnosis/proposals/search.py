@@ -23,7 +23,7 @@ from ident.diagnosis.proposals.candidate import Candidate
 from ident.diagnosis.proposals.evidence import evidence
 from ident.diagnosis.proposals.meanings import meaning
 from ident.diagnosis.proposals.outcome import Proposals, Refused
-from ident.diagnosis.proposals.own import as_found, curves, definition, searched, told
+from ident.diagnosis.proposals.own import as_found, curves, definition, lines_of, searched, told
 from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.proposals.shown import shown_in
 from ident.diagnosis.proposals.sight import Sight, sight
@@ -213,7 +213,7 @@ class Search:
             bar=bar,
             alike=tuple("; ".join(f"{t.at}: {t.text}" for t in terms) for terms in candidate.alike),
             meaning=meaning(candidate.terms),
-            formula=" ".join(mathml(line, curves(own)) for line in own["equation"]),
+            formula=" ".join(mathml(line, curves(own)) for line in lines_of(own)),
             hypothesis=hypothesis,
             free_curve=any(term.curve is not None for term in candidate.terms),
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.proposals.terms import Signals, Term
+from ident.diagnosis.proposals.term import Signals, Term
 from ident.presets import Preset
 from ident.residuals.views import view_called
 

@@ -15,14 +15,14 @@ from ident.diagnosis.proposals.candidate import Candidate, offered
 from ident.diagnosis.proposals.recorded import recorded_beside, units_of
 from ident.diagnosis.proposals.records import paths, records
 from ident.diagnosis.proposals.regression import regression
-from ident.diagnosis.proposals.terms import Library
+from ident.diagnosis.proposals.terms import ALONE, Library
 from ident.diagnosis.refit import Refit
 from ident.effects.effect import Effect
 from ident.parameter import Parameter
 from ident.presets import Preset
 
 Array = NDArray[np.float64]
-_PLACES = {"controller": "e", "spool": "w", "flow": "Q", "load": "R", "sensor": "y"}
+_PLACES = {"controller": "e", "valve": "dq", "spool": "w", "flow": "Q", "load": "R", "sensor": "y"}
 _SIGNALS = ("w", "Q", "P", "v", "x", "F")
 _VARIED = ("Kp", "mL", "k")  # conditions of a run
 _PROPORTIONAL = 1.0 - 1e-6  # cosine of signals that are one
@@ -55,8 +55,9 @@ def sight(models: ModelFamily, base: Refit, instead_of: Effect | None = None, cu
     shortest = min(run.duration for run in models.runs)
     varied = [name for name in _VARIED if np.ptp(typical[name]) > 0]
     names = _distinct(names, typical)
-    there = {place: [name for name in names if _known_there(preset, place, at, name)] for place, at in places.items()}
-    library = Library(places, there, typical, units, models.band, shortest, varied, recorded_beside(models))
+    library = Library(
+        places, _there(preset, places, names), typical, units, models.band, shortest, varied, recorded_beside(models)
+    )
     responses = {at: paths(preset, base.values, models.matrix.actuator, at, runs) for at in places.values()}
     if curves:
         drawn = free_curves.free_curves(library)
@@ -66,6 +67,14 @@ def sight(models: ModelFamily, base: Refit, instead_of: Effect | None = None, cu
     found = regression(list(library.terms()), runs, responses, models.band)
     candidates, looked_at = offered(found, units)
     return Sight(candidates, looked_at, typical, units)
+
+
+def _there(preset: Preset, places: Mapping[str, str], names: Sequence[str]) -> dict[str, list[str]]:
+    """The signals that terms of each place may be of."""
+    return {
+        place: [at] if place == ALONE else [name for name in names if _known_there(preset, place, at, name)]
+        for place, at in places.items()
+    }
 
 
 def _known_there(preset: Preset, place: str, at: str, name: str) -> bool:

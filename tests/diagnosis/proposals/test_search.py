@@ -17,7 +17,7 @@ from ident.diagnosis.proposals.candidate import Candidate
 from ident.diagnosis.proposals.records import records
 from ident.diagnosis.proposals.search import Search
 from ident.diagnosis.proposals.sight import sight
-from ident.diagnosis.proposals.terms import Term
+from ident.diagnosis.proposals.term import Term
 from ident.diagnosis.result import Diagnosis
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.settings import Settings

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ident.diagnosis.proposals.shown import shown_in
-from ident.diagnosis.proposals.terms import Term
+from ident.diagnosis.proposals.term import Term
 from ident.presets import preset
 from ident.residuals.views import view_called
 

@@ -7,16 +7,18 @@ import pytest
 
 from ident.chain.conditions import CONDITIONS
 from ident.custom.definition import read_effect
-from ident.diagnosis.proposals.own import definition
-from ident.diagnosis.proposals.sight import _PLACES, _SIGNALS, _known_there
-from ident.diagnosis.proposals.terms import Library, Term, ratio
+from ident.diagnosis.proposals.memories import of_error
+from ident.diagnosis.proposals.own import definition, told
+from ident.diagnosis.proposals.sight import _PLACES, _SIGNALS, _known_there, _there
+from ident.diagnosis.proposals.term import Term, ratio
+from ident.diagnosis.proposals.terms import Library
 from ident.presets import PRESETS
 from tests.effects import dimensions
 
 MODEL = PRESETS["qian2014"]
 UNITS = {name: quantity.unit for name, quantity in CONDITIONS.items()} | dict(MODEL.chain.units)
 RATE, BAND, SECONDS = 800.0, 2 * np.pi * 80.0, 0.5
-SIZES = {"w": 1e-3, "Q": 1e-5, "P": 1e6, "v": 0.05, "x": 1e-3, "F": 300.0, "e": 1e-3, "R": 200.0, "y": 1e-3}
+SIZES = {"w": 1e-3, "Q": 1e-5, "P": 1e6, "v": 0.05, "x": 1e-3, "F": 300.0, "e": 1e-3, "R": 200.0, "y": 1e-3, "dq": 0.5}
 
 
 def signals() -> dict[str, np.ndarray]:
@@ -32,10 +34,7 @@ def signals() -> dict[str, np.ndarray]:
 
 def every() -> list[Term]:
     """The whole library."""
-    there = {
-        place: [name for name in _SIGNALS if _known_there(MODEL, place, at, name)] for place, at in _PLACES.items()
-    }
-    library = Library(_PLACES, there, signals(), UNITS, BAND, SECONDS, ("Kp", "mL", "k"))
+    library = Library(_PLACES, _there(MODEL, _PLACES, _SIGNALS), signals(), UNITS, BAND, SECONDS, ("Kp", "mL", "k"))
     return list(library.terms())
 
 
@@ -83,6 +82,28 @@ def test_what_remembers_is_worked_out_by_hand(kind):
             state = min(max(state, now - shape.value), now + shape.value)
         expected.append(state - now)
     assert term.samples(known, RATE) == pytest.approx(np.array(expected), abs=1e-12)
+
+
+def test_what_a_controller_makes_of_its_error_is_worked_out_by_hand_and_has_a_state_of_its_own():
+    known = signals()
+    summed, changing = (TERMS["controller", kind] for kind in ("integral", "rate"))
+    assert summed.samples(known, RATE)[9] == pytest.approx(known["e"][:10].sum() / RATE)
+    assert changing.samples(known, RATE)[5] == pytest.approx((known["e"][6] - known["e"][4]) * RATE / 2)
+    own = definition("proposed_1", (summed,), (1.0,), 0.3, known, UNITS)
+    assert told(own) == "z' = e; e = e + s * (z)"
+    assert own["strength"]["unit"] == "s^-1"
+    assert own["strength"]["upper"] == pytest.approx(3.0)  # ten times what a regression made of it
+    assert dimensions.of(definition("p", (changing,), (1.0,), 1e-3, known, UNITS)["strength"]["unit"]) == dimensions.of(
+        "s"
+    )
+    bare = Library(_PLACES, _there(MODEL, _PLACES, _SIGNALS), known, {"e": "m"}, BAND, SECONDS)
+    assert not list(of_error(bare, "controller", "e"))  # a machine in open loop has no error
+
+
+def test_a_valve_s_own_speed_is_all_that_terms_there_are_of():
+    of_valve = [term for term in every() if term.place == "valve"]
+    assert {term.of for term in of_valve} == {("dq",)}
+    assert {"beyond", "cube", "lag", "play"} <= {term.kind for term in of_valve}
 
 
 def test_a_signal_that_follows_at_once_is_none_of_a_place():

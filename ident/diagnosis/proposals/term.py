@@ -1,0 +1,126 @@
+"""A term that may be missing at a place: its equation, its shapes, its samples on the signals of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.equations.equation import Equation
+from ident.equations.interpolation import interpolated
+from ident.units.grammar import Powers, powers_of
+
+Array = NDArray[np.float64]
+Signals = Mapping[str, Array]
+CURVE = "h"
+"""What a free curve is called in a term."""
+STATE = "z"
+"""What a state of its own is called in a term."""
+LIMIT = "Ff"
+"""The signal that says what dry friction takes at most, of machines whose load sticks."""
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A number within a term: its symbol, its value where the search saw it, its unit, and whether a refit moves it.
+
+    Within its bounds where they are given, else by the factor `spread` to either side.
+    """
+
+    symbol: str
+    value: float
+    unit: str
+    free: bool = True
+    spread: float = 8.0
+    lower: float | None = None
+    upper: float | None = None
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Between what a refit moves it."""
+        low, high = sorted((self.value / self.spread, self.value * self.spread))
+        return low if self.lower is None else self.lower, high if self.upper is None else self.upper
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A curve of a signal through knots, h in a term: its values there where the search saw them.
+
+    That at the knot `held` is 1 and stays, for the strength is its size; a refit moves the others.
+    """
+
+    of: str
+    knots: tuple[float, ...]
+    values: tuple[float, ...]
+    held: int = 0
+
+    def samples(self, signals: Signals) -> Array:
+        """Between the knots straight, and beyond them."""
+        table = np.ravel(np.column_stack([self.knots, self.values])).tolist()
+        return np.asarray(interpolated("lines", signals[self.of], *table))
+
+
+@dataclass(frozen=True)
+class Term:
+    """A term at a place: `at` is the signal that it adds to, `text` its equation, `unit` that of the term.
+
+    `kind` names its form and `of` the signals that it is of; `memory` are equations of its own that go before, `state`
+    the rate of a state z of its own. How large it is hangs on how fast its signals move where it is `in_time`.
+    `worked_out` gives its samples where the equation alone does not. Of dry friction of the moving mass `limit` is what
+    it takes at most: such a term sticks. Of a `curve` the equation has h.
+    """
+
+    place: str
+    at: str
+    text: str
+    kind: str
+    of: tuple[str, ...]
+    unit: Powers
+    shapes: tuple[Shape, ...] = ()
+    memory: tuple[str, ...] = ()
+    state: str = field(default="", kw_only=True)
+    in_time: bool = field(default=False, kw_only=True)
+    worked_out: Callable[[Signals, float], Array] | None = field(default=None, compare=False, repr=False)
+    limit: str = ""
+    curve: Curve | None = None
+
+    def samples(self, signals: Signals, rate: float) -> Array:
+        """The term on the signals of a run, (n,)."""
+        if self.worked_out is not None:
+            return self.worked_out(signals, rate)
+        known = {**signals, **{shape.symbol: shape.value for shape in self.shapes}}
+        if self.curve is not None:
+            known[CURVE] = self.curve.samples(signals)
+        value = Equation(f"d = {self.text}").value(known)
+        return np.broadcast_to(np.asarray(value, dtype=np.float64), next(iter(signals.values())).shape)
+
+    @property
+    def free_shapes(self) -> int:
+        """How many of its shapes a refit moves."""
+        return sum(shape.free for shape in self.shapes)
+
+    @property
+    def fitted(self) -> int:
+        """How many numbers within it a refit moves, those of a curve with them."""
+        return self.free_shapes + (len(self.curve.knots) - 1 if self.curve else 0)
+
+    @property
+    def form(self) -> tuple[str, str, tuple[str, ...]]:
+        """What terms have in common that differ by where their shapes begin alone."""
+        return self.at, self.kind, self.of
+
+
+def multiplied(a: Powers, b: Powers, power: int) -> Powers:
+    """The unit a, times b to a power."""
+    found = dict(a)
+    for name, of in b.items():
+        found[name] = found.get(name, 0.0) + power * of
+    return {name: of for name, of in found.items() if of}
+
+
+def ratio(of: str, to: Powers) -> str:
+    """The unit of one signal over that of a term, as text: "m^3*s^-1*Pa^-1"."""
+    powers = multiplied(powers_of(of) or {}, to, -1)
+    return "*".join(name if power == 1 else f"{name}^{power:g}" for name, power in powers.items()) or "1"
