@@ -17,6 +17,7 @@ _MEANINGS = {
     ("Q", "root", ("P",)): "leakage through an orifice, as the root of the pressure",
     ("Q", "grows with", ("Q", "P")): "the flow gain grows, or falls, with the pressure",
     ("Q", "turns with", ("P", "Q")): "leakage that follows the direction of the flow",
+    ("Q", "after", ("Q",)): "the supply gives way under flow, and recovers",
     ("Q", "product", ("P", "Q")): "less flow against a load than with it",
     ("Q", "size", ("v",)): "areas differ: the cylinder takes more oil in one direction",
     ("Q", "size", ("Q",)): "the flow gain differs between the directions",
@@ -46,6 +47,7 @@ _KINDS = {
     "fading": "comes, or goes, with time as what warms up", "fading friction": "dry friction that wears in",
     "resonance": "a part that swings on a spring, moved by what is here",
     "free curve": "a free curve: no formula is known for it yet",
+    "after": "falls, or grows, after large motions, and recovers",
     "periodic": "comes and goes with time, as the pulses of a pump",
 }  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Terms with a memory: lags, play, what swings, the integral of an error and its rate."""
+"""Terms with a memory: lags, play, what swings or recovers, the integral of an error and its rate."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 _LAGS = (0.02, 0.06, 0.2, 0.6)  # of a period at the end of the band, times 2π
 _PLAYS = (0.1, 0.3, 0.6)  # of the deviation of a signal
 _RESONANCES, _DAMPED = (0.15, 0.2, 0.27, 0.36, 0.48, 0.65, 0.9), 0.1  # of the end of the band; of critical damping
+_RECOVERING = (0.02, 0.1, 0.5)  # of the shortest run
 _REMEMBERED = {("controller", "x"), ("flow", "P"), ("load", "v"), ("load", "x")}  # places of another signal's memory
 _ERROR = {"dr", "v_in"}  # what a loop knows the rate of its error by
 
@@ -28,6 +29,8 @@ def with_memory(library: Library, place: str, at: str, a: str) -> Iterator[Term]
     if a == at or (place, a) in _REMEMBERED:
         yield from _late(library, place, at, a)
         yield from _play(library, place, at, a)
+    if a == at:
+        yield from _after(library, place, at)
     if a == at or (place, a) == ("load", "x"):
         yield from _resonant(library, place, at, a)
 
@@ -82,6 +85,17 @@ def _late(library: Library, place: str, at: str, a: str) -> Iterator[Term]:
                 return _lagging(np.sign(signals["v"]), rate, T)
 
             yield Term(place, at, "lag(sgn(v), T)", "late friction", (a,), {}, (T,), (), dragged)
+
+
+def _after(library: Library, place: str, at: str) -> Iterator[Term]:
+    """A gain that hangs on how much there was before, as that of a supply which gives way under a flow."""
+    for share in _RECOVERING:
+        T = Shape("T", share * library.seconds, "s")
+
+        def used(signals: Signals, rate: float, T: float = T.value) -> Array:
+            return np.asarray(signals[at] * _lagging(np.abs(signals[at]), rate, T))
+
+        yield Term(place, at, f"{at} * lag(abs({at}), T)", "after", (at,), library.unit((at, 2)), (T,), (), used)
 
 
 def _play(library: Library, place: str, at: str, a: str) -> Iterator[Term]:

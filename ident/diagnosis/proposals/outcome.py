@@ -28,9 +28,10 @@ class Refused:
         beside = f" beside {', '.join(map(title, self.beside))}" if self.beside else ""
         verify = self.error["verify"]
         of_verify = "" if verify is None else f" ({percent(verify)} on verify runs)"
+        but = ", but not from run to run: some lose by it" if self.nats > self.bar else ""
         return (
             f"Of {looked_at} terms that were looked at the best that was refused is {self.equation}{beside}: "
-            f"{self.nats:.3g} nats on data that it was not fitted to, {self.bar:.3g} are asked for. "
+            f"{self.nats:.3g} nats on data that it was not fitted to, {self.bar:.3g} are asked for{but}. "
             f"It would leave {percent(self.error['fit'])}{of_verify}."
         )
 

@@ -82,6 +82,9 @@ def test_of_two_searches_the_better_of_what_was_refused_is_told_with_what_it_wou
     assert plain.refused.told(8000).endswith("13.4 are asked for. It would leave 30.0 % (40.0 % on verify runs).")
     assert "s * (x) beside dead zone: 6.9 nats" in beside.refused.told(8000)
     assert found(0.1).or_refused(plain).refused is None
+    unsteady = refused("w = w + s * (w * abs(v))", 1291.0).refused
+    assert unsteady is not None
+    assert "13.4 are asked for, but not from run to run: some lose by it. It would" in unsteady.told(8000)
 
 
 def test_where_a_verify_run_cannot_be_followed_a_refused_term_tells_no_error_of_it() -> None:
