@@ -85,6 +85,7 @@ class Library:
             ("{a} * {b}", "product", (1, 1), True), ("{a} * abs({b})", "grows with", (1, 1), False),
             ("{a} * sgn({b})", "turns with", (1, 0), False), ("abs({a}) * sgn({b})", "size along", (1, 0), False),
             ("max({a}, 0) * {b}", "one-sided product", (1, 1), False),
+            ("min({a}, 0) * {b}", "one-sided product", (1, 1), False),
             ("{a} * {b}**2", "grows with square", (1, 2), False),
             ("{a}**2 * sgn({b})", "square along", (2, 0), False),
             ("abs({a}) * {b} * abs({b})", "square grown", (1, 2), False),
