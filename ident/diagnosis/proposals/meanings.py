@@ -41,6 +41,7 @@ _KINDS = {
     "friction at": "dry friction at one part of the way", "hill of": "acts at one part of the way",
     "hill": "acts at one part of the way",
     "condition": "changes with a condition of the run, with what was recorded beside it, or with time",
+    "friction near rest": "dry friction that differs between rest and motion (Stribeck)",
     "friction with": "dry friction that changes with a condition of the run, what was recorded beside it, or time",
     "recorded": "acts with what was recorded beside the machine",
     "late friction": "dry friction that builds up, and turns, with a delay",

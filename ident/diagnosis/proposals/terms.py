@@ -19,6 +19,7 @@ from ident.units.grammar import Powers, powers_of
 
 _QUANTILES = (0.3, 0.5, 0.7, 0.85, 0.95)  # of the size of a signal: thresholds
 _HILLS, _HILL = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95), (0.1, 0.25)  # quantiles of the position, widths in its range
+_SLOW = (0.05, 0.15, 0.4)  # of the size of the speed
 _FADING = (0.15, 0.5)  # of the shortest run
 ALONE = "valve"
 """A place whose own signal alone terms are of."""
@@ -55,6 +56,7 @@ class Library:
                 for b in signals:
                     if a != b:
                         yield from self._of_two(place, at, a, b)
+            yield from self._of_speed(place, at)
             yield from self._of_position(place, at)
             yield from self._with_conditions(place, at)
             yield from self._periodic(place, at)
@@ -94,6 +96,17 @@ class Library:
                 unit = self.unit((a, powers[0]), (b, powers[1]))
                 taken = text.removesuffix(" * sgn({b})").format(a=a) if kind in ("size along", "square along") else ""
                 yield self._dragging(Term(place, at, text.format(a=a, b=b), kind, (a, b), unit), b, taken)
+
+    def _of_speed(self, place: str, at: str) -> Iterator[Term]:
+        """Dry friction that is more, or less, near rest than in motion."""
+        if place != "load" or "v" not in self.signals[place]:
+            return
+        for share in _SLOW:
+            vs = Shape("vs", float(np.quantile(np.abs(self.typical["v"]), share)), self.units["v"])
+            if vs.value > 0:
+                near_rest = "exp(-(v / vs)**2)"
+                rubbing = Term(place, at, f"sgn(v) * {near_rest}", "friction near rest", ("v",), {}, (vs,))
+                yield self._dragging(rubbing, "v", near_rest)
 
     def _of_position(self, place: str, at: str) -> Iterator[Term]:
         if "x" not in self.typical:
