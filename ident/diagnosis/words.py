@@ -77,8 +77,8 @@ def verdict_text(
 
     Without `repeats` nobody knows how much noise lies in the command's band. Not `complete`, the search was stopped.
     `spoken` tells what an effect is the first time that it is named; `bounded` are those whose strength ended at the
-    bound of its search. `fewer` is an error on verify runs without the last of what was added, where it is smaller
-    there, by no more than chance.
+    bound of its search. `fewer` is the error on verify runs without the last of what was added, where it is
+    smaller there.
     """
     named = _told_once(spoken)
     parts = [one.told(named(one.effect)) for one in against]
@@ -93,9 +93,9 @@ def verdict_text(
         parts.append(
             f"{lacks} {names}: with {them} the error falls from {percent(before)} to {percent(errors['fit'])}"
             + (
-                f" ({percent(errors['verify'])} on verify runs{_fewer(fewer)})."
-                if errors.get("verify") is not None
-                else "."
+                "."
+                if errors.get("verify") is None
+                else f" ({percent(errors['verify'])} on verify runs{_fewer(fewer)})."
             )
         )
     elif not complete:
@@ -124,7 +124,7 @@ def verdict_text(
 
 
 def _fewer(of: tuple[float, Sequence[str]] | None) -> str:
-    return "" if of is None else f", within chance of the {percent(of[0])} without {', '.join(map(title, of[1]))}"
+    return "" if of is None else f", {percent(of[0])} without {', '.join(map(title, of[1]))}"
 
 
 def as_well(elsewhere: Sequence[Explanation]) -> Iterator[str]:

@@ -114,7 +114,7 @@ def test_a_smaller_error_on_verify_runs_on_the_way_is_told_with_what_was_added_s
     assert fewer == (0.0405, ("dead_zone",))
     errors = {"fit": 0.0279, "verify": 0.0641}
     text = verdict_text(("flow_saturation", "dead_zone"), (), (), True, errors, 0.22, fewer=fewer)
-    assert "to 2.79 % (6.41 % on verify runs, within chance of the 4.05 % without dead zone)." in text
+    assert "to 2.79 % (6.41 % on verify runs, 4.05 % without dead zone)." in text
     assert _better_with_fewer([*way[:2], ("dead_zone", refit(0.044))]) is None
     assert _better_with_fewer([(None, refit(None)), ("dead_zone", refit(None))]) is None
     assert _better_with_fewer([(None, refit(0.03)), *way[1:]]) == (0.03, ("flow_saturation", "dead_zone"))

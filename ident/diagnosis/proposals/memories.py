@@ -9,7 +9,7 @@ import numpy as np
 import scipy  # signal, which takes most of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
 
-from ident.diagnosis.proposals.term import Shape, Signals, Term
+from ident.diagnosis.proposals.term import STATE, Shape, Signals, Term, multiplied
 from ident.units.grammar import Powers
 
 if TYPE_CHECKING:
@@ -46,22 +46,10 @@ def of_error(library: Library, place: str, at: str) -> Iterator[Term]:
     def changing(signals: Signals, rate: float) -> Array:
         return np.asarray(np.gradient(signals[at]) * rate)
 
-    unit = library.unit((at, 1))
-    yield Term(
-        place,
-        at,
-        "z",
-        "integral",
-        (at,),
-        unit | {"s": unit.get("s", 0.0) + 1.0},
-        (),
-        (),
-        summed,
-        state=at,
-        in_time=True,
-    )
-    rate = library.unit(("Kp", 1), ("v_in", 1))
-    yield Term(place, at, "Kp * (dr - v_in)", "rate", (at,), rate, (), (), changing, in_time=True)
+    lasting = multiplied(library.unit((at, 1)), {"s": 1.0}, 1)
+    moving = library.unit(("Kp", 1), ("v_in", 1))
+    yield Term(place, at, STATE, "integral", (at,), lasting, worked_out=summed, state=at, in_time=True)
+    yield Term(place, at, "Kp * (dr - v_in)", "rate", (at,), moving, worked_out=changing, in_time=True)
 
 
 def _late(library: Library, place: str, at: str, a: str) -> Iterator[Term]:
