@@ -86,18 +86,7 @@ def verdict_text(
         parts.append("The search was not over: what else is missing, and what could stand in the place of what was "
                      "found, was not looked at.")  # fmt: skip
     if added:
-        *others, last = map(named, added)
-        names = f"{', '.join(others)} and {last}" if others else last
-        them = "it" if len(added) == 1 else "them"
-        lacks = "What helps on the fitted runs is" if against or unexplained else "The model lacks"
-        parts.append(
-            f"{lacks} {names}: with {them} the error falls from {percent(before)} to {percent(errors['fit'])}"
-            + (
-                "."
-                if errors.get("verify") is None
-                else f" ({percent(errors['verify'])} on verify runs{_fewer(fewer)})."
-            )
-        )
+        parts.append(_helps([*map(named, added)], bool(against) or unexplained, before, errors, fewer))
     elif not complete:
         parts.append(f"No effect was confirmed that lowers the error of {percent(before)}.")
     elif not unexplained and floor is None:
@@ -121,6 +110,19 @@ def verdict_text(
             parts.append("No command was measured twice: part of it may be noise in the command's band, "
                          "which a repeated run would tell.")  # fmt: skip
     return " ".join(parts)
+
+
+def _helps(
+    named: Sequence[str], doubted: bool, before: float, errors: Mapping[str, float | None],
+    fewer: tuple[float, Sequence[str]] | None,
+) -> str:  # fmt: skip
+    *others, last = named
+    names = f"{', '.join(others)} and {last}" if others else last
+    them = "it" if len(named) == 1 else "them"
+    lacks = "What helps on the fitted runs is" if doubted else "The model lacks"
+    verify = errors.get("verify")
+    told = "" if verify is None else f" ({percent(verify)} on verify runs{_fewer(fewer)})"
+    return f"{lacks} {names}: with {them} the error falls from {percent(before)} to {percent(errors['fit'])}{told}."
 
 
 def _fewer(of: tuple[float, Sequence[str]] | None) -> str:
