@@ -48,6 +48,7 @@ _KINDS = {
     "fading": "comes, or goes, with time as what warms up", "fading friction": "dry friction that wears in",
     "resonance": "a part that swings on a spring, moved by what is here",
     "free curve": "a free curve: no formula is known for it yet",
+    "yields": "a force that builds up along the way and yields, as that of a seal or a strained part (Dahl)",
     "after": "falls, or grows, after large motions, and recovers",
     "periodic": "comes and goes with time, as the pulses of a pump",
 }  # fmt: skip

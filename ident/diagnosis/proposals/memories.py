@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 _LAGS = (0.02, 0.06, 0.2, 0.6)  # of a period at the end of the band, times 2π
 _PLAYS = (0.1, 0.3, 0.6)  # of the deviation of a signal
+_YIELDING = (0.1, 0.4, 1.5)  # of the deviation of the position
 _RESONANCES, _DAMPED = (0.15, 0.2, 0.27, 0.36, 0.48, 0.65, 0.9), 0.1  # of the end of the band; of critical damping
 _RECOVERING = (0.02, 0.1, 0.5)  # of the shortest run
 _REMEMBERED = {("controller", "x"), ("flow", "P"), ("load", "v"), ("load", "x")}  # places of another signal's memory
@@ -29,6 +31,8 @@ def with_memory(library: Library, place: str, at: str, a: str) -> Iterator[Term]
     if a == at or (place, a) in _REMEMBERED:
         yield from _late(library, place, at, a)
         yield from _play(library, place, at, a)
+    if (place, a) == ("load", "x") and "v" in library.signals[place]:
+        yield from _yielding(library, place, at)
     if a == at:
         yield from _after(library, place, at)
     if a == at or (place, a) == ("load", "x"):
@@ -101,6 +105,23 @@ def _play(library: Library, place: str, at: str, a: str) -> Iterator[Term]:
         shape = Shape("b", half, library.units[a])
         memory = (f"p := clip(p, {a} - b, {a} + b)",)
         yield Term(place, at, _times(by, f"p - {a}"), "play", (a,), unit, (shape,), memory, held)
+
+
+def _yielding(library: Library, place: str, at: str) -> Iterator[Term]:
+    """A force that builds up along the way and yields smoothly, z' = v − |v| z / b (Dahl 1968)."""
+    for share in _YIELDING:
+        reach = share * float(np.std(library.typical["x"]))
+
+        def built(signals: Signals, _rate: float, reach: float = reach) -> Array:
+            steps, z, out = np.diff(signals["x"], prepend=signals["x"][0]), 0.0, np.empty(len(signals["x"]))
+            for k, (step, kept) in enumerate(zip(steps, np.exp(-np.abs(steps) / reach), strict=True)):
+                z = math.copysign(reach, step) * (1.0 - kept) + z * kept
+                out[k] = z
+            return out
+
+        b = Shape("b", reach, library.units["x"])
+        rate = f"v - abs(v) * {STATE} / b"
+        yield Term(place, at, STATE, "yields", ("x",), library.unit(("x", 1)), (b,), worked_out=built, state=rate)
 
 
 def _resonant(library: Library, place: str, at: str, a: str) -> Iterator[Term]:

@@ -100,6 +100,19 @@ def test_what_a_controller_makes_of_its_error_is_worked_out_by_hand_and_has_a_st
     assert not list(of_error(bare, "controller", "e"))  # a machine in open loop has no error
 
 
+def test_what_yields_follows_the_way_at_first_and_then_gives_no_more_than_its_reach():
+    """z' = v − |v| z / b on a ramp from rest: z = b (1 − exp(−x / b)), and back from its reach twice as far."""
+    term = TERMS["load", "yields"]
+    assert (term.text, term.state) == ("z", "v - abs(v) * z / b")
+    (b,) = (shape.value for shape in term.shapes)
+    x = np.concatenate([np.linspace(0.0, 20.0 * b, 500), np.linspace(20.0 * b, 18.0 * b, 500)])
+    z = term.samples({**signals(), "x": x}, RATE)
+    assert z[:500] == pytest.approx(b * (1.0 - np.exp(-x[:500] / b)), abs=1e-9 * b)
+    assert z[-1] == pytest.approx(b * (2.0 * np.exp(-2.0) - 1.0), abs=1e-6 * b)
+    own = definition("proposed_1", (term,), (1.0,), 1e3, signals(), UNITS)
+    assert read_effect(own, model="qian2014").texts == ("z' = v - abs(v) * z / b", "R = R + s * (z)")
+
+
 def test_a_valve_s_own_speed_is_all_that_terms_there_are_of():
     of_valve = [term for term in every() if term.place == "valve"]
     assert {term.of for term in of_valve} == {("dq",)}
