@@ -244,17 +244,12 @@ class Diagnoser:
         rungs: list[Rung] = []
         before: Refit | None = None
         for added, refit in steps:
-            both = before is not None and before.stable and refit.stable
-            rungs.append(
-                Rung(
-                    added=added,
-                    error=refit.errors,
-                    offset=refit.held_out.offset if refit.stable else None,
-                    nats=improvement(before.held_out, refit.held_out).nats if before is not None and both else None,
-                    parameters=refit.parameters,
-                )
-            )
-            before = refit
+            rungs.append(Rung(
+                added=added, error=refit.errors, offset=refit.held_out.offset if refit.stable else None,
+                nats=improvement(before.held_out, refit.held_out).nats if before and refit.stable else None,
+                parameters=refit.parameters,
+            ))  # fmt: skip
+            before = refit if refit.stable else None
         return rungs
 
     def _contradictions(self, models: ModelFamily, steps: Steps) -> Iterator[Contradiction]:

@@ -146,7 +146,7 @@ class StepwiseSelection:
         best: dict[frozenset[str], Refit] = {}
         for refit in (*self.between.values(), *self.steps):
             effects = frozenset(refit.effects)
-            if effects not in best or not best[effects].finite or _score(refit) <= _score(best[effects]):
+            if effects not in best or _score(refit) <= _score(best[effects]):
                 best[effects] = refit
         return best
 
@@ -158,11 +158,13 @@ class StepwiseSelection:
         effects is better than that rung, the search goes back to it.
         """
         for _, rung in self.ladder()[1:-1]:
-            better = rung.finite and rung.held_out.score < self.found.held_out.score
-            if rung.finite and (better or all(rung is not step for step in self.steps)) and not helps(rung, self.found):
+            judged = any(rung is step for step in self.steps)
+            asked = rung.finite and (not judged or _score(rung) < _score(self.found))
+            if asked and not helps(rung, self.found):
                 as_few = [step for step in self.steps if len(step.effects) <= len(rung.effects)]
-                self._step(first_least([rung, *as_few], _score))
-                self.groups = {name: group for name, group in self.groups.items() if name in self.added}
+                back = first_least([rung, *as_few], _score)
+                self.groups = {name: found for name, found in self.groups.items() if name in back.effects}
+                self._step(back)
                 return True
         return False
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ident.diagnosis.proposals.meanings import meaning
-from ident.diagnosis.proposals.own import added, sticks
+from ident.diagnosis.proposals.own import added, state_line, sticks
 from ident.diagnosis.proposals.regression import ALIKE, Regression
-from ident.diagnosis.proposals.term import STATE, Term, ratio
+from ident.diagnosis.proposals.term import Term, ratio
 from ident.stages import PLACES
 from ident.units.quantity import known_powers, shape
 
@@ -35,7 +35,7 @@ class Candidate:
     def equation(self) -> str:
         """What is added where."""
         brakes = sticks(self.terms, self.strength)
-        states = [f"{STATE}' = {term.state}" for term in self.terms if term.state]
+        states = [state_line(term.state) for term in self.terms if term.state]
         return "; ".join([*states, *(added(t, sign, brakes) for t, sign in zip(self.terms, self.signs, strict=True))])
 
     @property

@@ -66,8 +66,10 @@ def definition(
         knots, values = list(first.curve.knots), list(first.curve.values)
         found["curve"] = {"symbol": CURVE, "of": first.curve.of, "knots": knots, "values": values, "unit": "1",
                           "lower": -_STEEP, "upper": _STEEP}  # fmt: skip
-    states = [{"symbol": STATE, "rate": term.state} for term in terms if term.state]
-    return found | ({"shape": shapes} if shapes else {}) | ({"state": states[0]} if states else {})
+    state = next((term.state for term in terms if term.state), "")
+    return (
+        found | ({"shape": shapes} if shapes else {}) | ({"state": {"symbol": STATE, "rate": state}} if state else {})
+    )
 
 
 def searched(own: Mapping[str, Any], terms: Sequence[Term]) -> dict[str, tuple[float, float]]:
@@ -95,8 +97,12 @@ def told(own: Mapping[str, Any]) -> str:
 
 def lines_of(own: Mapping[str, Any]) -> list[str]:
     """Its equations, that of its own state among them."""
-    state = own.get("state")
-    return [*([f"{state['symbol']}' = {state['rate']}"] if state else []), *own["equation"]]
+    return [*([state_line(own["state"]["rate"])] if "state" in own else []), *own["equation"]]
+
+
+def state_line(rate: str) -> str:
+    """The equation of a state of its own."""
+    return f"{STATE}' = {rate}"
 
 
 def _bounds(of: Mapping[str, Any]) -> tuple[float, float]:
