@@ -47,6 +47,9 @@ def sensitivity(run: Run, actuator: Actuator, fit: FitResult, look: Look) -> Fil
     A quantity that the run does not state, or that is 0, has no column; multiples that make the loop unstable are
     named, not drawn.
     """
+    if "command" not in run.channels:
+        what = "the machine is moved by what was recorded, not by a command"
+        raise Unusable("unstable-model", what, "sensitivity", "see the time record instead")
     lower, upper = excited_band(run.command, run.sample_rate)
     frequency = np.geomspace(max(lower, upper / 400), 1.25 * upper, POINTS)
     varied = _variations(run)

@@ -255,3 +255,12 @@ def test_ends_are_drawn_in_the_order_of_their_errors_over_the_best(matrix, fit):
     assert [row["v"] for row in tables["values"] if row["p"] == "c0"] == [1.0, 1.0003, 0.28125]
     with pytest.raises(Unusable, match=r"no figure .starts."):
         figure("starts", study(matrix, replace(fit, starts=Starts(3, 2))))
+
+
+def test_a_machine_that_is_moved_has_no_sensitivity_to_a_command_and_says_so(matrix, fit):
+    """A specimen on a rig records its motion and its force, and no command: a comparison names what it leaves out."""
+    bare = [replace(run, channels={"velocity": run.channels["displacement"]}) for run in matrix.runs]
+    moved = study(replace(matrix, runs=tuple(bare)), fit)
+    with pytest.raises(Unusable, match="moved by what was recorded") as told:
+        figure("sensitivity", moved)
+    assert told.value.code == "unstable-model"
