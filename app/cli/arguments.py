@@ -80,6 +80,14 @@ def definitions(files: Sequence[Path], terms: int | None = None) -> tuple[dict[s
     return tuple(definition for _, definition in found)
 
 
+def beside(files: Sequence[Path], terms: int | None = None) -> tuple[str, ...]:
+    """The effects that the proposed terms of the diagnoses among these files were found beside, each once."""
+    from app.cli.given import read_diagnosis
+
+    found = (read_diagnosis(file).proposals or () for file in files if file.exists() and is_diagnosis(file))
+    return tuple(dict.fromkeys(name for proposals in found for name in proposals[:terms][-1].beside))
+
+
 def _defined(file: Path, terms: int | None) -> list[dict[str, Any]]:
     """What a file defines: one effect, or, a diagnosis, what that proposes; what is kept under a name."""
     from app.cli.given import read_diagnosis

@@ -17,8 +17,8 @@ def show_diagnosis(found: Diagnosis) -> None:
     if found.proposals:
         from ident.diagnosis.words import proposed_text
 
-        beside = "".join(f" --effect {name}" for name in found.proposals[-1].beside)
-        console.print(f"`servoident fit MATRIX --custom D.json{beside}` adds the terms, with --terms N the first N of "
+        beside = " and what they stand beside" if found.proposals[-1].beside else ""
+        console.print(f"`servoident fit MATRIX --custom D.json` adds the terms{beside}, with --terms N the first N of "
                       "them, D.json what --json wrote", markup=False)  # fmt: skip
         console.print(proposed_text(found.proposals), markup=False)
     console.print(f"seed {found.seed}: {found.seconds:.2f} s")

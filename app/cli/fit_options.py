@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from app.cli.arguments import beside, definitions, method_options
 from app.cli.arguments import bounds as read_bounds
-from app.cli.arguments import definitions, method_options
 from app.cli.arguments import values as read_values
 from ident.fit.settings import METHODS
 
@@ -35,7 +35,8 @@ Custom = Annotated[
     typer.Option(
         "--custom",
         metavar="EFFECT.yaml|NAME",
-        help="Own effect to add, defined in a file or kept, or what a diagnosis (D.json) proposes; may be repeated.",
+        help="Own effect to add, defined in a file or kept, or what a diagnosis (D.json) proposes, with the effects "
+        "that it was found beside; may be repeated.",
     ),
 ]
 Terms = Annotated[
@@ -116,7 +117,8 @@ def settings(
     from ident.fit.settings import Settings
 
     own = definitions(custom or [], terms)
-    effects = (*(effect or []), *(definition["name"] for definition in own))
+    listed = dict.fromkeys((*(effect or []), *beside(custom or [], terms)))
+    effects = (*listed, *(definition["name"] for definition in own))
     preset = preset_with(model, effects, own)
     return Settings(
         model=model,
