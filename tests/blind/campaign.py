@@ -2,7 +2,8 @@
 
 python -m tests.blind.campaign one --noise 0.01 --level 3 --seeds 1 2   [--small] [--effects NAME …]
 python -m tests.blind.campaign none|two|three|clutter --seeds 1 2 3   [--small]
-python -m tests.blind.campaign outside|own|label|noise --seeds 1 2 3
+python -m tests.blind.campaign noise --seeds 2 4 6   [--small] [--effects white autoregressive …]
+python -m tests.blind.campaign outside|own|label --seeds 1 2 3
 options: --minutes N (stop after), --out FILE
 """
 
@@ -11,6 +12,7 @@ from __future__ import annotations
 import argparse
 import json
 import time
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +27,7 @@ NAMED = {
     "noise": tuple(NOISES),
 }  # fmt: skip
 """What the trials of a kind are about, by name: what is hidden, but for noise; the other kinds draw it."""
-SMALL = ("one", "none", "two", "three", "clutter")
+SMALL = ("one", "none", "two", "three", "clutter", "noise")
 OUT = Path(__file__).parents[2] / "docs" / "blind-trials.jsonl"
 
 
@@ -77,7 +79,7 @@ def main() -> None:
     end = time.monotonic() + 60 * asked.minutes
     for seed in asked.seeds:
         for name in asked.effects or NAMED.get(asked.kind, ("",)):
-            small = (asked.small and asked.kind in SMALL) or asked.kind == "noise"
+            small = asked.small and asked.kind in SMALL
             matrix = "small" if small else "full"
             level = asked.level if asked.kind == "one" else None
             if (asked.kind, matrix, asked.noise, level, seed, name) in done or time.monotonic() > end:
@@ -85,7 +87,7 @@ def main() -> None:
             if asked.kind == "one":
                 row = single(name, asked.level, asked.noise, asked.small, seed)
             elif asked.kind in NAMED:
-                of = {"outside": outside, "own": own, "label": label, "noise": noisy}
+                of = {"outside": outside, "own": own, "label": label, "noise": partial(noisy, small=small)}
                 row = of[asked.kind](name, seed, asked.noise)
             elif asked.kind == "clutter":
                 row = clutter(seed, asked.noise, asked.small)

@@ -17,6 +17,7 @@ Noise = Callable[[np.random.Generator, Run, float], Array]
 _CORNER = 0.1  # of the Nyquist frequency
 _MAINS = 50.0  # Hz
 _SETTLING = 500  # samples
+_KEPT = 0.9  # from sample to sample, of what is autoregressive
 
 
 def _low_passed(random: np.random.Generator, run: Run, size: float) -> Array:
@@ -49,8 +50,19 @@ def _pink(random: np.random.Generator, run: Run, size: float) -> Array:
     return np.asarray(size * found / np.std(found))
 
 
+def _white(random: np.random.Generator, run: Run, size: float) -> Array:
+    return np.asarray(size * random.standard_normal(run.length))
+
+
+def _autoregressive(random: np.random.Generator, run: Run, size: float) -> Array:
+    white = random.standard_normal(run.length + _SETTLING)
+    steps = scipy.signal.lfilter([1.0], [1.0, -_KEPT], white)[_SETTLING:]
+    return np.asarray(size * np.sqrt(1 - _KEPT**2) * steps)
+
+
 NOISES: dict[str, Noise] = {
-    "low_passed": _low_passed, "hum": _hum, "rounded": _rounded, "drift": _drift, "pink": _pink,
+    "low_passed": _low_passed, "hum": _hum, "rounded": _rounded, "drift": _drift, "pink": _pink, "white": _white,
+    "autoregressive": _autoregressive,
 }  # fmt: skip
 
 

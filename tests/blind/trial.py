@@ -136,17 +136,18 @@ def _mislabelled(run: Run, what: str, change: float) -> Run:
     return replace(run, specimen=replace(specimen, **{name: max(getattr(specimen, name) + change, 0.0)}))
 
 
-def noisy(kind: str, seed: int, share: float = 0.01) -> dict[str, Any]:
-    """Noise that is not white, on a small matrix; nothing hidden, with an odd seed one effect at 3 times the noise."""
-    rng = np.random.default_rng([seed, 5000 + tuple(NOISES).index(kind)])
-    machine = Machine(drawn_plant(rng), {}, share, True, int(rng.integers(1 << 30)))
+def noisy(kind: str, seed: int, share: float = 0.01, small: bool = True) -> dict[str, Any]:
+    """Noise of some kind; nothing hidden, with an odd seed one effect at 3 times the noise."""
+    rng = np.random.default_rng([seed, 5000 + tuple(NOISES).index(kind), *[0] * (not small)])
+    machine = Machine(drawn_plant(rng), {}, share, small, int(rng.integers(1 << 30)))
     hidden: dict[str, float] = {}
     while seed % 2 and not hidden:
         name = str(rng.choice([n for n in NAMES if n not in OFFSET]))
         strength, reached = strength_for(machine, name, 3.0)
         hidden = {name: strength} if reached >= _REACHED * 3.0 * share else {}
     clean = replace(machine, hidden=hidden, noise=0.0).measured()
-    row = {"kind": "noise", "matrix": "small", "noise": share, "seed": seed, "of": kind, "hidden": hidden}
+    matrix = "small" if small else "full"
+    row = {"kind": "noise", "matrix": matrix, "noise": share, "seed": seed, "of": kind, "hidden": hidden}
     return row | judged(with_noise(clean, kind, share, seed), hidden)
 
 
