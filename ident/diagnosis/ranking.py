@@ -21,13 +21,14 @@ from ident.progress import Expected, Progress, Report
 
 Item = TypeVar("Item")
 _CONTENDERS, _FEW = 12, 10  # refitted; fewer, the more effects there are already
-_QUICK = 200_000  # steps of a matrix so small that every promise can be tried
+_QUICK = 200_000  # steps of a matrix so small that every promise can be tried, and every finalist deeper
 _NEAR = 1.3  # times the best predicted error: the contenders for a further effect
 _FINALISTS = 5
 _CLOSE = 1.05  # times the best trial's error: also a finalist, where it promises anything
 _AS_GOOD = 1.02  # times the error: what is no better by chance, nor by more than that, stands as listed
 _DEEPER = 2  # of the finalists are looked for elsewhere, too
 _STRONG = (1.0, 0.6, 0.3)  # of the largest strength, from where
+_SHAKEN = (0.7, 1.4)  # times the strength that a refit found, from where, too
 _PROMISING = 0.3 * WORTHWHILE  # relative fall of the score that is worth a refit
 _NATS = 3.0  # of the offsets, too
 _SIGHT = 5  # effects that are told at first sight
@@ -134,7 +135,7 @@ def rank_each(
 
     found = [ranked(models, ones) for ones in _side_by_side(final, models_of, finalists)]
     report(Progress("confirming", done, done + 1))
-    deeper = _DEEPER if thorough else 1
+    deeper = (_FINALISTS if all(_is_quick(models, base) for base in models_of) else _DEEPER) if thorough else 1
     elsewhere = partial(_elsewhere, models, asked if beside else {})
     farther = _side_by_side(elsewhere, models_of, [ones[:deeper] for ones in found])
     came = [{one.effect: one for one in chain(*of)} for of in zip(met, tried, found, farther, strict=True)]
@@ -204,10 +205,14 @@ def _asked(models: ModelFamily, base: Refit, beside: Refit | None) -> float:
 def _near(models: ModelFamily, base: Refit, predictions: Sequence[Prediction]) -> list[Prediction]:
     """The contenders for a further effect: those that promise anything near what the best promises."""
     near = _NEAR * predictions[0].after.error
-    steps = int(base.fitness.steps(base.fitness.space.values(base.point[None])).max())
-    quick = steps * sum(run.length for run in models.runs) < _QUICK
-    few = _CONTENDERS if quick else max(_FEW - 2 * len(base.effects), _FINALISTS)
+    few = _CONTENDERS if _is_quick(models, base) else max(_FEW - 2 * len(base.effects), _FINALISTS)
     return [p for p in predictions if _promises(p) and p.after.error < near][:few]
+
+
+def _is_quick(models: ModelFamily, base: Refit) -> bool:
+    """Whether a matrix is so small that refits take next to nothing."""
+    steps = int(base.fitness.steps(base.fitness.space.values(base.point[None])).max())
+    return steps * sum(run.length for run in models.runs) < _QUICK
 
 
 def ranked(models: ModelFamily, candidates: Iterable[Candidate]) -> list[Candidate]:
@@ -238,14 +243,15 @@ def _alike(best: Candidate, other: Candidate) -> bool:
 def _elsewhere(
     models: ModelFamily, asked: Mapping[tuple[str, ...], float], base: Refit, candidate: Candidate
 ) -> Candidate:  # fmt: skip
-    """The candidate, refitted from strong effects too where its error stays above the noise: there are local optima.
+    """The candidate, refitted from other strengths too where its error stays above the noise: there are local optima.
 
     Given up is what does not come below what is `asked` beside a base.
     """
     refit = candidate.refit
     if refit is None or models.at_floor(refit):
         return candidate
-    other = models.best_of(refit, _strong(models, base, refit), asked.get(base.effects, np.inf))
+    starts = [*_strong(models, base, refit), *_shaken(models, refit)]
+    other = models.best_of(refit, starts, asked.get(base.effects, np.inf))
     return candidate if other is None else candidate.refitted(base, other)
 
 
@@ -257,6 +263,16 @@ def _strong(models: ModelFamily, base: Refit, refit: Refit) -> list[dict[str, fl
     added = models.effects[refit.effects[-1]].added[1:]
     shape = {p.in_equations: refit.values[p.in_equations] for p in added if p.in_equations in refit.values}
     return [{**base.values, **shape, symbol: share * end} for share in _STRONG]
+
+
+def _shaken(models: ModelFamily, refit: Refit) -> list[dict[str, float]]:
+    """The model of a refit, with the effect that it added weaker and stronger: what plays or sticks has optima nearby.
+
+    Between two of them lies where one more reversal of the way shows in the record.
+    """
+    symbol = models.strength(refit.effects[-1])
+    lower, upper = refit.fitness.space.bounds(refit.values)[symbol]
+    return [{**refit.values, symbol: float(np.clip(s * refit.values[symbol], lower, upper))} for s in _SHAKEN]
 
 
 def _promises(prediction: Prediction) -> bool:
