@@ -89,7 +89,8 @@ class VerdictView(BaseModel):
 
     `standing` is found where the error is at the noise floor, stand_in where something is left, contradicted where
     the error rises with an effect (`contradicted_by`) on runs to verify, nothing where no effect helps. `at_bound` are
-    effects whose strength ended at a bound that the search set, `elsewhere` what other models explain as well.
+    effects whose strength ended at a bound that the search set, `elsewhere` what other models explain as well, and
+    `stood_in` effects of the ladder that are not named, for beside proposed terms they are not needed.
     """
 
     effects: list[str]
@@ -101,6 +102,7 @@ class VerdictView(BaseModel):
     text: str
     at_bound: list[str] = Field(default_factory=list)
     elsewhere: list[ExplanationView] = Field(default_factory=list)
+    stood_in: list[str] = Field(default_factory=list)
 
 
 class SpecimenView(BaseModel):

@@ -26,7 +26,7 @@ from ident.diagnosis.significance import improvement
 from ident.diagnosis.standing import Contradiction, contradiction, standing
 from ident.diagnosis.stepwise import USUAL, StepwiseSelection
 from ident.diagnosis.suspects import suspects
-from ident.diagnosis.words import as_well, told_late, told_longer, verdict_text, why
+from ident.diagnosis.words import as_well, told_late, told_longer, told_needless, verdict_text, why
 from ident.effects.effect import Effect
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.result import FitResult
@@ -76,8 +76,9 @@ class Diagnoser:
         self.course.conclude()
         found = self._said(selection, doubted)
         over = () if found.horizon == self.models.horizon else told_longer(self.models.horizon, found.horizon)
-        text = " ".join([found.verdict.text, *over, *late, *as_well(told)])
-        verdict = replace(found.verdict, elsewhere=told, text=text)
+        needless = proposed.needless(selection.added)
+        text = " ".join([found.verdict.text, *told_needless(needless), *over, *late, *as_well(told)])
+        verdict = replace(found.verdict.without(needless), elsewhere=told, text=text)
         return replace(
             found, verdict=verdict, proposals=proposed.found, complete=found.complete and proposed.complete,
             looked_at=proposed.looked_at, notes=(*found.notes, *_refused(proposed, self.course.propose)),

@@ -41,6 +41,7 @@ _OFF = 0.01  # of the largest strength
 _BETTER = 0.99  # times the error: a new optimum, not the same one
 _ROUNDS = 5  # of going on with a refit
 _AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be noise, beside
+_SHARES = (1.0, 0.3, 0.03)  # of the strength alone of the second of two effects
 _CHANCE = 3.0  # standard deviations
 _NOISE_LIKE = 0.5  # correlation of neighbouring residuals that noise may have, where there is no floor
 
@@ -308,3 +309,12 @@ class ModelFamily:
         )
         start, _ = first_least(list(zip(starts, errors.tolist(), strict=True)), lambda one: one[1])
         return self.refit(effects, start, _TRIAL, replace(TRYING, aim=aim))
+
+    def both(self, first: Refit, second: Refit, aim: float) -> Refit:
+        """A first refit with the last effects of two that has to come below `aim`, from either and from halfway."""
+        starts = []
+        for alone, other in ((first, second), (second, first)):
+            here, there = (self.strength(refit.effects[-1]) for refit in (alone, other))
+            starts += [{**alone.values, there: share * other.values[there]} for share in _SHARES]
+            starts.append({**alone.values, here: 0.5 * alone.values[here], there: 0.5 * other.values[there]})
+        return self.trial((*first.effects, second.effects[-1]), starts, aim)

@@ -181,6 +181,11 @@ def alike(best: Refit, other: Refit) -> bool:
     return best.jumping != other.jumping and other.held_out.score <= _JUMPS * best.held_out.score
 
 
+def told_apart(worse: Refit, better: Refit) -> bool:
+    """Whether of two models of as many parameters, at the noise, one is likelier beyond chance, by however little."""
+    return not alike(better, worse) and improvement(worse.held_out, better.held_out).likely
+
+
 @dataclass(frozen=True)
 class _Simulated:
     """What a simulation leaves of runs: eq. (17) averaged over them, and how many of its samples tell something new.

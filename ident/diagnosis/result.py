@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ident.diagnosis.estimate import Found
@@ -105,7 +105,8 @@ class Verdict:
 
     `standing` says how sure the effects are, see :data:`ident.diagnosis.standing.Standing`; None where it was not
     asked. `contradicted_by` are those with which the error rises on runs to verify, `at_bound` those whose strength
-    ended at a bound that the search set, `elsewhere` what other models explain as well.
+    ended at a bound that the search set, `elsewhere` what other models explain as well. `stood_in` are effects of the
+    ladder that are not named: beside terms that a search proposes the model does as well without them.
     """
 
     effects: tuple[str, ...] = ()
@@ -117,6 +118,23 @@ class Verdict:
     text: str = ""
     at_bound: tuple[str, ...] = ()
     elsewhere: tuple[Explanation, ...] = ()
+    stood_in: tuple[str, ...] = ()
+
+    def without(self, needless: Sequence[str]) -> Verdict:
+        """The verdict once a term is known beside which effects of it are needless: it names them no more."""
+        if not needless:
+            return self
+        named = tuple(name for name in self.effects if name not in needless)
+        against = tuple(name for name in self.contradicted_by if name not in needless)
+        cleared = "stand_in" if self.standing == "contradicted" and not against else self.standing
+        return replace(
+            self,
+            effects=named,
+            standing=cleared if named else "nothing",
+            contradicted_by=against,
+            indistinguishable=tuple(group for group in self.indistinguishable if group[0] not in needless),
+            stood_in=tuple(needless),
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -39,8 +39,9 @@ _FORETOLD = 15.0  # nats of L: a drift that its past does not quite foretell mak
 _NEW = 0.2  # of what is left that is not foretold: less, and it is no noise
 _STEADY = 3.0  # deviations of the mean gain of the chunks that are beyond chance by themselves
 _SINGLE_STEADY = 2.5  # deviations that are to be left without the run that gains most
-_UNSTEADY = 1.5  # deviations below which few chunks gain
+_UNSTEADY = 1.5  # deviations of the mean gain of the runs below which few of them gain
 _LOST = 0.1  # of what these few gain that the rest may lose: more, and it is they against the rest
+_SEVERAL = 6  # runs that are counted one by one; of fewer their chunks are
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,8 @@ class Improvement:
 
     `share` is the relative fall of the error, `nats` by how much the data become more likely, `deviations` the mean
     gain of a chunk over its standard error, both also without the run that gains most; `lost` what the chunks that get
-    worse lose of that which the others gain, without that run. `offset` are the nats of the runs' offsets, `visible`
+    worse lose of that which the others gain, and `of_runs` the mean gain of a run over its standard error, both without
+    that run; of few runs the mean gain of a chunk. `offset` are the nats of the runs' offsets, `visible`
     whether these are large enough to matter. `likelier` are the nats of what the residuals' own past does not foretell,
     also without the run or chunk that gains most, None where that is not known, and `new` the share of what is left
     that it does not foretell. `in_windows` as of what is compared.
@@ -60,6 +62,7 @@ class Improvement:
     nats_without: float
     deviations: float
     deviations_without: float
+    of_runs: float
     lost: float
     offset: float
     visible: bool
@@ -87,9 +90,14 @@ class Improvement:
         return falls and asked and self.likelier is not None and not self.likelier > _SINGLE
 
     @property
+    def likely(self) -> bool:
+        """Whether the data become more likely beyond chance, by however little the error falls: enough for a swap."""
+        steadily = self.of_runs > _UNSTEADY or self.lost < _LOST
+        return self.nats > BEYOND_CHANCE and self.nats_without > _SINGLE and steadily
+
+    @property
     def _likely(self) -> bool:
-        few = self.deviations > _UNSTEADY or self.lost < _LOST
-        return self.share > WORTHWHILE and self.nats > BEYOND_CHANCE and self.nats_without > _SINGLE and few
+        return self.share > WORTHWHILE and self.likely
 
     @property
     def _steady(self) -> bool:
@@ -126,6 +134,7 @@ def improvement(before: CrossValidation, after: CrossValidation) -> Improvement:
         _nats(before, after, best),
         _deviations(difference),
         _deviations(difference[~best]),
+        _deviations(difference.sum(axis=1)[~best.any(axis=1)] if len(difference) >= _SEVERAL else difference),
         _lost(difference[~best]),
         offset,
         visible,

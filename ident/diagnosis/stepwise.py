@@ -17,7 +17,7 @@ import numpy as np
 
 from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.ranking import Candidate, group, rank, rank_each, ranked
-from ident.diagnosis.refit import Refit, alike, helps
+from ident.diagnosis.refit import Refit, alike, helps, told_apart
 from ident.diagnosis.ties import first_least
 from ident.errors import TimeIsUp
 from ident.parallel import each
@@ -29,7 +29,6 @@ _WEIGHED = 3  # effects that are weighed against others in their place each time
 _ROUNDS = 3  # of replacing
 _SCATTERED = 8  # of the first ranking that are tried with the fitted model forgotten
 _PAIRED = 5  # finalists that are tried two at a time
-_SHARES = (1.0, 0.3, 0.03)  # of the second's strength alone
 
 
 @dataclass
@@ -88,7 +87,7 @@ class StepwiseSelection:
             if self.models.floor is not None and not self.models.at_floor(self.found) and farther():
                 self._rounds()
         for _ in range(_ROUNDS):
-            if not self._shortened():
+            if not self._shortened() and not self._weighed():
                 break
             self._rounds()
 
@@ -202,7 +201,7 @@ class StepwiseSelection:
 
     def _weighed(self) -> bool:
         """Weigh as many effects as are not weighed otherwise, once; True where one was replaced."""
-        return len(self.added) > _WEIGHED and self._replaced()
+        return len(self.added) > _WEIGHED and not self.groups and self._replaced()
 
     def _settled(self, refit: Refit) -> bool:
         """Where the model does as well without what was added, that was but a way to a better optimum: True, there."""
@@ -275,17 +274,8 @@ class StepwiseSelection:
         tried: list[Refit] = []
         for i, pair in enumerate(pairs):
             self.report(Progress("trying pairs", i, len(pairs)))
-            tried.append(self._both(*pair, asked))
+            tried.append(self.models.both(*pair, asked))
         return self._better(tried)
-
-    def _both(self, first: Refit, second: Refit, aim: float) -> Refit:
-        """A first refit with two effects that has to come below `aim`, from either alone and from halfway to both."""
-        starts = []
-        for alone, other in ((first, second), (second, first)):
-            here, there = (self.models.strength(refit.effects[-1]) for refit in (alone, other))
-            starts += [{**alone.values, there: share * other.values[there]} for share in _SHARES]
-            starts.append({**alone.values, here: 0.5 * alone.values[here], there: 0.5 * other.values[there]})
-        return self.models.trial((*first.effects, second.effects[-1]), starts, aim)
 
     def _backward(self, latest: str) -> bool:
         """Take out what the model can do without; True where that leads back to where it was.
@@ -321,12 +311,19 @@ class StepwiseSelection:
             best = next((c for c in ranking if c.refit is not None), None)
             if best is None or best.refit is None:
                 continue
-            if best.effect != name and helps(here, best.refit):
+            if best.effect != name and self._better_instead(name, best):
                 self._step(best.refit)
                 self._backward(best.effect)
                 return True
             self.groups[name] = group(name, here, ranking)
         return False
+
+    def _better_instead(self, name: str, other: Candidate) -> bool:
+        """Whether another effect does better in the place of one: at the noise by however little, if beyond chance."""
+        assert other.refit is not None
+        simple = self.models.simplicity(other.effect)[0] <= self.models.simplicity(name)[0]
+        at_noise = simple and self.models.at_floor(self.found)
+        return helps(self.found, other.refit) or (at_noise and told_apart(self.found, other.refit))
 
     def _in_place_of_each(self, added: Sequence[str]) -> list[list[Candidate]]:
         """What could stand in the place of added effects, ranked: what one was chosen from, where it came first.

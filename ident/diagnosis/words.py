@@ -138,6 +138,15 @@ def as_well(elsewhere: Sequence[Explanation]) -> Iterator[str]:
         yield f"These data cannot tell it from other models: {', '.join(told[False])}."
 
 
+def told_needless(names: Sequence[str]) -> Iterator[str]:
+    """Which effects only stood for what a search proposes, in a sentence."""
+    if names:
+        *others, last = map(title, names)
+        listed = f"{', '.join(others)} and {last}" if others else last
+        needed = "are not needed: they stood" if others else "is not needed: it stood"
+        yield f"Beside what a search proposes beyond the catalogue {listed} {needed} for that."
+
+
 def told_longer(fitted: float | None, horizon: float | None) -> Iterator[str]:
     """Over what errors are those of the diagnosis, where these are not the windows of the fit."""
     over = "whole runs" if horizon is None else f"windows of {horizon:.3g} s"

@@ -243,3 +243,16 @@ def test_a_step_stays_in_the_cube_and_the_rest_makes_up_for_it():
     H, g = np.array([[2.0, 1.0], [1.0, 2.0]]), np.array([4.0, 0.0])
     step = bounded_step(np.array([0.1, 0.5]), H, g)
     assert step == pytest.approx([-0.1, 0.05])
+
+
+@pytest.mark.parametrize(("mean", "beyond"), [(0.014, False), (0.05, True)])
+def test_what_differs_from_run_to_run_counts_by_runs(mean, beyond):
+    """Thousands of samples of each run gain or lose together, as where the oil is warmer: of 24 runs that is 24."""
+    random = np.random.default_rng(4)
+    change = np.repeat(mean + 0.06 * random.standard_normal((24, 1)), 8, axis=1)
+    squares = np.ones((24, 8)) * (1.0 + 0.01 * random.standard_normal((24, 8)))
+    before, after = (CrossValidation(s, np.full(24, 1e4), np.zeros(24), 48_000, 48_000.0)
+                     for s in (squares, squares * (1.0 - change)))  # fmt: skip
+    gain = improvement(before, after)
+    assert gain.nats_without > 100
+    assert gain.likely is beyond

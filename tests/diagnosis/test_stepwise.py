@@ -56,9 +56,9 @@ class Judged:
             effects=tuple(effects), values=values, finite=True, held_out=held_out, here=here, error=score
         )
 
-    def trial(self, effects, starts, _aim):
-        """The same from any start."""
-        return self.refit(effects, starts)
+    def both(self, first, second, _aim):
+        """The same with the last effects of two."""
+        return self.refit((*first.effects, second.effects[-1]), {})
 
     def settled(self, refit):
         """It stays."""
@@ -121,9 +121,13 @@ class Judged:
         """The same of refits."""
         return self.improvement(less.held_out, more.held_out).beyond_chance
 
+    def told_apart(self, worse, better):
+        """Whether of two at the noise one leaves less."""
+        return better.held_out.score < worse.held_out.score
+
     def stand_in(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """For what a search asks of real refits."""
-        for module, names in ((stepwise, ("rank", "rank_each", "alike", "helps")),
+        for module, names in ((stepwise, ("rank", "rank_each", "alike", "helps", "told_apart")),
                               (ranking, ("alike", "improvement"))):  # fmt: skip
             for name in names:
                 monkeypatch.setattr(module, name, getattr(self, name))
@@ -165,6 +169,13 @@ def test_two_that_only_together_explain_the_data_are_found_where_a_third_came_fi
     """a alone does best, as a delay does for two lags, and leads nowhere; b and c together leave nothing."""
     scores = {"": 1.0, "a": 0.5, "b": 0.7, "c": 0.7, "ab": 0.6, "ac": 0.6, "bc": 0.05}
     assert added(scores, needed={"a", "b", "c"}) == {"b", "c"}
+
+
+def test_at_the_noise_an_effect_stands_in_the_place_of_another_that_is_a_little_worse(added):
+    """A lag came first where a delay is the truth: the error falls by little then, but beyond chance."""
+    scores = {"": 1.0, "a": 0.5, "b": 0.9, "ab": 0.5, "ac": 0.09, "bc": 0.08}
+    assert added(scores, needed={"a", "c"}) == {"b", "c"}
+    assert added({**scores, "ac": 0.19, "bc": 0.18}, needed={"a", "c"}) == {"a", "c"}  # something is left: no matter
 
 
 def test_an_effect_that_shows_only_from_far_is_found_where_the_noise_is_not_reached(added):

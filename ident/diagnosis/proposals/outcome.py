@@ -61,6 +61,18 @@ class Proposals:
         error = self.found[-1].error.get(what) if self.found else None
         return before if error is None else error
 
+    def needless(self, named: Sequence[str]) -> tuple[str, ...]:
+        """Of what is `named` that which the model does as well without, beside the terms: it stood for them.
+
+        Nothing, where the terms are a hypothesis, or stand in the place of all of it, or runs to verify speak against
+        them.
+        """
+        last = self.found[-1] if self.found else None
+        doubted = any(one.hypothesis or one.contradicted for one in self.found)
+        if last is None or doubted or last.instead_of:
+            return ()
+        return tuple(name for name in named if name not in last.beside)
+
     def instead(self, other: Refit, named: Sequence[str], runs: Sequence[Run]) -> Proposals:
         """The same, said to stand instead of what is `named`; where runs to verify speak for that `other`, so it is."""
         if not self.found or self.refit is None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import cast
+from dataclasses import dataclass, replace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -11,7 +11,9 @@ import pytest
 from ident.diagnosis.proposals.outcome import Proposals, Refused
 from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.refit import Refit
-from ident.diagnosis.words import proposed_text
+from ident.diagnosis.result import Verdict
+from ident.diagnosis.standing import Contradiction
+from ident.diagnosis.words import proposed_text, told_needless
 from ident.matrix import Run
 
 TIMES = np.arange(2000) / 1000.0
@@ -91,3 +93,30 @@ def test_where_a_verify_run_cannot_be_followed_a_refused_term_tells_no_error_of_
     best = refused("R = R + s * (x)", 6.9, verify=None).refused
     assert best is not None
     assert best.told(1).endswith("It would leave 30.0 %.")
+
+
+def test_what_the_terms_do_without_is_named_no_more() -> None:
+    """Leak and asymmetry stood for a recorder that bends: with its term the model does as well without them."""
+    named = ("entrained_air", "one_way_leakage", "gain_asymmetry")
+    term = replace(found(0.1).found[-1], beside=("entrained_air",))
+    needless = Proposals(found=(term,)).needless(named)
+    assert needless == ("one_way_leakage", "gain_asymmetry")
+    groups = (("entrained_air",), ("gain_asymmetry", "null_bias"))
+    before = Verdict(named, "contradicted", ("gain_asymmetry",), groups, unexplained=True)
+    after = before.without(needless)
+    assert (after.effects, after.stood_in) == (("entrained_air",), needless)
+    assert (after.standing, after.contradicted_by) == ("stand_in", ())
+    assert after.indistinguishable == (("entrained_air",),)
+    assert before.without(named).standing == "nothing"
+    told = "one way leakage and gain asymmetry are not needed: they stood for that."
+    assert next(told_needless(needless)).endswith(told)
+
+
+@pytest.mark.parametrize("doubt", [
+    {"hypothesis": True}, {"instead_of": ("entrained_air",)},
+    {"contradicted": Contradiction("proposed_1", 0.1, 0.2, 3.0)},
+])  # fmt: skip
+def test_a_doubtful_term_takes_no_name_away(doubt: dict[str, Any]) -> None:
+    term = replace(found(0.1).found[-1], **doubt)
+    assert Proposals(found=(term,)).needless(("entrained_air",)) == ()
+    assert Proposals().needless(("entrained_air",)) == ()
