@@ -26,6 +26,7 @@ from ident.diagnosis.significance import improvement
 from ident.diagnosis.standing import Contradiction, contradiction, standing
 from ident.diagnosis.stepwise import USUAL, StepwiseSelection
 from ident.diagnosis.suspects import suspects
+from ident.diagnosis.ties import TIE
 from ident.diagnosis.words import as_well, told_late, told_longer, told_needless, verdict_text, why
 from ident.effects.effect import Effect
 from ident.errors import TimeIsUp, Unusable
@@ -136,7 +137,7 @@ class Diagnoser:
         beside = Search(selection.models, selection.found, self.course.tell, given, asked).run()
         before, found = (refit.held_out.error for refit in (selection.base, selection.found))
         with_both = beside.left(found, "held_out")
-        if alone.left(before, "held_out") < min(with_both * _SIMPLER, found):
+        if alone.left(before, "held_out") < min(with_both * _SIMPLER, found) and not _repeated(alone, selection):
             return alone
         return beside.or_refused(alone)
 
@@ -275,6 +276,13 @@ def _better_with_fewer(steps: Steps) -> tuple[float, tuple[str, ...]] | None:
     if last is None or least is None or last < _RISES * least:
         return None
     return least, tuple(name for name, _ in steps[errors.index(least) + 1 :] if name)
+
+
+def _repeated(alone: Proposals, selection: StepwiseSelection) -> bool:
+    """Whether the first of some terms leaves what an effect that was named leaves alone: it is that, in other words."""
+    named = (c.refit.error for c in selection.ranking if c.refit is not None and c.effect in selection.added)
+    first = alone.found[0].error["fit"] if alone.found else None
+    return first is not None and any(abs(first - error) <= TIE * error for error in named)
 
 
 def _refused(proposed: Proposals, asked: bool | None) -> Iterator[str]:

@@ -226,7 +226,7 @@ def group(name: str, here: Refit, ranking: Sequence[Candidate]) -> list[Candidat
     """The candidates that are no worse than the best but by chance, the effect itself first where it is among them."""
     refits = [c for c in ranking if c.refit is not None]
     best = min([here, *(c.refit for c in refits if c.refit)], key=lambda refit: refit.held_out.score)
-    as_good = [c for c in refits if c.refit and alike(best, c.refit)]
+    as_good = [c for c in refits if c.refit and alike(best, c.refit, c.base)]
     return sorted(as_good, key=lambda c: c.effect != name)
 
 
@@ -237,7 +237,7 @@ def _alike(best: Candidate, other: Candidate) -> bool:
     """
     if best.refit is None or other.refit is None or other.refit.error > _AS_GOOD * best.refit.error:
         return False
-    return alike(best.refit, other.refit)
+    return alike(best.refit, other.refit, other.base)
 
 
 def _elsewhere(

@@ -26,6 +26,7 @@ from ident.noise.effective_sample_size import independent_samples
 Array = NDArray[np.float64]
 _FOLLOWED = 1.2  # times the promised error that a simulation may leave
 _JUMPS = 1.1  # times the held-out error: so far apart end refits with an effect that acts in jumps
+_MOST = 0.5  # of what one effect explains
 _KNOWN = 1e3  # times its value: the standard error beyond which nothing is known of a parameter
 
 
@@ -171,14 +172,17 @@ def carries_over(less: Refit, more: Refit) -> bool:
     return before is None or after is None or not improvement(after, before).beyond_chance
 
 
-def alike(best: Refit, other: Refit) -> bool:
+def alike(best: Refit, other: Refit, base: Refit | None = None) -> bool:
     """Whether of two refits the better one is better by chance only, or by no more than refits of it end apart.
 
     What acts in jumps has an optimum behind every jump: moved by next to nothing it ends at another, some per cent off.
+    So far off is alike only what explains most of what the best explains of that which a `base` left.
     """
     if improvement(other.held_out, best.held_out).within_chance:
         return True
-    return best.jumping != other.jumping and other.held_out.score <= _JUMPS * best.held_out.score
+    least, left = best.held_out.score, other.held_out.score
+    most = np.inf if base is None else base.held_out.score - _MOST * (base.held_out.score - least)
+    return best.jumping != other.jumping and left <= min(_JUMPS * least, most)
 
 
 def told_apart(worse: Refit, better: Refit) -> bool:

@@ -118,7 +118,7 @@ class StepwiseSelection:
         best = self.ranking[0].refit if self.ranking else None
         if best is None or not self.ranking[0].helps:
             return []
-        return [c for c in self.ranking if c.refit and alike(best, c.refit)]
+        return [c for c in self.ranking if c.refit and alike(best, c.refit, self.base)]
 
     def weighed(self) -> frozenset[str]:
         """The effects of the first ranking in question: down to the first that helps, and what is as good as it."""

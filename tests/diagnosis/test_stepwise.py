@@ -19,6 +19,7 @@ class Judgement:
     effect: str
     refit: Any
     helps: bool
+    base: Any = None
 
     @property
     def score(self):
@@ -113,7 +114,7 @@ class Judged:
         needed = bool((more.effects - less.effects) & self.needed) or more.score < 0.3 * less.score
         return SimpleNamespace(beyond_chance=needed, within_chance=False)
 
-    def alike(self, _best, _other):
+    def alike(self, _best, _other, _base=None):
         """Each differs from the others beyond chance."""
         return False
 
