@@ -21,14 +21,15 @@ from ident.progress import Expected, Progress, Report
 
 Item = TypeVar("Item")
 _CONTENDERS, _FEW = 12, 10  # refitted; fewer, the more effects there are already
-_QUICK = 200_000  # steps of a matrix so small that every promise can be tried, and every finalist deeper
+_QUICK = 200_000  # steps of a matrix so small that every promise can be tried, and every finalist elsewhere
 _NEAR = 1.3  # times the best predicted error: the contenders for a further effect
 _FINALISTS = 5
 _CLOSE = 1.05  # times the best trial's error: also a finalist, where it promises anything
 _AS_GOOD = 1.02  # times the error: what is no better by chance, nor by more than that, stands as listed
 _DEEPER = 2  # of the finalists are looked for elsewhere, too
 _STRONG = (1.0, 0.6, 0.3)  # of the largest strength, from where
-_SHAKEN = (0.7, 1.4)  # times the strength that a refit found, from where, too
+_ROUNDS = 4  # of going on from a better optimum that was found elsewhere
+_SHAKEN = (0.5, 0.7, 1.4, 2.0)  # times the strength that a refit found, from where, too
 _PROMISING = 0.3 * WORTHWHILE  # relative fall of the score that is worth a refit
 _NATS = 3.0  # of the offsets, too
 _SIGHT = 5  # effects that are told at first sight
@@ -135,7 +136,7 @@ def rank_each(
 
     found = [ranked(models, ones) for ones in _side_by_side(final, models_of, finalists)]
     report(Progress("confirming", done, done + 1))
-    deeper = (_FINALISTS if all(_is_quick(models, base) for base in models_of) else _DEEPER) if thorough else 1
+    deeper = _DEEPER if thorough else 1
     elsewhere = partial(_elsewhere, models, asked if beside else {})
     farther = _side_by_side(elsewhere, models_of, [ones[:deeper] for ones in found])
     came = [{one.effect: one for one in chain(*of)} for of in zip(met, tried, found, farther, strict=True)]
@@ -143,6 +144,15 @@ def rank_each(
         ranked(models, [known.get(one.effect, Candidate(one)) for one in of])
         for of, known in zip(promised, came, strict=True)
     ]
+
+
+def deepened(models: ModelFamily, base: Refit, ranking: Sequence[Candidate]) -> list[Candidate]:
+    """The ranking of a small matrix, once all its finalists are looked for elsewhere; as it is of a large one."""
+    if not _is_quick(models, base):
+        return list(ranking)
+    finalists, rest = ranking[:_FINALISTS], ranking[_FINALISTS:]
+    farther = each(partial(_elsewhere, models, {}, base), finalists[_DEEPER:])
+    return ranked(models, [*finalists[:_DEEPER], *farther, *rest])
 
 
 def _tried(models: ModelFamily, base: Refit, prediction: Prediction, aim: float, strong: bool) -> Candidate:
@@ -247,12 +257,16 @@ def _elsewhere(
 
     Given up is what does not come below what is `asked` beside a base.
     """
-    refit = candidate.refit
+    refit, aim = candidate.refit, asked.get(base.effects, np.inf)
     if refit is None or models.at_floor(refit):
         return candidate
     starts = [*_strong(models, base, refit), *_shaken(models, refit)]
-    other = models.best_of(refit, starts, asked.get(base.effects, np.inf))
-    return candidate if other is None else candidate.refitted(base, other)
+    for _ in range(_ROUNDS):
+        other = models.best_of(refit, starts, aim)
+        if other is None:
+            break
+        refit, starts = other, _shaken(models, other)
+    return candidate if refit is candidate.refit else candidate.refitted(base, refit)
 
 
 def _strong(models: ModelFamily, base: Refit, refit: Refit) -> list[dict[str, float]]:

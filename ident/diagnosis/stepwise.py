@@ -8,15 +8,14 @@ are tried, far from where the search stands, and two at a time in the place of o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import combinations
 
-import numpy as np
-
 from ident.diagnosis.family import ModelFamily
-from ident.diagnosis.ranking import Candidate, group, rank, rank_each, ranked
+from ident.diagnosis.ladder import Ladder, Rungs, score, without
+from ident.diagnosis.ranking import Candidate, deepened, group, rank, rank_each, ranked
 from ident.diagnosis.refit import Refit, alike, helps, told_apart
 from ident.diagnosis.ties import first_least
 from ident.errors import TimeIsUp
@@ -38,7 +37,7 @@ class StepwiseSelection:
     `steps` are the refits, the fitted model first; `ranking` the first ranking; `groups` for each added effect the
     effects that the data cannot tell from it, itself included, best first. `report` may end the search with TimeIsUp:
     then not `complete`, it has what was found until there. `heard` hears of each step; `known` is a refit with effects
-    that was met before; `between` are refits of the ladder that were no step of the search.
+    that was met before; `less` are refits of steps without one of their effects.
     """
 
     models: ModelFamily
@@ -50,7 +49,7 @@ class StepwiseSelection:
     steps: list[Refit] = field(default_factory=list)
     ranking: list[Candidate] = field(default_factory=list)
     groups: dict[str, list[Candidate]] = field(default_factory=dict)
-    between: dict[frozenset[str], Refit] = field(default_factory=dict)
+    less: dict[tuple[int, str], Refit] = field(default_factory=dict)
     complete: bool = False
 
     @property
@@ -64,7 +63,7 @@ class StepwiseSelection:
         return tuple(name for name in self.found.effects if name not in self.base.effects)
 
     def __post_init__(self) -> None:
-        self.steps = [self.base]
+        self.steps, self.rungs = [self.base], Ladder(self.models)
 
     def run(self) -> StepwiseSelection:
         """Add, take out, replace, until nothing helps; where the noise is not reached, look farther and go on."""
@@ -125,29 +124,9 @@ class StepwiseSelection:
         first = next((i for i, candidate in enumerate(self.ranking) if candidate.helps), len(self.ranking))
         return frozenset(candidate.effect for candidate in (*self.ranking[: first + 1], *self.alike()))
 
-    def ladder(self) -> list[tuple[str | None, Refit]]:
+    def ladder(self) -> Rungs:
         """From the fitted model to the last, one effect a step, without the detours: what was added, and the refit."""
-        rungs: list[tuple[str | None, Refit]] = [(None, self.base)]
-        known = self._met()
-        for i, name in enumerate(self.added):
-            effects = (*self.base.effects, *self.added[: i + 1])
-            step = known.get(frozenset(effects))
-            if step is None:
-                values = dict(self.found.values)
-                for other in self.added[i + 1 :]:
-                    values = _without(values, other)
-                step = self.between[frozenset(effects)] = self.models.refit(effects, values)
-            rungs.append((name, step))
-        return rungs
-
-    def _met(self) -> dict[frozenset[str], Refit]:
-        """Of the refits that were steps, or stand in the ladder, the best with the same effects."""
-        best: dict[frozenset[str], Refit] = {}
-        for refit in (*self.between.values(), *self.steps):
-            effects = frozenset(refit.effects)
-            if effects not in best or _score(refit) <= _score(best[effects]):
-                best[effects] = refit
-        return best
+        return self.rungs.rungs(self.steps, self.base)
 
     def _shortened(self) -> bool:
         """End the ladder at the first of its rungs on which the last step does not improve; True where one was found.
@@ -158,10 +137,10 @@ class StepwiseSelection:
         """
         for _, rung in self.ladder()[1:-1]:
             judged = any(rung is step for step in self.steps)
-            asked = rung.finite and (not judged or _score(rung) < _score(self.found))
+            asked = rung.finite and (not judged or score(rung) < score(self.found))
             if asked and not helps(rung, self.found):
                 as_few = [step for step in self.steps if len(step.effects) <= len(rung.effects)]
-                back = first_least([rung, *as_few], _score)
+                back = first_least([rung, *as_few], score)
                 self.groups = {name: found for name, found in self.groups.items() if name in back.effects}
                 self._step(back)
                 return True
@@ -208,7 +187,7 @@ class StepwiseSelection:
         name = refit.effects[-1]
         if not self.models.doubtful(refit, name):
             return False
-        less = self.models.refit(refit.effects[:-1], _without(refit.values, name))
+        less = self.models.refit(refit.effects[:-1], without(refit.values, name))
         worse = not less.finite or less.held_out.score >= self.found.held_out.score
         if worse or helps(less, refit):
             return False
@@ -293,19 +272,26 @@ class StepwiseSelection:
             known = [i for i, step in enumerate(self.steps) if set(step.effects) == set(less.effects)]
             self._step(less)
             if known:
-                self._step(first_least(self.steps[known[0] :], _score))
+                self._step(first_least(self.steps[known[0] :], score))
                 return True
         return False
 
     def _less(self, name: str) -> Refit:
         """The last step without one of its effects, judged."""
-        effects = tuple(effect for effect in self.found.effects if effect != name)
-        less = self.models.refit(effects, _without(self.found.values, name))
-        _ = less.finite and less.held_out
-        return less
+        known = self.less.get((id(self.found), name))
+        if known is None:
+            effects = tuple(effect for effect in self.found.effects if effect != name)
+            known = self.less[id(self.found), name] = self.models.refit(effects, without(self.found.values, name))
+            _ = known.finite and known.held_out
+        return known
 
     def _replaced(self) -> bool:
-        """Weigh each added effect against what could stand in its place; True where one was replaced."""
+        """Weigh each added effect against what could stand in its place; True where one was replaced.
+
+        What came with another, to which it showed the way, may be needless by now: that is taken out first.
+        """
+        if len(self.added) > 1:
+            self._backward("")
         self.groups, here = {}, self.found
         for name, ranking in zip(self.added, self._in_place_of_each(self.added), strict=True):
             best = next((c for c in ranking if c.refit is not None), None)
@@ -330,17 +316,11 @@ class StepwiseSelection:
 
         Nothing stands in the place of one without which the model goes astray.
         """
-        if added and self.ranking[0].refit is self.found:
-            return [self.ranking for _ in added]
+        if self.ranking and [*added] == [self.ranking[0].effect]:
+            first, *others = self.ranking
+            self.ranking = deepened(self.models, self.base, [first.refitted(self.base, self.found), *others])
+            return [self.ranking]
         bases = each(self._less, added)
         sound = [(base, self._others(base)) for base in bases if base.finite]
         ranked = iter(rank_each(self.models, sound, self.report, thorough=False, beside=self.found) if sound else ())
         return [next(ranked) if base.finite else [] for base in bases]
-
-
-def _score(refit: Refit) -> float:
-    return refit.held_out.score if refit.finite else np.inf
-
-
-def _without(values: Mapping[str, float], effect: str) -> dict[str, float]:
-    return {name: value for name, value in values.items() if not name.startswith(f"{effect}__")}

@@ -60,7 +60,7 @@ _SEEN = {
 
 
 _MISSING = {
-    "e": "command", "w": "spool opening", "Q": "flow", "R": "resistance", "y": "reading",
+    "e": "command", "w": "spool opening", "Q": "flow", "R": "resistance", "y_fb": "reading in the loop", "y": "reading",
 }  # fmt: skip
 _AGAINST = {
     "w": "Drive signal at the spool", "Q": "Flow", "P": "Load pressure", "v": "Piston velocity",

@@ -109,6 +109,10 @@ class Judged:
         """Each for itself."""
         return [self.rank(models, base, names, report, thorough, strong=False) for base, names in bases]
 
+    def deepened(self, _models, _base, ranking):
+        """Nothing is found elsewhere."""
+        return ranking
+
     def improvement(self, less, more):
         """Whether an effect that only one of them has was needed, or the other does better by far."""
         needed = bool((more.effects - less.effects) & self.needed) or more.score < 0.3 * less.score
@@ -128,7 +132,7 @@ class Judged:
 
     def stand_in(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """For what a search asks of real refits."""
-        for module, names in ((stepwise, ("rank", "rank_each", "alike", "helps", "told_apart")),
+        for module, names in ((stepwise, ("rank", "rank_each", "deepened", "alike", "helps", "told_apart")),
                               (ranking, ("alike", "improvement"))):  # fmt: skip
             for name in names:
                 monkeypatch.setattr(module, name, getattr(self, name))

@@ -58,7 +58,7 @@ def blocks(terms: Sequence[Term]) -> list[list[int]]:
     """The numbers of terms that add to one signal, at most :data:`BLOCK` together."""
     by_signal: dict[str, list[int]] = {}
     for i, term in enumerate(terms):
-        by_signal.setdefault(term.at, []).append(i)
+        by_signal.setdefault(term.path, []).append(i)
     return [here[k : k + BLOCK] for here in by_signal.values() for k in range(0, len(here), BLOCK)]
 
 

@@ -56,13 +56,13 @@ def free_curves(library: Library) -> list[FreeCurve]:
 
 
 def _all(library: Library) -> Iterator[FreeCurve]:
-    for place, at in library.places.items():
-        for of in library.signals[place]:
+    for at, place in library.places.items():
+        for of in library.signals[at]:
             x = library.typical[of]
             knots = _knots(x)
             if len(knots) < _FEWEST:
                 continue
-            for by, text in _multiplied(place, at, of, library.signals[place]):
+            for by, text in _multiplied(place, at, of, library.signals[at]):
                 unit = powers_of(library.units[by]) or {} if by and text != "sgn(v) * h" else {}
                 named = (by, of) if by else (of,)
                 yield FreeCurve(of, knots, Term(place, at, text, "free curve", named, dict(unit)))

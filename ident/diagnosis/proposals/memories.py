@@ -31,7 +31,7 @@ def with_memory(library: Library, place: str, at: str, a: str) -> Iterator[Term]
     if a == at or (place, a) in _REMEMBERED:
         yield from _late(library, place, at, a)
         yield from _play(library, place, at, a)
-    if (place, a) == ("load", "x") and "v" in library.signals[place]:
+    if (place, a) == ("load", "x") and "v" in library.signals[at]:
         yield from _yielding(library, place, at)
     if a == at:
         yield from _after(library, place, at)

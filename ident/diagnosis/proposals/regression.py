@@ -112,7 +112,7 @@ def _alone(
 
     def sums(of: tuple[int, list[int]]) -> tuple[list[int], Array, Array]:
         run, here = of
-        found = beside[run].to([terms[i] for i in here], paths[terms[here[0]].at][run])
+        found = beside[run].to([terms[i] for i in here], paths[terms[here[0]].path][run])
         return here, beside[run].known.T @ found, np.einsum("nt,nt->t", found, found)
 
     for here, of_known, of_itself in each(sums, [(run, here) for run in range(len(beside)) for here in blocks(terms)]):
@@ -144,7 +144,9 @@ def _rows(
 ) -> Array:
     """[T * φ, J, r] of some runs, one below the other; a block of columns after the other."""
     todo = [(run, here) for run in runs for here in blocks(terms)]
-    answers = iter(each(lambda of: beside[of[0]].to([terms[i] for i in of[1]], paths[terms[of[1][0]].at][of[0]]), todo))
+    answers = iter(
+        each(lambda of: beside[of[0]].to([terms[i] for i in of[1]], paths[terms[of[1][0]].path][of[0]]), todo)
+    )
     every = []
     for run in runs:
         known = beside[run].known

@@ -15,6 +15,7 @@ from ident.diagnosis.proposals.candidate import Candidate, offered
 from ident.diagnosis.proposals.recorded import recorded_beside, units_of
 from ident.diagnosis.proposals.records import paths, records
 from ident.diagnosis.proposals.regression import regression
+from ident.diagnosis.proposals.softness import OIL
 from ident.diagnosis.proposals.terms import ALONE, Library
 from ident.diagnosis.refit import Refit
 from ident.effects.effect import Effect
@@ -22,7 +23,10 @@ from ident.parameter import Parameter
 from ident.presets import Preset
 
 Array = NDArray[np.float64]
-_PLACES = {"controller": "e", "valve": "dq", "spool": "w", "flow": "Q", "load": "R", "sensor": "y"}
+_PLACES = {
+    "e": "controller", "dq": "valve", "w": "spool", "Q": "flow", "R": "load", "y_fb": "sensor", "y": "sensor",
+}  # fmt: skip
+_READ, _LOOP = "y_fb", "y_in"  # what the transducer reads is another place than the record where a loop uses it
 _SIGNALS = ("w", "Q", "P", "v", "x", "F")
 _VARIED = ("Kp", "mL", "k")  # conditions of a run
 _PROPORTIONAL = 1.0 - 1e-6  # cosine of signals that are one
@@ -46,9 +50,9 @@ def sight(models: ModelFamily, base: Refit, instead_of: Effect | None = None, cu
     preset = models.preset
     named = {equation.target for equation in preset.core.equations if not equation.is_rate} | {*preset.core.states}
     names = [name for name in _SIGNALS if name in named]
-    places = {place: at for place, at in _PLACES.items() if at in named}
+    places = {at: place for at, place in _PLACES.items() if at in named and (at != _READ or _LOOP in named)}
     numbers = [p.in_equations for p in instead_of.added] if instead_of else []
-    runs = records(base, list(dict.fromkeys((*names, *places.values()))), numbers)
+    runs = records(base, list(dict.fromkeys((*names, *places, *(named & {OIL})))), numbers)
     typical = {name: np.concatenate([record.signals[name] for record in runs]) for name in runs[0].signals}
     units = {name: quantity.unit for name, quantity in CONDITIONS.items()}
     units |= {**units_of(models.runs[0]), **preset.chain.units}
@@ -58,7 +62,7 @@ def sight(models: ModelFamily, base: Refit, instead_of: Effect | None = None, cu
     library = Library(
         places, _there(preset, places, names), typical, units, models.band, shortest, varied, recorded_beside(models)
     )
-    responses = {at: paths(preset, base.values, models.matrix.actuator, at, runs) for at in places.values()}
+    responses = {at: paths(preset, base.values, models.matrix.actuator, at, runs) for at in places}
     if curves:
         drawn = free_curves.free_curves(library)
         hats = [hat for curve in drawn for hat in curve.hats()]
@@ -70,10 +74,10 @@ def sight(models: ModelFamily, base: Refit, instead_of: Effect | None = None, cu
 
 
 def _there(preset: Preset, places: Mapping[str, str], names: Sequence[str]) -> dict[str, list[str]]:
-    """The signals that terms of each place may be of."""
+    """The signals that terms which add to each signal may be of."""
     return {
-        place: [at] if place == ALONE else [name for name in names if _known_there(preset, place, at, name)]
-        for place, at in places.items()
+        at: [at] if place == ALONE else [name for name in names if _known_there(preset, place, at, name)]
+        for at, place in places.items()
     }
 
 

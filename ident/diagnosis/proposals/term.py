@@ -68,7 +68,8 @@ class Term:
 
     `kind` names its form and `of` the signals that it is of; `memory` are equations of its own that go before, `state`
     the rate of a state z of its own. How large it is hangs on how fast its signals move where it is `in_time`.
-    `worked_out` gives its samples where the equation alone does not. Of dry friction of the moving mass `limit` is what
+    `worked_out` gives its samples where the equation alone does not: `through` another signal than `at`, where that is
+    not multiplied and a small change does as much to it. Of dry friction of the moving mass `limit` is what
     it takes at most: such a term sticks. Of a `curve` the equation has h.
     """
 
@@ -82,6 +83,7 @@ class Term:
     memory: tuple[str, ...] = ()
     state: str = field(default="", kw_only=True)
     in_time: bool = field(default=False, kw_only=True)
+    through: str = field(default="", kw_only=True)
     worked_out: Callable[[Signals, float], Array] | None = field(default=None, compare=False, repr=False)
     limit: str = ""
     curve: Curve | None = None
@@ -95,6 +97,11 @@ class Term:
             known[CURVE] = self.curve.samples(signals)
         value = Equation(f"d = {self.text}").value(known)
         return np.broadcast_to(np.asarray(value, dtype=np.float64), next(iter(signals.values())).shape)
+
+    @property
+    def path(self) -> str:
+        """The signal from where its samples go to the output."""
+        return self.through or self.at
 
     @property
     def free_shapes(self) -> int:

@@ -14,6 +14,7 @@ from itertools import product
 import numpy as np
 
 from ident.diagnosis.proposals.memories import of_error, with_memory
+from ident.diagnosis.proposals.softness import of_oil
 from ident.diagnosis.proposals.term import LIMIT, Shape, Signals, Term, multiplied
 from ident.units.grammar import Powers, powers_of
 
@@ -27,11 +28,11 @@ ALONE = "valve"
 
 @dataclass(frozen=True)
 class Library:
-    """All terms for the places of a chain: `places` maps a place to the signal that is added to.
+    """All terms for the places of a chain: `places` maps a signal that is added to to the place where it is.
 
-    `signals` are those that terms there may be of, `typical` all their samples, `units` as the chain has them; `band`
-    is the end of the command's, rad/s, `seconds` the length of the shortest run, `varied` the conditions that differ,
-    `recorded` the channels beside the machine.
+    `signals` are by it those that terms there may be of, `typical` all their samples, `units` as the chain has them;
+    `band` is the end of the command's, rad/s, `seconds` the length of the shortest run, `varied` the conditions that
+    differ, `recorded` the channels beside the machine.
     """
 
     places: Mapping[str, str]
@@ -45,8 +46,8 @@ class Library:
 
     def terms(self) -> Iterator[Term]:
         """Every term, the simplest forms first."""
-        for place, at in self.places.items():
-            signals = self.signals[place]
+        for at, place in self.places.items():
+            signals = self.signals[at]
             for a in signals:
                 yield from self._of_one(place, at, a)
             if place == ALONE:
@@ -60,6 +61,8 @@ class Library:
             yield from self._of_position(place, at)
             yield from self._with_conditions(place, at)
             yield from self._periodic(place, at)
+        if "flow" in self.places.values():
+            yield from of_oil(self)
 
     def _of_one(self, place: str, at: str, a: str) -> Iterator[Term]:
         for text, kind, power in (
@@ -99,7 +102,7 @@ class Library:
 
     def _of_speed(self, place: str, at: str) -> Iterator[Term]:
         """Dry friction that is more, or less, near rest than in motion."""
-        if place != "load" or "v" not in self.signals[place]:
+        if place != "load" or "v" not in self.signals[at]:
             return
         for share in _SLOW:
             vs = Shape("vs", float(np.quantile(np.abs(self.typical["v"]), share)), self.units["v"])
@@ -120,10 +123,10 @@ class Library:
             shapes = (middle, Shape("d", wide * span, self.units["x"]))
             hill = "exp(-((x - xm) / d)**2)"
             yield Term(place, at, hill, "hill", ("x",), {}, shapes)
-            for b in self.signals[place]:
+            for b in self.signals[at]:
                 if b in (at, "v") and b != "x":
                     yield Term(place, at, f"{b} * {hill}", "hill of", (b, "x"), self.unit((b, 1)), shapes)
-            if "v" in self.signals[place]:
+            if "v" in self.signals[at]:
                 rubbing = Term(place, at, f"sgn(v) * {hill}", "friction at", ("v", "x"), {}, shapes)
                 yield self._dragging(rubbing, "v", hill)
 
@@ -133,7 +136,7 @@ class Library:
             yield Term(place, at, name, "recorded", (name,), self.unit((name, 1)))
         for name in (*self.varied, *self.recorded, "t"):
             unit = {"t": "s"}.get(name) or self.units.get(name, "1")
-            for a in self.signals[place]:
+            for a in self.signals[at]:
                 powers = multiplied(self.unit((a, 1)), powers_of(unit) or {}, 1)
                 yield Term(place, at, f"{name} * {a}", "condition", (name, a), powers)
                 if a == "v":
@@ -144,7 +147,7 @@ class Library:
             yield Term(place, at, "t", "drift", ("t",), {"s": 1.0})
         for share in _FADING:
             T = Shape("T", share * self.seconds, "s")
-            for a in self.signals[place]:
+            for a in self.signals[at]:
                 if a in (at, "v"):
                     yield Term(place, at, f"{a} * (1 - exp(-t / T))", "fading", ("t", a), self.unit((a, 1)), (T,))
                 if (place, a) == ("load", "v"):
@@ -162,7 +165,7 @@ class Library:
 
         Only what modulates: a sum with a wave of one phase in every run is what hum in the records looks like.
         """
-        if place not in ("flow", "spool") or (place == "spool" and "flow" in self.places):
+        if place not in ("flow", "spool") or (place == "spool" and "flow" in self.places.values()):
             return
         step = 1.0 / self.seconds
         for number in range(1, int(self.band / (2 * np.pi) / step)):

@@ -18,7 +18,8 @@ from tests.effects import dimensions
 MODEL = PRESETS["qian2014"]
 UNITS = {name: quantity.unit for name, quantity in CONDITIONS.items()} | dict(MODEL.chain.units)
 RATE, BAND, SECONDS = 800.0, 2 * np.pi * 80.0, 0.5
-SIZES = {"w": 1e-3, "Q": 1e-5, "P": 1e6, "v": 0.05, "x": 1e-3, "F": 300.0, "e": 1e-3, "R": 200.0, "y": 1e-3, "dq": 0.5}
+SIZES = {"w": 1e-3, "Q": 1e-5, "P": 1e6, "v": 0.05, "x": 1e-3, "F": 300.0, "e": 1e-3, "R": 200.0, "dq": 0.5}
+SIZES |= {"y": 1e-3, "y_fb": 1e-3}
 
 
 def signals() -> dict[str, np.ndarray]:
@@ -39,10 +40,10 @@ def every() -> list[Term]:
 
 
 def terms() -> dict[tuple[str, str], Term]:
-    """The first of each form at each place."""
+    """The first of each form at each place; what the transducer reads is one of its own."""
     listed = every()
     assert len({(term.at, term.text, *(shape.value for shape in term.shapes)) for term in listed}) == len(listed)
-    return {(term.place, term.kind): term for term in reversed(listed)}
+    return {("reading" if term.at == "y_fb" else term.place, term.kind): term for term in reversed(listed)}
 
 
 TERMS = terms()
