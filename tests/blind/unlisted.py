@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import product
 from pathlib import Path
 from typing import Any, Protocol
@@ -24,13 +24,15 @@ from ident.diagnosis.stepwise import USUAL
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.workflows import diagnose, identify
+from tests.blind import characteristic
 from tests.blind.campaign import add, rows
 from tests.blind.machines import runs_away
-from tests.blind.unlisted_effects import KIND, MODEL, secret
+from tests.blind.unlisted_effects import KIND, MODEL, secret, written
 from tests.reference import qian_reference as linear
 from tests.reference.unlisted_reference import KINDS, NAMES
 
 TERMS, SHAPES, VERIFY = 3, 2, 1.2  # of a proposal that is accepted, at most: terms, shapes of all, floors
+LAW = 0.05  # of the flow, or force: how far the characteristic may be off
 RIGHT, RIGHT_NEW = 0.3, 0.5  # of the noise: how far from the truth the outputs of the right class are, at most
 _LEAST = 0.85  # of the wanted error: below it the cell is unreachable
 _POSSIBLE = 1.05  # floors that the true equation itself may leave
@@ -46,9 +48,12 @@ def trial(name: str, seed: int, level: float, full: bool = False, catalogue: boo
         "kind": KIND[name], "effect": name, "seed": seed, "level": level, "matrix": "full" if full else "small",
         "catalogue": catalogue, "hidden": machine.hidden[1:], "noise": machine.noise, "linear": error,
     }  # fmt: skip
-    row["oracle"] = machine.reached() if error >= _LEAST * level else None
+    oracle = machine.oracle() if error >= _LEAST * level else None
+    row["oracle"] = (oracle.error["fit"] or 0.0) / machine.noise if oracle else None
     row["reachable"] = row["oracle"] is not None and row["oracle"] <= _POSSIBLE
-    return row | outcome(machine, catalogue) if row["reachable"] else row
+    if oracle is None or not row["reachable"]:
+        return row
+    return row | outcome(machine, catalogue, (written(machine.hidden), oracle.values))
 
 
 class Hiding(Protocol):
@@ -64,8 +69,11 @@ class Hiding(Protocol):
         """Its test matrix, or other runs."""
 
 
-def outcome(machine: Hiding, catalogue: bool) -> Row:
-    """The proposals beside the linear model, or beside what the catalogue found, against the truth."""
+def outcome(machine: Hiding, catalogue: bool, true: tuple[Mapping[str, Any], Mapping[str, float]] | None = None) -> Row:
+    """The proposals beside the linear model, or beside what the catalogue found, against the truth.
+
+    Where the equation that is `true` is given, with the values of its refit, so is how far the characteristic is off.
+    """
     matrix = machine.measured()
     fit = identify(matrix, Settings(model=MODEL))
     begun = time.perf_counter()
@@ -82,7 +90,7 @@ def outcome(machine: Hiding, catalogue: bool) -> Row:
         "found": [one.equation for one in proposed], "shapes": shapes, **errors, "accepted": accepted,
         "off": off[0], "off_new": off[1], "right": off[0] <= RIGHT and off[1] <= RIGHT_NEW,
         "notes": list(found.notes), "seconds": seconds,
-    }  # fmt: skip
+    } | ({"law_off": characteristic.off(matrix, MODEL, true, found)} if true else {})  # fmt: skip
 
 
 def _off(found: Diagnosis, clean: Matrix, noise: float) -> float:
@@ -106,22 +114,24 @@ def show(row: Row) -> None:
         return
     mark = " ".join(word for word in ("accepted", "right") if row[word]) or "MISS"
     print(f"{head}: {mark}; {' | '.join(row['found']) or 'nothing'}; verify {row['verify']:.2f}, "
-          f"off {row['off']:.2f} {row['off_new']:.2f}, {row['seconds']} s", flush=True)  # fmt: skip
+          f"off {row['off']:.2f} {row['off_new']:.2f}, law {100 * row['law_off']:.2g} %, {row['seconds']} s",
+          flush=True)  # fmt: skip
 
 
 def table(found: Sequence[Row]) -> Iterable[str]:
     """What came out, by kind."""
-    yield "| kind | trials | accepted | right class | both | catalogue alone at the floor | seconds (median) |"
-    yield "|---|---|---|---|---|---|---|"
+    yield "| kind | trials | accepted | right class | both | law within 5 % | catalogue alone at the floor | seconds |"
+    yield "|---|---|---|---|---|---|---|---|"
     tried = [row for row in found if row["reachable"]]
     for kind in (*KINDS, "all"):
         rows_of = [row for row in tried if kind in (row["kind"], "all")]
         if rows_of:
             counts = [sum(row[word] for row in rows_of) for word in ("accepted", "right")]
             both = sum(row["accepted"] and row["right"] for row in rows_of)
+            law = sum(row["accepted"] and row.get("law_off", np.inf) <= LAW for row in rows_of)
             alone = sum(row["catalogue"] and row["listed"] <= _POSSIBLE for row in rows_of)
             seconds = np.median([row["seconds"] for row in rows_of])
-            yield f"| {kind} | {len(rows_of)} | {counts[0]} | {counts[1]} | {both} | {alone} | {seconds:.0f} |"
+            yield f"| {kind} | {len(rows_of)} | {counts[0]} | {counts[1]} | {both} | {law} | {alone} | {seconds:.0f} |"
 
 
 def key(row: Row) -> tuple[Any, ...]:

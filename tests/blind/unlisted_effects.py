@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.workflows import identify
@@ -93,11 +94,10 @@ class Secret:
             return 1.0
         return float(identify(as_fit(matrix), Settings(model=MODEL)).error["fit"] or 0.0)
 
-    def reached(self) -> float:
-        """The error of the refitted model with the true equation, in floors: one, or the trial asks too much."""
+    def oracle(self) -> FitResult:
+        """The refitted model with the true equation: where it does not reach the floor the trial asks too much."""
         own = written(self.hidden)
-        fit = identify(self.measured(), Settings(model=MODEL, effects=(own["name"],), custom=(own,)))
-        return float(fit.error["fit"] or 0.0) / self.noise
+        return identify(self.measured(), Settings(model=MODEL, effects=(own["name"],), custom=(own,)))
 
 
 def _spread(trials: Sequence[linear.Trial], count: int) -> list[linear.Trial]:
