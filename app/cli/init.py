@@ -29,8 +29,8 @@ def init(
     serial: Annotated[str, typer.Option(metavar="TEXT", help="Serial number of the actuator.")] = "",
     channel: Annotated[
         _Texts,
-        typer.Option(metavar=_FORM, help="What a column is, by name or number, and its unit; NAME=:UNIT for the unit "
-                     "alone, NAME=- where it is not there. May be repeated."),
+        typer.Option(metavar=_FORM, help="What a column is, by name or number from 0, and its unit; NAME=:UNIT for the "
+                     "unit alone, NAME=- where it is not there. May be repeated."),
     ] = None,
     time: Annotated[str, typer.Option(metavar="COLUMN:UNIT", help="The column of the time.")] = "",
     rate: Annotated[str, typer.Option(metavar="HZ", help="Sample rate, as in '4096 Hz', where no column has it.")] = "",

@@ -17,7 +17,7 @@ from ident.units.quantity import shown
 
 OUTPUTS = ("displacement", "velocity", "force", "load_pressure")
 """Channels that a model may have to reproduce; the first that there is, unless one is named."""
-_DRIVES = ("command", "current")
+_DRIVES = ("command", "current", "drive_force")
 _HELD = "the command rests and jumps, so it is taken to be held between its changes (hold: zoh)"
 _DRAWN = "the command is taken to run straight from sample to sample (hold: linear); say zoh where it is held"
 NONE = "-"
@@ -82,17 +82,22 @@ class Draft:
         """What the file states and the answers say of it. Raises Unusable where an answer names no column of it."""
         doubts: list[str] = []
         found = {channel: Answer(column.name, unit_of(column)) for channel, column in suggested(file.columns).items()}
-        doubts += [f"{shown(a.column)!r} is taken for {channel}, by its name" for channel, a in found.items()
-                   if channel not in self.answers.channels]  # fmt: skip
         for channel, answer in self.answers.channels.items():
             if answer.column == NONE:
                 found.pop(channel, None)
                 continue
             column = _column(file, answer.column, f"channel {channel}") if answer.column != "" else None
             before = found.get(channel, Answer())
+            if column:
+                found = {name: a for name, a in found.items() if self._stays(file, name, a, column)}
             stated = unit_of(column) if column else before.unit
+            if column and answer.unit and stated not in ("", answer.unit):
+                said = f"{shown(column.name)!r} is {channel} in {answer.unit}, as was said"
+                doubts.append(f"{said}; the file states {stated}")
             found[channel] = Answer(answer.column if column else before.column, answer.unit or stated)
         found = {channel: answer for channel, answer in found.items() if answer.column != ""}
+        doubts += [f"{shown(a.column)!r} is taken for {channel}, by its name" for channel, a in found.items()
+                   if channel not in self.answers.channels]  # fmt: skip
         time, rate, said = self._clock(file)
         used = [answer.column for answer in (*found.values(), time) if answer.column != ""]
         if twice := {str(column) for column in used if used.count(column) > 1}:
@@ -100,6 +105,10 @@ class Draft:
                            "give each channel its own column")  # fmt: skip
         hold = str(self.answers.common.get("hold", "")) or self._hold(file, found)
         return Known(found, time, rate, hold, (*doubts, *said))
+
+    def _stays(self, file: RawFile, channel: str, of: Answer, column: Column) -> bool:
+        """Whether a column still is the channel that its name looks like, once it was said what `column` is."""
+        return channel in self.answers.channels or file.table.number(of.column, file.name) != column.number
 
     def _hold(self, file: RawFile, channels: Mapping[str, Answer]) -> str:
         """What the command does between samples, by the look of it."""
@@ -141,7 +150,8 @@ class Draft:
         wanted = self.answers.output or output
         drives = {*_DRIVES, *({"velocity", "displacement"} if wanted == "force" else ())}
         if not drives & known.channels.keys() and self._said("command") != NONE:
-            driven = ", or say --output force where the motion drives" if "force" in known.channels else ""
+            motion = "; or say --output force where the motion drives" if "force" in known.channels else ""
+            driven = f" or, as drive_force, the force that drives{motion}"
             found.append(Missing("channel command", f"which column of {_listed(file)} is the command{driven}"))
         if not wanted or wanted not in known.channels:
             what = wanted or "displacement, velocity or force"

@@ -84,10 +84,13 @@ def _allows(model: Preset, run: Described) -> bool:
     if not all(can_be_disturbed(model.chain, place) for place in disturbed):
         return False
     drives = {model.driven_by} | ({"displacement"} if model.driven_by == "velocity" else set())
+    drives |= {"command"} if _by_force(model, run) else set()
     return bool(drives & set(run.channels)) and run.output in model.chain.outputs and run.output not in drives
 
 
 def _rank(model: Preset, runs: Sequence[Described]) -> int:
+    if any(_by_force(model, run) for run in runs):
+        return _OPEN  # or what follows a force
     if model.driven_by != "command":
         bare = not any("command" in run.channels for run in runs)
         return 0 if bare or model.driven_by not in MOTIONS else _UNLIKELY
@@ -98,6 +101,12 @@ def _rank(model: Preset, runs: Sequence[Described]) -> int:
         return 1 if looped else _UNLIKELY - 1
     drives = any(stage.place in ("flow", "pressure") for stage in model.chain.stages)
     return _OPEN if drives and OPENED_BY_COMMAND in model.chain.stages else _OPEN + 1  # no machine, but how one follows
+
+
+def _by_force(model: Preset, run: Described) -> bool:
+    """Whether a drive's force may be what was recorded as the command."""
+    is_force = run.units.get("command") in ("N", "N*m")
+    return model.driven_by == "drive_force" and is_force and "drive_force" not in run.channels
 
 
 def _comparable(run: Described, channel: str) -> bool:

@@ -167,13 +167,17 @@ def test_answers_that_fit_no_file_are_refused():
     file = raw(table("time [s],command [V],position [mm]"))
     for channels, code in (
         ({"command": Answer("volts")}, "missing-column"),
-        ({"force": Answer("position [mm]", "N")}, "column-twice"),
+        ({"force": Answer("position [mm]", "N"), "displacement": Answer("position [mm]", "mm")}, "column-twice"),
     ):
         with pytest.raises(Unusable) as refused:
             _ = Draft([file], Answers(channels=channels)).missing
         assert refused.value.code == code
     with pytest.raises(Unusable, match="no channel 'motion'"):
         Answers(channels={"motion": Answer("x")})
+    said = Draft([file], Answers(channels={"force": Answer("position [mm]", "N")}))  # more than its name says
+    assert said.known(file).channels.keys() == {"command", "force"}
+    assert "'position [mm]' is force in N, as was said; the file states mm" in said.doubts
+    assert not any("taken for displacement" in doubt for doubt in said.doubts)
     taken = Draft([file], Answers(channels={"displacement": Answer(NONE)}))
     assert {one.key for one in taken.missing} == {"serial", "channel displacement"}
 

@@ -9,12 +9,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.signal
 
 from ident.checks.check import check
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run
-from ident.presets.suited import suited
+from ident.presets.suited import in_question, suited
 from ident.readers import read_matrix
 from ident.workflows import compare, diagnose, identify
 
@@ -201,3 +202,30 @@ def test_a_specimen_that_is_moved_in_position_is_one_that_is_moved_in_speed():
     assert fits[1].model == "specimen"
     for name in ("cS", "kS"):
         assert fits[1].values[name] == pytest.approx(fits[0].values[name], rel=0.01)
+
+
+def test_a_force_that_was_recorded_as_the_command_drives_a_mass_on_a_spring():
+    """m x″ + c x′ + k x + k₃ x³ = F, by a recursion of its own: in question with what a command drives, and chosen."""
+    rng, dt = np.random.default_rng(6), 1.0 / 2000.0
+    m, c, k, hard = 0.5, 8.0, 4e3, 4e8
+
+    def run(use: str, size: float) -> Run:
+        force = size * scipy.signal.lfilter(*scipy.signal.butter(2, 0.1), rng.standard_normal(2500))
+        x, v, out = 0.0, 0.0, np.zeros(2500)
+        for i in range(1, 2500):
+            for part in range(8):  # Störmer-Verlet with the force straight between samples
+                F = force[i - 1] + (part + 0.5) / 8 * (force[i] - force[i - 1])
+                v += dt / 8 * (F - c * v - k * x - hard * x**3) / m
+                x += dt / 8 * v
+            out[i] = x
+        out += 0.002 * out.std() * rng.standard_normal(len(out))
+        units = {"command": "N", "displacement": "m"}
+        return Run(use, "", 2000.0, {"command": force, "displacement": out}, units, use=use)
+
+    matrix = Matrix(Actuator("SPRING"), (run("fit", 40.0), run("verify", 60.0)))
+    assert "drive" in [model.name for model in in_question(matrix.runs)]
+    fit = identify(matrix, Settings(model=""))
+    assert fit.model == "drive"
+    found = diagnose(matrix, fit, most=1, propose=False)
+    assert found.verdict.effects == ("cubic_stiffness",)
+    assert found.ladder[-1].error["verify"] < 0.1 * found.ladder[0].error["verify"]
