@@ -92,8 +92,8 @@ class Draft:
                 found = {name: a for name, a in found.items() if self._stays(file, name, a, column)}
             stated = unit_of(column) if column else before.unit
             if column and answer.unit and stated not in ("", answer.unit):
-                said = f"{shown(column.name)!r} is {channel} in {answer.unit}, as was said"
-                doubts.append(f"{said}; the file states {stated}")
+                taken = f"{shown(column.name)!r} is {channel} in {answer.unit}, as was said"
+                doubts.append(f"{taken}; the file states {stated}")
             found[channel] = Answer(answer.column if column else before.column, answer.unit or stated)
         found = {channel: answer for channel, answer in found.items() if answer.column != ""}
         doubts += [f"{shown(a.column)!r} is taken for {channel}, by its name" for channel, a in found.items()
