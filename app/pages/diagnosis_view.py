@@ -212,7 +212,7 @@ def _ladder(found: Diagnosis) -> Iterator[Rung]:
 def _left(found: Diagnosis) -> str:
     """What stays unexplained, in a sentence."""
     error, floor = found.ladder[-1].error.get("fit"), found.noise_floor.get("fit")
-    after = " with all that helps" if found.verdict.effects else ""
+    after = " with all that helps" if len(found.ladder) > 1 else ""
     if floor is None:
         return f"The error is {percent_in_print(error)}{after}, and what is left has a memory that noise has not."
     return f"The error is {percent_in_print(error)}{after}, above the noise floor of {percent_in_print(floor)}."

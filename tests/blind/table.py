@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +34,9 @@ def interval(hits: int, trials: int) -> tuple[float, float]:
 
 
 def rate(found: Sequence[Row]) -> str:
-    """Hits, trials, rate with its interval."""
+    """Hits, trials, rate with its interval; dashes where nothing was tried."""
+    if not found:
+        return "– | –"
     hits = sum(row["named"] for row in found)
     lower, upper = interval(hits, len(found))
     return f"{hits} of {len(found)} | {100 * hits / len(found):.1f} ({100 * lower:.0f}-{100 * upper:.0f})"
@@ -69,14 +72,18 @@ def levels(tried: Sequence[Row]) -> Iterable[str]:
 
 
 def noises(tried: Sequence[Row]) -> Iterable[str]:
-    """Noise of other kinds than white, with nothing hidden and with one effect."""
-    yield "| noise | nothing hidden, nothing named | rate in % | one effect hidden, named | rate in % |"
-    yield "|---|---|---|---|---|"
-    for kind in NOISES:
-        found = [row for row in tried if row.get("of") == kind]
-        parts = [[row for row in found if bool(row["hidden"]) is wanted] for wanted in (False, True)]
-        if all(parts):
-            yield f"| {kind.replace('_', '-')} | {' | '.join(map(rate, parts))} |"
+    """Noise of some kind, with nothing hidden, what was named or proposed, and with one effect."""
+    columns = "noise, matrix, nothing hidden: nothing named, rate in %, nothing proposed, "
+    columns += "one effect hidden: named, rate in %"
+    yield f"| {' | '.join(columns.split(', '))} |"
+    yield "|---|---|---|---|---|---|---|"
+    for kind, matrix in product(NOISES, ("full", "small")):
+        found = [row for row in tried if row.get("of") == kind and row["matrix"] == matrix]
+        none, one = ([row for row in found if bool(row["hidden"]) is wanted] for wanted in (False, True))
+        searched = [row for row in none if "proposed" in row]
+        silent = f"{sum(not row['proposed'] for row in searched)} of {len(searched)}" if searched else "–"
+        if found:
+            yield f"| {kind.replace('_', '-')} | {matrix} | {rate(none)} | {silent} | {rate(one)} |"
 
 
 def cluttered(tried: Sequence[Row]) -> Iterable[str]:
