@@ -1,7 +1,7 @@
 """How far the characteristic of a model with proposed terms is from the true equation's.
 
 The characteristic is the law that moves the machine: the flow that compresses the oil and moves the piston, Q − L, and
-the force that resists, R, both along the runs that were measured. It is compared with that of the oracle, the true
+the force that resists, dry friction with it, R + f, both along the runs that were measured. It is compared with that of the oracle, the true
 equation refitted to the same data, over the samples where pressure, speed and position lie within what 5 to 95 % of
 them visit; of the two the one that is farther off counts.
 """
@@ -22,7 +22,7 @@ from ident.residuals.traces import inside
 
 Array = NDArray[np.float64]
 _ALONG, _VISITED = ("P", "v", "x"), (0.05, 0.95)
-_READ = (*_ALONG, "Q", "L", "R")
+_READ = (*_ALONG, "Q", "L", "R", "f")
 
 
 def off(matrix: Matrix, model: str, true: tuple[Mapping[str, Any], Mapping[str, float]], found: Diagnosis) -> float:
@@ -39,7 +39,7 @@ def off(matrix: Matrix, model: str, true: tuple[Mapping[str, Any], Mapping[str, 
     ours = _laws(matrix, model, (*beside, *(str(one["name"]) for one in custom)), custom,
                  {name: one.value for name, one in estimates.items()})  # fmt: skip
     inner = np.all([_within(oracle[name]) for name in _ALONG], axis=0)
-    pairs = [(one["Q"] - one["L"], one["R"]) for one in (oracle, ours)]
+    pairs = [(one["Q"] - one["L"], one["R"] + one["f"]) for one in (oracle, ours)]
     return max(_rms((b - a)[inner]) / _rms(a[inner]) for a, b in zip(*pairs, strict=True))
 
 
