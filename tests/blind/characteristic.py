@@ -1,9 +1,9 @@
 """How far the characteristic of a model with proposed terms is from the true equation's.
 
 The characteristic is the law that moves the machine: the flow that compresses the oil and moves the piston, Q − L, and
-the force that resists, dry friction with it, R + f, both along the runs that were measured. It is compared with that of the oracle, the true
-equation refitted to the same data, over the samples where pressure, speed and position lie within what 5 to 95 % of
-them visit; of the two the one that is farther off counts.
+the force that resists, dry friction with it, R + f, both along the runs that were measured. It is compared with that of
+the oracle, the true equation refitted to the same data, over the samples where pressure, speed and position lie within
+what 5 to 95 % of them visit; of the two the one that is farther off counts.
 """
 
 from __future__ import annotations
