@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 _LAGS = (0.02, 0.06, 0.2, 0.6)  # of a period at the end of the band, times 2π
 _PLAYS = (0.1, 0.3, 0.6)  # of the deviation of a signal
+SLIP = "v / sqrt(v**2 + vs**2)"
+"""Friction that slips near rest: below vs it grows with the speed."""
+SLIPPING = 0.1  # quantile of the size of the speed
 _YIELDING = (0.1, 0.4, 1.5)  # of the deviation of the position
 _RESONANCES, _DAMPED = (0.15, 0.2, 0.27, 0.36, 0.48, 0.65, 0.9), 0.1  # of the end of the band; of critical damping
 _RECOVERING = (0.02, 0.1, 0.5)  # of the shortest run
@@ -77,6 +80,19 @@ def _late(library: Library, place: str, at: str, a: str) -> Iterator[Term]:
                 return _lagging(np.sign(signals["v"]), rate, T)
 
             yield Term(place, at, "lag(sgn(v), T)", "late friction", (a,), {}, (T,), (), dragged)
+            yield from _slipping_late(library, place, at, T)
+
+
+def _slipping_late(library: Library, place: str, at: str, T: Shape) -> Iterator[Term]:
+    """Friction that slips near rest, behind a lag."""
+    vs = Shape("vs", float(np.quantile(np.abs(library.typical["v"]), SLIPPING)), library.units["v"])
+    if vs.value > 0:
+
+        def slipping(signals: Signals, rate: float) -> Array:
+            v = signals["v"]
+            return _lagging(v / np.sqrt(v**2 + vs.value**2), rate, T.value)
+
+        yield Term(place, at, f"lag({SLIP}, T)", "late slip", ("v",), {}, (T, vs), (), slipping)
 
 
 def _after(library: Library, place: str, at: str) -> Iterator[Term]:

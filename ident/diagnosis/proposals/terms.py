@@ -13,7 +13,7 @@ from itertools import product
 
 import numpy as np
 
-from ident.diagnosis.proposals.memories import of_error, with_memory
+from ident.diagnosis.proposals.memories import SLIP, SLIPPING, of_error, with_memory
 from ident.diagnosis.proposals.softness import of_oil
 from ident.diagnosis.proposals.term import LIMIT, Shape, Signals, Term, multiplied
 from ident.units.grammar import Powers, powers_of
@@ -110,6 +110,19 @@ class Library:
                 near_rest = "exp(-(v / vs)**2)"
                 rubbing = Term(place, at, f"sgn(v) * {near_rest}", "friction near rest", ("v",), {}, (vs,))
                 yield self._dragging(rubbing, "v", near_rest)
+        yield from self._slipping(place, at)
+
+    def _slipping(self, place: str, at: str) -> Iterator[Term]:
+        """Friction that slips smoothly near rest, as a wet seal's, and what it grows with."""
+        vs = Shape("vs", float(np.quantile(np.abs(self.typical["v"]), SLIPPING)), self.units["v"])
+        if vs.value > 0:
+            yield Term(place, at, SLIP, "slip", ("v",), {}, (vs,))
+            for a in self.signals[at]:
+                if a != "v":
+                    yield Term(place, at, f"abs({a}) * {SLIP}", "slip with", (a, "v"), self.unit((a, 1)), (vs,))
+            for name in (*self.varied, *self.recorded):
+                unit = self.unit((name, 1)) if name in self.units else {}
+                yield Term(place, at, f"{name} * {SLIP}", "slip with", (name, "v"), unit, (vs,))
 
     def _of_position(self, place: str, at: str) -> Iterator[Term]:
         if "x" not in self.typical:
