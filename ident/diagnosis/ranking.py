@@ -26,6 +26,7 @@ _NEAR = 1.3  # times the best predicted error: the contenders for a further effe
 _FINALISTS = 5
 _CLOSE = 1.05  # times the best trial's error: also a finalist, where it promises anything
 _AS_GOOD = 1.02  # times the error: what is no better by chance, nor by more than that, stands as listed
+_ENDS = 1.05  # times the error: so far apart end refits with what acts in jumps
 _DEEPER = 2  # of the finalists are looked for elsewhere, too
 _STRONG = (1.0, 0.6, 0.3)  # of the largest strength, from where
 _ROUNDS = 4  # of going on from a better optimum that was found elsewhere
@@ -245,7 +246,10 @@ def _alike(best: Candidate, other: Candidate) -> bool:
 
     Errors on held-out data hang on where the fits without them ended, which in a flat valley rounding decides.
     """
-    if best.refit is None or other.refit is None or other.refit.error > _AS_GOOD * best.refit.error:
+    if best.refit is None or other.refit is None:
+        return False
+    most = _AS_GOOD if best.refit.jumping == other.refit.jumping else _ENDS
+    if other.refit.error > most * best.refit.error:
         return False
     return alike(best.refit, other.refit, other.base)
 

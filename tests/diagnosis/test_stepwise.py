@@ -54,8 +54,9 @@ class Judged:
         values = dict.fromkeys(effects, 1.0)
         here = SimpleNamespace(error=score)
         return SimpleNamespace(
-            effects=tuple(effects), values=values, finite=True, held_out=held_out, here=here, error=score
-        )
+            effects=tuple(effects), values=values, finite=True, held_out=held_out, here=here, error=score,
+            jumping=frozenset(),
+        )  # fmt: skip
 
     def both(self, first, second, _aim):
         """The same with the last effects of two."""
