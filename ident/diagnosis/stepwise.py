@@ -86,7 +86,7 @@ class StepwiseSelection:
             if self.models.floor is not None and not self.models.at_floor(self.found) and farther():
                 self._rounds()
         for _ in range(_ROUNDS):
-            if not self._shortened() and not self._weighed():
+            if not self._shortened() and not (self.models.at_floor(self.found) and self._weighed()):
                 break
             self._rounds()
 

@@ -34,7 +34,7 @@ Array = NDArray[np.float64]
 _ABSORBED = 1e-4  # of a term's power that the parameters leave: less, and they do what it does
 ALIKE = 0.999  # cosine of two terms that the data cannot tell apart
 _DIGITS = 8  # of what a term explains: the rest is rounding
-_AT_ONCE = 8  # runs
+_AT_ONCE = 4  # runs
 
 
 @dataclass(frozen=True)
