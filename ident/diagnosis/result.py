@@ -221,6 +221,8 @@ class Diagnosis(Shown):
             del data["looked_at"]
         if self.complete:
             del data["complete"]
+        if not self.verdict.stood_in:
+            del data["verdict"]["stood_in"]
         if self.verdict.standing is None:
             del data["verdict"]["standing"], data["verdict"]["contradicted_by"]
         return data | {name: data[name] or {} for name in ("budget", "next_experiment")}

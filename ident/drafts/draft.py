@@ -17,7 +17,7 @@ from ident.units.quantity import shown
 
 OUTPUTS = ("displacement", "velocity", "force", "load_pressure")
 """Channels that a model may have to reproduce; the first that there is, unless one is named."""
-_DRIVES = ("command", "current", "drive_force")
+_DRIVES = ("command", "current")
 _HELD = "the command rests and jumps, so it is taken to be held between its changes (hold: zoh)"
 _DRAWN = "the command is taken to run straight from sample to sample (hold: linear); say zoh where it is held"
 NONE = "-"
@@ -150,9 +150,9 @@ class Draft:
         wanted = self.answers.output or output
         drives = {*_DRIVES, *({"velocity", "displacement"} if wanted == "force" else ())}
         if not drives & known.channels.keys() and self._said("command") != NONE:
-            motion = "; or say --output force where the motion drives" if "force" in known.channels else ""
-            driven = f" or, as drive_force, the force that drives{motion}"
-            found.append(Missing("channel command", f"which column of {_listed(file)} is the command{driven}"))
+            driven = ", or say --output force where the motion drives" if "force" in known.channels else ""
+            what = f"which column of {_listed(file)} is the command, or the force that drives{driven}"
+            found.append(Missing("channel command", what))
         if not wanted or wanted not in known.channels:
             what = wanted or "displacement, velocity or force"
             found.append(Missing(f"channel {wanted or OUTPUTS[0]}", f"which column of {_listed(file)} is the {what}"))

@@ -120,9 +120,6 @@ class Library:
             for a in self.signals[at]:
                 if a != "v":
                     yield Term(place, at, f"abs({a}) * {SLIP}", "slip with", (a, "v"), self.unit((a, 1)), (vs,))
-            for name in (*self.varied, *self.recorded):
-                unit = self.unit((name, 1)) if name in self.units else {}
-                yield Term(place, at, f"{name} * {SLIP}", "slip with", (name, "v"), unit, (vs,))
 
     def _of_position(self, place: str, at: str) -> Iterator[Term]:
         if "x" not in self.typical:

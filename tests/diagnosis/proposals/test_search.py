@@ -26,7 +26,6 @@ from ident.progress import Progress
 from ident.workflows import diagnose, identify, study
 from tests.bench.test_diagnosis import matrix_with
 from tests.blind.machines import matrix_of
-from tests.reference import nonlinear_reference as nonlinear
 from tests.reference import qian_reference as linear
 from tests.reference.outside_reference import Outside, measure_all
 
@@ -80,29 +79,6 @@ def test_the_equation_that_no_list_holds_is_found(kind, full):
     assert term.error["fit"] == pytest.approx(NOISE, rel=0.03)
     assert term.error["verify"] < 1.05 * NOISE
     assert term.nats > term.bar > 10
-
-
-@pytest.mark.parametrize(("hidden", "equation", "true"), [
-    ({"entrained_air.alpha": 1.5, "entrained_air.Pr": 1.5e6}, "Ke = Ke + s * (Ke * (1 / (1 + (P / h)**2)))", 1.5),
-    ({"sensor_nonlinearity.s": 2e4}, "y_fb = y_fb + s * (x**3)", 2e4),
-])  # fmt: skip
-def test_the_oil_and_what_the_loop_reads_are_places_too(hidden, equation, true):
-    """Air in the oil multiplies a rate; a transducer that is not linear misleads the loop besides the record.
-
-    At loads that stay below the pressure where half of the air is gone, that and how much there is are hardly told
-    apart.
-    """
-    trials = linear.trials()
-    chosen = [trial for trial in trials if trial.use == "fit"][::6][:12] + trials[-3:]
-    records = nonlinear.measure_all(
-        nonlinear.named(hidden), chosen, plant=PLANT, seconds=0.5, noise=NOISE, seed=3, bits=None
-    )
-    (term,) = proposed(matrix_of(records, PLANT)).proposals
-    assert term.equation == equation
-    assert term.strength == pytest.approx(true, rel=0.06 if "x" in equation else 0.5)
-    assert term.error["fit"] < 1.02 * NOISE
-    assert term.error["verify"] < (1.05 if "x" in equation else 1.25) * NOISE
-    assert term.meaning
 
 
 def test_a_proposal_is_no_finding():
