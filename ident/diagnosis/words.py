@@ -116,13 +116,17 @@ def _helps(
     named: Sequence[str], doubted: bool, before: float, errors: Mapping[str, float | None],
     fewer: tuple[float, Sequence[str]] | None,
 ) -> str:  # fmt: skip
-    *others, last = named
-    names = f"{', '.join(others)} and {last}" if others else last
+    names = _listed(named)
     them = "it" if len(named) == 1 else "them"
     lacks = "What helps on the fitted runs is" if doubted else "The model lacks"
     verify = errors.get("verify")
     told = "" if verify is None else f" ({percent(verify)} on verify runs{_fewer(fewer)})"
     return f"{lacks} {names}: with {them} the error falls from {percent(before)} to {percent(errors['fit'])}{told}."
+
+
+def _listed(names: Sequence[str]) -> str:
+    *others, last = names
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def _fewer(of: tuple[float, Sequence[str]] | None) -> str:
@@ -141,9 +145,8 @@ def as_well(elsewhere: Sequence[Explanation]) -> Iterator[str]:
 def told_needless(names: Sequence[str]) -> Iterator[str]:
     """Which effects only stood for what a search proposes, in a sentence."""
     if names:
-        *others, last = map(title, names)
-        listed = f"{', '.join(others)} and {last}" if others else last
-        needed = "are not needed: they stood" if others else "is not needed: it stood"
+        needed = "are not needed: they stood" if len(names) > 1 else "is not needed: it stood"
+        listed = _listed([*map(title, names)])
         yield f"Beside what a search proposes beyond the catalogue {listed} {needed} for that."
 
 

@@ -31,16 +31,20 @@ def off(matrix: Matrix, model: str, true: tuple[Mapping[str, Any], Mapping[str, 
     `true` are the definition of the true equation and the values of its fit by the parameters' names.
     """
     own, values = true
-    proposed = found.proposals or ()
-    custom = [one.effect for one in proposed]
-    estimates = proposed[-1].parameters if proposed else found.ladder[-1].parameters
-    beside = proposed[-1].beside if proposed else found.verdict.effects
     oracle = _laws(matrix, model, (str(own["name"]),), (own,), values)
-    ours = _laws(matrix, model, (*beside, *(str(one["name"]) for one in custom)), custom,
-                 {name: one.value for name, one in estimates.items()})  # fmt: skip
+    ours = _laws(matrix, model, *ending(found))
     inner = np.all([_within(oracle[name]) for name in _ALONG], axis=0)
     pairs = [(one["Q"] - one["L"], one["R"] + one["f"]) for one in (oracle, ours)]
     return max(_rms((b - a)[inner]) / _rms(a[inner]) for a, b in zip(*pairs, strict=True))
+
+
+def ending(found: Diagnosis) -> tuple[list[str], list[Mapping[str, Any]], dict[str, float]]:
+    """What a diagnosis ends with, its proposals added: effects, definitions of one's own, values by name."""
+    proposed = found.proposals or ()
+    custom = [one.effect for one in proposed]
+    parameters = proposed[-1].parameters if proposed else found.ladder[-1].parameters
+    beside = proposed[-1].beside if proposed else found.verdict.effects
+    return [*beside, *(str(one["name"]) for one in custom)], custom, {n: one.value for n, one in parameters.items()}
 
 
 def _laws(

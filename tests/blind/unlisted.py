@@ -95,12 +95,9 @@ def outcome(machine: Hiding, catalogue: bool, true: tuple[Mapping[str, Any], Map
 
 def _off(found: Diagnosis, clean: Matrix, noise: float) -> float:
     """How far the model's outputs are from those without noise, in deviations of the noise, on average over runs."""
-    proposed, listed = found.proposals or (), found.ladder[-1]
-    parameters = proposed[-1].parameters if proposed else listed.parameters
-    effects = proposed[-1].beside if proposed else found.verdict.effects
-    custom = [one.effect for one in proposed]
-    model, driven = preset_with(MODEL, (*effects, *(one["name"] for one in custom)), custom).for_matrix(clean)
-    values = {p.in_equations: parameters[p.name].value if p.name in parameters else p.value for p in model.parameters}
+    effects, custom, known = characteristic.ending(found)
+    model, driven = preset_with(MODEL, effects, custom).for_matrix(clean)
+    values = {p.in_equations: known.get(p.name, p.value) for p in model.parameters}
     outputs = modelled(model, values, driven)
     left = [np.std(run.measured - outputs[run.id]) / np.std(run.measured) for run in clean.runs]
     return float(np.mean(left)) / noise

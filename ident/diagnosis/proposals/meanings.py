@@ -54,7 +54,7 @@ _KINDS = {
     "friction with": "dry friction that changes with a condition of the run, what was recorded beside it, or time",
     "recorded": "acts with what was recorded beside the machine",
     "slip": "friction that slips smoothly near rest",
-    "slip with": "friction that slips smoothly near rest, and grows with another signal or a condition of the run",
+    "slip with": "friction that slips smoothly near rest, and grows with another signal",
     "late slip": "friction that slips smoothly near rest and builds up, and turns, with a delay",
     "late friction": "dry friction that builds up, and turns, with a delay",
     "fading": "comes, or goes, with time as what warms up", "fading friction": "dry friction that wears in",

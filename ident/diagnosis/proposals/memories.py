@@ -85,7 +85,7 @@ def _late(library: Library, place: str, at: str, a: str) -> Iterator[Term]:
 
 def _slipping_late(library: Library, place: str, at: str, T: Shape) -> Iterator[Term]:
     """Friction that slips near rest, behind a lag."""
-    vs = Shape("vs", float(np.quantile(np.abs(library.typical["v"]), SLIPPING)), library.units["v"])
+    vs = library.slow(SLIPPING)
     if vs.value > 0:
 
         def slipping(signals: Signals, rate: float) -> Array:

@@ -105,7 +105,7 @@ class Library:
         if place != "load" or "v" not in self.signals[at]:
             return
         for share in _SLOW:
-            vs = Shape("vs", float(np.quantile(np.abs(self.typical["v"]), share)), self.units["v"])
+            vs = self.slow(share)
             if vs.value > 0:
                 near_rest = "exp(-(v / vs)**2)"
                 rubbing = Term(place, at, f"sgn(v) * {near_rest}", "friction near rest", ("v",), {}, (vs,))
@@ -114,7 +114,7 @@ class Library:
 
     def _slipping(self, place: str, at: str) -> Iterator[Term]:
         """Friction that slips smoothly near rest, as a wet seal's, and what it grows with."""
-        vs = Shape("vs", float(np.quantile(np.abs(self.typical["v"]), SLIPPING)), self.units["v"])
+        vs = self.slow(SLIPPING)
         if vs.value > 0:
             yield Term(place, at, SLIP, "slip", ("v",), {}, (vs,))
             for a in self.signals[at]:
@@ -184,6 +184,10 @@ class Library:
                 turn = Shape("g", phase, "1", lower=-0.5, upper=0.5)
                 text = f"{at} * sin(2 * pi * (fp * t + g))"
                 yield Term(place, at, text, "periodic", (at, "t"), self.unit((at, 1)), (f, turn))
+
+    def slow(self, share: float) -> Shape:
+        """A speed that is slow: below it is the machine in that share of the samples."""
+        return Shape("vs", float(np.quantile(np.abs(self.typical["v"]), share)), self.units["v"])
 
     def unit(self, *of: tuple[str, int]) -> Powers:
         """That of a product of powers of signals."""
