@@ -73,6 +73,17 @@ class LinearModel:
         z[..., idle] = np.divide(left[..., None], shown, out=np.zeros(shown.shape), where=shown != 0)
         return z
 
+    def standing_at(self, y: float) -> Array:
+        """The states (..., n) that stand with an output of y, under the command that holds it there."""
+        per_command = (self.C * self.standing(1.0, 0.0)).sum(axis=-1) + self.D
+        u = np.divide(y, per_command, out=np.zeros(per_command.shape), where=np.abs(per_command) > 1e-12)
+        return self.standing(u, y)
+
+    def sizes(self, omega: float) -> Array:
+        """How large the states are per input at an angular frequency (rad/s), |(jωI − A)⁻¹ B|, (..., n)."""
+        at = 1j * omega * np.eye(self.A.shape[-1]) - self.A
+        return np.asarray(np.abs(np.linalg.solve(at, self.B[..., None])[..., 0]))
+
     def frequency_response(self, frequency: Array) -> NDArray[np.complex128]:
         """G(jω) = C (jωI − A)⁻¹ B + D at `frequency` in Hz, shape (f,) → (..., f).
 

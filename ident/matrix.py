@@ -198,28 +198,28 @@ class Run:
     @cached_property
     def begins(self) -> Beginning:
         """How the measured output begins: a model may start at rest, in its equilibrium, or in a state to be found.
-
         "at rest": it stands still at zero. "standing": it stands still elsewhere, under a command that is held there.
         "moving": what acted before the record still shows.
 
         A line is fitted to the first millisecond (at least 4 samples): a servo-hydraulic machine needs longer than
         that to follow a jump of its command. Of a record with many outputs the position, where it was recorded, says
         it for all: a machine begins in one way. Still: speed below 5 % of the typical speed; at zero: value below 2 %
-        of the record's standard deviation; or either within 4 standard errors of zero. A record cut out of a moving
-        test passes by accident about once in a thousand.
+        of the record's standard deviation; or either within 4 standard errors of zero. Of few samples a second the line
+        is the answer to a jump: there two say it. A record cut out of a moving test passes about once in a thousand.
         """
         n, x = self._first, self._first_seen
+        size, speed = float(np.std(x)), float(np.std(x[n:] - x[:-n])) / n
         slope, value = np.polyfit(np.arange(n), x[:n], 1)
         # Differences of fourth order leave the noise of a well sampled record (their gain on white noise is √70).
-        noise = min(float(np.std(np.diff(x, 4))) / np.sqrt(70.0), 0.03 * float(np.std(x))) if len(x) > 8 else 0.0
-        if "command" in self.channels and self.stepped and abs(x[0]) <= max(0.05 * float(np.std(x)), 4 * noise):
-            return "at rest"  # the step comes with the first sample, and what follows it is its answer
-        spread = np.arange(n) - (n - 1) / 2
-        slope_error = noise / np.sqrt(np.sum(spread**2))
+        noise = min(float(np.std(np.diff(x, 4))) / np.sqrt(70.0), 0.03 * size) if len(x) > 8 else 0.0
+        if "command" in self.channels and abs(self.command[0]) > 0.05 * np.std(self.command):
+            few = abs(x[0]) <= 0.02 * size and abs(x[1] - x[0]) <= 0.05 * speed
+            if few or (self.stepped and abs(x[0]) <= max(0.05 * size, 4 * noise)):
+                return "at rest"  # the step comes with the first sample, and what follows it is its answer
+        slope_error = noise * np.sqrt(12.0 / (n * (n**2 - 1)))
         value_error = np.hypot(noise / np.sqrt(n), slope_error * (n - 1) / 2)
-        speed = float(np.std(x[n:] - x[:-n])) / n
         still = abs(slope) <= max(0.05 * speed, 4 * slope_error)
-        if still and abs(value) <= max(0.02 * float(np.std(x)), 4 * value_error):
+        if still and abs(value) <= max(0.02 * size, 4 * value_error):
             return "at rest"
         return "standing" if still and self.stands else "moving"
 

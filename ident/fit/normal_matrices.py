@@ -21,6 +21,8 @@ from ident.simulation.recursion import Recursion, discretise, respond, responses
 Array = NDArray[np.float64]
 _BLOCKS = 32  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
 _SETTLED = 1e-6  # of a residual's power
+_MUCH = 0.1  # of it: more than this a step promises only as far as the model is straight
+_HARDLY = 1e-6  # of what a first state does to a record it has to do to its shape, for a step along it
 _ESCAPED = 1e12  # times the record's power: the model has run away, and its nuisances would explain anything
 
 
@@ -56,10 +58,42 @@ class NormalMatrices:
         """Whether better first states, if any are free, would explain next to nothing more of the residual."""
         if not len(self.release):
             return True
+        return bool(self.gram[-1, -1] > (1.0 - _SETTLED) * self.power)
+
+    @property
+    def promises(self) -> bool:
+        """Whether better first states would explain much of the residual, were the model straight up to them."""
+        return bool(self.gram[-1, -1] < (1.0 - _MUCH) * self.power)
+
+    @property
+    def power(self) -> float:
+        """Σ r², less the mean, from the first states as they are: infinite of a model that ran away."""
+        if not len(self.remove):
+            return np.inf
         total = self.blocks.sum(axis=0)
         constant, shared, power = total[-2, -2], total[-2, -1], total[-1, -1]
-        centred = power - shared**2 / constant if constant > 0 else power
-        return bool(self.gram[-1, -1] > (1.0 - _SETTLED) * centred)
+        return float(power - shared**2 / constant if constant > 0 else power)
+
+    def step(self) -> Array:
+        """How far to go on with each first state that is free.
+
+        One that moves the whole record, as a position does in saturation, is seen by its mean alone, which is free.
+        """
+        total, p = self.blocks.sum(axis=0), self.remove.shape[1] - 1
+        gram, shared, constant = total[p:-2, p:-2], total[p:-2, [-2]], total[-2, -2]
+        free = shared / constant if constant > 0 else np.zeros(shared.shape)
+        shape, towards = gram - free @ shared.T, total[p:-2, -1] - free[:, 0] * total[-2, -1]
+        size = np.sqrt(np.maximum(np.diag(gram), 1e-300))
+        ridge = _HARDLY * np.eye(len(size))
+        return np.asarray(np.linalg.solve(shape / size / size[:, None] + ridge, towards / size) / size)
+
+    def as_begun(self) -> NormalMatrices:
+        """The same with the error that the first states leave as they are, where better ones only promise less."""
+        if not self.promises:
+            return self
+        gram = self.gram.copy()
+        gram[-1, -1] = self.power
+        return replace(self, gram=gram)
 
     def errors_beside(self, steps: Array) -> Array:
         """Eq. (17) at steps (v, p) from the point where the model is as straight as here, |r − J s|/|x_m|, (v,)."""

@@ -86,6 +86,9 @@ class SimulatedFitness(SimulatedRuns):
         self.begin({name: float(value[0]) for name, value in values.items()})
         with np.errstate(over="ignore", invalid="ignore"):
             found = self.settled(values, strides, steps)
+            if p and any(run.promises for run in found.values()):
+                self.settled({name: value[:1] for name, value in values.items()}, np.empty(0), steps)
+                found = {run: moments.as_begun() for run, moments in self.settled(values, strides, steps).items()}
         with_means = self.horizon is None and len({run.output for run in self.runs}) == 1
         return local([found[run.id] for run in self.runs], with_means)
 

@@ -46,7 +46,8 @@ class SimulatedRuns:
     equations' names, SI: numbers, or arrays of v parameter vectors side by side. With a `horizon` (s)
     the moments are those of windows of that length, each begun where it was measured: see :mod:`ident.fit.windows`;
     with a `memory` (s) at the speed, too, that was found before. Of the outputs named in `absolute` the mean counts
-    too, which eq. (17) does not see. A search follows the kinks of a core `roughly`.
+    too, which eq. (17) does not see. A search follows the kinks of a core `roughly`. `sizes` are those of the core's
+    states, (n,), once a run has begun that moves.
     """
 
     preset: Preset
@@ -58,6 +59,7 @@ class SimulatedRuns:
     memory: float | None = field(default=None, kw_only=True)
     absolute: tuple[str, ...] = field(default=(), kw_only=True)
     roughly: bool = field(default=False, kw_only=True)
+    sizes: Array = field(default_factory=lambda: np.zeros(1), kw_only=True)
 
     @property
     def chain(self) -> Chain:
@@ -89,20 +91,25 @@ class SimulatedRuns:
     def settled(self, values: Mapping[str, Array], strides: Array, steps: int) -> dict[str, NormalMatrices]:
         """The matrices of every run by its id; without sensitivities the first states are followed until they hold.
 
-        `strides` (p,) are those of the vectors behind the first.
+        `strides` (p,) are those of the vectors behind the first. A run that more is left of than before goes halfway
+        back to where least was: a step is as long as the model is straight.
         """
-        found: dict[str, NormalMatrices] = {}
-        p = len(strides)
-        for _ in range(1 if p else _SETTLING):
-            todo = list(self.together(p + 1 + len(self.chain.states)))
+        least: dict[str, tuple[Array, NormalMatrices]] = {}
+        for _ in range(1 if len(strides) else _SETTLING):
+            todo = list(self.together(len(strides) + 1 + len(self.chain.states)))
             parts = each(lambda runs: self._normal_matrices(runs, values, strides, steps), todo)
             found = {
                 run.id: m for runs, part in zip(todo, parts, strict=True) for run, m in zip(runs, part, strict=True)
             }
-            if p or all(moments.settled for moments in found.values()):
-                break
-            for run in self.runs:
-                self._follow(run, found[run.id])
+            moving = [run for run in self.runs if len(self._free(run))]
+            if len(strides):
+                return found
+            going = [self._go_on(run, found[run.id], least) for run in moving]
+            if not any(going):
+                return found
+        for run in moving:
+            self.starts[run.id], moments = least[run.id]
+            found[run.id] = moments.as_begun()
         return found
 
     def _normal_matrices(
@@ -232,28 +239,61 @@ class SimulatedRuns:
         return np.array([state for state in range(len(self.chain.states)) if state not in recorded], np.intp)
 
     def begin(self, values: Mapping[str, float]) -> None:
-        """Take the first states that are not known yet from the linear model at `values`."""
-        core = self.preset.core
+        """Take the first states that are not known yet from the linear model at `values`.
+
+        Its best ones, or those that stand still at what is measured first: with which the chain leaves less. What a
+        linear model makes of a machine in saturation may lie where no step leads back from.
+        """
         for run in self.runs:
             if run.begins == "moving" and run.id not in self.starts:
-                found = first_state(run, linear_model(core, values, run, self.matrix.actuator))
-                known = dict(zip(core.states, found, strict=True))
-                self.starts[run.id] = np.array([known.get(name, 0.0) for name in self.chain.states])
+                model = linear_model(self.preset.core, values, run, self.matrix.actuator)
+                guesses = [first_state(run, model)]
+                self.sizes = np.maximum(self.sizes, model.sizes(self.band)[0] * run.drive)
+                if not self.preset.is_linear:
+                    guesses.append(model.standing_at(run.measured[0])[0])
+                self.starts[run.id] = self._best(run, values, np.array(guesses))
+
+    def _best(self, run: Run, values: Mapping[str, float], guesses: Array) -> Array:
+        """Those of first states (g, n) of the core that least is left of a run with, its offset with it.
+
+        In saturation a position that is shifted changes nothing else.
+        """
+        start = np.zeros((1, len(guesses), len(self.chain.states)))
+        start[..., [self.chain.states.index(name) for name in self.preset.core.states]] = guesses
+        if len(guesses) == 1:
+            return np.asarray(start[0, 0])
+        vectors = {name: np.repeat(value, len(guesses)) for name, value in values.items()}
+        steps = int(self.steps(vectors).max())
+        with np.errstate(over="ignore", invalid="ignore"):
+            outputs = [rows[:, 0] for rows, _, _ in self.simulation((run,), vectors, steps, start).outputs()]
+            power = np.mean((run.measured[:, None] - np.concatenate(outputs)) ** 2, axis=0)
+        return np.asarray(start[0, int(np.argmin(np.where(np.isfinite(power), power, np.inf)))])
+
+    def _go_on(self, run: Run, found: NormalMatrices, least: dict[str, tuple[Array, NormalMatrices]]) -> bool:
+        """Go on to better first states of a run, or back to those that `least` is left of; whether there are any."""
+        here, best = self.start(run), least.get(run.id)
+        if best is not None and not found.power < best[1].power:
+            self.starts[run.id] = (here + best[0]) / 2.0
+            return not best[1].settled
+        least[run.id] = here, found
+        if not found.settled:
+            self._follow(run, found)
+        return not found.settled
 
     def _follow(self, run: Run, found: NormalMatrices) -> None:
         free = self._free(run)
         if len(found.release) and np.all(np.isfinite(found.release)):
             start = self.start(run)
-            start[free] += self._reach[free] * found.release
+            start[free] += self._reach[free] * found.step()
             self.starts[run.id] = start
 
     @cached_property
     def _reach(self) -> Array:
-        """A small step of each state: of the size that the first states have, or of the output's for others."""
-        size = float(np.mean([np.std(run.measured) for run in self.runs]))
-        known = np.array([np.abs(start) for start in self.starts.values()])
-        largest = known.max(axis=0) if len(known) else np.zeros(len(self.chain.states))
-        return np.asarray(_REACH * np.where(largest > 0, largest, size))
+        """A small step of each state: of the size that it has in the core, or of the output's for others."""
+        reach = np.full(len(self.chain.states), np.mean([np.std(run.measured) for run in self.runs]))
+        known = [self.chain.states.index(name) for name in self.preset.core.states]
+        reach[known] = np.where(self.sizes > 0, self.sizes, reach[known])
+        return np.asarray(_REACH * reach)
 
     # Shares ------------------------------------------------------------------------------------------------------
 

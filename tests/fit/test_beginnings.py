@@ -14,7 +14,9 @@ from scipy.integrate import solve_ivp
 
 from ident.diagnosis.family import ModelFamily
 from ident.fit.identification import Identification, completed
+from ident.fit.result import FitResult
 from ident.fit.settings import Settings
+from ident.fit.simulated_runs import every_run
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Matrix, Run
 from ident.simulation.steps import FASTEST
@@ -22,6 +24,7 @@ from ident.workflows import compare, diagnose, identify
 from tests.rounding import perturbed_run
 
 RATE = 50.0
+SATURATED = Settings(model="qian2014", effects=("command_limit",))
 
 
 def staircase(seed: int, first: float, lowest: float = -5.0, highest: float = 5.0) -> np.ndarray:
@@ -154,3 +157,54 @@ def test_a_lag_far_below_the_sample_time_is_not_searched_and_the_diagnosis_follo
         assert fit.values["tau"] >= 0.99 / (FASTEST * RATE)
         found = diagnose(replace(matrix, runs=tuple(quick)), fit, most=0, propose=False)
         assert found.baseline.error["fit"] == pytest.approx(fit.error["fit"], rel=0.02, abs=1e-5)
+
+
+def servo(cut: int = 0, late: int = 0, noise: float = 0.004) -> Matrix:
+    """0.03 q̇ + q = 9 clip(u − x, ±0.14), ẋ = q: of limited speed, behind jumps, cut out of its motion; late samples."""
+    runs = []
+    for i, (size, hold) in enumerate(((0.1, 12), (0.3, 25), (0.6, 18), (0.6, 30))):
+        command = np.repeat(np.where(np.arange(9) % 2, -size, size), hold)
+        acts = np.concatenate([np.zeros(late), command])[: len(command)]
+        run = run_of(acts, lambda z, u: [z[1], (9 * np.clip(u - z[0], -0.14, 0.14) - z[1]) / 0.03], [0.0, 0.0], 0,
+                     "displacement", "fit" if i < 3 else "verify", noise)  # fmt: skip
+        channels, units = {**run.channels, "command": command}, {"command": "m", "displacement": "m"}
+        run = replace(run, id=str(i), channels=channels, units=units)
+        runs.append(run.part(cut + i, run.length) if cut else run)
+    return Matrix(Actuator("SERVO"), tuple(runs))
+
+
+@pytest.fixture(scope="module")
+def saturated() -> tuple[Matrix, FitResult]:
+    """A machine in saturation that moves at first, and its fit."""
+    matrix = servo(9)
+    return matrix, identify(matrix, SATURATED)
+
+
+def test_a_machine_in_saturation_that_moves_at_first_is_found(saturated):
+    """The linear model's first states lie hundreds of deviations off, from where no step led back: 65 to 97 % left."""
+    matrix, fit = saturated
+    assert {run.begins for run in matrix.runs} == {"moving"}
+    assert max(fit.error["fit"], fit.error["verify"]) < 0.0044
+    assert 1.0 / fit.parameters["command_limit.inverse_limit"].value == pytest.approx(0.14, rel=0.01)
+
+
+@pytest.mark.parametrize("far", [-0.3, 0.3])
+def test_first_states_go_on_only_while_less_is_left(saturated, far):
+    """From a place that a straight step overshoots, at the fitted values, what is left falls to the noise."""
+    matrix, fit = saturated
+    preset = Identification(matrix, SATURATED).objective.preset
+    runs = every_run(preset, matrix)
+    found = {preset.parameter(name).in_equations: value for name, value in fit.values.items()}
+    values = {p.in_equations: p.value for p in preset.parameters} | found
+    runs.begin(values)
+    for run in matrix.runs:
+        runs.starts[run.id] = runs.starts[run.id] + far * (np.array(preset.chain.states) == "x")
+    outputs = runs.outputs_at(values)
+    assert max(np.std(runs.left(run, outputs[run.id])) / np.std(run.measured) for run in matrix.runs) < 0.0044
+
+
+def test_few_samples_a_second_show_that_a_machine_stood_before_its_command_jumped():
+    """The third sample is its answer already."""
+    assert {run.begins for run in servo(late=1, noise=0.0).runs} == {"at rest"}
+    assert {run.begins for run in servo(late=1, noise=0.0005).runs} == {"at rest"}
+    assert {run.begins for run in servo(5, late=1, noise=0.0).runs} == {"moving"}

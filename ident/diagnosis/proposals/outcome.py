@@ -50,10 +50,14 @@ class Proposals:
     complete: bool = True
 
     def or_refused(self, other: Proposals) -> Proposals:
-        """The same where something was found; else with the better of what two searches refused."""
+        """The same where something was found; else with what would leave less of what two searches refused.
+
+        Their nats count from different models.
+        """
         if self.found or other.refused is None:
             return self
-        best = max((one.refused for one in (other, self) if one.refused is not None), key=lambda one: one.nats)
+        refused = (one.refused for one in (self, other) if one.refused is not None)
+        best = min(refused, key=lambda one: one.error["fit"] or 0.0)
         return replace(self, refused=best, looked_at=self.looked_at + other.looked_at)
 
     def left(self, before: float, what: str = "fit") -> float:

@@ -68,16 +68,20 @@ def test_without_runs_to_verify_nothing_is_known() -> None:
     assert found(0.26).instead(cast(Refit, Leaving(0.16)), ("play",), ()).found[-1].contradicted is None
 
 
-def refused(equation: str, nats: float, *beside: str, verify: float | None = 0.4) -> Proposals:
-    error = {"fit": 0.3, "held_out": 0.31, "verify": verify}
+def refused(equation: str, nats: float, *beside: str, fit: float = 0.3, verify: float | None = 0.4) -> Proposals:
+    error = {"fit": fit, "held_out": 0.31, "verify": verify}
     best = Refused(equation=equation, nats=nats, bar=13.4, beside=beside, error=error)
     return Proposals(refused=best, looked_at=4000)
 
 
-def test_of_two_searches_the_better_of_what_was_refused_is_told_with_what_it_would_leave() -> None:
-    plain, beside = refused("Q = Q + s * (max(Q, 0) * w)", 10.3), refused("R = R + s * (x)", 6.9, "dead_zone")
-    for told in (plain.or_refused(beside), beside.or_refused(plain)):
-        assert (told.refused, told.looked_at) == (plain.refused, 8000)
+def test_of_two_searches_what_was_refused_and_would_leave_less_is_told() -> None:
+    """Nats count from the model that a search began with: 557 from a linear one leave more than 7 from a better one."""
+    plain = refused("Q = Q + s * (max(Q, 0) * w)", 10.3)
+    beside = refused("R = R + s * (x)", 6.9, "dead_zone", fit=0.31)
+    from_linear = refused("e = e + s * (P)", 557.0, fit=0.5)
+    for worse in (beside, from_linear):
+        for told in (plain.or_refused(worse), worse.or_refused(plain)):
+            assert (told.refused, told.looked_at) == (plain.refused, 8000)
     assert plain.refused is not None
     assert beside.refused is not None
     assert "max(Q, 0) * w): 10.3 nats" in plain.refused.told(8000)
