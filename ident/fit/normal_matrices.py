@@ -22,7 +22,6 @@ Array = NDArray[np.float64]
 _BLOCKS = 32  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
 _SETTLED = 1e-6  # of a residual's power
 _MUCH = 0.1  # of it: more than this a step promises only as far as the model is straight
-_HARDLY = 1e-6  # of what a first state does to a record it has to do to its shape, for a step along it
 _ESCAPED = 1e12  # times the record's power: the model has run away, and its nuisances would explain anything
 
 
@@ -74,8 +73,8 @@ class NormalMatrices:
         constant, shared, power = total[-2, -2], total[-2, -1], total[-1, -1]
         return float(power - shared**2 / constant if constant > 0 else power)
 
-    def step(self) -> Array:
-        """How far to go on with each first state that is free.
+    def step(self, damping: float) -> Array:
+        """How far to go on with each first state that is free: damped along those that hardly change the shape.
 
         One that moves the whole record, as a position does in saturation, is seen by its mean alone, which is free.
         """
@@ -84,7 +83,7 @@ class NormalMatrices:
         free = shared / constant if constant > 0 else np.zeros(shared.shape)
         shape, towards = gram - free @ shared.T, total[p:-2, -1] - free[:, 0] * total[-2, -1]
         size = np.sqrt(np.maximum(np.diag(gram), 1e-300))
-        ridge = _HARDLY * np.eye(len(size))
+        ridge = damping * np.eye(len(size))
         return np.asarray(np.linalg.solve(shape / size / size[:, None] + ridge, towards / size) / size)
 
     def as_begun(self) -> NormalMatrices:

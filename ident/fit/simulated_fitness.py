@@ -95,7 +95,7 @@ class SimulatedFitness(SimulatedRuns):
     def accept(self, here: Local) -> None:
         """Go on from the first states that were found at a point."""
         for run, found in zip(self.runs, here.runs, strict=True):
-            self._follow(run, found)
+            self._follow(run, self.start(run), found.release)
 
     def fresh(self, runs: tuple[Run, ...]) -> SimulatedFitness:
         """The same for other runs, which know nothing of this search."""

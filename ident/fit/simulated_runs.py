@@ -23,6 +23,7 @@ from ident.fit.modes import extreme, fastest
 from ident.fit.normal_matrices import NormalMatrices, first_state, normal_matrices_of
 from ident.fit.products import add_block_products, completed
 from ident.fit.reduction import excited_band
+from ident.fit.settling import ROUNDS, Settling
 from ident.matrix import Matrix, Run
 from ident.parallel import cores, each
 from ident.presets import Preset
@@ -35,7 +36,6 @@ _TOGETHER = 256  # lanes simulated in one go: memory stays small, the cores stay
 _BLOCKS = 32  # of a record: see ident.fit.normal_matrices
 _REACH = 1e-3  # of a state's size, for sensitivities to the first state
 _BLOCK = 4096  # samples simulated at a time
-_SETTLING = 10  # rounds at most in which the first states of a model are found
 
 
 @dataclass
@@ -91,25 +91,22 @@ class SimulatedRuns:
     def settled(self, values: Mapping[str, Array], strides: Array, steps: int) -> dict[str, NormalMatrices]:
         """The matrices of every run by its id; without sensitivities the first states are followed until they hold.
 
-        `strides` (p,) are those of the vectors behind the first. A run that more is left of than before goes halfway
-        back to where least was: a step is as long as the model is straight.
+        `strides` (p,) are those of the vectors behind the first.
         """
-        least: dict[str, tuple[Array, NormalMatrices]] = {}
-        for _ in range(1 if len(strides) else _SETTLING):
-            todo = list(self.together(len(strides) + 1 + len(self.chain.states)))
+        found: dict[str, NormalMatrices] = {}
+        settling, pending = Settling(), self.runs
+        for count in range(1 if len(strides) else ROUNDS):
+            todo = list(self.together(len(strides) + 1 + len(self.chain.states), of=pending))
             parts = each(lambda runs: self._normal_matrices(runs, values, strides, steps), todo)
-            found = {
-                run.id: m for runs, part in zip(todo, parts, strict=True) for run, m in zip(runs, part, strict=True)
-            }
-            moving = [run for run in self.runs if len(self._free(run))]
+            for runs, part in zip(todo, parts, strict=True):
+                found.update((run.id, moments) for run, moments in zip(runs, part, strict=True))
             if len(strides):
                 return found
-            going = [self._go_on(run, found[run.id], least) for run in moving]
-            if not any(going):
-                return found
-        for run in moving:
-            self.starts[run.id], moments = least[run.id]
-            found[run.id] = moments.as_begun()
+            pending = tuple(run for run in pending if self._goes_on(run, settling, found[run.id], count))
+            if not pending:
+                break
+        for run, least in settling.least.items():
+            self.starts[run], found[run] = least.start, least.found.as_begun()
         return found
 
     def _normal_matrices(
@@ -269,23 +266,20 @@ class SimulatedRuns:
             power = np.mean((run.measured[:, None] - np.concatenate(outputs)) ** 2, axis=0)
         return np.asarray(start[0, int(np.argmin(np.where(np.isfinite(power), power, np.inf)))])
 
-    def _go_on(self, run: Run, found: NormalMatrices, least: dict[str, tuple[Array, NormalMatrices]]) -> bool:
-        """Go on to better first states of a run, or back to those that `least` is left of; whether there are any."""
-        here, best = self.start(run), least.get(run.id)
-        if best is not None and not found.power < best[1].power:
-            self.starts[run.id] = (here + best[0]) / 2.0
-            return not best[1].settled
-        least[run.id] = here, found
-        if not found.settled:
-            self._follow(run, found)
-        return not found.settled
+    def _goes_on(self, run: Run, settling: Settling, found: NormalMatrices, count: int) -> bool:
+        """Whether a run goes on to better first states, which it then begins in."""
+        if not len(self._free(run)):
+            return False
+        step = settling.step(run.id, self.start(run), found, count)
+        if step is not None:
+            self._follow(run, *step)
+        return step is not None
 
-    def _follow(self, run: Run, found: NormalMatrices) -> None:
+    def _follow(self, run: Run, start: Array, step: Array) -> None:
         free = self._free(run)
-        if len(found.release) and np.all(np.isfinite(found.release)):
-            start = self.start(run)
-            start[free] += self._reach[free] * found.step()
-            self.starts[run.id] = start
+        if len(step) and np.all(np.isfinite(step)):
+            self.starts[run.id] = start.copy()
+            self.starts[run.id][free] += self._reach[free] * step
 
     @cached_property
     def _reach(self) -> Array:
@@ -297,10 +291,12 @@ class SimulatedRuns:
 
     # Shares ------------------------------------------------------------------------------------------------------
 
-    def together(self, vectors: int, lanes: int = _TOGETHER) -> Iterator[tuple[Run, ...]]:
+    def together(
+        self, vectors: int, lanes: int = _TOGETHER, of: tuple[Run, ...] | None = None
+    ) -> Iterator[tuple[Run, ...]]:
         """Runs that are simulated in one go: of one length, sample rate, output, kind of start and recorded states."""
         groups: dict[tuple[object, ...], list[Run]] = {}
-        for run in self.runs:
+        for run in self.runs if of is None else of:
             begun = (run.begins, *self._recorded(run))
             groups.setdefault((run.length, run.sample_rate, run.output, *begun), []).append(run)
         for runs in groups.values():
