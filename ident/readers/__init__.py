@@ -21,6 +21,7 @@ from ident.readers.source import DESCRIPTION, Beside, Folder, Source, alone, bes
 from ident.readers.stated import of_file
 from ident.readers.table import Table
 from ident.readers.text import read_text
+from ident.words.number import count
 from ident.words.stated import Stated
 
 Reader = Callable[[bytes, str, Limits], Table]
@@ -110,7 +111,7 @@ def read_runs(
     """
     digest = hashlib.sha256(text)
     runs: dict[int, Run] = {}
-    notices: list[str] = []
+    notices: dict[str, list[str]] = {}  # alike but for the file's name
     read, held = 0, 0
     for name, wanted in by_file(described.runs).items():
         parts = [source.read(name, limits.file)]
@@ -120,9 +121,10 @@ def read_runs(
         tables: dict[int, Table] = {}
         for number, run in wanted:
             if run.skip_rows not in tables:
-                told = f"run {run.labels.id}"
-                tables[run.skip_rows] = read_table(parts[0], name, run.skip_rows, limits, told, near)
-                notices.extend(tables[run.skip_rows].notices)
+                of_run = f"run {run.labels.id}"
+                tables[run.skip_rows] = read_table(parts[0], name, run.skip_rows, limits, of_run, near)
+                for notice in tables[run.skip_rows].notices:
+                    notices.setdefault(notice.replace(name, "", 1), []).append(notice)
             runs[number] = read_run(run, tables[run.skip_rows])
             held += sum(samples.nbytes for samples in runs[number].channels.values())
             check_size(held, limits.samples, "all samples together", name)
@@ -130,7 +132,10 @@ def read_runs(
         for part in parts:
             digest.update(part)
     outputs = (run for number in sorted(runs) for run in runs[number].of_outputs(described.runs[number].outputs))
-    return tuple(outputs), tuple(notices), digest.hexdigest()
+    told = [
+        one if not more else f"{one}; so it was with {count(len(more), 'more file')}" for one, *more in notices.values()
+    ]
+    return tuple(outputs), tuple(told), digest.hexdigest()
 
 
 def by_file(runs: tuple[RunDescription, ...]) -> dict[str, list[tuple[int, RunDescription]]]:

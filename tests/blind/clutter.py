@@ -114,10 +114,16 @@ def _outside_strength(machine: Cluttered, name: str, wanted: float, rounds: int 
 
 
 def said(found: dict[str, Any], names: tuple[str, ...]) -> dict[str, bool]:
-    """Of what a diagnosis found: whether the first of the names is there, and no name that is in no class of theirs."""
-    groups = [set(group) for group in found["groups"] if len(group) <= 3]
-    classes = [{name}.union(*(group for group in groups if name in group)) for name in found["found"]]
+    """Of what a diagnosis found: whether the first of the names is there, and no name that is in no class of theirs.
+
+    There in itself or in a group of at most three; a class is what the data cannot tell apart, however many they are.
+    """
+
+    def classes(most: int) -> list[set[str]]:
+        groups = [set(group) for group in found["groups"] if len(group) <= most]
+        return [{name}.union(*(group for group in groups if name in group)) for name in found["found"]]
+
     return {
-        "named": any(names[0] in alike for alike in classes),
-        "clean": all(alike & set(names) for alike in classes),
+        "named": any(names[0] in alike for alike in classes(3)),
+        "clean": all(alike & set(names) for alike in classes(99)),
     }

@@ -43,6 +43,8 @@ def test_a_trial_with_clutter_tells_the_strong_one_and_names_of_no_class():
     grouped = {"found": ["dead_zone", "lead"], "groups": [["dead_zone", "backlash"]]}
     assert said(grouped, hidden) == {"named": True, "clean": True}
     assert said({"found": ["lead", "null_bias"], "groups": []}, hidden) == {"named": False, "clean": False}
+    four = {"found": ["dead_zone"], "groups": [["dead_zone", "null_bias", "underlap", "backlash"]]}
+    assert said(four, hidden) == {"named": False, "clean": True}
     row = {"kind": "clutter", "matrix": "small", "oracle": 1.0, "verify": 1.2, "named": True, "clean": False}
     (line,) = list(cluttered([row]))[2:]
     assert line.startswith("| small | 1 of 1 | 100.0 (2-100) | 0 of 1 | 0.0 (0-98) | 0 of 1 |")

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from ident.errors import Unusable
+from ident.readers import read_matrix
 from ident.readers.limits import LIMITS, Limits
 from ident.readers.text import read_text
 
@@ -73,3 +74,18 @@ def test_the_declared_limit_of_a_column_holds():
 def test_what_is_no_table_is_refused(text):
     with pytest.raises(Unusable):
         read(text)
+
+
+def test_what_reading_assumed_of_many_files_is_said_once(tmp_path):
+    runs = []
+    for number in range(3):
+        np.savetxt(tmp_path / f"{number}.txt", np.random.default_rng(number).standard_normal((200, 2)))
+        runs.append(
+            f"  - {{id: r{number}, file: {number}.txt, sample_rate: 100 Hz,"
+            " channels: {command: {column: 0, unit: mm}, displacement: {column: 1, unit: mm}}}\n"
+        )
+    (tmp_path / "matrix.yaml").write_text(f"actuator: {{serial: A}}\nruns:\n{''.join(runs)}")
+    (notice,) = read_matrix(tmp_path).notices
+    assert notice == (
+        "0.txt has no line of column names: its first line was read as samples; so it was with 2 more files"
+    )
