@@ -110,8 +110,13 @@ def _bounds(of: Mapping[str, Any]) -> tuple[float, float]:
 
 
 def as_found(own: Mapping[str, Any], effect: Effect, values: Mapping[str, float]) -> dict[str, Any]:
-    """The definition with its shapes as a refit found them, by the equations' names: added, they are held there."""
-    found = dict(own)
+    """The definition with its shapes as a refit found them, by the equations' names: added, they are held there.
+
+    The strength that was found with them lies well within its bounds.
+    """
+    far, of = _FAR * abs(values[effect.added[0].in_equations]), own["strength"]
+    found = {**own, "strength": {**of, "lower": min(of["lower"], -far) if of["lower"] else 0.0,
+                                 "upper": max(of["upper"], far)}}  # fmt: skip
     at = {parameter.symbol: values[parameter.in_equations] for parameter in effect.added[1:]}
     if "shape" in own:
         found["shape"] = {symbol: {**of, "value": at[symbol]} for symbol, of in own["shape"].items()}

@@ -83,8 +83,8 @@ class Search:
                 self._drawn(begun)
             self.complete = True
         return Proposals(
-            found=tuple(self.found), refit=self.base, refused=self.refused, looked_at=self.looked_at,
-            complete=self.complete,
+            found=tuple(map(self._restated, self.found)), refit=self.base, refused=self.refused,
+            looked_at=self.looked_at, complete=self.complete,
         )  # fmt: skip
 
     def _drawn(self, begun: Search) -> None:
@@ -217,6 +217,13 @@ class Search:
             hypothesis=hypothesis,
             free_curve=any(term.curve is not None for term in candidate.terms),
         )
+
+    def _restated(self, proposal: Proposal) -> Proposal:
+        """The same with the definition as the last refit left it: later terms move the shapes of earlier ones."""
+        name = str(proposal.effect["name"])
+        if name not in self.base.effects:  # the time was over while it was weighed
+            return proposal
+        return replace(proposal, effect=as_found(proposal.effect, self.models.effects[name], self.base.values))
 
     def _tried(self, searching: ModelFamily, base: Refit, name: str, candidate: Candidate, seen: Sight) -> Tried | None:
         """First steps with a candidate on the runs that search; None where it cannot be added, or leads nowhere."""

@@ -8,7 +8,7 @@ import pytest
 from ident.chain.conditions import CONDITIONS
 from ident.custom.definition import read_effect
 from ident.diagnosis.proposals.memories import of_error
-from ident.diagnosis.proposals.own import definition, told
+from ident.diagnosis.proposals.own import as_found, definition, told
 from ident.diagnosis.proposals.sight import _PLACES, _SIGNALS, _known_there, _there
 from ident.diagnosis.proposals.term import Term, ratio
 from ident.diagnosis.proposals.terms import Library
@@ -112,6 +112,20 @@ def test_what_yields_follows_the_way_at_first_and_then_gives_no_more_than_its_re
     assert z[-1] == pytest.approx(b * (2.0 * np.exp(-2.0) - 1.0), abs=1e-6 * b)
     own = definition("proposed_1", (term,), (1.0,), 1e3, signals(), UNITS)
     assert read_effect(own, model="qian2014").texts == ("z' = v - abs(v) * z / b", "R = R + s * (z)")
+
+
+def test_a_definition_is_restated_as_the_last_refit_left_it():
+    """Later terms move the shape of an earlier one, and its strength beyond ten times its first estimate."""
+    own = definition("proposed_1", (TERMS["load", "yields"],), (1.0,), 1e-9, signals(), UNITS)
+    effect = read_effect(own, model="qian2014")
+    strength, b = effect.added
+    far = 3.0 * own["strength"]["upper"]
+    found = as_found(own, effect, {strength.in_equations: -far, b.in_equations: 1.5 * b.value})
+    assert found["shape"]["b"]["value"] == pytest.approx(1.5 * b.value)
+    assert -found["strength"]["lower"] == found["strength"]["upper"] == pytest.approx(10.0 * far)
+    near = as_found(own, effect, {strength.in_equations: far / 300.0, b.in_equations: b.value})
+    assert near["strength"] == own["strength"]
+    assert near["shape"] == own["shape"]
 
 
 def test_a_valve_s_own_speed_is_all_that_terms_there_are_of():
