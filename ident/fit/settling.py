@@ -10,19 +10,25 @@ from numpy.typing import NDArray
 from ident.fit.normal_matrices import NormalMatrices
 
 Array = NDArray[np.float64]
-_ROUNDS = 10  # of each kind of steps
-ROUNDS = 2 * _ROUNDS
+ROUNDS = 20
 """Rounds at most in which the first states of a model are found."""
 _DAMPING = 1e-6  # of the first step that is damped
+_LESS = 1e-3  # by which what is left has to fall for a round to count
+_IN_VAIN = {False: 1, True: 4}  # rounds of one kind of steps that do not, by whether much is promised
 
 
 @dataclass(frozen=True)
 class Least:
-    """The first states (n,) that least is left of a run with, what was found there, and the damping of a step."""
+    """The first states (n,) that least is left of a run with, what was found there, and the damping of a step.
+
+    `vain` rounds have passed since that counted; the steps go `back` to there once straight ones led nowhere.
+    """
 
     start: Array
     found: NormalMatrices
     damping: float = _DAMPING
+    vain: int = 0
+    back: bool = False
 
 
 @dataclass
@@ -30,20 +36,24 @@ class Settling:
     """The runs that settle, by their ids, with the `least` so far.
 
     Gauss and Newton's steps often lead to where the model is straight over a place where it is not, and are gone on
-    with whatever is left on the way. A run that they lead nowhere goes on from where least is left of it, by steps
-    that shrink (Levenberg and Marquardt).
+    with whatever is left on the way. A run that they lead nowhere, and that much is promised of, goes on from where
+    least is left of it, by steps that shrink (Levenberg and Marquardt).
     """
 
     least: dict[str, Least] = field(default_factory=dict)
 
-    def step(self, run: str, start: Array, found: NormalMatrices, count: int) -> tuple[Array, Array] | None:
+    def step(self, run: str, start: Array, found: NormalMatrices) -> tuple[Array, Array] | None:
         """From which states (n,) a run goes on, and how far along those that are free; None where they hold."""
-        back, best = count >= _ROUNDS, self.least.get(run)
-        if best is None or found.power < best.found.power:
-            best = Least(start, found) if best is None else Least(start, found, best.damping / 10.0)
-        elif back:
-            best = replace(best, damping=best.damping * 100.0)
+        best = self.least.get(run) or Least(start, found)
+        vain = 0 if found.power < (1.0 - _LESS) * best.found.power else best.vain + 1
+        if found.power < best.found.power:
+            best = replace(best, start=start, found=found, vain=vain, damping=best.damping / 10.0)
+        else:
+            best = replace(best, vain=vain, damping=best.damping * (100.0 if best.back else 1.0))
+        over = best.found.settled or best.vain > _IN_VAIN[best.found.promises]
+        if over and not best.back and best.found.promises:
+            best, over = replace(best, vain=0, back=True, damping=_DAMPING), False
         self.least[run] = best
-        if best.found.settled:
+        if over:
             return None
-        return (best.start, best.found.step(best.damping)) if back else (start, found.release)
+        return (best.start, best.found.step(best.damping)) if best.back else (start, found.release)

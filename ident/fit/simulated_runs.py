@@ -95,14 +95,14 @@ class SimulatedRuns:
         """
         found: dict[str, NormalMatrices] = {}
         settling, pending = Settling(), self.runs
-        for count in range(1 if len(strides) else ROUNDS):
+        for _ in range(1 if len(strides) else ROUNDS):
             todo = list(self.together(len(strides) + 1 + len(self.chain.states), of=pending))
             parts = each(lambda runs: self._normal_matrices(runs, values, strides, steps), todo)
             for runs, part in zip(todo, parts, strict=True):
                 found.update((run.id, moments) for run, moments in zip(runs, part, strict=True))
             if len(strides):
                 return found
-            pending = tuple(run for run in pending if self._goes_on(run, settling, found[run.id], count))
+            pending = tuple(run for run in pending if self._goes_on(run, settling, found[run.id]))
             if not pending:
                 break
         for run, least in settling.least.items():
@@ -266,11 +266,11 @@ class SimulatedRuns:
             power = np.mean((run.measured[:, None] - np.concatenate(outputs)) ** 2, axis=0)
         return np.asarray(start[0, int(np.argmin(np.where(np.isfinite(power), power, np.inf)))])
 
-    def _goes_on(self, run: Run, settling: Settling, found: NormalMatrices, count: int) -> bool:
+    def _goes_on(self, run: Run, settling: Settling, found: NormalMatrices) -> bool:
         """Whether a run goes on to better first states, which it then begins in."""
         if not len(self._free(run)):
             return False
-        step = settling.step(run.id, self.start(run), found, count)
+        step = settling.step(run.id, self.start(run), found)
         if step is not None:
             self._follow(run, *step)
         return step is not None
