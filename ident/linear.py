@@ -67,7 +67,10 @@ class LinearModel:
         z, kept = np.zeros((*points, B.shape[-1])), np.flatnonzero(~idle)
         with np.errstate(all="ignore"):
             drive = -B[..., kept, None] * np.asarray(u)[..., None, None]
-            z[..., kept] = np.linalg.solve(A[..., kept[:, None], kept], drive)[..., 0]
+            driving = A[..., kept[:, None], kept]
+            singular = np.linalg.slogdet(driving).sign == 0  # which a solution refuses
+            driving = np.where(singular[..., None, None], np.nan, driving)
+            z[..., kept] = np.linalg.solve(driving, drive)[..., 0]
         z = np.where(np.isfinite(z), z, 0.0)
         left, shown = np.asarray(y) - (C * z).sum(axis=-1) - self.D * u, np.broadcast_to(C, z.shape)[..., idle]
         z[..., idle] = np.divide(left[..., None], shown, out=np.zeros(shown.shape), where=shown != 0)
@@ -91,7 +94,7 @@ class LinearModel:
         """
         s = 2j * np.pi * np.asarray(frequency)
         A, B, C = self.A, self.B, self.C
-        scale = np.abs(np.linalg.solve(np.abs(s).max() * np.eye(A.shape[-1]) - 1j * A, B[..., None])[..., 0])
+        scale = self.sizes(float(np.abs(s).max()))
         scale = np.where(scale > 0, scale, 1.0)
         A, B, C = A * scale[..., None, :] / scale[..., :, None], B / scale, C * scale
         resolvent = s[:, None, None] * np.eye(A.shape[-1]) - A[..., None, :, :]

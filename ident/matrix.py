@@ -198,14 +198,14 @@ class Run:
     @cached_property
     def begins(self) -> Beginning:
         """How the measured output begins: a model may start at rest, in its equilibrium, or in a state to be found.
+
         "at rest": it stands still at zero. "standing": it stands still elsewhere, under a command that is held there.
         "moving": what acted before the record still shows.
 
         A line is fitted to the first millisecond (at least 4 samples): a servo-hydraulic machine needs longer than
-        that to follow a jump of its command. Of a record with many outputs the position, where it was recorded, says
-        it for all: a machine begins in one way. Still: speed below 5 % of the typical speed; at zero: value below 2 %
-        of the record's standard deviation; or either within 4 standard errors of zero. Of few samples a second the line
-        is the answer to a jump: there two say it. A record cut out of a moving test passes about once in a thousand.
+        that to follow a jump of its command; of few samples a second two say it. Of many outputs the position, where
+        it was recorded, says it for all. Still: speed below 5 % of the typical speed; at zero: value below 2 % of the
+        record's deviation; or either within 4 standard errors of zero. About one moving record in a thousand passes.
         """
         n, x = self._first, self._first_seen
         size, speed = float(np.std(x)), float(np.std(x[n:] - x[:-n])) / n

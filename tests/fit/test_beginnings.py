@@ -108,6 +108,16 @@ def test_one_machine_stands_under_many_commands():
     assert standing[..., 1] == pytest.approx(y - 6.0 * u)
 
 
+def test_a_mass_that_nothing_holds_or_brakes_stands_where_it_is():
+    """v' = u, x' = v: the speed is held by no command, which a solution refuses with an error."""
+    system = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])[:, :, None]
+    assert LinearModel(system).standing_at(0.3)[0] == pytest.approx([0.0, 0.3])
+    held = np.array([[-2.0, -4.0, 4.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]])[
+        :, :, None
+    ]  # x'' + 2 x' + 4 x = 4 u, y = 2 x
+    assert LinearModel(held).standing_at(0.3)[0] == pytest.approx([0.0, 0.15])
+
+
 @pytest.mark.parametrize("first", [3.0, 0.0])
 def test_search_fit_comparison_and_diagnosis_have_one_error(first):
     """Of a record of steps, whose power beyond the band of the search made it promise a fifth less."""
