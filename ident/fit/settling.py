@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -57,3 +58,13 @@ class Settling:
         if over:
             return None
         return (best.start, best.found.step(best.damping)) if best.back else (start, found.release)
+
+
+def better(ends: Sequence[Least]) -> Least:
+    """Of where guesses led that with which less is left of a run; of those that are as good, that with less offset.
+
+    In saturation a position that is shifted changes nothing else.
+    """
+    least = min(end.found.power for end in ends)
+    as_good = [end for end in ends if end.found.power <= least + _LESS * abs(least)]
+    return min(as_good, key=lambda end: abs(end.found.offset))

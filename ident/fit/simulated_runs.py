@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from itertools import zip_longest
 from typing import Self
 
 import numpy as np
@@ -23,7 +24,7 @@ from ident.fit.modes import extreme, fastest
 from ident.fit.normal_matrices import NormalMatrices, first_state, normal_matrices_of
 from ident.fit.products import add_block_products, completed
 from ident.fit.reduction import excited_band
-from ident.fit.settling import ROUNDS, Settling
+from ident.fit.settling import ROUNDS, Least, Settling, better
 from ident.matrix import Matrix, Run
 from ident.parallel import cores, each
 from ident.presets import Preset
@@ -79,27 +80,39 @@ class SimulatedRuns:
         return {run.id: y for runs, outputs in found for run, y in zip(runs, outputs, strict=True)}
 
     def settle(self, values: Mapping[str, float]) -> tuple[dict[str, Array], int]:
-        """Find the first states of runs that start moving; the values as a vector of one, and the steps a sample."""
+        """Find the first states of runs that start moving; the values as a vector of one, and the steps a sample.
+
+        From those that are known, and from each guess: a model that is not linear in them has several best ones.
+        """
         vector = {name: np.array([value]) for name, value in values.items()}
         steps = int(self.steps(vector).max())
-        if any(run.begins == "moving" for run in self.runs):
-            self.begin(values)
-            with np.errstate(over="ignore", invalid="ignore"):
-                self.settled(vector, np.empty(0), steps)
+        moving = tuple(run for run in self.runs if run.begins == "moving")
+        known = [[self.start(run)] * (run.id in self.starts) for run in moving]
+        begun = [[*at, *self._guesses(run, values)] for at, run in zip(known, moving, strict=True)]
+        ends: dict[str, list[Least]] = {run.id: [] for run in moving}
+        with np.errstate(over="ignore", invalid="ignore"):
+            for starts in zip_longest(*begun):
+                here = [(run, start) for run, start in zip(moving, starts, strict=True) if start is not None]
+                self.starts |= {run.id: start for run, start in here}
+                for run, found in self.settled(vector, np.empty(0), steps, tuple(run for run, _ in here)).items():
+                    ends[run].append(Least(self.starts[run], found))
+        self.starts |= {run: better(led).start for run, led in ends.items()}
         return vector, steps
 
-    def settled(self, values: Mapping[str, Array], strides: Array, steps: int) -> dict[str, NormalMatrices]:
+    def settled(
+        self, values: Mapping[str, Array], strides: Array, steps: int, runs: tuple[Run, ...] | None = None
+    ) -> dict[str, NormalMatrices]:
         """The matrices of every run by its id; without sensitivities the first states are followed until they hold.
 
-        `strides` (p,) are those of the vectors behind the first.
+        `strides` (p,) are those of the vectors behind the first; `runs` some of all.
         """
         found: dict[str, NormalMatrices] = {}
-        settling, pending = Settling(), self.runs
+        settling, pending = Settling(), self.runs if runs is None else runs
         for _ in range(1 if len(strides) else ROUNDS):
             todo = list(self.together(len(strides) + 1 + len(self.chain.states), of=pending))
             parts = each(lambda runs: self._normal_matrices(runs, values, strides, steps), todo)
-            for runs, part in zip(todo, parts, strict=True):
-                found.update((run.id, moments) for run, moments in zip(runs, part, strict=True))
+            for some, part in zip(todo, parts, strict=True):
+                found.update((run.id, moments) for run, moments in zip(some, part, strict=True))
             if len(strides):
                 return found
             pending = tuple(run for run in pending if self._goes_on(run, settling, found[run.id]))
@@ -236,35 +249,30 @@ class SimulatedRuns:
         return np.array([state for state in range(len(self.chain.states)) if state not in recorded], np.intp)
 
     def begin(self, values: Mapping[str, float]) -> None:
-        """Take the first states that are not known yet from the linear model at `values`.
+        """Take the first states that are not known yet from the linear model at `values`."""
+        new = [run for run in self.runs if run.begins == "moving" and run.id not in self.starts]
+        self.starts |= {run.id: self._guesses(run, values)[0] for run in new}
 
-        Its best ones, or those that stand still at what is measured first: with which the chain leaves less. What a
-        linear model makes of a machine in saturation may lie where no step leads back from.
+    def _guesses(self, run: Run, values: Mapping[str, float]) -> Array:
+        """First states (g, n) of the linear model at `values`: that least is left of a run with, first.
+
+        Its best ones, and those that stand still at what is measured first where the chain is not linear: what a linear
+        model makes of a machine in saturation may lie where no step leads back from. The offset counts with what is
+        left: in saturation a position that is shifted changes nothing else.
         """
-        for run in self.runs:
-            if run.begins == "moving" and run.id not in self.starts:
-                model = linear_model(self.preset.core, values, run, self.matrix.actuator)
-                guesses = [first_state(run, model)]
-                self.sizes = np.maximum(self.sizes, model.sizes(self.band)[0] * run.drive)
-                if not self.preset.is_linear:
-                    guesses.append(model.standing_at(run.measured[0])[0])
-                self.starts[run.id] = self._best(run, values, np.array(guesses))
-
-    def _best(self, run: Run, values: Mapping[str, float], guesses: Array) -> Array:
-        """Those of first states (g, n) of the core that least is left of a run with, its offset with it.
-
-        In saturation a position that is shifted changes nothing else.
-        """
+        model = linear_model(self.preset.core, values, run, self.matrix.actuator)
+        self.sizes = np.maximum(self.sizes, model.sizes(self.band)[0] * run.drive)
+        guesses = [first_state(run, model), *(() if self.preset.is_linear else model.standing_at(run.measured[0]))]
         start = np.zeros((1, len(guesses), len(self.chain.states)))
         start[..., [self.chain.states.index(name) for name in self.preset.core.states]] = guesses
         if len(guesses) == 1:
-            return np.asarray(start[0, 0])
+            return np.asarray(start[0])
         vectors = {name: np.repeat(value, len(guesses)) for name, value in values.items()}
         steps = int(self.steps(vectors).max())
         with np.errstate(over="ignore", invalid="ignore"):
             outputs = [rows[:, 0] for rows, _, _ in self.simulation((run,), vectors, steps, start).outputs()]
             power = np.mean((run.measured[:, None] - np.concatenate(outputs)) ** 2, axis=0)
-        return np.asarray(start[0, int(np.argmin(np.where(np.isfinite(power), power, np.inf)))])
+        return np.asarray(start[0, np.argsort(np.where(np.isfinite(power), power, np.inf), kind="stable")])
 
     def _goes_on(self, run: Run, settling: Settling, found: NormalMatrices) -> bool:
         """Whether a run goes on to better first states, which it then begins in."""

@@ -14,8 +14,10 @@ from scipy.integrate import solve_ivp
 
 from ident.diagnosis.family import ModelFamily
 from ident.fit.identification import Identification, completed
+from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
+from ident.fit.settling import Least, better
 from ident.fit.simulated_runs import every_run
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Matrix, Run
@@ -211,6 +213,22 @@ def test_first_states_go_on_only_while_less_is_left(saturated, far):
         runs.starts[run.id] = runs.starts[run.id] + far * (np.array(preset.chain.states) == "x")
     outputs = runs.outputs_at(values)
     assert max(np.std(runs.left(run, outputs[run.id])) / np.std(run.measured) for run in matrix.runs) < 0.0044
+
+
+def test_of_two_guesses_that_lead_as_far_the_one_without_an_offset_counts():
+    """In saturation a position that is shifted changes nothing else; less of the record left comes first."""
+
+    def end(left: float, offset: float) -> Least:
+        blocks = np.array([[[1.0, 0.0], [0.0, left]]])
+        return Least(np.zeros(1), NormalMatrices(np.zeros((1, 1)), np.zeros((1, 0)), 1.0, offset, blocks=blocks,
+                                                 remove=np.ones((2, 1))))  # fmt: skip
+
+    for ends, which in (
+        ([end(0.01, 0.9), end(0.01 * (1 + 1e-9), -0.1)], 1),
+        ([end(0.01, 0.9), end(0.02, 0.1)], 0),
+        ([end(-1e-18, 0.0), end(0.02, 0.0)], 0),  # rounding of a record that nothing is left of
+    ):
+        assert better(ends) is ends[which]
 
 
 def test_few_samples_a_second_show_that_a_machine_stood_before_its_command_jumped():

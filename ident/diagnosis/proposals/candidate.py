@@ -10,7 +10,7 @@ import numpy as np
 from ident.diagnosis.proposals.meanings import meaning
 from ident.diagnosis.proposals.own import added, state_line, sticks
 from ident.diagnosis.proposals.regression import ALIKE, Regression
-from ident.diagnosis.proposals.term import Term, ratio
+from ident.diagnosis.proposals.term import Shape, Term, ratio
 from ident.stages import PLACES
 from ident.units.quantity import known_powers, shape
 
@@ -18,6 +18,7 @@ _TRIED, _PAIRS = 6, 3  # single terms and pairs that are refitted
 _SEEN = 200  # pairs that promise most, of which those are taken that are not alike
 _CANCELLED = 1e-6  # of the power of both: a pair that leaves less is none
 _MAY_WIN = 0.5  # times the best one's promise, which a shape that is not yet where it belongs may keep
+_NEAR = 0.01  # of the way that a refit may move a shape: from there it comes to the same
 _DRIVE = ("controller", "valve", "spool", "flow")  # one input of the machine: of two terms there one is enough
 
 
@@ -38,11 +39,25 @@ class Candidate:
         states = [state_line(term.state) for term in self.terms if term.state]
         return "; ".join([*states, *(added(t, sign, brakes) for t, sign in zip(self.terms, self.signs, strict=True))])
 
+    def begins_as(self, other: Candidate) -> bool:
+        """Whether a refit of another one comes to the same: one equation, with its shapes at about the same places."""
+        if self.equation != other.equation or self._knots != other._knots:
+            return False
+        both = zip(self._shapes, other._shapes, strict=True)
+        return all(abs(one.value - another.value) <= _NEAR * float(np.ptp(one.bounds)) for one, another in both)
+
     @property
-    def starts(self) -> tuple[float, ...]:
-        """Where the shapes of its terms begin, and what their curves go through."""
-        shapes = (shape.value for term in self.terms for shape in term.shapes)
-        return (*shapes, *(knot for term in self.terms if term.curve for knot in term.curve.knots))
+    def plain(self) -> bool:
+        """Whether it is an equation alone, without shapes and curves."""
+        return not self._shapes and not self._knots
+
+    @property
+    def _shapes(self) -> list[Shape]:
+        return [shape for term in self.terms for shape in term.shapes]
+
+    @property
+    def _knots(self) -> list[float]:
+        return [knot for term in self.terms if term.curve for knot in term.curve.knots]
 
     @property
     def simplicity(self) -> tuple[object, ...]:

@@ -45,7 +45,7 @@ _PREFIX = "proposed_"
 _EVIDENCE = 5.0  # nats beyond the logarithm of how many were looked at
 _CLOSE, _MOST_CLOSE = 1.1, 8  # times the least error of the rough refits, and how many: carried to their end
 _PLAIN = 4  # terms without shapes that are, too: held-out data may prefer them
-_AS_GOOD = 1.02  # times the least error: a simpler one is taken
+_AS_GOOD, _LOST = 1.02, 0.25  # times the least error: a simpler one is taken, which loses no more of what it gains
 _FEWEST = 6  # runs, of which two each search, choose and confirm: one tells nothing of what differs between runs
 
 
@@ -112,9 +112,7 @@ class Search:
         if not tried:
             return False
         few, bar = _few(self.models.runs), float(np.log(self.looked_at)) + _EVIDENCE
-        errors = each(lambda one: one[1].held_out.error if few else _error(one[1], chosen_by), tried)
-        good = [one for one, error in zip(tried, errors, strict=True) if error <= _AS_GOOD * min(errors)]
-        candidate, refit, family = min(good, key=lambda one: one[0].simplicity)
+        candidate, refit, family = _chosen(base, tried, () if few else chosen_by)
         if few:
             gain = improvement(base.held_out, refit.held_out)
             gained, sound = gain.nats, gain.beyond_chance and carries_over(base, refit)
@@ -126,10 +124,10 @@ class Search:
             self._refuse(next(one for one in family.given.custom if one["name"] == name), refit, gained, bar)
             return False
         self.models = replace(self.models, effects=family.effects, given=family.given, _known={})
-        before, self.base = self.base, self.models.refit(refit.effects, refit.values)
+        without, self.base = self.base, self.models.refit(refit.effects, refit.values)
         self._prune(name)
         proposal = self._proposal(candidate, seen, name, gained, bar, few)
-        self.found.append(replace(proposal, contradicted=self._contradiction(name, before)))
+        self.found.append(replace(proposal, contradicted=self._contradiction(name, without)))
         return True
 
     def _refuse(self, own: Mapping[str, Any], refit: Refit, gained: float, bar: float) -> None:
@@ -157,11 +155,10 @@ class Search:
         if not searching.at_floor(best[1]):
             again = sight(self.models, best[1], best[2].effects[name], curves)
             self.looked_at += again.looked_at
-            known = {(one.equation, *one.starts) for one in seen.candidates}
-            new = [one for one in again.candidates if (one.equation, *one.starts) not in known]
+            new = [one for one in again.candidates if not any(map(one.begins_as, seen.candidates))]
             tried += refits(new, best[1].here.error)
         ranked = in_order(tried, lambda one: one[1].error)
-        plain = [one for one in ranked[_MOST_CLOSE:] if not one[0].starts][:_PLAIN]
+        plain = [one for one in ranked[_MOST_CLOSE:] if one[0].plain][:_PLAIN]
         close = [one for one in (*ranked[:_MOST_CLOSE], *plain) if one[1].error <= _CLOSE * ranked[0][1].error]
         on = replace(FITTING, aim=_AS_GOOD * ranked[0][1].here.error)
         return _followed(each(lambda one: _gone_on(*one, on), close))
@@ -261,6 +258,20 @@ def _followed(tried: Sequence[Tried]) -> list[Tried]:
 def _gone_on(candidate: Candidate, refit: Refit, family: ModelFamily, way: Way) -> Tried:
     """A refit that is gone on with."""
     return candidate, family.refit(refit.effects, refit.values, way=way), family
+
+
+def _chosen(base: Refit, tried: Sequence[Tried], runs: Sequence[Run]) -> Tried:
+    """The simplest of those that leave as little of some runs, or of what was held out where there are none.
+
+    Where all of them gain little over the base one that is as good to within some per cent may gain nothing.
+    """
+    before, *errors = each(
+        lambda one: _error(one, runs) if runs else one.held_out.error, [base, *(refit for _, refit, _ in tried)]
+    )
+    least = min(errors)
+    bound = min(_AS_GOOD * least, least + _LOST * max(before - least, 0.0))
+    good = [one for one, error in zip(tried, errors, strict=True) if error <= bound]
+    return min(good, key=lambda one: one[0].simplicity)
 
 
 def _parts(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[Run, ...], tuple[Run, ...]]:

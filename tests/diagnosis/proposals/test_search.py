@@ -17,7 +17,7 @@ from ident.diagnosis.proposals.candidate import Candidate
 from ident.diagnosis.proposals.records import records
 from ident.diagnosis.proposals.search import Search
 from ident.diagnosis.proposals.sight import sight
-from ident.diagnosis.proposals.term import Term
+from ident.diagnosis.proposals.term import Shape, Term
 from ident.diagnosis.result import Diagnosis
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.settings import Settings
@@ -303,6 +303,22 @@ def test_a_term_that_closes_a_circle_with_those_before_is_not_tried():
     assert search._tried(models, base, "proposed_1", force, seen) is None
     speed = Candidate((Term("spool", "w", "x", "share", ("x",), {}),), (1.0,), 1e-9, 0.5)
     assert search._tried(models, base, "proposed_1", speed, seen) is not None
+
+
+@pytest.mark.parametrize(
+    ("text", "at", "spread", "same"),
+    [("max(w - h, 0)", 1.05, 8.0, True), ("max(w - h, 0)", 1.2, 8.0, False), ("min(w + h, 0)", 1.0, 8.0, False),
+     ("sin(h * t)", 1.05, 1.1, False)],
+)  # fmt: skip
+def test_what_was_refitted_from_about_there_is_not_refitted_again(text, at, spread, same):
+    """The same equation with its threshold beside where it began; the next frequency of a wave is another."""
+
+    def beginning(text: str, value: float) -> Candidate:
+        shape = Shape("h", value, "1", spread=spread)
+        return Candidate((Term("spool", "w", text, "kind", ("w",), {}, (shape,)),), (1.0,), 1.0, 0.5)
+
+    first = "sin(h * t)" if text.startswith("sin") else "max(w - h, 0)"
+    assert beginning(text, at).begins_as(beginning(first, 1.0)) == same
 
 
 def test_an_answer_that_grows_without_end_is_no_column():
