@@ -21,7 +21,7 @@ from ident.simulation.recursion import Recursion, discretise, respond, responses
 Array = NDArray[np.float64]
 _BLOCKS = 32  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
 _SETTLED = 1e-6  # of a residual's power
-_MUCH, _SOME = 0.1, 2e-3  # of it: so much a step promises only as far as the model is straight
+_MUCH = 0.1  # of it: more than this a step promises only as far as the model is straight
 _ESCAPED = 1e12  # times the record's power: the model has run away, and its nuisances would explain anything
 
 
@@ -65,11 +65,6 @@ class NormalMatrices:
         return bool(self.gram[-1, -1] < (1.0 - _MUCH) * self.power)
 
     @property
-    def unsettled(self) -> bool:
-        """Whether better first states promise so much that a fit would go where a promise is not kept."""
-        return bool(self.gram[-1, -1] < (1.0 - _SOME) * self.power)
-
-    @property
     def power(self) -> float:
         """Σ r², less the mean, from the first states as they are: infinite of a model that ran away."""
         if not len(self.remove):
@@ -93,7 +88,7 @@ class NormalMatrices:
 
     def as_begun(self) -> NormalMatrices:
         """The same with the error that the first states leave as they are, where better ones only promise less."""
-        if self.settled:
+        if not self.promises:
             return self
         gram = self.gram.copy()
         gram[-1, -1] = self.power

@@ -86,7 +86,7 @@ class SimulatedFitness(SimulatedRuns):
         self.begin({name: float(value[0]) for name, value in values.items()})
         with np.errstate(over="ignore", invalid="ignore"):
             found = self.settled(values, strides, steps)
-            if p and any(run.unsettled for run in found.values()):
+            if p and any(run.promises for run in found.values()):
                 self.settled({name: value[:1] for name, value in values.items()}, np.empty(0), steps)
                 found = {run: moments.as_begun() for run, moments in self.settled(values, strides, steps).items()}
         with_means = self.horizon is None and len({run.output for run in self.runs}) == 1

@@ -82,13 +82,12 @@ class SimulatedRuns:
     def settle(self, values: Mapping[str, float]) -> tuple[dict[str, Array], int]:
         """Find the first states of runs that start moving; the values as a vector of one, and the steps a sample.
 
-        From those that are known, and from each guess: a model that is not linear in them has several best ones.
+        From those that are known, or from each guess: a model that is not linear in them has several best ones.
         """
         vector = {name: np.array([value]) for name, value in values.items()}
         steps = int(self.steps(vector).max())
         moving = tuple(run for run in self.runs if run.begins == "moving")
-        known = [[self.start(run)] * (run.id in self.starts) for run in moving]
-        begun = [[*at, *self._guesses(run, values)] for at, run in zip(known, moving, strict=True)]
+        begun = [[self.start(run)] if run.id in self.starts else self._guesses(run, values) for run in moving]
         ends: dict[str, list[Least]] = {run.id: [] for run in moving}
         with np.errstate(over="ignore", invalid="ignore"):
             for starts in zip_longest(*begun):
@@ -253,8 +252,8 @@ class SimulatedRuns:
         new = [run for run in self.runs if run.begins == "moving" and run.id not in self.starts]
         self.starts |= {run.id: self._guesses(run, values)[0] for run in new}
 
-    def _guesses(self, run: Run, values: Mapping[str, float]) -> Array:
-        """First states (g, n) of the linear model at `values`: that least is left of a run with, first.
+    def _guesses(self, run: Run, values: Mapping[str, float]) -> list[Array]:
+        """First states (n,) of the linear model at `values`: that least is left of a run with, first.
 
         Its best ones, and those that stand still at what is measured first where the chain is not linear: what a linear
         model makes of a machine in saturation may lie where no step leads back from. The offset counts with what is
@@ -266,13 +265,13 @@ class SimulatedRuns:
         start = np.zeros((1, len(guesses), len(self.chain.states)))
         start[..., [self.chain.states.index(name) for name in self.preset.core.states]] = guesses
         if len(guesses) == 1:
-            return np.asarray(start[0])
+            return list(start[0])
         vectors = {name: np.repeat(value, len(guesses)) for name, value in values.items()}
         steps = int(self.steps(vectors).max())
         with np.errstate(over="ignore", invalid="ignore"):
             outputs = [rows[:, 0] for rows, _, _ in self.simulation((run,), vectors, steps, start).outputs()]
             power = np.mean((run.measured[:, None] - np.concatenate(outputs)) ** 2, axis=0)
-        return np.asarray(start[0, np.argsort(np.where(np.isfinite(power), power, np.inf), kind="stable")])
+        return list(start[0, np.argsort(np.where(np.isfinite(power), power, np.inf), kind="stable")])
 
     def _goes_on(self, run: Run, settling: Settling, found: NormalMatrices) -> bool:
         """Whether a run goes on to better first states, which it then begins in."""
