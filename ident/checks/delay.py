@@ -41,6 +41,11 @@ class Delay:
         """True where the run determines its delay."""
         return self.longest - self.shortest <= WIDEST and self.misfit <= EXPLAINED
 
+    @property
+    def leads(self) -> bool:
+        """Whether the output comes before the command with every delay that fits, of a run that is explained so."""
+        return self.longest <= -LEAST and self.misfit <= EXPLAINED
+
     def apart(self, middle: float, least: float) -> bool:
         """Whether it is another delay than that of the other runs, and theirs does not fit as well."""
         return abs(self.samples - middle) >= least and not self.shortest <= middle <= self.longest
@@ -63,7 +68,7 @@ def delays(measured: list[tuple[Run, Response | None]]) -> Iterator[Finding]:
             yield Finding(run.id, "doubt", "skew", text)
         elif estimate.told and len(told) == 1 and abs(estimate.samples) >= LEAST:
             yield alone(run, estimate.samples)
-        elif not estimate.told and estimate.longest <= -LEAST:
+        elif not estimate.told and estimate.leads:
             yield alone(run, estimate.longest)
 
 

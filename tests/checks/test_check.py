@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.signal import TransferFunction, lsim
 
 from ident.checks.check import check, describe
-from ident.checks.delay import delay
+from ident.checks.delay import delay, delays
 from ident.checks.response import respond
 from ident.matrix import Actuator, Matrix, Run
 from ident.readers import read_matrix
@@ -123,6 +124,17 @@ def test_a_shift_of_all_runs_is_found_although_an_actuator_lags_by_itself(faulty
     assert list(found) == [(None, "delay")]
     assert f"{abs(shift)}.0 samples" in found[None, "delay"].text
     assert ("leads" if shift < 0 else "lags") in found[None, "delay"].text
+
+
+@pytest.mark.parametrize(("size", "natural", "damping"), [(20, 10, 0.1), (50, 20, 0.3), (100, 15, 0.6)])
+def test_a_step_that_an_encoder_counts_is_explained_by_no_delay_and_none_is_told(size, natural, damping):
+    """Of one jump and whole counts no model is left that a delay could be measured beside."""
+    t = np.arange(2000) / 500.0
+    command = np.where(t >= 0.1, float(size), 0.0)
+    swing = TransferFunction([natural**2], [1, 2 * damping * natural, natural**2])
+    channels = {"command": command, "displacement": np.round(lsim(swing, command, t)[1])}
+    run = Run("counted", "", 500.0, channels, dict.fromkeys(channels, "deg"), kind="step", hold="zoh")
+    assert not list(delays([(run, respond(run))]))
 
 
 def test_the_estimated_delay_of_a_healthy_run_is_a_small_part_of_a_sample(healthy):
