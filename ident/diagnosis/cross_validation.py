@@ -33,8 +33,7 @@ CHUNKS, FOLDS = 8, 4
 _FINER = 32  # chunks of a record where there are fewer records than CHUNKS
 _DEALT = 0  # seed by which runs are dealt to folds: a matrix lists them in an order of its own
 _FAR = 0.01  # of an axis: a longer step is beyond what one linearisation tells
-_ROUGH = 5e-3  # of the error: where a step of less fails the error is not smooth, and a linearisation tells more
-_CLOSE = Way(converged=1e-4, most=20, rough=_ROUGH)  # of a fit without a fold: it starts close by, and one ends it
+_CLOSE = Way(converged=1e-4, most=20)  # of a fit without a fold: it starts close by, and one linearisation ends it
 
 
 @dataclass(frozen=True)
@@ -162,7 +161,7 @@ def _without(point: Array, here: Local, used: list[Mask], evaluate: Callable[[Ar
         return here, step
     rest = bounded_step(end, last.curvature, last.gradient)
     promised = -(last.gradient @ rest + 0.5 * rest @ last.curvature @ rest)
-    return seen[end.tobytes()], rest if promised <= _ROUGH * last.error else np.zeros(len(point))
+    return seen[end.tobytes()], rest if promised <= _CLOSE.converged * last.error else np.zeros(len(point))
 
 
 def _partly(here: Local, used: list[Mask]) -> Local:

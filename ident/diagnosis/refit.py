@@ -24,7 +24,7 @@ from ident.noise.autoregression import prediction_errors
 from ident.noise.effective_sample_size import independent_samples
 
 Array = NDArray[np.float64]
-_FOLLOWED = 1.2  # times the promised error that a simulation may leave
+_FOLLOWED = 1.03  # times the promised error that a simulation may leave
 _JUMPS = 1.1  # times the held-out error: so far apart end refits with an effect that acts in jumps
 _MOST = 0.5  # of what one effect explains
 _KNOWN = 1e3  # times its value: the standard error beyond which nothing is known of a parameter
