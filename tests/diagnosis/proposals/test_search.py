@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -15,7 +17,7 @@ from ident.diagnosis.proposals import columns
 from ident.diagnosis.proposals import regression as regressions
 from ident.diagnosis.proposals.candidate import Candidate
 from ident.diagnosis.proposals.records import records
-from ident.diagnosis.proposals.search import Search
+from ident.diagnosis.proposals.search import Search, Tried, _chosen
 from ident.diagnosis.proposals.sight import sight
 from ident.diagnosis.proposals.term import Shape, Term
 from ident.diagnosis.result import Diagnosis
@@ -319,6 +321,18 @@ def test_what_was_refitted_from_about_there_is_not_refitted_again(text, at, spre
 
     first = "sin(h * t)" if text.startswith("sin") else "max(w - h, 0)"
     assert beginning(text, at).begins_as(beginning(first, 1.0)) == same
+
+
+@pytest.mark.parametrize(("before", "plainest"), [(0.0300, 0), (0.0276, 1)])
+def test_what_is_simpler_and_gains_next_to_nothing_does_not_stand_for_what_gains(before, plainest):
+    """Within two per cent the simplest is taken: beside a large gain that is little, beside a small one all of it."""
+
+    def leaving(error: float, simplicity: int = 0) -> Tried:
+        refit = SimpleNamespace(held_out=SimpleNamespace(error=error))
+        return cast(Tried, (SimpleNamespace(simplicity=simplicity), refit, None))
+
+    tried = [leaving(0.0275, 0), leaving(0.0272, 1), leaving(0.0271, 2)]
+    assert _chosen(leaving(before)[1], tried, ()) is tried[plainest]
 
 
 def test_an_answer_that_grows_without_end_is_no_column():
