@@ -85,13 +85,23 @@ class Refit:
 
         A model that is not linear in them may look good where no first state at all leads.
         """
-        if all(run.begins != "moving" for run in self.fitness.runs):
-            return True
-        return self._simulated.error < _FOLLOWED * self.error
+        return not self._moving or self._keeps(self._simulated)
+
+    @property
+    def _moving(self) -> bool:
+        return any(run.begins == "moving" for run in self.fitness.runs)
+
+    def _keeps(self, simulated: _Simulated) -> bool:
+        return simulated.error < _FOLLOWED * self.error
 
     @cached_property
     def _simulated(self) -> _Simulated:
-        return _Simulated.of(self.fitness, self.point)
+        """From the first states that the search went with, or from guesses where those lead nowhere."""
+        found = _Simulated.of(self.fitness, self.point)
+        if not self._moving or self._keeps(found):
+            return found
+        anew = _Simulated.of(self.fitness.fresh(self.fitness.runs), self.point)
+        return anew if self._keeps(anew) else found
 
     @property
     def error(self) -> float:
