@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from functools import cache
-from types import SimpleNamespace
-from typing import cast
 
 import numpy as np
 import pytest
@@ -17,9 +15,9 @@ from ident.diagnosis.proposals import columns
 from ident.diagnosis.proposals import regression as regressions
 from ident.diagnosis.proposals.candidate import Candidate
 from ident.diagnosis.proposals.records import records
-from ident.diagnosis.proposals.search import Search, Tried, _chosen
+from ident.diagnosis.proposals.search import Search
 from ident.diagnosis.proposals.sight import sight
-from ident.diagnosis.proposals.term import Shape, Term
+from ident.diagnosis.proposals.term import Term
 from ident.diagnosis.result import Diagnosis
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.settings import Settings
@@ -305,34 +303,6 @@ def test_a_term_that_closes_a_circle_with_those_before_is_not_tried():
     assert search._tried(models, base, "proposed_1", force, seen) is None
     speed = Candidate((Term("spool", "w", "x", "share", ("x",), {}),), (1.0,), 1e-9, 0.5)
     assert search._tried(models, base, "proposed_1", speed, seen) is not None
-
-
-@pytest.mark.parametrize(
-    ("text", "at", "spread", "same"),
-    [("max(w - h, 0)", 1.05, 8.0, True), ("max(w - h, 0)", 1.2, 8.0, False), ("min(w + h, 0)", 1.0, 8.0, False),
-     ("sin(h * t)", 1.05, 1.1, False)],
-)  # fmt: skip
-def test_what_was_refitted_from_about_there_is_not_refitted_again(text, at, spread, same):
-    """The same equation with its threshold beside where it began; the next frequency of a wave is another."""
-
-    def beginning(text: str, value: float) -> Candidate:
-        shape = Shape("h", value, "1", spread=spread)
-        return Candidate((Term("spool", "w", text, "kind", ("w",), {}, (shape,)),), (1.0,), 1.0, 0.5)
-
-    first = "sin(h * t)" if text.startswith("sin") else "max(w - h, 0)"
-    assert beginning(text, at).begins_as(beginning(first, 1.0)) == same
-
-
-@pytest.mark.parametrize(("before", "plainest"), [(0.0300, 0), (0.0276, 1)])
-def test_what_is_simpler_and_gains_next_to_nothing_does_not_stand_for_what_gains(before, plainest):
-    """Within two per cent the simplest is taken: beside a large gain that is little, beside a small one all of it."""
-
-    def leaving(error: float, simplicity: int = 0) -> Tried:
-        refit = SimpleNamespace(held_out=SimpleNamespace(error=error))
-        return cast(Tried, (SimpleNamespace(simplicity=simplicity), refit, None))
-
-    tried = [leaving(0.0275, 0), leaving(0.0272, 1), leaving(0.0271, 2)]
-    assert _chosen(leaving(before)[1], tried, ()) is tried[plainest]
 
 
 def test_an_answer_that_grows_without_end_is_no_column():
