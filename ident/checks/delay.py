@@ -39,12 +39,7 @@ class Delay:
     @property
     def told(self) -> bool:
         """True where the run determines its delay."""
-        return self.longest - self.shortest <= WIDEST and self.misfit <= EXPLAINED
-
-    @property
-    def leads(self) -> bool:
-        """Whether the output comes before the command with every delay that fits, of a run that is explained so."""
-        return self.longest <= -LEAST and self.misfit <= EXPLAINED
+        return self.longest - self.shortest <= WIDEST
 
     def apart(self, middle: float, least: float) -> bool:
         """Whether it is another delay than that of the other runs, and theirs does not fit as well."""
@@ -53,7 +48,8 @@ class Delay:
 
 def delays(measured: list[tuple[Run, Response | None]]) -> Iterator[Finding]:
     """A displacement ahead of any model, a run apart from the others, or a delay that all runs share."""
-    found = [(run, estimate) for run, response in measured if (estimate := delay(run, response)) is not None]
+    estimates = [(run, estimate) for run, response in measured if (estimate := delay(run, response)) is not None]
+    found = [(run, estimate) for run, estimate in estimates if estimate.misfit <= EXPLAINED]
     told = [estimate.samples for _, estimate in found if estimate.told]
     middle = float(np.median(told)) if told else 0.0
     apart = max(APART, _OUTLIER * float(np.median(np.abs(np.array(told) - middle)))) if told else APART
@@ -68,7 +64,7 @@ def delays(measured: list[tuple[Run, Response | None]]) -> Iterator[Finding]:
             yield Finding(run.id, "doubt", "skew", text)
         elif estimate.told and len(told) == 1 and abs(estimate.samples) >= LEAST:
             yield alone(run, estimate.samples)
-        elif not estimate.told and estimate.leads:
+        elif not estimate.told and estimate.longest <= -LEAST:
             yield alone(run, estimate.longest)
 
 

@@ -43,6 +43,13 @@ def test_what_no_first_state_leads_to_is_no_refit(begins, left, finite):
         assert found.finite is finite
 
 
+def test_first_states_that_lead_nowhere_are_guessed_anew():
+    """The search may have gone astray with them where the model keeps its promise from others."""
+    found, other = refit("moving", 0.2), refit("moving", 0.1)
+    found.fitness.fresh = lambda _runs: other.fitness
+    assert found.finite
+
+
 def test_the_error_on_runs_to_verify_is_what_a_simulation_leaves_there():
     assert refit("moving", 0.3).on_verify == pytest.approx(0.3, rel=1e-6)
 

@@ -18,7 +18,7 @@ from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.fit.settling import Least, better
-from ident.fit.simulated_runs import every_run
+from ident.fit.simulated_runs import SimulatedRuns, every_run
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Matrix, Run
 from ident.simulation.steps import FASTEST
@@ -213,6 +213,22 @@ def test_first_states_go_on_only_while_less_is_left(saturated, far):
         runs.starts[run.id] = runs.starts[run.id] + far * (np.array(preset.chain.states) == "x")
     outputs = runs.outputs_at(values)
     assert max(np.std(runs.left(run, outputs[run.id])) / np.std(run.measured) for run in matrix.runs) < 0.0044
+
+
+def test_of_two_guesses_the_one_that_leads_to_less_counts(saturated, monkeypatch):
+    """From a place off the first, and the better one behind it."""
+    matrix, fit = saturated
+    preset = Identification(matrix, SATURATED).objective.preset
+    found = {preset.parameter(name).in_equations: value for name, value in fit.values.items()}
+    values = {p.in_equations: p.value for p in preset.parameters} | found
+    guessed, place = SimulatedRuns._guesses, np.array(preset.chain.states) == "x"
+    for first in (-0.45, -0.3, -0.25):
+        monkeypatch.setattr(
+            SimulatedRuns, "_guesses", lambda *of, off=first: [guessed(*of)[0] + off * place, guessed(*of)[0]]
+        )
+        runs = every_run(preset, matrix)
+        outputs = runs.outputs_at(values)
+        assert max(np.std(runs.left(run, outputs[run.id])) / np.std(run.measured) for run in matrix.runs) < 0.0044
 
 
 def test_of_two_guesses_that_lead_as_far_the_one_without_an_offset_counts():
