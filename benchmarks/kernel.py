@@ -17,7 +17,6 @@ import numpy as np
 from benchmarks.table import Table, seconds_of
 from ident.chain.conditions import conditions
 from ident.effects import EFFECTS
-from ident.fit.levenberg_marquardt import levenberg_marquardt
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import search_space
@@ -121,7 +120,7 @@ def gauss_newton() -> tuple[float, int]:
     start = space.point({name: value * 1.03 for name, value in truth.items()} | dict(space.fixed))
     fitness.exact(start)  # compiles
     fitness.evaluations, begun = 0, time.perf_counter()
-    levenberg_marquardt(fitness.exact, start, accept=fitness.accept)
+    fitness.optimum(start)
     return time.perf_counter() - begun, fitness.evaluations
 
 

@@ -75,12 +75,12 @@ def solve(residual: Residual, steps: int = _STEPS, start: Array | None = None) -
     """The least sum of squares near `start`, the origin by default, in at most so many steps."""
     tried = 0
 
-    def error(point: Array) -> float:
+    def better(point: Array, least: float) -> Normal | None:
         nonlocal tried
         tried += 1
-        return residual.cost(point)
+        return residual.normal(point) if residual.cost(point) < least else None
 
     first = residual.origin if start is None else start
     way = replace(_WAY, most=steps, within=residual.within)
-    point, normal = levenberg_marquardt(residual.normal, first, way, error=error)
+    point, normal = levenberg_marquardt(residual.normal, first, way, better=better)
     return Solution(residual, point, normal, 1 + tried)

@@ -24,7 +24,6 @@ from ident.comparison.compare import RunComparison, compare
 from ident.errors import Unusable
 from ident.fit.fitness import Local
 from ident.fit.identification import Identification
-from ident.fit.levenberg_marquardt import levenberg_marquardt
 from ident.fit.result import Estimate, FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
@@ -175,7 +174,7 @@ class _Held:
         objective, space, preset = work.objective, work.objective.space, work.preset
         wanted = {preset.parameter(key).in_equations: number for key, number in near.items()}
         start = space.point({**wanted, **space.fixed}) if space.axes else np.empty(0)
-        point, here = levenberg_marquardt(objective.exact, np.clip(start, 0.0, 1.0), accept=objective.accept)
+        point, here = objective.optimum(np.clip(start, 0.0, 1.0))
         if not math.isfinite(here.error):
             raise Unusable("unstable-model", f"the model is unstable with {name} = {value:.4g}", "profile",
                            "narrow the bounds of the parameter")  # fmt: skip

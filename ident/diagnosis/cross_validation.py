@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.fit.bounded_step import bounded_step
-from ident.fit.fitness import Local, local
+from ident.fit.fitness import Local, Worth, local
 from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.products import without
@@ -86,9 +86,10 @@ def scored(error: float, offset: float, weight: float) -> float:
 
 
 def cross_validated(
-    point: Array, here: Local, evaluate: Callable[[Array], Local], independent: float, whole_runs: bool = False
+    point: Array, here: Local, evaluate: Callable[[Array, Worth], Local], independent: float, whole_runs: bool = False
 ) -> CrossValidation:
-    """The held-out errors at the optimum `point` of the unit cube; `evaluate` is the objective.
+    """The held-out errors at the optimum `point` of the unit cube; `evaluate` is the objective, where first
+    states that promise much are followed if that is worth it.
 
     Chunks of every record are left out in turn, or `whole_runs`, of which there have to be two at least.
     """
@@ -141,7 +142,9 @@ def _folds_of_runs(runs: int, count: int) -> Indices:
     return np.repeat(dealt[:, None], count, axis=1)
 
 
-def _without(point: Array, here: Local, used: list[Mask], evaluate: Callable[[Array], Local]) -> tuple[Local, Array]:
+def _without(
+    point: Array, here: Local, used: list[Mask], evaluate: Callable[[Array, Worth], Local]
+) -> tuple[Local, Array]:
     """Where the fit of the used blocks ends: a linearisation, and the step from there that is left."""
     step = _step(point, here, [_projected(run, of) for run, of in zip(here.runs, used, strict=True)])
     if not len(step) or np.abs(step).max() <= _FAR:
@@ -149,13 +152,12 @@ def _without(point: Array, here: Local, used: list[Mask], evaluate: Callable[[Ar
 
     seen: dict[bytes, Local] = {point.tobytes(): here}
 
-    def of_used(trial: Array) -> Local:
-        at = trial.tobytes()
-        if at not in seen:
-            seen[at] = evaluate(trial)
-        return _partly(seen[at], used)
+    def better(trial: Array, least: float) -> Local | None:
+        there = seen[trial.tobytes()] = evaluate(trial, lambda promised: _partly(promised, used).error < least)
+        part = _partly(there, used)
+        return part if part.error < least else None
 
-    end, last = levenberg_marquardt(of_used, point, _CLOSE)
+    end, last = levenberg_marquardt(lambda _here: _partly(here, used), point, _CLOSE, better=better)
     tried = [one.error for one in seen.values() if one is not here]
     if not any(map(np.isfinite, tried)):  # the point lies at the edge of what is stable: judged by its linearisation
         return here, step

@@ -16,7 +16,7 @@ from ident.diagnosis.ties import first_least, in_order
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect, off_values
 from ident.errors import Unusable
-from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
+from ident.fit.levenberg_marquardt import Way
 from ident.fit.reduction import excited_band
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
@@ -177,7 +177,7 @@ class ModelFamily:
             space = search_space(model, self.matrix, given, self.band)
             runs = self._shortened(samples) if samples else self.runs
             self._known[key] = SimulatedFitness(
-                model, self.matrix, runs, self.band, space, horizon=self.horizon, memory=self.memory
+                model, self.matrix, runs, self.band, space, horizon=self.horizon, memory=self.memory, trusting=True
             )
         known = self._known[key]
         return known.fresh(known.runs)  # no search goes on from the first states in which another one ended
@@ -278,7 +278,7 @@ class ModelFamily:
         known = {p.in_equations: p.value for p in fitness.preset.parameters} | dict(start)
         point = fitness.space.point({**known, **fitness.space.fixed})
         way = way or (TRYING if samples else FITTING)
-        point, here = levenberg_marquardt(fitness.exact, point, way, accept=fitness.accept)
+        point, here = fitness.optimum(point, way)
         off = {p.in_equations for name, e in self.effects.items() if name not in effects for p in e.added}
         values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}
         return Refit(effects, values, fitness.space, point, here, fitness)

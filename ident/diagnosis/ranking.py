@@ -276,7 +276,7 @@ def _elsewhere(
 def _strong(models: ModelFamily, base: Refit, refit: Refit) -> list[dict[str, float]]:
     """The model without the effect that a refit added, and that effect at large strengths of the refit's sign."""
     symbol = models.strength(refit.effects[-1])
-    lower, upper = refit.fitness.space.bounds(refit.values)[symbol]
+    lower, upper = refit.fitness.space.bounds({**refit.values, **base.values})[symbol]
     end = lower if refit.values[symbol] < 0 else upper
     added = models.effects[refit.effects[-1]].added[1:]
     shape = {p.in_equations: refit.values[p.in_equations] for p in added if p.in_equations in refit.values}

@@ -13,7 +13,7 @@ from ident.cached import cached_property
 from ident.diagnosis.cross_validation import CrossValidation, by_chunk, cross_validated, not_held_out
 from ident.diagnosis.estimate import Found
 from ident.diagnosis.significance import improvement
-from ident.fit.fitness import STEP, Local
+from ident.fit.fitness import STEP, Local, Worth
 from ident.fit.result import Combination
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.slow_answer import slow_lag
@@ -44,13 +44,16 @@ class Refit:
     @cached_property
     def held_out(self) -> CrossValidation:
         """Its errors on blocks that were left out in turn."""
-        found = cross_validated(self.point, self.here, self.fitness.exact, self._simulated.independent)
+        found = cross_validated(self.point, self.here, self._evaluated, self._simulated.independent)
         return self._with_the_past(found)
 
     @cached_property
     def not_held_out(self) -> CrossValidation:
         """The same with nothing left out: to compare models of as many parameters."""
         return self._with_the_past(not_held_out(self.here, self._simulated.independent))
+
+    def _evaluated(self, point: Array, worth: Worth) -> Local:
+        return self.fitness.exact(point, worth=worth)
 
     def _with_the_past(self, found: CrossValidation) -> CrossValidation:
         unforetold = self._simulated.unforetold(found.squares.shape[1])
@@ -67,7 +70,7 @@ class Refit:
         """Its errors on whole runs that were left out in turn; None of a single run."""
         if len(self.here.runs) < 2:
             return None
-        return cross_validated(self.point, self.here, self.fitness.exact, self._simulated.independent, whole_runs=True)
+        return cross_validated(self.point, self.here, self._evaluated, self._simulated.independent, whole_runs=True)
 
     @property
     def stable(self) -> bool:

@@ -8,13 +8,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.fit.levenberg_marquardt import Way
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.space import Space
 from ident.matrix import Matrix, Run, over_runs
@@ -23,6 +24,8 @@ from ident.presets import Preset
 Array = NDArray[np.float64]
 UNSTABLE = 1e3  # the error of a model that is unstable at some run: a cost, not a failure
 STEP = 1e-5  # of an axis, for sensitivities by differences
+Steps = Callable[[int, float], None]
+"""Hears of the number of steps, and the error."""
 
 
 class Fitness(Protocol):
@@ -52,16 +55,17 @@ class Fitness(Protocol):
         """The error at points, (v, p) → (v,), as fast as may be; at most :data:`UNSTABLE`."""
         ...
 
-    def approximate(self, point: Array) -> Local:
-        """The fitness and its local shape at one point, as `errors` sees it."""
-        ...
-
     def exact(self, point: Array, sensitivities: bool = True) -> Local:
-        """The same from the time domain; infinite where a run is unstable."""
+        """The fitness and its local shape at one point, from the time domain; infinite where a run is unstable."""
         ...
 
-    def accept(self, here: Local) -> None:
-        """A search goes on from a point."""
+    def optimum(
+        self, start: Array, way: Way | None = None, report: Steps = lambda _count, _error: None, roughly: bool = False
+    ) -> tuple[Array, Local]:
+        """The optimum near a start and the fitness there, after Levenberg and Marquardt; `roughly` as `errors` sees it.
+
+        `report` is told the number of steps and the error.
+        """
         ...
 
     def fresh(self, runs: tuple[Run, ...]) -> Self:
@@ -94,6 +98,10 @@ class Local:
     def scores(self) -> Array:
         """The parts of the gradient that blocks of neighbouring samples make, (blocks, p)."""
         return np.concatenate([-w * term.scores for w, term in zip(self.weights, self.terms, strict=True)])
+
+
+Worth = Callable[[Local], bool]
+"""Whether what is promised at a point is worth being followed."""
 
 
 def local(runs: Sequence[NormalMatrices], with_means: bool = False) -> Local:

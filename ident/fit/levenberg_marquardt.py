@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol, TypeVar
 
 import numpy as np
@@ -62,7 +63,7 @@ class Way:
 def levenberg_marquardt(
     evaluate: Callable[[Array], S], start: Array, way: Way | None = None,
     report: Callable[[int, float], None] = lambda _count, _error: None,
-    accept: Callable[[S], None] = lambda _here: None, error: Callable[[Array], float] | None = None,
+    accept: Callable[[S], None] = lambda _here: None, better: Callable[[Array, float], S | None] | None = None,
 ) -> tuple[Array, S]:  # fmt: skip
     """The point with the least error near `start`, and the objective there.
 
@@ -70,10 +71,10 @@ def levenberg_marquardt(
     outwards stay. λ falls by as much as a step kept what it promised, at most tenfold, and rises twofold after one that
     did not help, fourfold after the next, and so on (Nielsen 1999): along a curved valley, where one λ serves for many
     steps, every other step failed that was a fixed factor longer. `report` is told the number of steps and the error,
-    `accept` of each point that is gone on from; `error` is the objective without its shape, where that alone costs
-    less.
+    `accept` of each point that is gone on from; `better` is the objective at a point where it is less than so far,
+    where it costs less to tell that it is not.
     """
-    way = way or Way()
+    way, better = way or Way(), better or partial(_better, evaluate)
     point, here, damping, rise = start.copy(), evaluate(start), 1e-4, 2.0
     gained: list[float] = []
     accept(here)
@@ -89,7 +90,7 @@ def levenberg_marquardt(
             break
         if way.is_lost(here.error, promised, gained):
             break
-        there = _better(evaluate, error, trial, here.error) if promised > 0 else None
+        there = better(trial, here.error) if promised > 0 else None
         if there is not None:
             gained.append(here.error - there.error)
             damping, rise = max(damping * _fall(gained[-1] / promised), _LEAST), 2.0
@@ -107,12 +108,8 @@ def _fall(kept: float) -> float:
     return max(0.1, 1.0 - (2.0 * kept - 1.0) ** 3)
 
 
-def _better(
-    evaluate: Callable[[Array], S], error: Callable[[Array], float] | None, trial: Array, least: float
-) -> S | None:
+def _better(evaluate: Callable[[Array], S], trial: Array, least: float) -> S | None:
     """The objective at a trial where it is less than so far."""
-    if error is not None and not error(trial) < least:
-        return None
     there = evaluate(trial)
     return there if there.error < least else None
 

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.chain.conditions import conditions, zeros
-from ident.fit.fitness import STEP, UNSTABLE, Local, local
+from ident.fit.fitness import STEP, UNSTABLE, Local, Steps, local
+from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
 from ident.fit.modes import FOLLOWED, extreme, fastest
 from ident.fit.normal_matrices import NormalMatrices, errors_of, escaped, normal_matrices
 from ident.fit.reduction import Basis, ReducedRun, reduced
@@ -182,8 +183,11 @@ class LinearFitness:
         batch = stacked | {name: value[None] for name, value in values.items()}
         return self.preset.chain.linearise(batch, runs[0].output)
 
-    def accept(self, here: Local) -> None:
-        """Nothing is to be remembered of a point."""
+    def optimum(
+        self, start: Array, way: Way | None = None, report: Steps = lambda _count, _error: None, roughly: bool = False
+    ) -> tuple[Array, Local]:
+        """The optimum near a start; `roughly` of the reduced runs."""
+        return levenberg_marquardt(self.approximate if roughly else self.exact, start, way, report)
 
     @property
     def band(self) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ident.fit.ends import SETTLED, End, agreeing, at_bound, rivals, valley
 from ident.fit.fitness import Fitness, Local
-from ident.fit.levenberg_marquardt import STEPS, levenberg_marquardt
+from ident.fit.levenberg_marquardt import STEPS
 from ident.fit.result import Starts
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.matrix import Run
@@ -69,29 +69,27 @@ def _all_ends(
     searched: Fitness, starts: Sequence[Array], further: Iterable[Array], report: Report, count: int
 ) -> Iterator[End]:
     """Where every start ends that is worth a try, or so many, where a count is asked for."""
-    ends = [_end(searched, start, report, searched.approximate)[0] for start in starts]
+    ends = [_end(searched, start, report, roughly=True)[0] for start in starts]
     yield from ends
     best = min(ends, key=_error)
     if not count and agreeing(ends, best) == len(ends) and not at_bound(best):
         return
     later: list[End] = []
     for start in further:
-        later.append(_end(searched, start, report, searched.approximate)[0])
+        later.append(_end(searched, start, report, roughly=True)[0])
         yield later[-1]
         enough = len(ends) + len(later) >= count
         if enough and (count or agreeing(later, min([best, *later], key=_error)) >= SETTLED):
             return
 
 
-def _end(
-    of: Fitness, start: Array, report: Report, evaluate: Callable[[Array], Local] | None = None
-) -> tuple[End, Local]:
+def _end(of: Fitness, start: Array, report: Report, roughly: bool = False) -> tuple[End, Local]:
     """Where the polish of a start ends, and the objective there."""
 
     def progress(count: int, error: float) -> None:
         report(Progress("polish", count, STEPS, error))
 
-    point, here = levenberg_marquardt(evaluate or of.exact, start, report=progress, accept=of.accept)
+    point, here = of.optimum(start, report=progress, roughly=roughly)
     values = {name: float(value[0]) for name, value in of.space.values(point[None]).items()}
     return End(here.error, values, point), here
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.effects.effect import Effect
-from ident.fit.fitness import STEP, UNSTABLE, Local, local
+from ident.fit.fitness import STEP, UNSTABLE, Local, Steps, Worth, local
+from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.fit.space import Space
 from ident.matrix import Run, over_runs
@@ -23,10 +24,13 @@ Array = NDArray[np.float64]
 class SimulatedFitness(SimulatedRuns):
     """The fitness of a preset that is not linear on runs, over a search space: a :class:`~ident.fit.fitness.Fitness`.
 
-    `evaluations` counts parameter vectors, `unstable` those that were unstable at some run.
+    `evaluations` counts parameter vectors, `unstable` those that were unstable at some run. A search that is `trusting`
+    believes what better first states promise where that is worse than what it has. To follow them there is most of what
+    a step that fails costs, and mostly in vain; not of a machine in saturation, though, where a search begins anywhere.
     """
 
     space: Space
+    trusting: bool = field(default=False, kw_only=True)
     evaluations: int = 0
     unstable: int = 0
 
@@ -70,12 +74,28 @@ class SimulatedFitness(SimulatedRuns):
         errors = np.where(np.all(np.isfinite(by_run), axis=0), over_runs(by_run, order), UNSTABLE)
         return np.minimum(errors, UNSTABLE)
 
-    def approximate(self, point: Array) -> Local:
-        """The same as :meth:`exact`: there is no shortcut for a chain with effects."""
-        return self.exact(point)
+    def optimum(
+        self, start: Array, way: Way | None = None, report: Steps = lambda _count, _error: None,
+        roughly: bool = False,  # noqa: ARG002  a chain with effects has no rougher one
+    ) -> tuple[Array, Local]:  # fmt: skip
+        """The optimum near a start, from first states that are followed."""
+        return levenberg_marquardt(self.exact, start, way, report, accept=self._accept, better=self._better)
 
-    def exact(self, point: Array, sensitivities: bool = True) -> Local:
-        """The objective at one point, with sensitivities by differences; infinite where a run is unstable."""
+    def _better(self, point: Array, least: float) -> Local | None:
+        there = self.exact(point, worth=lambda promised: not self.trusting or promised.error < least)
+        return there if there.error < least else None
+
+    def _accept(self, here: Local) -> None:
+        """Go on from the first states that were found at a point."""
+        for run, found in zip(self.runs, here.runs, strict=True):
+            self._follow(run, self.start(run), found.release)
+
+    def exact(self, point: Array, sensitivities: bool = True, worth: Worth = lambda _promised: True) -> Local:
+        """The objective at one point, with sensitivities by differences; infinite where a run is unstable.
+
+        Where better first states promise much they are followed, if what they promise is `worth` it: a search that
+        does not ask spends most of its time on steps that fail.
+        """
         p = len(point) if sensitivities else 0
         strides = np.where(point + self._strides > 1.0, -self._strides, self._strides)[:p]  # inwards at a bound
         moved = point + np.diag(strides) if p else np.empty((0, len(point)))
@@ -84,18 +104,14 @@ class SimulatedFitness(SimulatedRuns):
         self.evaluations += len(cloud)
         steps = int(self.steps(values).max())
         self.begin({name: float(value[0]) for name, value in values.items()})
+        with_means = self.horizon is None and len({run.output for run in self.runs}) == 1
         with np.errstate(over="ignore", invalid="ignore"):
             found = self.settled(values, strides, steps)
-            if p and any(run.promises for run in found.values()):
+            promised = local([found[run.id] for run in self.runs], with_means)
+            if p and any(run.promises for run in promised.runs) and worth(promised):
                 self.settled({name: value[:1] for name, value in values.items()}, np.empty(0), steps)
                 found = {run: moments.as_begun() for run, moments in self.settled(values, strides, steps).items()}
-        with_means = self.horizon is None and len({run.output for run in self.runs}) == 1
         return local([found[run.id] for run in self.runs], with_means)
-
-    def accept(self, here: Local) -> None:
-        """Go on from the first states that were found at a point."""
-        for run, found in zip(self.runs, here.runs, strict=True):
-            self._follow(run, self.start(run), found.release)
 
     def fresh(self, runs: tuple[Run, ...]) -> SimulatedFitness:
         """The same for other runs, which know nothing of this search."""

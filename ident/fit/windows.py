@@ -21,7 +21,7 @@ from ident.chain.conditions import zeros
 from ident.effects.effect import off_values
 from ident.fit.anchoring import innovations
 from ident.fit.ends import End
-from ident.fit.levenberg_marquardt import STEPS, levenberg_marquardt
+from ident.fit.levenberg_marquardt import STEPS
 from ident.fit.multistart import Optimum
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.matrix import Run
@@ -81,10 +81,7 @@ def _best(
         def progress(count: int, error: float) -> None:
             report(Progress("windows", count, STEPS, error))
 
-        tried = [
-            levenberg_marquardt(trial.exact, start, report=progress, accept=trial.accept)
-            for start in _starts(objective, optimum.point)
-        ]
+        tried = [trial.optimum(start, report=progress) for start in _starts(objective, optimum.point)]
         point, here = min(tried, key=lambda one: one[1].error)
         trial.evaluations += best.fitness.evaluations
         left = _left(trial, point, memory)

@@ -18,7 +18,7 @@ from ident.design.rivals import Rivals
 from ident.diagnosis.result import Diagnosis
 from ident.diagnosis.rivals import rivals
 from ident.errors import Unusable
-from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
+from ident.fit.levenberg_marquardt import Way
 from ident.fit.reduction import excited_band
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
@@ -71,7 +71,7 @@ def apart(*added: Run) -> float:
         space = search_space(model, more, Settings(), excited_band(more.runs))
         fitness = SimulatedFitness(model, more, more.runs, 500.0, space)
         start = space.point(values)
-        _, here = levenberg_marquardt(fitness.exact, start, Way(converged=1e-6), accept=fitness.accept)
+        _, here = fitness.optimum(start, Way(converged=1e-6))
         left.append(
             sum(m.gram[-1, -1] / (NOISE * r.measured.std()) ** 2 for m, r in zip(here.runs, more.runs, strict=True))
         )

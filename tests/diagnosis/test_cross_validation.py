@@ -69,7 +69,7 @@ def test_held_out_errors_of_a_line_are_those_of_fits_without_each_fold(rng):
         here = objective(data, point)
         point = point - np.linalg.solve(here.curvature, here.gradient)
     here = objective(data, point)
-    found = cross_validated(point, here, lambda p: objective(data, p), 1.0)
+    found = cross_validated(point, here, lambda p, _: objective(data, p), 1.0)
     weights = np.array([1 / np.sqrt(run.gram[-1, -1] * run.total) for run in here.runs])
     for fold in range(4):
         chunk = np.arange(N) * 8 // N
@@ -89,7 +89,7 @@ def test_with_nothing_left_out_the_errors_are_those_of_the_fit(rng):
     here = objective(data, point)
     found = not_held_out(here, 1.0)
     assert found.errors == pytest.approx([run.error for run in here.runs], rel=1e-9)
-    assert found.error < cross_validated(point, here, lambda p: objective(data, p), 1.0).error
+    assert found.error < cross_validated(point, here, lambda p, _: objective(data, p), 1.0).error
     for i, (run, J) in enumerate(data):
         left = run.measured - run.measured.mean() - (J - J.mean(axis=0)) @ (point - 0.5)
         assert found.squares[i] == pytest.approx([float(part @ part) for part in np.split(left, 8)], rel=1e-6)
@@ -101,7 +101,7 @@ def test_errors_between_runs_are_those_of_fits_without_each_fold_of_runs(rng):
     here = objective(data, np.array([0.8, 0.3]))
     point = np.array([0.8, 0.3]) - np.linalg.solve(here.curvature, here.gradient)
     here = objective(data, point)
-    found = cross_validated(point, here, lambda p: objective(data, p), 1.0, whole_runs=True)
+    found = cross_validated(point, here, lambda p, _: objective(data, p), 1.0, whole_runs=True)
     weights = np.array([1 / np.sqrt(run.gram[-1, -1] * run.total) for run in here.runs])
     folds = _folds_of_runs(6, 1)[:, 0]
     assert sorted(np.bincount(folds)) == [1, 1, 2, 2]
@@ -128,7 +128,7 @@ def test_what_only_tells_runs_apart_does_not_carry_over(rng, lawful):
         for _ in range(5):
             here = objective(data, point)
             point = point - np.linalg.solve(here.curvature, here.gradient)
-        judged = [cross_validated(point, objective(data, point), lambda p: objective(data, p), 6.0 * N, whole)
+        judged = [cross_validated(point, objective(data, point), lambda p, _: objective(data, p), 6.0 * N, whole)
                   for whole in (False, True)]  # fmt: skip
         return SimpleNamespace(held_out=judged[0], between_runs=judged[1])
 
@@ -143,8 +143,8 @@ def test_at_the_edge_of_what_is_stable_the_linearisation_judges(rng):
     here = objective(data, point)
     empty = tuple(replace(run, gram=np.zeros((1, 1)), blocks=np.zeros((0, 0, 0))) for run in here.runs)
     unstable = replace(here, error=np.inf, gradient=np.zeros(2), curvature=np.zeros((2, 2)), runs=empty)
-    stepped = cross_validated(point, here, lambda _: unstable, 1.0)
-    refitted = cross_validated(point, here, lambda p: objective(data, p), 1.0)
+    stepped = cross_validated(point, here, lambda _p, _: unstable, 1.0)
+    refitted = cross_validated(point, here, lambda p, _: objective(data, p), 1.0)
     assert stepped.squares == pytest.approx(refitted.squares, rel=1e-3)
 
 
@@ -162,7 +162,7 @@ def test_a_useless_parameter_makes_held_out_data_worse(rng):
             point = point - np.linalg.solve(here.curvature, here.gradient)
             here = objective(known, point)
         before = CrossValidation(*_plain(without), sum(r.length for r, _ in known), 9.0 * N)
-        after = cross_validated(point, here, lambda p, known=known: objective(known, p), 9.0 * N)
+        after = cross_validated(point, here, lambda p, _, known=known: objective(known, p), 9.0 * N)
         found = improvement(before, after)
         lower += found.share > 0
         assert not found.beyond_chance

@@ -5,8 +5,12 @@ Labs of tests/blind/any_machine.py, by recursions of their own.
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.ranking import _strong
+from ident.fit.levenberg_marquardt import Way
 from ident.fit.settings import Settings
 from ident.workflows import diagnose, identify
 from tests.blind.any_machine import Lab
@@ -38,3 +42,16 @@ def test_a_drag_is_measured_by_the_speed_that_was_recorded():
     fit = identify(lab.measured(), Settings(model="motor", effects=("quadratic_damping",)))
     assert fit.error["verify"] < 1.1 * lab.noise
     assert fit.values["c0"] == pytest.approx(lab.rate / 12.0, rel=0.02)
+
+
+def test_strong_starts_lie_within_the_bounds_of_the_model_that_they_begin_from():
+    """The bounds of a strength hang on other values: by those of a refit two strengths of three began as one."""
+    lab = Lab.drawn(316, hidden=True)
+    models, still = ModelFamily.of(lab.measured(), Settings(model="qian2014")), Way(most=0)
+    base = models.refit((), {p.in_equations: p.value for p in models.preset.parameters}, way=still)
+    refit = models.refit(("coulomb_friction",), base.values | {"c0": 9.0 * base.values["c0"]}, way=still)
+    starts, symbol = _strong(models, base, refit), models.strength("coulomb_friction")
+    points = np.array([refit.space.point({**start, **refit.space.fixed}) for start in starts])
+    begun = refit.space.values(points)[symbol]
+    assert begun == pytest.approx([start[symbol] for start in starts])
+    assert np.all(np.diff(begun) < 0)

@@ -18,6 +18,7 @@ from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.fit.settling import Least, better
+from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.simulated_runs import SimulatedRuns, every_run
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Matrix, Run
@@ -252,3 +253,24 @@ def test_few_samples_a_second_show_that_a_machine_stood_before_its_command_jumpe
     assert {run.begins for run in servo(late=1, noise=0.0).runs} == {"at rest"}
     assert {run.begins for run in servo(late=1, noise=0.0005).runs} == {"at rest"}
     assert {run.begins for run in servo(5, late=1, noise=0.0).runs} == {"moving"}
+
+
+def test_first_states_are_followed_where_what_they_promise_is_worth_it(saturated):
+    """From a place off, where the model is not straight: what is left falls only where they are followed."""
+    matrix, fit = saturated
+    fitness = ModelFamily.of(matrix, SATURATED).fitness(("command_limit",))
+    known = {p.in_equations: p.value for p in fitness.preset.parameters}
+    found = {fitness.preset.parameter(name).in_equations: value for name, value in fit.values.items()}
+    point = fitness.space.point({**known, **found, **fitness.space.fixed})
+
+    def off(trusting: bool) -> SimulatedFitness:
+        begun = replace(fitness.fresh(fitness.runs), trusting=trusting)
+        begun.begin({name: float(value[0]) for name, value in begun.space.values(point[None]).items()})
+        place = 0.3 * (np.array(begun.chain.states) == "x")
+        return replace(begun, starts={run: start - place for run, start in begun.starts.items()})
+
+    followed = off(True).exact(point).error
+    assert followed < 0.0044
+    assert off(True).exact(point, worth=lambda _promised: False).error > 2 * followed
+    assert off(True)._better(point, 2 * followed) is None
+    assert off(False)._better(point, 2 * followed) is not None

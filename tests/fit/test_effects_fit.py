@@ -10,7 +10,6 @@ import pytest
 
 from ident.effects.effect import Effect
 from ident.fit.identification import Identification
-from ident.fit.levenberg_marquardt import levenberg_marquardt
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import search_space
@@ -72,6 +71,6 @@ def test_an_effect_defined_here_is_fitted(data):
     space = search_space(model, data, Settings(), 500.0)
     fitness = SimulatedFitness(model, data, data.of_use("fit"), 500.0, space)
     start = space.point({p.in_equations: p.value for p in model.parameters} | {"overlap__width": 1e-4})
-    point, here = levenberg_marquardt(fitness.exact, start, accept=fitness.accept)
+    point, here = fitness.optimum(start)
     assert float(space.values(point[None])["overlap__width"][0]) == pytest.approx(2e-4, rel=0.01)
     assert np.mean([run.error for run in here.runs]) < 1.05 * NOISE

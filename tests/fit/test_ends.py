@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from ident.fit.ends import End, distinct, parted, rivals, valley
-from ident.fit.fitness import Local
+from ident.fit.fitness import Local, Steps
+from ident.fit.levenberg_marquardt import levenberg_marquardt
 from ident.fit.multistart import multistart
 from ident.fit.result import Starts
 from ident.fit.space import Axis, Space
@@ -34,14 +35,9 @@ class Wells:
         self.evaluations += 1
         return Local(depth + 50 * float(off @ off), 100 * off, 100 * np.eye(1), ())
 
-    def exact(self, point: np.ndarray) -> Local:
-        return self._at(point, self.depths)
-
-    def approximate(self, point: np.ndarray) -> Local:
-        return self._at(point, self.searched)
-
-    def accept(self, here: Local) -> None:
-        """Nothing is to be remembered."""
+    def optimum(self, start: np.ndarray, report: Steps, roughly: bool = False) -> tuple[np.ndarray, Local]:
+        depths = self.searched if roughly else self.depths
+        return levenberg_marquardt(lambda point: self._at(point, depths), start, report=report)
 
     def fresh(self, runs: tuple[()]) -> Wells:
         return replace(self, runs=runs, evaluations=0)
