@@ -14,7 +14,7 @@ step is too long for one linearisation the other folds are fitted in full.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,7 +43,8 @@ class CrossValidation:
     `means` (runs,) are the runs' offsets over their standard deviations, less what they have in common: the zero of
     the transducer. `independent` is how many of the `samples` tell something new, the residual being correlated.
     `unforetold` (runs, chunks) are the Σ of squares of what the residual's own past does not foretell, where known;
-    `in_windows` tells whether the errors are of windows.
+    `in_windows` tells whether the errors are of windows. `fitted` is eq. (17) averaged over the runs where nothing is
+    left out, None where whole runs are.
     """
 
     squares: Array
@@ -53,6 +54,7 @@ class CrossValidation:
     independent: float
     unforetold: Array | None = None
     in_windows: bool = False
+    fitted: float | None = None
 
     @cached_property
     def errors(self) -> Array:
@@ -103,7 +105,8 @@ def cross_validated(
         for i, (run, of) in enumerate(zip(there.runs, chunks, strict=True)):
             inside = fold_of[i] == fold
             squares[i, inside] = _by_chunk(run, of, count, step)[inside]
-    return _over_chunks(here, squares, independent)
+    judged = _over_chunks(here, squares, independent)
+    return replace(judged, fitted=None) if whole_runs else judged
 
 
 def not_held_out(here: Local, independent: float) -> CrossValidation:
@@ -123,7 +126,8 @@ def _chunks(here: Local) -> int:
 def _over_chunks(here: Local, squares: Array, independent: float) -> CrossValidation:
     means = np.array([run.offset for run in here.runs])
     totals = np.array([run.total for run in here.runs])
-    return CrossValidation(squares, totals, means - means.mean(), sum(run.length for run in here.runs), independent)
+    samples, fitted = sum(run.length for run in here.runs), float(np.mean([run.error for run in here.runs]))
+    return CrossValidation(squares, totals, means - means.mean(), samples, independent, fitted=fitted)
 
 
 def by_chunk(signals: Sequence[Array], count: int) -> Array:

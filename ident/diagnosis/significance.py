@@ -16,6 +16,10 @@ past does not foretell, too,
 and so has all that helps over windows, which begin anew where they were measured and hide what adds up: there much
 less of that is enough by itself. What helps has to help without the run that gains most, too,
 or without that chunk, where there are few runs: what only one run asks for is a doubt about that run, not physics.
+
+Whether the error falls by what is worth a parameter is told by the records that were fitted, as long as half of it is
+seen on held-out chunks too: a fit that ends in a kink is moved by next to nothing, the fits without a fold that begin
+there end now behind it and now before it, and their errors scatter by as much as is asked for.
 """
 
 from __future__ import annotations
@@ -30,6 +34,7 @@ from ident.diagnosis.cross_validation import CrossValidation
 Array = NDArray[np.float64]
 BEYOND_CHANCE = 10.0  # nats: one in 20,000 by chance, if only the best of a large number could tell
 WORTHWHILE = 1e-2  # relative fall of the error: less is not worth a parameter, however certain
+_HELD = 0.5  # of what is worth a parameter that is to be seen on held-out data, too
 ALIKE = 3.0  # standard deviations below which two refits differ by chance
 _OFFSET_ALIKE = 4.5  # nats: three deviations
 _ALIKE_NATS = 2 * ALIKE**2  # where white noise of σ separates outputs f, g by ALIKE deviations: |f − g|² = 36 σ²
@@ -54,7 +59,8 @@ class Improvement:
     that run; of few runs the mean gain of a chunk. `offset` are the nats of the runs' offsets, `visible`
     whether these are large enough to matter. `likelier` are the nats of what the residuals' own past does not foretell,
     also without the run or chunk that gains most, None where that is not known, and `new` the share of what is left
-    that it does not foretell. `in_windows` as of what is compared.
+    that it does not foretell. `in_windows` as of what is compared. `fitted` is the share by which the error falls on
+    the data of the fit, None where they are not those that are compared.
     """
 
     share: float
@@ -70,6 +76,7 @@ class Improvement:
     likelier_without: float | None = None
     new: float = 0.0
     in_windows: bool = False
+    fitted: float | None = None
 
     @property
     def beyond_chance(self) -> bool:
@@ -97,12 +104,19 @@ class Improvement:
 
     @property
     def _likely(self) -> bool:
-        return self.share > WORTHWHILE and self.likely
+        return self.worthwhile and self.likely
 
     @property
     def _steady(self) -> bool:
         sure = self.deviations > _STEADY and self.deviations_without > _SINGLE_STEADY
-        return self.share > WORTHWHILE and sure
+        return self.worthwhile and sure
+
+    @property
+    def worthwhile(self) -> bool:
+        """Whether the error falls by what is worth a parameter."""
+        if self.fitted is None:
+            return self.share > WORTHWHILE
+        return self.fitted > WORTHWHILE and self.share > _HELD * WORTHWHILE
 
     @property
     def unforetold_beyond_chance(self) -> bool:
@@ -141,7 +155,13 @@ def improvement(before: CrossValidation, after: CrossValidation) -> Improvement:
         *_likelier(before, after),
         _new(after),
         before.in_windows,
+        _fall(before.fitted, after.fitted),
     )
+
+
+def _fall(before: float | None, after: float | None) -> float | None:
+    """The relative fall of an error, where both are known."""
+    return None if before is None or after is None or not before > 0 else 1.0 - after / before
 
 
 def _new(after: CrossValidation) -> float:

@@ -8,7 +8,7 @@ from ident.diagnosis.late import Lateness
 from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.result import Explanation, Suspect
-from ident.diagnosis.significance import WORTHWHILE, Improvement
+from ident.diagnosis.significance import Improvement
 from ident.diagnosis.standing import Contradiction
 from ident.effects.effect import Effect
 from ident.fit.result import Combination
@@ -59,7 +59,7 @@ def why_of_gain(
         )
     near = f", with the noise floor at {percent(floor)}" if floor is not None else ""
     first = "No other effect does better. " if best else ""
-    if gain.unforetold_beyond_chance and gain.share < WORTHWHILE:
+    if gain.unforetold_beyond_chance and not gain.worthwhile:
         foretold = f"of whole runs {gain.likelier:.3g} nats less is left that their own past does not foretell"
         return f"{first}{change} over windows; {foretold}. It shows as: {effect.looks}."
     if abs(gain.share) < 1e-3:

@@ -41,14 +41,15 @@ def in_windows(optimum: Optimum, report: Report, whole: bool = True) -> Optimum:
     """The optimum over the windows that explain the records best, or as it is where the `whole` run may and does.
 
     What explains best leaves least that could not be foretold: see :func:`unforeseen`. A speed that is forgotten
-    within a window makes no whole run.
+    within a window makes no whole run. But windows over which the model says no more than that the record goes on as
+    it did tell nothing of it: a quiet record goes on so nearly everywhere, whatever drives it.
     """
     objective = optimum.fitness
     if not isinstance(objective, SimulatedFitness) or not len(optimum.point):
         return optimum
     memory, horizons = _begun_anew(objective, optimum.point)
     whole = whole and (memory is None or memory > _longest(objective))
-    least = _left(objective, optimum.point, memory) if whole else np.inf
+    least = _left(objective, optimum.point, memory) if whole else _going_on(objective, memory)
     return _best(optimum, objective, least, horizons, memory, report)
 
 
@@ -131,13 +132,21 @@ def longer(fitness: SimulatedFitness, point: Array) -> list[float | None]:
     return [*(each for each in horizons if each > _LONGER * own), None]
 
 
+def _going_on(fitness: SimulatedFitness, memory: float | None) -> float:
+    """The same of a record that goes on as it did, whatever its command."""
+    return _unforeseen(fitness, {run.id: run.measured for run in fitness.runs}, memory)
+
+
 def _left(fitness: SimulatedFitness, point: Array, memory: float | None) -> float:
     """The mean logarithm of what is unforeseen in the runs at a point: least for the most likely model.
 
     With a `memory` of a level whose speed wanders.
     """
     outputs = fitness.outputs(point)
-    left = {run.id: run.measured - outputs[run.id] for run in fitness.runs}
+    return _unforeseen(fitness, {run.id: run.measured - outputs[run.id] for run in fitness.runs}, memory)
+
+
+def _unforeseen(fitness: SimulatedFitness, left: dict[str, Array], memory: float | None) -> float:
     if memory is not None:
         return _most_likely(fitness, left)[1]
     with np.errstate(divide="ignore", invalid="ignore"):

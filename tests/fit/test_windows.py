@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.signal
 
 from ident.diagnosis.family import ModelFamily
 from ident.fit.levenberg_marquardt import Way
@@ -119,6 +120,23 @@ def test_without_disturbances_the_whole_run_is_fitted():
     assert fit.window is None
     assert gain(fit) == pytest.approx(GAIN, rel=2e-3)
     assert "window" not in fit.to_json()
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_windows_over_which_a_record_but_goes_on_are_none(seed):
+    """A speed that wanders, whatever is commanded: over 0.8 s any model looked right to some per cent."""
+    runs = []
+    for number, use in enumerate(("fit", "verify")):
+        random = np.random.default_rng([seed, number])
+        u = np.repeat(random.uniform(-1, 1, 80), 30)
+        decay = np.exp(-1.0 / RATE / 2.0)
+        speed = scipy.signal.lfilter([1.0], [1.0, -decay], 1e-2 * random.standard_normal(len(u)))
+        x = np.cumsum(speed) / RATE + 1e-4 * random.standard_normal(len(u))
+        channels, units = {"command": u, "displacement": x - x[0]}, {"command": "V", "displacement": "m"}
+        runs.append(Run(use, "", RATE, channels, units, hold="zoh", use=use))
+    fit = identify(Matrix(Actuator("ANY"), tuple(runs)), Settings(model="motor"))
+    assert fit.window is None
+    assert fit.error["fit"] > 0.8
 
 
 def test_the_error_over_windows_is_counted_from_where_each_was_measured():
