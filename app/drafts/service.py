@@ -83,7 +83,9 @@ def _findings(store: Storage, files: dict[str, str], text: str) -> list[FindingV
 
 def _file(draft: Draft, file: RawFile) -> RawFileView:
     known = draft.known(file)
-    by_column = {file.table.number(answer.column, ""): name for name, answer in known.channels.items()}
+    by_column = {
+        number: name for name, answer in known.channels.items() for number in file.table.numbers(answer.column, "")
+    }
     if known.time.column != "":
         by_column[file.table.number(known.time.column, "")] = "time"
     columns = [

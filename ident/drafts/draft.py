@@ -13,6 +13,7 @@ from ident.drafts.steps import moves_in_steps
 from ident.errors import Unusable
 from ident.matrix import CHANNELS
 from ident.readers import PACKED
+from ident.readers.table import LISTED, MINUS
 from ident.units.quantity import shown
 
 OUTPUTS = ("displacement", "velocity", "force", "load_pressure")
@@ -86,15 +87,15 @@ class Draft:
             if answer.column == NONE:
                 found.pop(channel, None)
                 continue
-            column = _column(file, answer.column, f"channel {channel}") if answer.column != "" else None
+            columns = _columns(file, answer.column, f"channel {channel}") if answer.column != "" else []
             before = found.get(channel, Answer())
-            if column:
-                found = {name: a for name, a in found.items() if self._stays(file, name, a, column)}
-            stated = unit_of(column) if column else before.unit
-            if column and answer.unit and stated not in ("", answer.unit):
-                taken = f"{shown(column.name)!r} is {channel} in {answer.unit}, as was said"
+            if columns:
+                found = {name: a for name, a in found.items() if self._stays(file, name, a, columns)}
+            stated = _unit(columns) if columns else before.unit
+            if columns and answer.unit and stated not in ("", answer.unit):
+                taken = f"{shown(MINUS.join(one.name for one in columns))!r} is {channel} in {answer.unit}, as was said"
                 doubts.append(f"{taken}; the file states {stated}")
-            found[channel] = Answer(answer.column if column else before.column, answer.unit or stated)
+            found[channel] = Answer(answer.column if columns else before.column, answer.unit or stated)
         found = {channel: answer for channel, answer in found.items() if answer.column != ""}
         doubts += [f"{shown(a.column)!r} is taken for {channel}, by its name" for channel, a in found.items()
                    if channel not in self.answers.channels]  # fmt: skip
@@ -106,14 +107,15 @@ class Draft:
         hold = str(self.answers.common.get("hold", "")) or self._hold(file, found)
         return Known(found, time, rate, hold, (*doubts, *said))
 
-    def _stays(self, file: RawFile, channel: str, of: Answer, column: Column) -> bool:
-        """Whether a column still is the channel that its name looks like, once it was said what `column` is."""
-        return channel in self.answers.channels or file.table.number(of.column, file.name) != column.number
+    def _stays(self, file: RawFile, channel: str, of: Answer, columns: Sequence[Column]) -> bool:
+        """Whether a column still is the channel that its name looks like, once it was said what `columns` are."""
+        number = file.table.numbers(of.column, file.name)[0]
+        return channel in self.answers.channels or all(number != one.number for one in columns)
 
     def _hold(self, file: RawFile, channels: Mapping[str, Answer]) -> str:
         """What the command does between samples, by the look of it."""
         drive = next((channels[name].column for name in _DRIVES if name in channels), None)
-        held = drive is not None and moves_in_steps(file.samples(file.table.number(drive, file.name)))
+        held = drive is not None and moves_in_steps(file.samples(drive))
         return "zoh" if held else "linear"
 
     def _clock(self, file: RawFile) -> tuple[Answer, str, tuple[str, ...]]:
@@ -122,7 +124,7 @@ class Draft:
         if self.answers.rate:
             return Answer(), self.answers.rate, ()
         if answer.column != "":
-            column = _column(file, answer.column, "time")
+            (column,) = _columns(file, file.table.number(answer.column, f"{file.name}: time"), "time")
             return Answer(answer.column, answer.unit or column.unit), "", ()
         named = [column for column in file.columns if is_time(column.name)]
         if len(named) == 1:
@@ -215,19 +217,26 @@ class Draft:
         return run | {"channels": {name: {"column": a.column, "unit": a.unit} for name, a in channels}}
 
 
-def _column(file: RawFile, column: str | int, where: str) -> Column:
-    """The column of numbers that an answer names. Raises Unusable."""
-    number = file.table.number(column, f"{file.name}: {where}")
-    for found in file.columns:
-        if found.number == number:
-            return found
-    raise Unusable("not-numeric", f"column {shown(column)!r} does not hold numbers throughout", file.name,
-                   "name another column")  # fmt: skip
+def _columns(file: RawFile, column: str | int, where: str) -> list[Column]:
+    """The column of numbers that an answer names, the two of a difference. Raises Unusable."""
+    numbers = file.table.numbers(column, f"{file.name}: {where}")
+    found = [one for number in numbers for one in file.columns if one.number == number]
+    if len(found) < len(numbers):
+        raise Unusable("not-numeric", f"column {shown(column)!r} does not hold numbers throughout", file.name,
+                       "name another column")  # fmt: skip
+    return found
+
+
+def _unit(columns: Sequence[Column]) -> str:
+    """The unit that all of some columns have."""
+    units = {unit_of(column) for column in columns}
+    return units.pop() if len(units) == 1 else ""
 
 
 def _listed(file: RawFile) -> str:
-    names = ", ".join(shown(column.name) for column in file.columns[:12])
-    return f"{file.name} ({names})"
+    names = ", ".join(shown(column.name) for column in file.columns[:LISTED])
+    more = f" and {len(file.columns) - LISTED} more" if len(file.columns) > LISTED else ""
+    return f"{file.name} ({names}{more})"
 
 
 def _option(key: str) -> str:

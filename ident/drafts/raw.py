@@ -13,6 +13,7 @@ from ident.cached import cached_property
 from ident.errors import Unusable
 from ident.matrix import Samples
 from ident.readers import PACKED, TEXT, ending_of, read_table
+from ident.readers.controldesk import is_controldesk
 from ident.readers.gzipped import unpacked
 from ident.readers.limits import LIMITS, Limits
 from ident.readers.table import NUMERIC, Table
@@ -64,9 +65,11 @@ class RawFile:
         except Unusable:
             return [self._holds_numbers(number) for number in range(len(self.table.names))]
 
-    def samples(self, number: int) -> Samples:
-        """The samples of a column as they stand in the file. Raises Unusable."""
-        return np.asarray(self.table.load([number])[0], dtype=np.float64)
+    def samples(self, column: str | int) -> Samples:
+        """The samples of a column, or of a difference of two, as they stand in the file. Raises Unusable."""
+        loaded = self.table.load(self.table.numbers(column, self.name))
+        first, *second = (np.asarray(samples, dtype=np.float64) for samples in loaded)
+        return first - second[0] if second else first
 
     @property
     def rate(self) -> Rate | None:
@@ -119,7 +122,7 @@ def read_raw(data: bytes, name: str, limits: Limits = LIMITS) -> RawFile:
     ending, skip, preamble = ending_of(name), 0, ""
     if ending.removesuffix(PACKED) in TEXT:
         text = as_utf8(unpacked(data, name, limits) if ending.endswith(PACKED) else data)
-        skip = lines_above(text)
+        skip = 0 if is_controldesk(text) else lines_above(text)
         preamble = text[: line_start(text, skip)].decode("utf-8", "replace")
     read = RawFile(name, read_table(data, name, skip, limits), skip, preamble)
     if not read.columns:

@@ -11,6 +11,7 @@ from typing import Unpack
 from ident.errors import Unusable
 from ident.matrix import Matrix, Run
 from ident.readers.archive import Archive
+from ident.readers.controldesk import read_controldesk
 from ident.readers.dat import read_dat
 from ident.readers.description import Description, describe
 from ident.readers.gzipped import unpacked
@@ -162,7 +163,8 @@ def read_table(
     if ending.endswith(PACKED):
         data, ending = unpacked(data, name, limits), ending.removesuffix(PACKED)
     if ending in TEXT:
-        return read_text(data, name, limits, skip_rows)
+        recording = None if skip_rows else read_controldesk(data, name, limits)
+        return recording or read_text(data, name, limits, skip_rows)
     if skip_rows:
         raise Unusable("bad-rows", "skip_rows is for text files", f"{where} skip_rows".strip(), "use rows")
     kind = BINARY[ending]

@@ -15,8 +15,8 @@ from ident.units.quantity import shown
 
 Array = NDArray[Any]
 NUMERIC = "iuf"  # dtype kinds: whole numbers and floats
-LISTED = 12
-_MINUS = " - "
+LISTED = 12  # columns that a message names
+MINUS = " - "
 
 
 @dataclass(frozen=True)
@@ -58,8 +58,8 @@ class Table:
 
         Raises Unusable as :meth:`number`.
         """
-        if isinstance(column, str) and _MINUS in column and not self.named(column.strip()):
-            first, _, second = column.partition(_MINUS)
+        if isinstance(column, str) and MINUS in column and not self.named(column.strip()):
+            first, _, second = column.partition(MINUS)
             return self.number(first, where), self.number(second, where)
         return (self.number(column, where),)
 

@@ -234,3 +234,20 @@ def test_no_measured_command_is_taken_as_held_that_was_not(measured):
     draft = Draft(files, Answers())
     for file in files:
         assert draft.known(file).hold in ("linear", of_file(told, file).labels.hold)
+
+
+def test_a_channel_may_be_the_difference_of_two_columns():
+    """Two commands, each for one way; what the file states of a difference is the unit of both."""
+    ways = [n // 8 % 3 - 1 for n in range(40)]
+    rows = [f"{n / 100:g},{max(way, 0)},{max(-way, 0)},{n % 7}" for n, way in enumerate(ways)]
+    text = "\n".join(["time [s],out [V],in [V],x [mm]", *rows, ""])
+    channels = {"command": Answer("out [V] - in [V]"), "displacement": Answer("x [mm]")}
+    draft = Draft([raw(text)], Answers(serial="A", channels=channels))
+    known = draft.known(draft.files[0])
+    assert known.channels["command"] == Answer("out [V] - in [V]", "V")
+    assert known.hold == "zoh"
+    assert not draft.missing
+    np.testing.assert_array_equal(drafted(gathered(draft, [text.encode()])).runs[0].command, ways)
+    broken = raw(text.replace("\n0.39,", "\n0.39,?"))
+    with pytest.raises(Unusable, match="does not hold numbers throughout"):
+        Draft([broken], draft.answers).known(broken)

@@ -74,6 +74,16 @@ def lvm(timed: bool = True) -> bytes:
     return "\r\n".join([*head, *rows, ""]).encode()
 
 
+def controldesk(delimiter: str = ",") -> bytes:
+    """What ControlDesk 7 exports: a field over two lines above, ports with Simulink's names and with their own."""
+    head = ["descriptions,General,User,lab", ',General,Origin,"Software revision: a, b', 'Platform: MicroAutoBox III"',
+            "", "trace_size,16", "trace_types,5,4,4", "trace_names,,In1,x_out", "trace_units,s,V,mm",
+            "path,,Model Root/Valve/u,Model Root/Stand", "flags,,2,2"]  # fmt: skip
+    rows = [f"{'' if t else 'trace_values'},{t},{u},{x}" for t, u, x in ROWS]
+    text = "\r\n".join([*head, *rows, ""])
+    return (text if delimiter == "," else text.replace(",", delimiter).replace(".", ",")).encode()
+
+
 def mts() -> bytes:
     """What a timed acquisition of the station manager writes."""
     head = ["MTS793|MPT|ENU|1|2|.|/|:|1|0|0|A", "", "Data Acquisition\tTimed\tTime:\t4\tSec\t1/5/2026 10:00:00 AM",
@@ -206,6 +216,8 @@ FILES = {
     "uff-binary": (".unv", uff_binary, ("time", "u", "x")),
     "lvm": (".lvm", lvm, ("X_Value", "u", "x")),
     "lvm-untimed": (".lvm", lambda: lvm(False), ("X_Value", "u", "x")),
+    "controldesk": (".csv", controldesk, ("time", "Valve/u", "Stand/x_out")),
+    "controldesk-comma": (".csv", lambda: controldesk(";"), ("time", "u", "x_out")),
     "mts": (".dat", mts, ("Time", "u", "x")),
     "xlsx": (".xlsx", xlsx, ("time", "u", "x")),
     "records": (".json", records, ("time", "u", "x")),

@@ -15,7 +15,7 @@ import pytest
 from ident.errors import Unusable
 from ident.readers import read_matrix, read_table
 from ident.readers.limits import LIMITS, Limits
-from tests.readers.lab_files import APART, BESIDE, DESCRIBED, FILES, ROWS, U, X, diadem, lvm, mts, uff
+from tests.readers.lab_files import APART, BESIDE, DESCRIBED, FILES, ROWS, U, X, controldesk, diadem, lvm, mts, uff
 from tests.readers.lab_mdf import mdf3
 
 HAS_MDF = importlib.util.find_spec("asammdf") is not None
@@ -85,6 +85,8 @@ def test_a_record_a_line_and_an_object_of_columns_are_json_as_well():
         ("run.uff", b"    -1\n   151\nmodel\n    -1\n", "broken-uff"),
         ("run.lvm", lvm() + lvm(), "many-segments"),
         ("run.lvm", lvm(False).replace(b"Delta_X", b"Delta"), "broken-lvm"),
+        ("run.csv", controldesk().replace(b"Stand", b"Sta\rnd"), "broken-controldesk"),
+        ("run.csv", controldesk().replace(b"0.125", b"much"), "not-numeric"),
         ("run.dat", mts().replace(b"0.125", b"much"), "not-numeric"),
         ("run.dat", b"MTS793|MPT|\n\nwords\nalone\n", "broken-mts"),
         ("run.dat", diadem(), "missing-file"),
