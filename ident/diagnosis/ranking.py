@@ -25,6 +25,7 @@ _QUICK = 200_000  # steps of a matrix so small that every promise can be tried, 
 _NEAR = 1.3  # times the best predicted error: the contenders for a further effect
 _FINALISTS = 5
 _CLOSE = 1.05  # times the best trial's error: also a finalist, where it promises anything
+_ANEW = 0.98  # times the error: a model that is known is at another, better optimum
 _AS_GOOD = 1.02  # times the error: what is no better by chance, nor by more than that, stands as listed
 _ENDS = 1.05  # times the error: so far apart end refits with what acts in jumps
 _DEEPER = 2  # of the finalists are looked for elsewhere, too
@@ -106,26 +107,30 @@ def rank_each(
     """The same for several models, with what is refitted for all of them side by side.
 
     Where only what is about as good as a model `beside` them counts, the others are given up on the way; that model
-    itself stands among the candidates as it is.
+    itself stands among the candidates as it is, or as a refit from a base finds it, where that is better.
     """
     promised = [_promised(models, base, names, report) for base, names in bases]
     models_of = [base for base, _ in bases]
     met = [_met(base, of, beside) for base, of in zip(models_of, promised, strict=True)]
     contenders = [
-        [one for one in (of[:_CONTENDERS] if thorough else _near(models, base, of)) if one.effect not in known]
-        for base, of, known in zip(models_of, promised, ([c.effect for c in of] for of in met), strict=True)
+        of[:_CONTENDERS] if thorough else _near(models, base, of) for base, of in zip(models_of, promised, strict=True)
     ]
     sure, done = _FINALISTS if thorough else 2, 0
     asked = {base.effects: _asked(models, base, beside) for base in models_of}
+    anew = _ANEW * models.tried(beside) if beside is not None else np.inf
 
     def trial(base: Refit, prediction: Prediction) -> Candidate:
         nonlocal done
-        candidate = _tried(models, base, prediction, asked[base.effects], strong)
+        aim = anew if _is(base, prediction, beside) else asked[base.effects]
+        candidate = _tried(models, base, prediction, aim, strong)
         done += 1
         report(Progress("trying", done, sum(map(len, contenders)) + sure * len(bases)))
         return candidate
 
-    tried = [ranked(models, ones) for ones in _side_by_side(trial, models_of, contenders)]
+    tried = [
+        ranked(models, [one for one in ones if not _is(base, one.prediction, beside) or _comes_below(one, anew)])
+        for base, ones in zip(models_of, _side_by_side(trial, models_of, contenders), strict=True)
+    ]
     finalists = [_finalists(models, base, ones, sure) for base, ones in zip(models_of, tried, strict=True)]
 
     def final(base: Refit, candidate: Candidate) -> Candidate:
@@ -140,7 +145,9 @@ def rank_each(
     deeper = _DEEPER if thorough else 1
     elsewhere = partial(_elsewhere, models, asked if beside else {})
     farther = _side_by_side(elsewhere, models_of, [ones[:deeper] for ones in found])
-    came = [{one.effect: one for one in chain(*of)} for of in zip(met, tried, found, farther, strict=True)]
+    came = [{one.effect: one for one in chain(*of)} for of in zip(tried, found, farther, strict=True)]
+    for of, ones in zip(came, met, strict=True):
+        of |= {one.effect: one for one in ones if not _is_better(of.get(one.effect), one)}
     return [
         ranked(models, [known.get(one.effect, Candidate(one)) for one in of])
         for of, known in zip(promised, came, strict=True)
@@ -201,11 +208,26 @@ def _met(base: Refit, predictions: Sequence[Prediction], beside: Refit | None) -
     """The candidate, if any, with which a base is the model that stands beside it."""
     found = []
     for one in predictions:
-        effects = (*base.effects, one.effect)
-        if beside is not None and set(effects) == set(beside.effects):
-            known = beside.listed(effects)
+        if beside is not None and _is(base, one, beside):
+            known = beside.listed((*base.effects, one.effect))
             found.append(Candidate(one, known).refitted(base, known))
     return found
+
+
+def _is(base: Refit, prediction: Prediction, beside: Refit | None) -> bool:
+    """Whether a base with a predicted effect is the model that stands beside it."""
+    return beside is not None and {*base.effects, prediction.effect} == set(beside.effects)
+
+
+def _comes_below(candidate: Candidate, error: float) -> bool:
+    """Whether the first refit of a candidate leaves less than so much."""
+    return candidate.trial is not None and candidate.trial.here.error < error
+
+
+def _is_better(anew: Candidate | None, known: Candidate) -> bool:
+    """Whether a model that is known was found anew, at a better optimum."""
+    assert known.refit is not None
+    return anew is not None and anew.refit is not None and anew.refit.error < _ANEW * known.refit.error
 
 
 def _asked(models: ModelFamily, base: Refit, beside: Refit | None) -> float:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from itertools import combinations
+from itertools import combinations, takewhile
 
 from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.ladder import Ladder, Rungs, score, without
@@ -104,6 +104,7 @@ class StepwiseSelection:
         self.ranking = ranked(self.models, self.ranking)
 
     def _rounds(self) -> None:
+        groups, before = self.groups, self.found
         self.groups = {}
         seen: set[frozenset[str]] = set()
         for _ in range(_ROUNDS):
@@ -111,6 +112,8 @@ class StepwiseSelection:
             if len(self.added) > _WEIGHED or frozenset(self.added) in seen or not self._replaced():
                 break
             seen.add(frozenset(self.added))
+        if self.found is before:
+            self.groups = self.groups or groups
 
     def alike(self) -> list[Candidate]:
         """The candidates of the first ranking that help and are no worse than its best but by chance, best first."""
@@ -179,8 +182,11 @@ class StepwiseSelection:
         return True
 
     def _weighed(self) -> bool:
-        """Weigh as many effects as are not weighed otherwise, once; True where one was replaced."""
-        return len(self.added) > _WEIGHED and not self.groups and self._replaced()
+        """Weigh as many effects as are not weighed otherwise, until none is replaced; True where one was."""
+        if len(self.added) <= _WEIGHED or self.groups:
+            return False
+        rounds = (self._replaced() for _ in range(_ROUNDS))
+        return sum(takewhile(bool, rounds)) > 0
 
     def _settled(self, refit: Refit) -> bool:
         """Where the model does as well without what was added, that was but a way to a better optimum: True, there."""
@@ -297,16 +303,22 @@ class StepwiseSelection:
             best = next((c for c in ranking if c.refit is not None), None)
             if best is None or best.refit is None:
                 continue
-            if best.effect != name and self._better_instead(name, best):
-                self._step(best.refit)
+            if best.refit.here is not here.here and self._better_instead(name, best):
+                order = (best.effect if one == name else one for one in here.effects)
+                self._step(best.refit.listed(tuple(order)))
                 self._backward(best.effect)
                 return True
             self.groups[name] = group(name, here, ranking)
         return False
 
     def _better_instead(self, name: str, other: Candidate) -> bool:
-        """Whether another effect does better in the place of one: at the noise by however little, if beyond chance."""
+        """Whether another effect does better in the place of one: at the noise by however little, if beyond chance.
+
+        One that was found anew is the same at a better optimum.
+        """
         assert other.refit is not None
+        if other.effect == name:
+            return True
         simple = self.models.simplicity(other.effect)[0] <= self.models.simplicity(name)[0]
         at_noise = simple and self.models.at_floor(self.found)
         return helps(self.found, other.refit) or (at_noise and told_apart(self.found, other.refit))

@@ -98,6 +98,7 @@ def judged(share: float, *effects: str) -> SimpleNamespace:
         samples=1000,
         unforetold=None,
         in_windows=False,
+        fitted=None,
     )
     jumping = Refit.jumping.fget(SimpleNamespace(fitness=SimpleNamespace(preset=SimpleNamespace(
         effects=[effect(name) for name in effects]))))  # fmt: skip

@@ -44,6 +44,7 @@ class Judged:
 
     def __init__(self, scores: dict[str, float], needed: set[str], far: str, late: str, off: str) -> None:
         self.off = off
+        self.met: dict[frozenset[str], Any] = {}  # one optimum for each set of effects
         self.scores, self.needed = {"abc": 2.0, "ac": 2.0, "bc": 2.0, "c": 2.0} | scores, needed
         self.far, self.late = far, late  # effects found only from strong ones; only beside another
 
@@ -52,11 +53,13 @@ class Judged:
         score = self.scores["".join(sorted(effects))]
         held_out = SimpleNamespace(score=score, effects=set(effects))
         values = dict.fromkeys(effects, 1.0)
-        here = SimpleNamespace(error=score)
-        return SimpleNamespace(
+        here = self.met.setdefault(frozenset(effects), SimpleNamespace(error=score))
+        found = SimpleNamespace(
             effects=tuple(effects), values=values, finite=True, held_out=held_out, here=here, error=score,
             jumping=frozenset(),
         )  # fmt: skip
+        found.listed = lambda order: SimpleNamespace(**{**vars(found), "effects": order})
+        return found
 
     def both(self, first, second, _aim):
         """The same with the last effects of two."""

@@ -1,0 +1,91 @@
+"""A search in kinks ends at one of many optima: a model that was found is looked for again, from each side."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from ident.diagnosis import ranking, stepwise
+from ident.diagnosis.ranking import Candidate, rank_each
+from ident.diagnosis.stepwise import StepwiseSelection
+
+
+def refit(*effects: str, error: float) -> Any:
+    """A refit of which the effects and the error count."""
+    found = SimpleNamespace(
+        effects=effects, error=error, here=SimpleNamespace(error=error), finite=True,
+        held_out=SimpleNamespace(score=error), jumping=frozenset(),
+    )  # fmt: skip
+    found.listed = lambda order: SimpleNamespace(**{**vars(found), "effects": order})
+    return found
+
+
+@pytest.fixture
+def models():
+    """A family of models in which nothing is at the noise, each effect as simple as the others."""
+    return SimpleNamespace(
+        floor=0.1, at_floor=lambda _refit: False, simplicity=lambda name: (1, name), settled=lambda one: one,
+        tried=lambda one: one.error,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(("anew", "error"), [(0.7, 0.7), (0.99, 1.0), (1.2, 1.0)])
+def test_a_model_that_is_known_is_found_anew_where_that_leads_to_a_better_optimum(models, monkeypatch, anew, error):
+    """From the model without the second effect its refit leaves 0.7 of what was found, as much, or more."""
+    predictions = [SimpleNamespace(effect=name, after=SimpleNamespace(score=1.0)) for name in ("saturation", "other")]
+    ends = {"saturation": anew, "other": 1.1}
+
+    def tried(_models: Any, base: Any, prediction: Any, _aim: float, _strong: bool) -> Candidate:
+        effects = (*base.effects, prediction.effect)
+        return Candidate(prediction, refit(*effects, error=ends[prediction.effect]))
+
+    for name, made in {
+        "_promised": lambda *_: predictions, "_near": lambda *_: predictions, "_tried": tried,
+        "_confirmed": lambda _models, base, one: one.refitted(base, one.trial),
+        "_elsewhere": lambda _models, _asked, _base, one: one, "improvement": lambda *_: None,
+        "alike": lambda *_: False,
+    }.items():  # fmt: skip
+        monkeypatch.setattr(ranking, name, made)
+    found = refit("saturation", "stiction", error=1.0)
+    (ranked,) = rank_each(
+        models, [(refit("stiction", error=2.0), ("saturation", "other"))], lambda _: None, thorough=False, beside=found
+    )
+    by_name = {one.effect: one.refit.error for one in ranked if one.refit is not None}
+    assert by_name == {"saturation": error, "other": 1.1}
+    assert ranked[0].effect == "saturation"
+
+
+def in_place(selection: StepwiseSelection, rankings: list[list[list[Any]]], monkeypatch: pytest.MonkeyPatch) -> None:
+    """What could stand in the place of each effect, in one round after the other."""
+    rounds = iter(rankings)
+    monkeypatch.setattr(selection, "_in_place_of_each", lambda _added: next(rounds))
+    monkeypatch.setattr(selection, "_backward", lambda _latest: False)
+    monkeypatch.setattr(stepwise, "helps", lambda less, more: more.error < 0.99 * less.error)
+    monkeypatch.setattr(stepwise, "group", lambda name, _here, _ranking: [name])
+
+
+def test_what_replaces_an_effect_stands_on_its_rung_and_is_weighed_until_nothing_is_replaced(models, monkeypatch):
+    """Four effects: the third is replaced, then the fourth found anew; what is left has its groups."""
+    selection = StepwiseSelection(models, refit(error=4.0), 4, lambda *_: None)
+    first = refit("a", "b", "c", "d", error=2.0)
+    other, better = refit("a", "b", "d", "e", error=1.5), refit("a", "b", "e", "d", error=1.0)
+    selection.steps.append(first)
+
+    def ranked(found: Any, **instead: Any) -> list[list[Any]]:
+        return [
+            [SimpleNamespace(effect=one[0], refit=one[1])] if (one := instead.get(name)) is not None
+            else [SimpleNamespace(effect=name, refit=found)]
+            for name in found.effects
+        ]  # fmt: skip
+
+    second = other.listed(("a", "b", "e", "d"))
+    rounds = [ranked(first, c=("e", other)), ranked(second, d=("d", better)), ranked(better)]
+    in_place(selection, rounds, monkeypatch)
+    assert selection._weighed()
+    assert [step.effects for step in selection.steps[1:]] == [first.effects, second.effects, better.effects]
+    assert selection.found.error == 1.0
+    selection._rounds()
+    assert list(selection.groups) == ["a", "b", "e", "d"]
+    assert not selection._weighed()
