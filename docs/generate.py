@@ -110,8 +110,10 @@ def row(option: Any) -> tuple[str, str, str]:
 
 EFFECTS_HEAD = (
     "Each has one strength, its first parameter, with which it is off at 0; the others are shapes, held at their",
-    "default unless a fit is given bounds for them; those of `end_stop` and `supply_ripple` are searched wherever the",
-    "effect is. Within a place effects act in the order of this list. An equation",
+    "default unless a fit is given bounds for them; the stiffness of `end_stop` and those of `supply_ripple` are",
+    "searched wherever the effect is. The middle of a stroke is that of the way which the fitted runs of a machine in",
+    "open loop cover, where the zero of its transducer lies outside. Within a place effects act in the order of this",
+    "list. An equation",
     "reads a signal that its effect redefines as it was before; `:=` is a memory, on the right as it was at the start",
     "of the step; `lag(x, T)` is x/(T s + 1), `lag2(x, a1, a2)` is x/(a2 s² + a1 s + 1), `delay(x, T)` is x(t − T),",
     "`t` the time since the start of the record. A model takes an effect where it has the signals that it redefines,",

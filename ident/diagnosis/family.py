@@ -27,6 +27,7 @@ from ident.noise.floor import Floors, noise_floors
 from ident.parallel import each
 from ident.presets import Preset
 from ident.presets import preset as preset_named
+from ident.presets.middle import about
 from ident.words.titles import title
 
 Array = NDArray[np.float64]
@@ -75,7 +76,7 @@ class ModelFamily:
         there = preset.driven_by in MOTIONS or any(run.specimen or "force" in run.channels for run in matrix.runs)
         listed = (*(effect for effect in CATALOGUE if there or not effect.of_specimen), *custom)
         known = {
-            effect.name: effect
+            effect.name: about(effect, preset.middle)
             for effect in listed
             if preset.takes(effect) and not unmeasured(preset.with_effects((effect,)).chain.symbols, matrix.runs)
         }

@@ -111,7 +111,6 @@ def rank_each(
     """
     promised = [_promised(models, base, names, report) for base, names in bases]
     models_of = [base for base, _ in bases]
-    met = [_met(base, of, beside) for base, of in zip(models_of, promised, strict=True)]
     contenders = [
         of[:_CONTENDERS] if thorough else _near(models, base, of) for base, of in zip(models_of, promised, strict=True)
     ]
@@ -145,13 +144,20 @@ def rank_each(
     deeper = _DEEPER if thorough else 1
     elsewhere = partial(_elsewhere, models, asked if beside else {})
     farther = _side_by_side(elsewhere, models_of, [ones[:deeper] for ones in found])
-    came = [{one.effect: one for one in chain(*of)} for of in zip(tried, found, farther, strict=True)]
-    for of, ones in zip(came, met, strict=True):
-        of |= {one.effect: one for one in ones if not _is_better(of.get(one.effect), one)}
     return [
-        ranked(models, [known.get(one.effect, Candidate(one)) for one in of])
-        for of, known in zip(promised, came, strict=True)
+        _joined(models, base, of, stages, beside)
+        for base, of, *stages in zip(models_of, promised, tried, found, farther, strict=True)
     ]
+
+
+def _joined(
+    models: ModelFamily, base: Refit, promised: Sequence[Prediction], stages: Sequence[Sequence[Candidate]],
+    beside: Refit | None,
+) -> list[Candidate]:  # fmt: skip
+    """The candidates as far as each came; the model `beside` the base as it is, unless it was found anew and better."""
+    came = {one.effect: one for one in chain(*stages)}
+    came |= {one.effect: one for one in _met(base, promised, beside) if not _is_better(came.get(one.effect), one)}
+    return ranked(models, [came.get(one.effect, Candidate(one)) for one in promised])
 
 
 def deepened(models: ModelFamily, base: Refit, ranking: Sequence[Candidate]) -> list[Candidate]:

@@ -21,6 +21,7 @@ from ident.matrix import DISTURBANCES, MOTIONS, Matrix
 from ident.parameter import Parameter
 from ident.presets.convention import Convention
 from ident.presets.effect_scales import scale_of
+from ident.presets.middle import about, middle_of
 from ident.presets.neutral import from_neutral
 from ident.presets.passivity import passive
 from ident.presets.stated import refuse_unstated
@@ -73,7 +74,7 @@ class Preset:
     as a rule. `compares` is the channel that its controller does, nothing without one; `gains` are gains of it that
     are known, Kp that of runs that state none. Multiplied or divided by one factor, the parameters `share_force` change
     nothing as long as no force is known: the first is then held by convention. `shown` are the two whose search is
-    drawn.
+    drawn. `middle` is that of the stroke, m, about which effects act.
 
     Raises Unusable where an equation or a scale reads what no stage brings and no condition is, where scales read each
     other in a circle, where two stages mean different parameters by one name, and where something is stated of a
@@ -116,6 +117,7 @@ class Preset:
     gains: Mapping[str, float] = field(default_factory=dict)
     share_force: tuple[str, ...] = ()
     shown: tuple[str, ...] = ()
+    middle: float = 0.0
 
     def __post_init__(self) -> None:
         where, brought = f"preset {self.name}", {p for stage in self.chain.stages for p in stage.parameters}
@@ -196,7 +198,7 @@ class Preset:
         for effect in effects:
             if set(self.chain.with_effects((effect,)).symbols) - known:
                 raise unfit(effect)
-        return replace(self, chain=self.chain.with_effects(effects))
+        return replace(self, chain=self.chain.with_effects(tuple(about(effect, self.middle) for effect in effects)))
 
     def takes(self, effect: Effect) -> bool:
         """Whether the model has a place for an effect and no circle of signals with it."""
@@ -236,6 +238,7 @@ class Preset:
             matrix = passive(matrix)
         elif preset.kind == "chain" and preset.driven_by == "command":
             matrix = from_neutral(matrix, preset.core)
+            preset = replace(preset, middle=middle_of(matrix, preset.core)).with_effects(preset.effects)
         return (preset.with_measured_load(matrix), matrix) if load == "force" else (preset, matrix)
 
     def _driven_as(self, matrix: Matrix) -> Preset:

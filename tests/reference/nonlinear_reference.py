@@ -89,6 +89,7 @@ class Effects(NamedTuple):
     position_friction_Fx: float = 0.0
     end_stop_g: float = 0.0
     end_stop_ks: float = 1e7
+    end_stop_xm: float = 0.0
     sensor_nonlinearity_s: float = 0.0
 
 
@@ -146,8 +147,8 @@ def rod_force(plant, f, cell, s):
     """All forces on the rod but those with the sign of its speed (N), and the mass that they move (kg)."""
     own = plant.A * s[P] - plant.c0 * s[V] - f.quadratic_damping_c2 * s[V] * abs(s[V]) + f.static_load_F0
     own -= f.presliding_friction_Fd * s[ZF]
-    if f.end_stop_g > 0 and abs(s[X]) > 1 / f.end_stop_g:
-        own -= f.end_stop_ks * (s[X] - sign(s[X]) / f.end_stop_g)
+    if f.end_stop_g > 0 and abs(s[X] - f.end_stop_xm) > 1 / f.end_stop_g:
+        own -= f.end_stop_ks * (s[X] - f.end_stop_xm - sign(s[X] - f.end_stop_xm) / f.end_stop_g)
     if f.specimen_joint_s > 0:
         return own - force_on_specimen(f, s), plant.m0
     return own - specimen_reaction(f, cell, s[X], s[V], s[ZH]), plant.m0 + cell.mass

@@ -187,8 +187,8 @@ class PositionFriction(Vanishing):
 
 class EndStop(Machine):
     def resistance(self, s: State) -> float:
-        beyond = max(abs(s[3]) - 1 / self.p.g, 0.0)
-        return super().resistance(s) + self.p.ks * beyond * sgn(s[3])
+        way = s[3] - self.p.xm
+        return super().resistance(s) + self.p.ks * max(abs(way) - 1 / self.p.g, 0.0) * sgn(way)
 
 
 class SensorNonlinearity(Machine):

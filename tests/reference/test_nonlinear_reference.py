@@ -86,7 +86,7 @@ CASES = {
     "one_way_leakage": Case({"c": (1e-11, -1e-11)}, KINKS),
     "unequal_areas": Case({"a": (0.2, -0.2)}, STICKS),
     "position_friction": Case({"Fx": (5e7, 5e7)}, STICKS),
-    "end_stop": Case({"g": (1e3, 1e3), "ks": (1e7, 3e6)}, KINKS),
+    "end_stop": Case({"g": (1e3, 1e3), "ks": (1e7, 3e6), "xm": (0.0, 2e-4)}, KINKS),
     "sensor_nonlinearity": Case({"s": (2e3, -2e3)}),
 }
 

@@ -1,0 +1,65 @@
+"""A cylinder in open loop goes to its ends, and its transducer counts from wherever it was mounted."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ident.diagnosis.family import ModelFamily
+from ident.effects import effect
+from ident.fit.settings import Settings
+from ident.matrix import Actuator, Matrix, Run
+from ident.presets import preset
+from ident.workflows import compare, identify
+
+RATE, GAIN, LAG = 100.0, 0.5, 0.08
+LOW, HIGH = 1.2, 1.7  # m, where the stops stand
+
+
+def cylinder(low: float = LOW, high: float = HIGH, stops: bool = True) -> Matrix:
+    """LAG q̇ + q = GAIN u, ẋ = q between two stops, exact between samples; from one end to the other and back."""
+    runs = []
+    for number, size in enumerate((0.5, 0.8, 0.65)):
+        t = np.arange(int(8 * RATE)) / RATE
+        u = np.where((t > 0.3) & (t < 3.5), size, np.where((t > 4.0) & (t < 7.2), -size, 0.0))
+        decay, x, q, place = np.exp(-1 / RATE / LAG), np.zeros(len(u)), 0.0, low
+        x[0] = place
+        for k in range(len(u) - 1):
+            target = GAIN * u[k]
+            place += target / RATE + (q - target) * LAG * (1 - decay)
+            q = target + (q - target) * decay
+            if stops and not low <= place <= high:
+                place, q = float(np.clip(place, low, high)), 0.0
+            x[k + 1] = place
+        x += 2e-4 * np.random.default_rng(number).standard_normal(len(u))
+        channels, units = {"command": u, "displacement": x}, {"command": "V", "displacement": "m"}
+        use = "verify" if number == 2 else "fit"
+        runs.append(Run(f"{size:g}", "", RATE, channels, units, hold="zoh", use=use))
+    return Matrix(Actuator("CYLINDER"), tuple(runs))
+
+
+def test_stops_at_both_ends_are_found_wherever_the_transducer_has_its_zero():
+    """A symmetric stop about the transducer's zero meets one of them at most."""
+    fit = identify(cylinder(), Settings(model="motor", effects=("end_stop",)))
+    assert fit.parameters["end_stop.middle"].value == pytest.approx((LOW + HIGH) / 2, abs=2e-3)
+    assert 1.0 / fit.parameters["end_stop.inverse_way"].value == pytest.approx((HIGH - LOW) / 2, abs=5e-3)
+    assert fit.error["fit"] < 0.02
+    assert fit.error["verify"] < 0.02
+    assert identify(cylinder(), Settings(model="motor")).error["fit"] > 0.2
+
+
+def test_the_middle_goes_with_the_fit_to_runs_that_cover_another_way():
+    """What was found of the machine holds for its other records: the middle is a value of the fit, not of the data."""
+    fit = identify(cylinder(), Settings(model="motor", effects=("end_stop",)))
+    part = cylinder().runs[0].part(0, int(2 * RATE))
+    found = compare(Matrix(Actuator("CYLINDER"), (part,)), fit)
+    assert found.runs[0].error < 0.02
+
+
+@pytest.mark.parametrize(("low", "high", "middle"), [(-0.3, 0.2, 0.0), (LOW, HIGH, 1.45), (-1.7, -1.2, -1.45)])
+def test_the_middle_of_a_stroke_is_that_of_the_way_covered_where_the_zero_lies_outside(low, high, middle):
+    model, _ = preset("motor").with_effects((effect("end_stop"),)).for_matrix(cylinder(low, high))
+    found = model.parameter("end_stop.middle")
+    assert found.value == pytest.approx(middle, abs=2e-3)
+    family = ModelFamily.of(cylinder(low, high), Settings(model="motor"))
+    assert family.model(("end_stop",)).parameter("end_stop.middle").value == found.value
