@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ident.cached import cached_property
 from ident.chain.chain import linear_model
 from ident.custom.definition import preset_with
+from ident.effects.effect import usual_shapes
 from ident.errors import Unusable
 from ident.fit.normal_matrices import output
 from ident.fit.result import FitResult
@@ -180,7 +181,8 @@ def fitted(fit: FitResult, matrix: Matrix) -> tuple[Preset, Matrix, dict[str, fl
     """
     named = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
     preset, driven = named.for_matrix(matrix, str(fit.settings.get("load", "none")))
-    values = {preset.parameter(name).in_equations: value for name, value in fit.values.items()}
+    values = usual_shapes(named.effects)
+    values |= {preset.parameter(name).in_equations: value for name, value in fit.values.items()}
     missing = [p.name for p in preset.parameters if p.in_equations not in values]
     if missing:
         raise Unusable("bad-fit", f"no value of {', '.join(missing)}", "fit", f"give a fit of model {fit.model}")

@@ -10,7 +10,7 @@ from ident.design.rivals import NOISE, Model, Rivals
 from ident.diagnosis.estimate import Found
 from ident.diagnosis.result import Diagnosis, bad_diagnosis
 from ident.effects import CATALOGUE
-from ident.effects.effect import Effect
+from ident.effects.effect import Effect, usual_shapes
 from ident.errors import Unusable
 from ident.presets import PRESETS, preset
 
@@ -54,7 +54,8 @@ def _model(found: Diagnosis, parameters: Values, custom: Sequence[Effect]) -> Mo
     known = [*(effect.name for effect in CATALOGUE), *own]
     effects = tuple(name for name in known if any(parameter.startswith(f"{name}.") for parameter in parameters))
     model = preset(found.model, effects, tuple(effect for effect in own.values() if effect.name in effects))
-    values = {model.parameter(name).in_equations: entry.value for name, entry in parameters.items()}
+    values = usual_shapes(model.effects)
+    values |= {model.parameter(name).in_equations: entry.value for name, entry in parameters.items()}
     missing = [parameter.name for parameter in model.parameters if parameter.in_equations not in values]
     if missing or not all(map(math.isfinite, values.values())):
         raise bad_diagnosis(f"no value of {missing[0]}" if missing else "a value is not finite")

@@ -83,3 +83,8 @@ class Effect:
 def off_values(effects: Iterable[Effect]) -> dict[str, float]:
     """The values of effects' parameters where they are off, by the equations' names."""
     return {parameter.in_equations: parameter.value for effect in effects for parameter in effect.added}
+
+
+def usual_shapes(effects: Iterable[Effect]) -> dict[str, float]:
+    """The defaults of effects' shapes, by the equations' names: of one that an effect had not when it was fitted."""
+    return {parameter.in_equations: parameter.value for effect in effects for parameter in effect.added[1:]}

@@ -30,6 +30,11 @@ def about(effect: Effect, middle: float) -> Effect:
     """The effect with its middle there, where it has one that nobody stated."""
     if effect.own or not middle:
         return effect
-    return replace(effect, shape=tuple(
-        replace(one, value=middle) if one.name == _MIDDLE else one for one in effect.shape
-    ))  # fmt: skip
+    reach = 2.0 * abs(middle)
+    shape = tuple(
+        replace(one, value=middle, lower=min(one.lower, -reach), upper=max(one.upper, reach))
+        if one.name == _MIDDLE
+        else one
+        for one in effect.shape
+    )
+    return replace(effect, shape=shape)

@@ -7,6 +7,7 @@ import pytest
 
 from ident.diagnosis.family import ModelFamily
 from ident.effects import effect
+from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run
 from ident.presets import preset
@@ -56,7 +57,18 @@ def test_the_middle_goes_with_the_fit_to_runs_that_cover_another_way():
     assert found.runs[0].error < 0.02
 
 
-@pytest.mark.parametrize(("low", "high", "middle"), [(-0.3, 0.2, 0.0), (LOW, HIGH, 1.45), (-1.7, -1.2, -1.45)])
+def test_a_fit_of_stops_that_knew_no_middle_can_be_read_and_has_it_at_zero():
+    matrix = cylinder(-0.25, 0.25)
+    fit = identify(matrix, Settings(model="motor", effects=("end_stop",)))
+    data = fit.to_json()
+    del data["parameters"]["end_stop.middle"]
+    found = compare(matrix, FitResult.from_json(data))
+    assert [run.error for run in found.runs] == pytest.approx([run.error for run in compare(matrix, fit).runs])
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "middle"), [(500.0, 500.5, 500.25), (-0.3, 0.2, 0.0), (LOW, HIGH, 1.45), (-1.7, -1.2, -1.45)]
+)
 def test_the_middle_of_a_stroke_is_that_of_the_way_covered_where_the_zero_lies_outside(low, high, middle):
     model, _ = preset("motor").with_effects((effect("end_stop"),)).for_matrix(cylinder(low, high))
     found = model.parameter("end_stop.middle")
