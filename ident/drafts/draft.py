@@ -13,7 +13,7 @@ from ident.drafts.steps import moves_in_steps
 from ident.errors import Unusable
 from ident.matrix import CHANNELS
 from ident.readers import PACKED
-from ident.readers.table import LISTED, MINUS
+from ident.readers.table import MINUS, some_of
 from ident.units.quantity import shown
 
 OUTPUTS = ("displacement", "velocity", "force", "load_pressure")
@@ -234,9 +234,7 @@ def _unit(columns: Sequence[Column]) -> str:
 
 
 def _listed(file: RawFile) -> str:
-    names = ", ".join(shown(column.name) for column in file.columns[:LISTED])
-    more = f" and {len(file.columns) - LISTED} more" if len(file.columns) > LISTED else ""
-    return f"{file.name} ({names}{more})"
+    return f"{file.name} ({some_of([column.name for column in file.columns])})"
 
 
 def _option(key: str) -> str:

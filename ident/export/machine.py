@@ -11,6 +11,7 @@ from ident.cached import cached_property
 from ident.chain.chain import FORCE, INPUT_RATE, Chain
 from ident.chain.conditions import conditions
 from ident.custom.definition import preset_with
+from ident.effects.effect import off_values
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.matrix import MOTIONS, Actuator, Run, Specimen
@@ -93,7 +94,7 @@ def exported(
         actuator = replace(actuator, piston_area=preset.bounds_hold_for)
     run = Run("export", "", sample_rate, {}, specimen=specimen, gain=preset.gains.get("Kp") if gain is None else gain)
     known = conditions(run, actuator)
-    known |= {p.in_equations: p.value for effect in preset.effects for p in effect.added}
+    known |= off_values(preset.effects)
     known |= {preset.parameter(name).in_equations: value for name, value in fit.values.items()}
     if missing := sorted(set(preset.chain.symbols) - known.keys()):
         raise Unusable("bad-fit", f"no value of {', '.join(missing)}", "fit", f"give a fit of model {fit.model}")

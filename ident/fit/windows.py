@@ -132,11 +132,6 @@ def longer(fitness: SimulatedFitness, point: Array) -> list[float | None]:
     return [*(each for each in horizons if each > _LONGER * own), None]
 
 
-def _going_on(fitness: SimulatedFitness, memory: float | None) -> float:
-    """The same of a record that goes on as it did, whatever its command."""
-    return _unforeseen(fitness, {run.id: run.measured for run in fitness.runs}, memory)
-
-
 def _left(fitness: SimulatedFitness, point: Array, memory: float | None) -> float:
     """The mean logarithm of what is unforeseen in the runs at a point: least for the most likely model.
 
@@ -146,7 +141,13 @@ def _left(fitness: SimulatedFitness, point: Array, memory: float | None) -> floa
     return _unforeseen(fitness, {run.id: run.measured - outputs[run.id] for run in fitness.runs}, memory)
 
 
+def _going_on(fitness: SimulatedFitness, memory: float | None) -> float:
+    """The same of a record that goes on as it did, whatever its command."""
+    return _unforeseen(fitness, {run.id: run.measured for run in fitness.runs}, memory)
+
+
 def _unforeseen(fitness: SimulatedFitness, left: dict[str, Array], memory: float | None) -> float:
+    """The same of what a model left of each run."""
     if memory is not None:
         return _most_likely(fitness, left)[1]
     with np.errstate(divide="ignore", invalid="ignore"):

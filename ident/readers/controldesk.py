@@ -11,9 +11,9 @@ import re
 from collections.abc import Sequence
 
 from ident.errors import Unusable
-from ident.readers.limits import Limits, check_size
-from ident.readers.table import Array, Table
-from ident.readers.text import as_utf8, by_arrow, by_line
+from ident.readers.limits import Limits
+from ident.readers.table import Array, Table, filled
+from ident.readers.text import as_utf8, columns
 
 TIME, _SECOND = "time", "s"  # the axis, which has neither name nor unit
 _VALUES = re.compile(rb'^"?trace_values"?[,;\t]', re.MULTILINE)
@@ -48,18 +48,14 @@ def read_controldesk(data: bytes, where: str, limits: Limits) -> Table | None:
     named, begin = begun
     delimiter = named[1].decode()
     names, paths, units = (_fields(text[: begin.start()], key, delimiter, where) for key in _KEYS)
-    called = tuple(map(_called, names, _filled(paths, len(names))))
-    above = text.count(b"\n", 0, begin.start())
+    called = tuple(map(_called, names, filled(paths, len(names))))
     comma = delimiter == ";" and b"," in text[begin.end() : text.find(b"\n", begin.end()) + 1 or None]
 
     def load(numbers: Sequence[int]) -> list[Array]:
-        rows = text[begin.start() :]
-        check_size(8 * (rows.count(b"\n") + 1), limits.channel, "a column", where)
         behind = [number + 1 for number in numbers]  # the key
-        quick = by_arrow(rows, behind, delimiter, comma)
-        return by_line(rows, behind, delimiter, comma, where, above) if quick is None else quick
+        return columns(text, begin.start(), behind, delimiter, comma, where, limits)
 
-    stated = _filled(units, len(names))
+    stated = filled(units, len(names))
     return Table(called, load, units=tuple(
         unit or (_SECOND if name == TIME else "") for name, unit in zip(called, stated, strict=True)
     ))  # fmt: skip
@@ -75,11 +71,6 @@ def _fields(head: bytes, key: str, delimiter: str, where: str) -> list[str]:
     except csv.Error:
         raise Unusable("broken-controldesk", f"its line of {key} cannot be read", where,
                        "export it again from ControlDesk, or save it as a plain table") from None  # fmt: skip
-
-
-def _filled(fields: Sequence[str], count: int) -> tuple[str, ...]:
-    """As many fields as there are traces, empty where the line ends."""
-    return tuple((*fields, *[""] * count)[:count])
 
 
 def _called(name: str, path: str) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ident.errors import Unusable
 from ident.readers.limits import Limits
-from ident.readers.table import Array, Table
+from ident.readers.table import Array, Table, filled
 from ident.readers.text import as_utf8, line_start, read_text
 
 SIGNATURE, END = b"LabVIEW Measurement", b"***End_of_Header***"
@@ -37,8 +37,7 @@ def read_lvm(data: bytes, where: str, limits: Limits) -> Table:
     apart = _SEPARATORS.get(_entries(text[:first], None).get("Separator", ["Tab"])[0], "\t")
     head = _entries(text[:first], apart) | _entries(text[first:second], apart)
     table = read_text(text, where, limits, text.count(b"\n", 0, line_start(text, 1, second)))
-    units = ("", *head.get("Y_Unit_Label", []))
-    units = tuple((*units, *[""] * len(table.names))[: len(table.names)])
+    units = filled(["", *head.get("Y_Unit_Label", [])], len(table.names))
     if head.get("X_Columns", ["One"])[0] != "No":
         return Table(table.names, table.load, table.notices, units)
     return _timed(table, units, head, where)

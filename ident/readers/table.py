@@ -15,7 +15,7 @@ from ident.units.quantity import shown
 
 Array = NDArray[Any]
 NUMERIC = "iuf"  # dtype kinds: whole numbers and floats
-LISTED = 12  # columns that a message names
+_LISTED = 12  # names in a message
 MINUS = " - "
 
 
@@ -73,9 +73,18 @@ class Table:
 
     def listed(self) -> str:
         """What columns there are, in words."""
-        names = ", ".join(shown(name) for name in self.names[:LISTED])
-        more = f" and {len(self.names) - LISTED} more" if len(self.names) > LISTED else ""
-        return f"the file has {names}{more}" if names else "the file has no column of numbers"
+        return f"the file has {some_of(self.names)}" if self.names else "the file has no column of numbers"
+
+
+def some_of(names: Sequence[str]) -> str:
+    """The first of some names, and how many more there are."""
+    more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
+    return ", ".join(map(shown, names[:_LISTED])) + more
+
+
+def filled(fields: Sequence[str], count: int) -> tuple[str, ...]:
+    """As many fields as there are columns, empty where a line ends before."""
+    return tuple((*fields, *[""] * count)[:count])
 
 
 def numeric(array: Array, name: str, where: str) -> Array:

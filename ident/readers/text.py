@@ -15,7 +15,7 @@ import numpy as np
 
 from ident.errors import Unusable
 from ident.readers.limits import Limits, check_size
-from ident.readers.table import Array, Table
+from ident.readers.table import Array, Table, filled
 from ident.units.quantity import shown
 
 DELIMITERS = ("\t", ";", ",")
@@ -47,13 +47,7 @@ def read_text(data: bytes, where: str, limits: Limits, skip_rows: int = 0) -> Ta
     comma = delimiter != "," and any(DECIMAL_COMMA.fullmatch(field.strip()) for field in split_line(first, delimiter))
 
     def load(numbers: Sequence[int]) -> list[Array]:
-        rows = text.count(b"\n", below) + 1
-        check_size(8 * rows, limits.channel, "a column", where)
-        if delimiter is not None:
-            quick = by_arrow(text[below:], numbers, delimiter, comma)
-            if quick is not None:
-                return quick
-        return by_line(text[below:], numbers, delimiter, comma, where, text.count(b"\n", 0, below))
+        return columns(text, below, numbers, delimiter, comma, where, limits)
 
     return Table(tuple(names), load, notices, units)
 
@@ -69,7 +63,7 @@ def units_row(
     following = split_line(next_line(text, after, where), delimiter)
     if not any(is_number(field.strip(), delimiter) for field in following):
         return ()
-    return tuple((*fields, *[""] * len(names))[: len(names)])
+    return filled(fields, len(names))
 
 
 def as_utf8(data: bytes) -> bytes:
@@ -121,6 +115,17 @@ def is_number(field: str, delimiter: str | None) -> bool:
     except ValueError:
         return False
     return True
+
+
+def columns(
+    text: bytes, below: int, numbers: Sequence[int], delimiter: str | None, comma: bool, where: str, limits: Limits
+) -> list[Array]:  # fmt: skip
+    """The columns of the rows from byte `below` on. Raises Unusable: ``not-numeric``, ``ragged-row``, ``too-large``."""
+    rows = text.count(b"\n", below) + 1
+    check_size(8 * rows, limits.channel, "a column", where)
+    quick = None if delimiter is None else by_arrow(text[below:], numbers, delimiter, comma)
+    above = text.count(b"\n", 0, below)
+    return by_line(text[below:], numbers, delimiter, comma, where, above) if quick is None else quick
 
 
 def by_arrow(text: bytes, numbers: Sequence[int], delimiter: str, comma: bool) -> list[Array] | None:
