@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.diagnosis.advice import error_budget, next_run
+from ident.diagnosis.candidate import Candidate
 from ident.diagnosis.course import Course
 from ident.diagnosis.elsewhere import Other, elsewhere, others
 from ident.diagnosis.family import ModelFamily
@@ -19,7 +20,6 @@ from ident.diagnosis.late import lateness
 from ident.diagnosis.longer import over_longer
 from ident.diagnosis.proposals.outcome import Proposals
 from ident.diagnosis.proposals.search import Search
-from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.refit import Refit
 from ident.diagnosis.result import Baseline, Diagnosis, Explanation, Ranked, Rung, Suspect, Verdict
 from ident.diagnosis.significance import improvement

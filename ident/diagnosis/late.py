@@ -55,7 +55,7 @@ def lateness(models: ModelFamily, base: Refit, refit: Refit) -> Lateness | None:
         at = {models.strength(effect): refit.values[constant.in_equations]}
         return short.refit((*refit.effects, effect), start | at, way=way)
 
-    way = replace(_ROUGHLY, aim=_NEAR * refit.here.error)
+    way = replace(_ROUGHLY, aim=_NEAR * refit.here.error, enough=refit.here.error)
     names = [name for name, effect in models.effects.items() if is_late(effect) and name not in refit.effects]
     names = [name for name in names if models.fit_together((*refit.effects, name))]
     tried = [one for one in each(other, names) if one.finite]

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
-from itertools import chain, groupby
+from itertools import chain
 from typing import TypeVar
 
 import numpy as np
 
-from ident.cached import cached_property
+from ident.diagnosis.candidate import Candidate, ranked
 from ident.diagnosis.family import ModelFamily
-from ident.diagnosis.refit import Refit, alike, carries_over
+from ident.diagnosis.refit import Refit
 from ident.diagnosis.screening import Prediction, predict
-from ident.diagnosis.significance import VISIBLE, WORTHWHILE, Improvement, improvement
+from ident.diagnosis.significance import VISIBLE, WORTHWHILE
 from ident.diagnosis.ties import first_least, in_order
 from ident.parallel import each
 from ident.progress import Expected, Progress, Report
@@ -26,8 +26,6 @@ _NEAR = 1.3  # times the best predicted error: the contenders for a further effe
 _FINALISTS = 5
 _CLOSE = 1.05  # times the best trial's error: also a finalist, where it promises anything
 _ANEW = 0.98  # times the error: a model that is known is at another, better optimum
-_AS_GOOD = 1.02  # times the error: what is no better by chance, nor by more than that, stands as listed
-_ENDS = 1.05  # times the error: so far apart end refits with what acts in jumps
 _DEEPER = 2  # of the finalists are looked for elsewhere, too
 _STRONG = (1.0, 0.6, 0.3)  # of the largest strength, from where
 _ROUNDS = 4  # of going on from a better optimum that was found elsewhere
@@ -35,55 +33,6 @@ _SHAKEN = (0.5, 0.7, 1.4, 2.0)  # times the strength that a refit found, from wh
 _PROMISING = 0.3 * WORTHWHILE  # relative fall of the score that is worth a refit
 _NATS = 3.0  # of the offsets, too
 _SIGHT = 5  # effects that are told at first sight
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """An effect, what it promises, its refit on all records where it came that far, and what that gains over a base."""
-
-    prediction: Prediction
-    trial: Refit | None = None
-    refit: Refit | None = None
-    gain: Improvement | None = None
-    base: Refit | None = None
-
-    @property
-    def effect(self) -> str:
-        """The name of the effect."""
-        return self.prediction.effect
-
-    @property
-    def helps(self) -> bool:
-        """Whether adding it helps beyond chance, and from run to run."""
-        return self.gain is not None and self.gain.beyond_chance and self.carries_over
-
-    @cached_property
-    def carries_over(self) -> bool:
-        """Whether it does no harm on whole runs that were left out; where there is no refit nothing is known of it."""
-        return self.refit is None or self.base is None or carries_over(self.base, self.refit)
-
-    @property
-    def between_runs(self) -> tuple[float, ...]:
-        """The errors without it and with it on whole runs that were left out, where there are any."""
-        judged = (one.between_runs for one in (self.base, self.refit) if one is not None)
-        return tuple(one.error for one in judged if one is not None)
-
-    @property
-    def stage(self) -> int:
-        """How far it came: 0 a finalist, 1 a trial, 2 a prediction."""
-        return 0 if self.refit is not None else 1 if self.trial is not None else 2
-
-    @property
-    def score(self) -> float:
-        """What it is sorted by among those that came as far: the held-out score, the trial's error, the prediction."""
-        if self.refit is not None:
-            return self.refit.held_out.score
-        return self.trial.here.error if self.trial is not None else self.prediction.after.score
-
-    def refitted(self, base: Refit, refit: Refit) -> Candidate:
-        """The candidate with a refit on all records, and what that gains over the model without the effect."""
-        return replace(self, refit=refit, gain=improvement(base.held_out, refit.held_out), base=base)
-
 
 Base = tuple[Refit, Sequence[str]]
 """A model, and the effects that could be added to it."""
@@ -128,7 +77,7 @@ def rank_each(
 
     tried = [
         ranked(models, [one for one in ones if not _is(base, one.prediction, beside) or _comes_below(one, anew)])
-        for base, ones in zip(models_of, _side_by_side(trial, models_of, contenders), strict=True)
+        for base, ones in zip(models_of, _in_turn(models, models_of, promised, contenders, trial), strict=True)
     ]
     finalists = [_finalists(models, base, ones, sure) for base, ones in zip(models_of, tried, strict=True)]
 
@@ -148,6 +97,18 @@ def rank_each(
         _joined(models, base, of, stages, beside)
         for base, of, *stages in zip(models_of, promised, tried, found, farther, strict=True)
     ]
+
+
+def _in_turn(
+    models: ModelFamily, bases: Sequence[Refit], promised: Sequence[Sequence[Prediction]],
+    contenders: list[list[Prediction]], trial: Callable[[Refit, Prediction], Candidate],
+) -> list[list[Candidate]]:  # fmt: skip
+    """A trial of each base's contenders, to which what they pass over is added, and then of that."""
+    first = _side_by_side(trial, bases, contenders)
+    passed_over = [_passed_over(models, *of) for of in zip(bases, promised, first, strict=True)]
+    contenders += passed_over
+    second = _side_by_side(trial, bases, passed_over)
+    return [[*ones, *more] for ones, more in zip(first, second, strict=True)]
 
 
 def _joined(
@@ -244,42 +205,28 @@ def _asked(models: ModelFamily, base: Refit, beside: Refit | None) -> float:
 def _near(models: ModelFamily, base: Refit, predictions: Sequence[Prediction]) -> list[Prediction]:
     """The contenders for a further effect: those that promise anything near what the best promises."""
     near = _NEAR * predictions[0].after.error
-    few = _CONTENDERS if _is_quick(models, base) else max(_FEW - 2 * len(base.effects), _FINALISTS)
-    return [p for p in predictions if _promises(p) and p.after.error < near][:few]
+    return [p for p in predictions if _promises(p) and p.after.error < near][: _few(models, base)]
+
+
+def _passed_over(
+    models: ModelFamily, base: Refit, predictions: Sequence[Prediction], tried: Sequence[Candidate]
+) -> list[Prediction]:  # fmt: skip
+    """What promises anything near what was found, where those that promised most found less than that."""
+    found = min((one.trial.here.error for one in tried if one.trial is not None), default=np.inf)
+    near = _NEAR * min(found / models.tried(base), 1.0)
+    done = {one.effect for one in tried}
+    return [p for p in predictions[: _few(models, base)] if _promises(p) and p.share < near and p.effect not in done]
+
+
+def _few(models: ModelFamily, base: Refit) -> int:
+    """How many contenders for a further effect there may be."""
+    return _CONTENDERS if _is_quick(models, base) else max(_FEW - 2 * len(base.effects), _FINALISTS)
 
 
 def _is_quick(models: ModelFamily, base: Refit) -> bool:
     """Whether a matrix is so small that refits take next to nothing."""
     steps = int(base.fitness.steps(base.fitness.space.values(base.point[None])).max())
     return steps * sum(run.length for run in models.runs) < _QUICK
-
-
-def ranked(models: ModelFamily, candidates: Iterable[Candidate]) -> list[Candidate]:
-    """Best first: by how far they came, then by their score; of those that tie the simplest, then as listed."""
-    listed = sorted(candidates, key=lambda candidate: (candidate.stage, *models.simplicity(candidate.effect)))
-    by_stage = groupby(listed, key=lambda candidate: candidate.stage)
-    return [one for _, group in by_stage for one in in_order(list(group), lambda one: one.score, _alike)]
-
-
-def group(name: str, here: Refit, ranking: Sequence[Candidate]) -> list[Candidate]:
-    """The candidates that are no worse than the best but by chance, the effect itself first where it is among them."""
-    refits = [c for c in ranking if c.refit is not None]
-    best = min([here, *(c.refit for c in refits if c.refit)], key=lambda refit: refit.held_out.score)
-    as_good = [c for c in refits if c.refit and alike(best, c.refit, c.base)]
-    return sorted(as_good, key=lambda c: c.effect != name)
-
-
-def _alike(best: Candidate, other: Candidate) -> bool:
-    """Whether of two refits the better one is better by no more than chance, nor by much on the data of the fit.
-
-    Errors on held-out data hang on where the fits without them ended, which in a flat valley rounding decides.
-    """
-    if best.refit is None or other.refit is None:
-        return False
-    most = _AS_GOOD if best.refit.jumping == other.refit.jumping else _ENDS
-    if other.refit.error > most * best.refit.error:
-        return False
-    return alike(best.refit, other.refit, other.base)
 
 
 def _elsewhere(

@@ -18,7 +18,7 @@ from ident.fit.result import Combination
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.slow_answer import slow_lag
 from ident.fit.space import Space
-from ident.fit.uncertainty import Covariance, covariance
+from ident.fit.uncertainty import DETERMINED, Covariance, covariance
 from ident.matrix import Run, over_runs
 from ident.noise.autoregression import prediction_errors
 from ident.noise.effective_sample_size import independent_samples
@@ -27,6 +27,7 @@ Array = NDArray[np.float64]
 _FOLLOWED = 1.03  # times the promised error that a simulation may leave
 _JUMPS = 1.1  # times the held-out error: so far apart end refits with an effect that acts in jumps
 _MOST = 0.5  # of what one effect explains
+_OUTDONE = 0.1  # of the error on whole runs: less tells no two effects apart
 _KNOWN = 1e3  # times its value: the standard error beyond which nothing is known of a parameter
 
 
@@ -152,6 +153,13 @@ class Refit:
         error = self._known.deviation(lambda points: self.space.values(points)[parameter])
         return error if np.isfinite(error) and error < _KNOWN * max(abs(self.values[parameter]), 1e-300) else None
 
+    @property
+    def at_bounds(self) -> tuple[str, ...]:
+        """The parameters, by their names in the equations, that are known and for which the data ask beyond a bound."""
+        ended = (name for name in self.space.names if self.space.at_bound(name, self.point))
+        known = ((name, abs(self.values[name]), self.deviation(name)) for name in ended)
+        return tuple(name for name, value, error in known if error is not None and error < DETERMINED * value)
+
     def slow_lags(self) -> Iterator[Combination]:
         """How late it answers to a slow command, where that is determined."""
         return slow_lag(self.fitness, self._known)
@@ -181,8 +189,19 @@ def carries_over(less: Refit, more: Refit) -> bool:
 
     What does better on blocks of runs that it has seen, and worse here, tells runs apart instead of explaining them.
     """
-    before, after = less.between_runs, more.between_runs
-    return before is None or after is None or not improvement(after, before).beyond_chance
+    return not outdone(more, less, share=-np.inf)
+
+
+def outdone(worse: Refit, better: Refit, share: float = _OUTDONE) -> bool:
+    """Whether of two models one is better beyond chance, and by a `share`, on whole runs that neither was fitted to.
+
+    Equals whose fits end at other optima lie some per cent apart there.
+    """
+    before, after = worse.between_runs, better.between_runs
+    if before is None or after is None:
+        return False
+    gain = improvement(before, after)
+    return gain.beyond_chance and gain.share > share
 
 
 def alike(best: Refit, other: Refit, base: Refit | None = None) -> bool:

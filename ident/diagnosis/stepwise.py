@@ -13,9 +13,10 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import combinations, takewhile
 
+from ident.diagnosis.candidate import Candidate, group, not_outdone, ranked
 from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.ladder import Ladder, Rungs, score, without
-from ident.diagnosis.ranking import Candidate, deepened, group, rank, rank_each, ranked
+from ident.diagnosis.ranking import deepened, rank, rank_each
 from ident.diagnosis.refit import Refit, alike, helps, told_apart
 from ident.diagnosis.ties import first_least
 from ident.errors import TimeIsUp
@@ -120,7 +121,7 @@ class StepwiseSelection:
         best = self.ranking[0].refit if self.ranking else None
         if best is None or not self.ranking[0].helps:
             return []
-        return [c for c in self.ranking if c.refit and alike(best, c.refit, self.base)]
+        return not_outdone([c for c in self.ranking if c.refit and alike(best, c.refit, self.base)])
 
     def weighed(self) -> frozenset[str]:
         """The effects of the first ranking in question: down to the first that helps, and what is as good as it."""

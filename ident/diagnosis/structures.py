@@ -2,7 +2,8 @@
 
 Where the first of them leaves more than noise, something is missing, and a machine with more parameters may have made
 up for a part of it. So another with no more parameters comes before it that, with one effect of the catalogue, leaves
-much less than the first with its own; and one with fewer that leaves as little.
+much less than the first with its own; and one with fewer that leaves as little. Of the first, where the data ask for a
+value of a parameter beyond its bound, it is known that it is another machine: then one that leaves less comes before.
 """
 
 from __future__ import annotations
@@ -93,13 +94,16 @@ def _with_an_effect_each(first: _Judged, tried: Sequence[_Judged], report: Repor
 def _better(first: _Judged, others: Collection[_Judged], strange: Collection[str]) -> tuple[_Judged, str]:
     """The one to take of models with an effect each, and why: the first, or a simpler one that says as much or more.
 
-    Much less is left by one that nothing else tells of; as little, and no more than by chance, by one that is not
-    strange where the first is not.
+    Much less is left by one that nothing else tells of, less by one whose parameters have values in their bounds where
+    those of the first have not; as little, and no more than by chance, by one that is not strange where the first is
+    not.
     """
     least = min((one.error for one in others), default=first.error)
     if least <= _MUCH_LESS * first.error:
-        good = (one for one in others if one.error <= _WORSE * least)
-        return min(good, key=lambda one: one.parameters), "much less with one effect"
+        return _simplest(others), "much less with one effect"
+    within = [one for one in others if one.error < first.error and not one.at_bound]
+    if first.at_bound and within:
+        return _simplest(within), "less with one effect, and no parameter at its bound"
     simpler = [
         one
         for one in others
@@ -111,6 +115,12 @@ def _better(first: _Judged, others: Collection[_Judged], strange: Collection[str
     if first.with_effect is not None and simpler:
         return min(simpler, key=lambda one: one.parameters), "as little with one effect, and simpler"
     return first, "the simplest that is not worse"
+
+
+def _simplest(models: Collection[_Judged]) -> _Judged:
+    """The one with the fewest parameters of those that leave least."""
+    least = min(one.error for one in models)
+    return min((one for one in models if one.error <= _WORSE * least), key=lambda one: one.parameters)
 
 
 def _judged(fitted: Sequence[_Fitted]) -> tuple[str, list[_Judged]]:
@@ -253,6 +263,11 @@ class _Judged:
     def best(self) -> Refit:
         """With the effect, where there is one."""
         return self.with_effect or self.refit
+
+    @property
+    def at_bound(self) -> bool:
+        """Whether the data ask for a value of one of its parameters beyond the bound."""
+        return bool(self.best.at_bounds)
 
     def helped(self, report: Report) -> _Judged:
         """The same with the effect of the catalogue that helps it most, as it is where none does."""

@@ -15,9 +15,13 @@ TIE = 1e-4  # relative difference of two errors: refits end within about a hundr
 
 
 def in_order(
-    items: Sequence[Item], size: Callable[[Item], float], alike: Callable[[Item, Item], bool] = lambda *_: False
-) -> list[Item]:
-    """The items from the least size on; what ties with the least of them, or is `alike` with it, as it stood."""
+    items: Sequence[Item], size: Callable[[Item], float], alike: Callable[[Item, Item], bool] = lambda *_: False,
+    tied: Callable[[Sequence[Item]], Sequence[Item]] = lambda ties: ties,
+) -> list[Item]:  # fmt: skip
+    """The items from the least size on; what ties with the least of them, or is `alike` with it, as it stood.
+
+    Or as `tied` puts in order what ties.
+    """
     rest = sorted(enumerate(items), key=lambda one: size(one[1]))
     found: list[Item] = []
     while rest:
@@ -25,7 +29,7 @@ def in_order(
         bound = _bound(size(least))
         behind = (n for n, (_, item) in enumerate(rest) if n and size(item) > bound and not alike(least, item))
         count = next(behind, len(rest))
-        found += [item for _, item in sorted(rest[:count], key=lambda one: one[0])]
+        found += tied([item for _, item in sorted(rest[:count], key=lambda one: one[0])])
         rest = rest[count:]
     return found
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
+from ident.diagnosis.candidate import Candidate
 from ident.diagnosis.late import Lateness
 from ident.diagnosis.proposals.proposal import Proposal
-from ident.diagnosis.ranking import Candidate
 from ident.diagnosis.result import Explanation, Suspect
 from ident.diagnosis.significance import Improvement
 from ident.diagnosis.standing import Contradiction

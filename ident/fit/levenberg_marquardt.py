@@ -45,7 +45,8 @@ class Way:
     `converged` is the relative decrease of the error below which no further step is worth it, `most` the number of
     steps, `within` the bounds of every axis or of each, `longest` the longest step along one. Below a promise of
     `rough` the error is not smooth: a step that failed and promised less is the last one. Who has to come below `aim`
-    to be of any use gives up where neither the last steps nor the next one's promise come anywhere near it.
+    to be of any use gives up where neither the last steps nor the next one's promise come anywhere near it. `enough` is
+    the error at which there is no need to go on.
     """
 
     converged: float = 1e-10
@@ -54,6 +55,7 @@ class Way:
     longest: float = np.inf
     rough: float = 0.0
     aim: float = np.inf
+    enough: float = -np.inf
 
     def is_lost(self, error: float, promised: float, gained: Sequence[float]) -> bool:
         """Whether what is missing is many times what the last two steps `gained`, and what the next one promises."""
@@ -88,7 +90,7 @@ def levenberg_marquardt(
         cut = bool(np.any(trial != point + free_step))
         if not promised > way.converged * here.error and not cut:
             break
-        if way.is_lost(here.error, promised, gained):
+        if here.error <= way.enough or way.is_lost(here.error, promised, gained):
             break
         there = better(trial, here.error) if promised > 0 else None
         if there is not None:

@@ -7,8 +7,9 @@ from typing import Any
 
 import pytest
 
-from ident.diagnosis import ranking, stepwise
-from ident.diagnosis.ranking import Candidate, rank_each
+from ident.diagnosis import candidate, ranking, stepwise
+from ident.diagnosis.candidate import Candidate
+from ident.diagnosis.ranking import rank_each
 from ident.diagnosis.stepwise import StepwiseSelection
 
 
@@ -16,7 +17,7 @@ def refit(*effects: str, error: float) -> Any:
     """A refit of which the effects and the error count."""
     found = SimpleNamespace(
         effects=effects, error=error, here=SimpleNamespace(error=error), finite=True,
-        held_out=SimpleNamespace(score=error), jumping=frozenset(),
+        held_out=SimpleNamespace(score=error), jumping=frozenset(), between_runs=None,
     )  # fmt: skip
     found.listed = lambda order: SimpleNamespace(**{**vars(found), "effects": order})
     return found
@@ -42,12 +43,14 @@ def test_a_model_that_is_known_is_found_anew_where_that_leads_to_a_better_optimu
         return Candidate(prediction, refit(*effects, error=ends[prediction.effect]))
 
     for name, made in {
-        "_promised": lambda *_: predictions, "_near": lambda *_: predictions, "_tried": tried,
+        "_promised": lambda *_: predictions, "_near": lambda *_: predictions, "_passed_over": lambda *_: [],
+        "_tried": tried,
         "_confirmed": lambda _models, base, one: one.refitted(base, one.trial),
-        "_elsewhere": lambda _models, _asked, _base, one: one, "improvement": lambda *_: None,
-        "alike": lambda *_: False,
+        "_elsewhere": lambda _models, _asked, _base, one: one,
     }.items():  # fmt: skip
         monkeypatch.setattr(ranking, name, made)
+    monkeypatch.setattr(candidate, "improvement", lambda *_: None)
+    monkeypatch.setattr(candidate, "alike", lambda *_: False)
     found = refit("saturation", "stiction", error=1.0)
     (ranked,) = rank_each(
         models, [(refit("stiction", error=2.0), ("saturation", "other"))], lambda _: None, thorough=False, beside=found

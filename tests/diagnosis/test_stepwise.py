@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from ident.diagnosis import ranking, stepwise
+from ident.diagnosis import candidate, stepwise
 from ident.diagnosis.stepwise import StepwiseSelection
 
 
@@ -56,7 +56,7 @@ class Judged:
         here = self.met.setdefault(frozenset(effects), SimpleNamespace(error=score))
         found = SimpleNamespace(
             effects=tuple(effects), values=values, finite=True, held_out=held_out, here=here, error=score,
-            jumping=frozenset(),
+            jumping=frozenset(), between_runs=None,
         )  # fmt: skip
         found.listed = lambda order: SimpleNamespace(**{**vars(found), "effects": order})
         return found
@@ -137,7 +137,7 @@ class Judged:
     def stand_in(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """For what a search asks of real refits."""
         for module, names in ((stepwise, ("rank", "rank_each", "deepened", "alike", "helps", "told_apart")),
-                              (ranking, ("alike", "improvement"))):  # fmt: skip
+                              (candidate, ("alike", "improvement"))):  # fmt: skip
             for name in names:
                 monkeypatch.setattr(module, name, getattr(self, name))
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from ident.diagnosis.cross_validation import CrossValidation
+from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.structures import _better, structures
 from ident.fit.result import FitResult, Structure
 from ident.fit.settings import Settings
@@ -127,6 +128,64 @@ def test_more_parameters_do_not_make_up_for_an_effect():
     assert first.why.endswith("with dead zone: much less with one effect")
 
 
+def arm(size: float, sign: float, use: str) -> Run:
+    """v' = 3.3 (dead zone of 0.36 − v), two stops at ±1 rad, driven to and fro; steps of 1 ms, noise of 2 mrad."""
+    rate, n = 50.0, 1000
+    u = np.zeros(n)
+    u[100:350], u[550:800] = sign * size, -sign * size
+    x, v, out = -0.9 * sign, 0.0, np.zeros(n)
+    for k in range(n):
+        out[k] = x
+        drive = np.sign(u[k]) * max(abs(u[k]) - 0.36, 0.0)
+        for _ in range(20):
+            beyond = x - np.clip(x, -1.0, 1.0)
+            v += 1e-3 * (3.3 * (drive - v) - 2e3 * beyond - (30.0 * v if beyond else 0.0))
+            x += 1e-3 * v
+    out += 2e-3 * np.random.default_rng([5, int(10 * size)]).standard_normal(n)
+    units = {"command": "1", "displacement": "rad"}
+    return Run(f"at {size}", "", rate, {"command": u, "displacement": out}, units, hold="zoh", use=use)
+
+
+@cache
+def arms() -> Matrix:
+    """Six of its runs, two of them to verify."""
+    sizes = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
+    runs = (arm(size, (-1) ** i, "verify" if i > 3 else "fit") for i, size in enumerate(sizes))
+    return Matrix(Actuator("ARM"), tuple(runs))
+
+
+def test_an_arm_between_stops_is_a_motor_with_a_dead_zone():
+    first, *_ = structures(arms())
+    assert first.machine == "motor"
+    assert "with dead zone" in first.why
+
+
+def test_a_time_constant_at_its_bound_is_told():
+    """A lag for what integrates asks for one without end; the machine itself for nothing."""
+    found = {}
+    for model in ("first_order", "motor"):
+        fit = identify(arms(), Settings(model=model))
+        models = ModelFamily.of(arms(), Settings(model=model))
+        start = {models.preset.parameter(name).in_equations: value for name, value in fit.values.items()}
+        found[model] = models.refit((), start).at_bounds
+    assert found == {"first_order": ("tau",), "motor": ()}
+
+
+@pytest.mark.parametrize(
+    ("first", "other", "taken"), [(True, False, "motor"), (False, False, "lag"), (True, True, "lag")]
+)
+def test_one_that_asks_beyond_its_bound_gives_way_to_one_that_does_not(first, other, taken):
+    def model(machine: str, error: float, at_bound: bool) -> SimpleNamespace:
+        held_out = CrossValidation(np.full((2, 8), error), np.full(2, 1e3), np.zeros(2), 3000, 300.0)
+        best = SimpleNamespace(held_out=held_out)
+        return SimpleNamespace(
+            machine=machine, parameters=2, error=error, best=best, with_effect=best, at_bound=at_bound
+        )
+
+    lag, motor = model("lag", 0.324, first), model("motor", 0.306, other)
+    assert _better(lag, [lag, motor], set())[0].machine == taken
+
+
 @pytest.mark.parametrize(("unforetold", "taken"), [(1.03, "open_valve"), (1.0, "first_order")])
 def test_one_that_leaves_as_little_of_windows_has_to_be_as_likely(unforetold, taken):
     """A lag follows a cylinder over windows, each begun where it was measured, and leaves all of a whole run."""
@@ -136,7 +195,9 @@ def test_one_that_leaves_as_little_of_windows_has_to_be_as_likely(unforetold, ta
             np.ones((2, 8)), np.full(2, 1e3), np.zeros(2), 3000, 300.0, np.full((2, 8), new), True
         )
         best = SimpleNamespace(held_out=held_out)
-        return SimpleNamespace(machine=machine, parameters=parameters, error=0.03, best=best, with_effect=best)
+        return SimpleNamespace(
+            machine=machine, parameters=parameters, error=0.03, best=best, with_effect=best, at_bound=False
+        )
 
     first, lag = model("open_valve", 6, 1.0), model("first_order", 2, unforetold)
     assert _better(first, [first, lag], set())[0].machine == taken

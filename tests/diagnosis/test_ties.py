@@ -25,6 +25,13 @@ def test_those_that_are_alike_with_the_least_stand_as_they_were_given():
     assert in_order(list("eb"), SIZES.__getitem__, lambda *_: True) == list("eb")
 
 
+def test_what_ties_stands_as_it_is_put_in_order():
+    """And nothing else does."""
+    alike = lambda best, other: {best, other} <= {"b", "c", "e"}  # noqa: E731
+    assert in_order(list("aebc"), SIZES.__getitem__, alike, sorted) == list("bcea")
+    assert in_order(list("aebc"), SIZES.__getitem__, alike) == list("ebca")
+
+
 def test_of_those_that_tie_for_the_least_the_first_is_taken():
     assert first_least(["e", "b", "c"], SIZES.__getitem__) == "b"
     assert first_least(["c", "b", "e"], SIZES.__getitem__) == "c"

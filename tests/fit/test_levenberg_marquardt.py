@@ -54,6 +54,14 @@ def test_what_cannot_come_below_an_error_is_given_up_on_the_way():
     assert here.error >= best.error
 
 
+def test_what_has_come_far_enough_goes_no_further():
+    plain, asked = Flat(), Flat()
+    levenberg_marquardt(plain, START)
+    _, here = levenberg_marquardt(asked, START, Way(enough=1.5 * LEAST))
+    assert asked.evaluations < plain.evaluations
+    assert here.error <= 1.5 * LEAST
+
+
 def banana(point: Array) -> Here:
     """A narrow valley that bends (Rosenbrock), as far below what is left as that of a machine's undetermined lags."""
     x, y = 4.0 * point - 2.0

@@ -1,0 +1,114 @@
+"""An effect as far as it came on trial, and the order of those that are on trial: what ties, and what is a group."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+
+from ident.cached import cached_property
+from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.refit import Refit, alike, carries_over, outdone
+from ident.diagnosis.screening import Prediction
+from ident.diagnosis.significance import Improvement, improvement
+from ident.diagnosis.ties import in_order
+from ident.parallel import each
+
+_AS_GOOD = 1.02  # times the error: what is no better by chance, nor by more than that, stands as listed
+_ENDS = 1.05  # times the error: so far apart end refits with what acts in jumps
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect, what it promises, its refit on all records where it came that far, and what that gains over a base."""
+
+    prediction: Prediction
+    trial: Refit | None = None
+    refit: Refit | None = None
+    gain: Improvement | None = None
+    base: Refit | None = None
+
+    @property
+    def effect(self) -> str:
+        """The name of the effect."""
+        return self.prediction.effect
+
+    @property
+    def helps(self) -> bool:
+        """Whether adding it helps beyond chance, and from run to run."""
+        return self.gain is not None and self.gain.beyond_chance and self.carries_over
+
+    @cached_property
+    def carries_over(self) -> bool:
+        """Whether it does no harm on whole runs that were left out; where there is no refit nothing is known of it."""
+        return self.refit is None or self.base is None or carries_over(self.base, self.refit)
+
+    @property
+    def between_runs(self) -> tuple[float, ...]:
+        """The errors without it and with it on whole runs that were left out, where there are any."""
+        judged = (one.between_runs for one in (self.base, self.refit) if one is not None)
+        return tuple(one.error for one in judged if one is not None)
+
+    @property
+    def stage(self) -> int:
+        """How far it came: 0 a finalist, 1 a trial, 2 a prediction."""
+        return 0 if self.refit is not None else 1 if self.trial is not None else 2
+
+    @property
+    def score(self) -> float:
+        """What it is sorted by among those that came as far: the held-out score, the trial's error, the prediction."""
+        if self.refit is not None:
+            return self.refit.held_out.score
+        return self.trial.here.error if self.trial is not None else self.prediction.after.score
+
+    def refitted(self, base: Refit, refit: Refit) -> Candidate:
+        """The candidate with a refit on all records, and what that gains over the model without the effect."""
+        return replace(self, refit=refit, gain=improvement(base.held_out, refit.held_out), base=base)
+
+
+def ranked(models: ModelFamily, candidates: Iterable[Candidate]) -> list[Candidate]:
+    """Best first: by how far they came, then by their score; of those that tie the simplest, then as listed.
+
+    Of these those last that another of them outdoes on whole runs.
+    """
+    listed = sorted(candidates, key=lambda candidate: (candidate.stage, *models.simplicity(candidate.effect)))
+    by_stage = groupby(listed, key=lambda candidate: candidate.stage)
+    return [one for _, group in by_stage for one in in_order(list(group), lambda one: one.score, _alike, _outdone_last)]
+
+
+def _outdone_last(tied: Sequence[Candidate]) -> list[Candidate]:
+    """Candidates that tie in the order of their own, but those last that others of them outdo on whole runs."""
+    left = {one.effect for one in not_outdone(tied)}
+    return sorted(tied, key=lambda one: one.effect not in left)
+
+
+def not_outdone(tied: Sequence[Candidate]) -> list[Candidate]:
+    """Those of candidates that none of the others outdoes on whole runs that were left out."""
+    refits = [one.refit for one in tied if one.refit is not None]
+    if len(refits) > 1:
+        each(lambda refit: refit.between_runs, refits)  # side by side, not one by one below
+    return [one for one in tied if one.refit is None or not any(outdone(one.refit, by) for by in refits)]
+
+
+def group(name: str, here: Refit, ranking: Sequence[Candidate]) -> list[Candidate]:
+    """The candidates that are no worse than the best but by chance, the effect itself first where it is among them.
+
+    Those that others of them outdo on whole runs are not among them.
+    """
+    refits = [c for c in ranking if c.refit is not None]
+    best = min([here, *(c.refit for c in refits if c.refit)], key=lambda refit: refit.held_out.score)
+    as_good = [c for c in refits if c.refit and alike(best, c.refit, c.base)]
+    return sorted(not_outdone(as_good), key=lambda c: c.effect != name)
+
+
+def _alike(best: Candidate, other: Candidate) -> bool:
+    """Whether of two refits the better one is better by no more than chance, nor by much on the data of the fit.
+
+    Errors on held-out data hang on where the fits without them ended, which in a flat valley rounding decides.
+    """
+    if best.refit is None or other.refit is None:
+        return False
+    most = _AS_GOOD if best.refit.jumping == other.refit.jumping else _ENDS
+    if other.refit.error > most * best.refit.error:
+        return False
+    return alike(best.refit, other.refit, other.base)

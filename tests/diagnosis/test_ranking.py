@@ -1,0 +1,84 @@
+"""In which order effects are tried and ranked: those that nobody promised anything of, and those that tie."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ident.diagnosis.candidate import Candidate, group, ranked
+from ident.diagnosis.cross_validation import CrossValidation
+from ident.diagnosis.ranking import rank_each
+
+MODELS: Any = SimpleNamespace(simplicity=lambda name: (1, name))
+RUNS, CHUNKS = 6, 8
+
+
+def left(error: float, effect: str) -> CrossValidation:
+    """What is left of runs of a power of one: as much of each chunk, but for a tenth that hangs on the effect."""
+    random = np.random.default_rng(list(effect.encode()))
+    squares = error**2 / CHUNKS * (1.0 + 0.1 * random.standard_normal((RUNS, CHUNKS)))
+    return CrossValidation(squares, np.ones(RUNS), np.zeros(RUNS), 6000, 300.0)
+
+
+def candidate(effect: str, held_out: float, between_runs: float | None) -> Candidate:
+    """An effect that leaves so much of blocks, and of whole runs, that were left out."""
+    refit: Any = SimpleNamespace(
+        effects=(effect,), held_out=left(held_out, effect), error=held_out, jumping=frozenset(),
+        between_runs=None if between_runs is None else left(between_runs, effect),
+    )  # fmt: skip
+    prediction: Any = SimpleNamespace(effect=effect)
+    return Candidate(prediction, refit=refit)
+
+
+@pytest.mark.parametrize(
+    ("of_friction", "of_stop", "first"),
+    [
+        (0.30, 0.22, "stop"),  # told apart, though friction is listed first
+        (0.22, 0.22, "friction"),  # as good: as listed
+        (0.232, 0.22, "friction"),  # some per cent, however certain, tell no two optima apart
+        (None, None, "friction"),  # a single run
+    ],
+)
+def test_what_ties_on_blocks_is_told_apart_by_whole_runs(of_friction, of_stop, first):
+    friction, stop = candidate("friction", 0.2, of_friction), candidate("stop", 0.2001, of_stop)
+    in_order = [one.effect for one in ranked(MODELS, [stop, friction])]
+    assert in_order[0] == first
+    as_good = {one.effect for one in group("friction", friction.refit, [friction, stop])}  # type: ignore[arg-type]
+    assert as_good == ({"stop"} if first == "stop" else {"friction", "stop"})
+
+
+def test_what_is_better_on_blocks_comes_first_whatever_whole_runs_say():
+    """Whether it does harm there is asked where it is added."""
+    assert [one.effect for one in ranked(MODELS, [candidate("a", 0.2, 0.2), candidate("b", 0.1, 0.3)])] == ["b", "a"]
+
+
+@pytest.mark.parametrize(("kept", "tried"), [(0.8, {"friction", "dead zone"}), (0.3, {"friction"})])
+def test_where_the_boldest_promise_is_not_kept_more_is_tried(monkeypatch, kept, tried):
+    """Friction promises to leave 0.3, and leaves so much; a dead zone promised 0.5, noise next to nothing."""
+    promises = {"friction": 0.3, "dead zone": 0.5, "noise": 0.999}
+    predictions = [
+        SimpleNamespace(
+            effect=name, share=share, fall=1.0 - share, nats=0.0,
+            after=SimpleNamespace(score=share, error=share), before=SimpleNamespace(offset=0.0),
+        )
+        for name, share in promises.items()
+    ]  # fmt: skip
+    asked: list[str] = []
+
+    def refitted(_models: Any, _base: Any, prediction: Any, _aim: float, _strong: bool) -> Candidate:
+        asked.append(prediction.effect)
+        found: Any = SimpleNamespace(here=SimpleNamespace(error=kept if prediction.effect == "friction" else 0.4))
+        return Candidate(prediction, found)
+
+    for name, made in {
+        "_promised": lambda *_: predictions, "_tried": refitted, "_few": lambda *_: 12,
+        "_confirmed": lambda _models, _base, one: one, "_elsewhere": lambda _models, _asked, _base, one: one,
+    }.items():  # fmt: skip
+        monkeypatch.setattr(f"ident.diagnosis.ranking.{name}", made)
+    models: Any = SimpleNamespace(simplicity=lambda name: (1, name), tried=lambda _base: 1.0)
+    base: Any = SimpleNamespace(effects=())
+    rank_each(models, [(base, list(promises))], lambda _: None, thorough=False)
+    assert set(asked) == tried
