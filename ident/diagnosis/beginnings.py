@@ -1,4 +1,4 @@
-"""From where the shapes begin that are searched with an effect: a ripple's frequency and phase, a stop's stiffness."""
+"""From where an effect's search begins: a ripple's frequency and phase, a stop's stiffness and where it stands."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from ident.effects.effect import Effect
 from ident.fit.space import Space
 from ident.matrix import Run
 from ident.parameter import Parameter
+from ident.presets.middle import MIDDLE
 
 Array = NDArray[np.float64]
 _LINES = 6  # frequencies
@@ -30,6 +31,19 @@ def beginnings(base: Refit, effect: Effect, space: Space, known: Mapping[str, fl
     values = [_values(base, parameter, space, known) for parameter in searched]
     names = [parameter.in_equations for parameter in searched]
     return [dict(zip(names, found, strict=True)) for found in product(*values)]
+
+
+def shown(base: Refit, effect: Effect) -> float | None:
+    """The strength that the records show by themselves, SI; None where they show none.
+
+    A stop that was hit stands at the end of the way that was covered, to both sides of the middle of the stroke.
+    """
+    middle = next((p.value for p in effect.shape if p.name == MIDDLE), None)
+    if middle is None or effect.strength.unit != "1/m":
+        return None
+    moved = [run.channels["displacement"] for run in base.fitness.runs if "displacement" in run.channels]
+    way = max((float(np.max(np.abs(x - middle))) for x in moved), default=0.0)
+    return 1.0 / way if way > 0 else None
 
 
 def _values(base: Refit, parameter: Parameter, space: Space, known: Mapping[str, float]) -> tuple[float, ...]:

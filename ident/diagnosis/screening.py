@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
-from ident.diagnosis.beginnings import beginnings
+from ident.diagnosis.beginnings import beginnings, shown
 from ident.diagnosis.cross_validation import scored, weight_of_offsets
 from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.refit import Refit
@@ -56,7 +56,8 @@ class Prediction:
 
     All on the beginnings of the records; `runs` is their number. `starts` are the fitted model with the effect on, from
     the strength that was simulated to the share of it that fits best: what has a threshold needs the former, for a
-    share of its response is not the response to a share; what is proportional the latter.
+    share of its response is not the response to a share; what is proportional the latter. Where the records show the
+    strength by themselves, that too.
     """
 
     effect: str
@@ -103,7 +104,13 @@ def _predicted(sight: _Sensitivities, base: Refit, names: Sequence[str]) -> list
         if after.score < (1.0 - _ROUNDING) * best[trial.effect][0].score:
             best[trial.effect] = after, step, trial
     return [
-        Prediction(name, after, before, len(sight.gram), _starts(models, base, trial, step))
+        Prediction(
+            name,
+            after,
+            before,
+            len(sight.gram),
+            (*_starts(models, base, trial, step), *_as_shown(models, base, fitness.space, name, known)),
+        )
         for name, (after, step, trial) in ((name, best[name]) for name in names)
     ]
 
@@ -207,6 +214,17 @@ def _starts(models: ModelFamily, base: Refit, trial: _Trial, step: Array) -> tup
     scaled = float(step[p])
     parts = [at(share, share * scaled * trial.strength) for share in _PARTS]
     return (*parts, *(at(1.0, scaled**share * trial.strength) for share in _BACK)) if scaled else tuple(parts)
+
+
+def _as_shown(
+    models: ModelFamily, base: Refit, space: Space, name: str, known: Mapping[str, float]
+) -> Iterator[dict[str, float]]:
+    """The fitted model with an effect as strong as the records show by themselves, where they do."""
+    effect = models.effects[name]
+    strength = shown(base, effect)
+    if strength is not None:
+        for shape in beginnings(base, effect, space, known):
+            yield {**base.values, **shape, models.strength(name): strength}
 
 
 def _trials(models: ModelFamily, base: Refit, space: Space, name: str, known: Mapping[str, float]) -> Iterator[_Trial]:

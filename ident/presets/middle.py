@@ -10,7 +10,8 @@ from ident.chain.chain import Chain, integrates
 from ident.effects.effect import Effect
 from ident.matrix import Matrix
 
-_MIDDLE = "middle"  # the shape of an effect that it acts to both sides of
+MIDDLE = "middle"
+"""The shape of an effect that it acts to both sides of."""
 
 
 def middle_of(matrix: Matrix, chain: Chain) -> float:
@@ -33,7 +34,7 @@ def about(effect: Effect, middle: float) -> Effect:
     reach = 2.0 * abs(middle)
     shape = tuple(
         replace(one, value=middle, lower=min(one.lower, -reach), upper=max(one.upper, reach))
-        if one.name == _MIDDLE
+        if one.name == MIDDLE
         else one
         for one in effect.shape
     )

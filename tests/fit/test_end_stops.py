@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ident.diagnosis.beginnings import shown
 from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.screening import predict
 from ident.effects import effect
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run
 from ident.presets import preset
-from ident.workflows import compare, identify
+from ident.workflows import compare, diagnose, identify
 
 RATE, GAIN, LAG = 100.0, 0.5, 0.08
 LOW, HIGH = 1.2, 1.7  # m, where the stops stand
@@ -75,3 +77,22 @@ def test_the_middle_of_a_stroke_is_that_of_the_way_covered_where_the_zero_lies_o
     assert found.value == pytest.approx(middle, abs=2e-3)
     family = ModelFamily.of(cylinder(low, high), Settings(model="motor"))
     assert family.model(("end_stop",)).parameter("end_stop.middle").value == found.value
+
+
+def test_a_diagnosis_begins_with_stops_where_the_way_ended():
+    """Of strengths along the range none was near: a motor was left with what sticks in their place."""
+    models = ModelFamily.of(cylinder(), Settings(model="motor"))
+    base = models.refit((), {p.in_equations: p.value for p in models.preset.parameters})
+    stop, lag = (models.effects[name] for name in ("end_stop", "sensor_lag"))
+    assert shown(base, stop) == pytest.approx(2 / (HIGH - LOW), rel=0.01)
+    assert shown(base, lag) is None
+    (promise,) = predict(models, base, ["end_stop"])
+    begun = {round(start["end_stop__inverse_way"] * (HIGH - LOW) / 2, 2) for start in promise.starts}
+    assert 1.0 in begun
+
+
+def test_stops_are_found_by_a_diagnosis():
+    matrix = cylinder()
+    found = diagnose(matrix, identify(matrix, Settings(model="motor")), most=1, propose=False)
+    assert found.verdict.effects == ("end_stop",)
+    assert found.ladder[-1].error["verify"] < 0.02
