@@ -91,14 +91,14 @@ def not_outdone(tied: Sequence[Candidate]) -> list[Candidate]:
 
 
 def group(name: str, here: Refit, ranking: Sequence[Candidate]) -> list[Candidate]:
-    """The candidates that are no worse than the best but by chance, the effect itself first where it is among them.
+    """The effect itself, and the candidates that are no worse than the best but by chance.
 
-    Those that others of them outdo on whole runs are not among them.
+    But for those that others of them outdo on whole runs. What nothing replaced is in its group, come what may.
     """
     refits = [c for c in ranking if c.refit is not None]
     best = min([here, *(c.refit for c in refits if c.refit)], key=lambda refit: refit.held_out.score)
-    as_good = [c for c in refits if c.refit and alike(best, c.refit, c.base)]
-    return sorted(not_outdone(as_good), key=lambda c: c.effect != name)
+    as_good = not_outdone([c for c in refits if c.refit and alike(best, c.refit, c.base)])
+    return [*(c for c in refits if c.effect == name), *(c for c in as_good if c.effect != name)]
 
 
 def _alike(best: Candidate, other: Candidate) -> bool:

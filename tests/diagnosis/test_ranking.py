@@ -46,8 +46,15 @@ def test_what_ties_on_blocks_is_told_apart_by_whole_runs(of_friction, of_stop, f
     friction, stop = candidate("friction", 0.2, of_friction), candidate("stop", 0.2001, of_stop)
     in_order = [one.effect for one in ranked(MODELS, [stop, friction])]
     assert in_order[0] == first
-    as_good = {one.effect for one in group("friction", friction.refit, [friction, stop])}  # type: ignore[arg-type]
-    assert as_good == ({"stop"} if first == "stop" else {"friction", "stop"})
+    named: Any = {"friction": friction, "stop": stop}[first]
+    as_good = [one.effect for one in group(first, named.refit, [friction, stop])]
+    assert as_good == (["stop"] if first == "stop" else ["friction", "stop"])
+
+
+def test_what_nothing_replaced_is_in_its_group():
+    """By rounding it stands first, and just beyond chance behind the best."""
+    delay, lag = candidate("delay", 0.2, 0.2), candidate("lag", 0.1, 0.1)
+    assert [one.effect for one in group("delay", delay.refit, [delay, lag])] == ["delay", "lag"]  # type: ignore[arg-type]
 
 
 def test_what_is_better_on_blocks_comes_first_whatever_whole_runs_say():
