@@ -10,6 +10,7 @@ from app.report.rows import budget_rows, candidate_rows, curve_rows, group_table
 from ident.checks.check import check
 from ident.custom.definition import preset_with
 from ident.diagnosis.result import Diagnosis
+from ident.diagnosis.words import not_told
 from ident.errors import Unusable
 from ident.figures import figure, ladder, look
 from ident.fit.result import FitResult
@@ -18,7 +19,7 @@ from ident.residuals.budget import Budget
 from ident.residuals.survey import Survey, survey
 from ident.words.engineering import printed_unit, quantity
 from ident.words.percent import percent_in_print
-from ident.words.titles import title, with_effects
+from ident.words.titles import with_effects
 from ident.workflows import compare, study
 
 CAPTIONS = {
@@ -120,7 +121,7 @@ def _missing(diagnosis: Diagnosis, matrix: Matrix) -> Iterator[Block]:
     if verdict.unexplained:
         yield Text("No listed effect brings the error near the noise floor.")
     for group in verdict.indistinguishable:
-        yield Text(f"These data cannot tell apart: {', '.join(map(title, group))}.")
+        yield Text(f"These data {not_told(group, verdict.effects)}.")
     for suspect in verdict.suspects:
         yield Text(f"Doubtful: run {suspect.run}: {suspect.what}")
     if steps := ladder_steps(diagnosis):

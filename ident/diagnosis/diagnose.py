@@ -16,7 +16,7 @@ from ident.diagnosis.candidate import Candidate
 from ident.diagnosis.course import Course
 from ident.diagnosis.elsewhere import Other, elsewhere, others
 from ident.diagnosis.family import ModelFamily
-from ident.diagnosis.late import lateness
+from ident.diagnosis.late import lateness, undecided_pairs
 from ident.diagnosis.longer import over_longer
 from ident.diagnosis.proposals.outcome import Proposals
 from ident.diagnosis.proposals.search import Search
@@ -73,9 +73,10 @@ class Diagnoser:
             selection = self._added(selection.models.without(suspect.run for suspect in doubted))
             doubted = self._doubted(selection)
         told, late = self._elsewhere(selection), self._late(selection)
+        pairs = undecided_pairs(selection.models, selection.found, selection.added) if selection.complete else ()
         proposed = self._proposed(selection) if self._is_proposing(selection) else Proposals()
         self.course.conclude()
-        found = self._said(selection, doubted)
+        found = self._said(selection, doubted, pairs)
         over = () if found.horizon == self.models.horizon else told_longer(self.models.horizon, found.horizon)
         needless = proposed.needless(selection.added)
         text = " ".join([found.verdict.text, *told_needless(needless), *over, *late, *as_well(told)])
@@ -141,8 +142,10 @@ class Diagnoser:
             return alone
         return beside.or_refused(alone)
 
-    def _said(self, selection: StepwiseSelection, doubted: Sequence[Suspect]) -> Diagnosis:
-        """What a search found so far."""
+    def _said(
+        self, selection: StepwiseSelection, doubted: Sequence[Suspect], pairs: Sequence[tuple[str, ...]] = ()
+    ) -> Diagnosis:
+        """What a search found so far; `pairs` are lags and delays of which no two can be told from two others."""
         steps = selection.ladder()
         ladder, base = self._ladder(steps), selection.base
         floor = selection.models.floors.of_use(selection.models.matrix)
@@ -154,7 +157,7 @@ class Diagnoser:
             horizon=selection.models.horizon,
             candidates=tuple(self._ranked(selection, floor["fit"])),
             ladder=tuple(ladder),
-            verdict=self._verdict(selection, steps, doubted, floor["fit"]),
+            verdict=self._verdict(selection, steps, doubted, floor["fit"], pairs),
             proposals=(),
             complete=selection.complete,
             seed=self.fit.seed,
@@ -164,12 +167,14 @@ class Diagnoser:
         )
 
     def _verdict(
-        self, selection: StepwiseSelection, steps: Steps, doubted: Sequence[Suspect], floor: float | None
-    ) -> Verdict:
+        self, selection: StepwiseSelection, steps: Steps, doubted: Sequence[Suspect], floor: float | None,
+        pairs: Sequence[tuple[str, ...]],
+    ) -> Verdict:  # fmt: skip
         """What is said of what was added."""
         models, added, errors = selection.models, selection.added, steps[-1][1].errors
         unexplained = selection.models.something_left(selection.found)
-        groups = tuple(tuple(c.effect for c in group) for group in selection.groups.values() if len(group) > 1)
+        alone = (tuple(c.effect for c in group) for group in selection.groups.values() if len(group) > 1)
+        groups = (*(group for group in alone if not any({*group} <= {*pair} for pair in pairs)), *pairs)
         against = tuple(self._contradictions(models, steps))
         bounded = tuple(name for name in added if models.at_bound(selection.found, name))
         text = verdict_text(added, groups, doubted, unexplained, errors, selection.base.error, models.floors.measured,

@@ -2,16 +2,18 @@
 
 A model has its lag at one place because it has to be somewhere. Where a delay, or a lag elsewhere, does as well in its
 place, the time constant is no property of that stage: the time T by which a slow command is answered late is what is
-known, see :mod:`ident.fit.slow_answer`.
+known, see :mod:`ident.fit.slow_answer`. Of two that were found each may hold the other in its place, where two others
+do as well: those are weighed as pairs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain, combinations
 
 from ident.diagnosis.family import ModelFamily
-from ident.diagnosis.refit import Refit
+from ident.diagnosis.refit import Refit, alike
 from ident.diagnosis.significance import improvement
 from ident.fit.levenberg_marquardt import Way
 from ident.fit.result import Combination
@@ -20,6 +22,7 @@ from ident.parallel import each
 from ident.parameter import Parameter
 
 _NEAR = 1.05  # times the model's error: what cannot come below it does not as well
+_PROMISING = 1.01  # times the error on the beginnings of the records: what leaves more is not alike
 _ROUGHLY = Way(1e-4, 12, rough=1e-3)  # of a refit that is only asked whether it does
 
 
@@ -71,3 +74,42 @@ def _time_constants(models: ModelFamily, refit: Refit) -> Iterator[Parameter]:
     for parameter in models.preset.parameters:
         if parameter.unit == "s" and parameter.in_equations in refit.space.names:
             yield parameter
+
+
+def undecided_pairs(models: ModelFamily, refit: Refit, added: Sequence[str]) -> list[tuple[str, ...]]:
+    """For each two lags or delays that were added, these and all that, two at a time, do as well in their places.
+
+    Only where there are such others: each by itself may be told from every other while the second one stays.
+    """
+    times = [name for name, effect in models.effects.items() if is_late(effect) and effect.strength.unit == "s"]
+    free, found = [name for name in times if name not in refit.effects], []
+    for pair in combinations([name for name in added if name in times], 2):
+        rest = tuple(name for name in refit.effects if name not in pair)
+        others = [two for two in combinations(free, 2) if models.fit_together((*rest, *two))]
+        as_good = [two for two, good in zip(others, each(_InPlaceOf(models, refit, pair), others), strict=True) if good]
+        if as_good:
+            found.append(tuple(dict.fromkeys((*pair, *chain(*as_good)))))
+    return found
+
+
+@dataclass(frozen=True)
+class _InPlaceOf:
+    """Whether two other lags or delays do as well in the place of a `pair` of a refit, but for chance."""
+
+    models: ModelFamily
+    refit: Refit
+    pair: tuple[str, str]
+
+    def __call__(self, two: tuple[str, str]) -> bool:
+        models, refit = self.models, self.refit
+        rest = tuple(name for name in refit.effects if name not in self.pair)
+        others = {name: value for name, value in refit.values.items() if name.partition("__")[0] not in self.pair}
+        first, second = (refit.values[models.strength(name)] for name in self.pair)
+        one, other = map(models.strength, two)
+        starts = [{**others, one: first, other: second}, {**others, one: second, other: first}]
+        asked = _PROMISING * models.tried(refit)
+        trial = models.trial((*rest, *two), starts, asked)
+        if not trial.here.error < asked:
+            return False
+        found = models.refit(trial.effects, trial.values)
+        return found.finite and alike(refit, found)

@@ -107,6 +107,7 @@ class Verdict:
     asked. `contradicted_by` are those with which the error rises on runs to verify, `at_bound` those whose strength
     ended at a bound that the search set, `elsewhere` what other models explain as well. `stood_in` are effects of the
     ladder that are not named: beside terms that a search proposes the model does as well without them.
+    `indistinguishable` are groups of which one is named, or two lags or delays that two others stand for as well.
     """
 
     effects: tuple[str, ...] = ()
@@ -132,7 +133,9 @@ class Verdict:
             effects=named,
             standing=cleared if named else "nothing",
             contradicted_by=against,
-            indistinguishable=tuple(group for group in self.indistinguishable if group[0] not in needless),
+            indistinguishable=tuple(
+                group for group in self.indistinguishable if not {*group} & {*self.effects} & {*needless}
+            ),
             stood_in=tuple(needless),
         )
 

@@ -98,8 +98,7 @@ def verdict_text(
         parts.append(f"No effect of the catalogue lowers the error of {percent(before)} beyond chance.")
     parts += [_BOUNDED.format(named(name)) for name in bounded]
     for group in groups:
-        names = ", ".join(map(named, group))
-        parts.append(f"This matrix cannot tell apart: {names}; their refits differ by less than chance.")
+        parts.append(f"This matrix {not_told(group, added, named)}; their refits differ by less than chance.")
     for suspect in suspects:
         parts.append(f"Run {suspect.run} is doubted ({suspect.what}): {suspect.evidence}.")
     if unexplained:
@@ -110,6 +109,12 @@ def verdict_text(
             parts.append("No command was measured twice: part of it may be noise in the command's band, "
                          "which a repeated run would tell.")  # fmt: skip
     return " ".join(parts)
+
+
+def not_told(group: Sequence[str], added: Sequence[str], spoken: Callable[[str], str] = title) -> str:
+    """What data cannot do of a group of effects of which one was added, or two that stand for two others as well."""
+    what = "which two these are of" if len({*group} & {*added}) == 2 else "apart"
+    return f"cannot tell {what}: {', '.join(map(spoken, group))}"
 
 
 def _helps(

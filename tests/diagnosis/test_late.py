@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import re
 
+import pytest
+
 from ident.diagnosis.family import ModelFamily
-from ident.diagnosis.late import lateness
-from ident.diagnosis.words import told_late
+from ident.diagnosis.late import lateness, undecided_pairs
+from ident.diagnosis.words import told_late, verdict_text
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.workflows import diagnose, identify
+from tests.diagnosis.test_diagnose import measured
 from tests.fit.test_windows import LAG, cylinder
 
 SETTINGS = Settings(model="open_valve")
@@ -53,3 +56,25 @@ def test_of_a_model_without_a_time_constant_of_its_own_nothing_is_said():
     models = ModelFamily.of(matrix, Settings(model="motor"))
     refit = models.refit((), {})
     assert lateness(models, refit, refit) is None
+
+
+@pytest.mark.parametrize(
+    ("valve", "recorder", "others"),
+    [(2e-4, 3.5e-4, {"command_delay", "sensor_lag", "loop_delay"}), (4e-4, 1e-3, set())],
+)
+def test_two_lags_that_two_others_stand_for_as_well_are_told_as_pairs(valve, recorder, others):
+    """A valve's second order and a recorder's lag, hidden in data of the reference: short ones, and ones that show."""
+    models = ModelFamily.of(measured(valve_second_order=valve, acquisition_lag=recorder), Settings())
+    start = models.off | {p.in_equations: p.value for p in models.preset.parameters}
+    start |= {models.strength("valve_second_order"): valve, models.strength("acquisition_lag"): recorder}
+    refit = models.refit(("valve_second_order", "acquisition_lag"), start)
+    found = undecided_pairs(models, refit, refit.effects)
+    assert found == [] if not others else {*found[0]} == {*refit.effects, *others}
+    assert undecided_pairs(models, refit, ("acquisition_lag",)) == []
+
+
+def test_a_pair_is_said_to_be_one():
+    errors = {"fit": 0.0105, "held_out": 0.0105, "verify": None}
+    two = ("command_delay", "sensor_lag")
+    said = verdict_text(two, [(*two, "valve_second_order", "acquisition_lag")], [], False, errors, 0.05)
+    assert "cannot tell which two these are of: command delay, sensor lag, valve second order, acquisition lag" in said
