@@ -72,8 +72,7 @@ class Diagnoser:
         if doubted:
             selection = self._added(selection.models.without(suspect.run for suspect in doubted))
             doubted = self._doubted(selection)
-        told, late = self._elsewhere(selection), self._late(selection)
-        pairs = undecided_pairs(selection.models, selection.found, selection.added) if selection.complete else ()
+        told, late, pairs = self._elsewhere(selection), self._late(selection), self._pairs(selection)
         proposed = self._proposed(selection) if self._is_proposing(selection) else Proposals()
         self.course.conclude()
         found = self._said(selection, doubted, pairs)
@@ -112,6 +111,16 @@ class Diagnoser:
                 without = tuple(name for name in selection.added if name not in refit.effects)
                 return (told_late(late, models.spoken, without),)
         return ()
+
+    def _pairs(self, selection: StepwiseSelection) -> Sequence[tuple[str, ...]]:
+        """Lags and delays of which no two can be told from two others, where there was time."""
+        try:
+            self.course.tell(Progress("lags and delays", 0, 1))
+        except TimeIsUp:
+            selection.complete = False
+        if not selection.complete:
+            return ()
+        return undecided_pairs(selection.models, selection.found, selection.added)
 
     def _is_proposing(self, selection: StepwiseSelection) -> bool:
         """Whether terms that no list holds are to be searched for.
