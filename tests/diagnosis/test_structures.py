@@ -154,7 +154,9 @@ def arms() -> Matrix:
     return Matrix(Actuator("ARM"), tuple(runs))
 
 
-def test_an_arm_between_stops_is_a_motor_with_a_dead_zone():
+def test_an_arm_between_stops_is_a_motor_with_a_dead_zone(full):
+    if not full:  # what this rests on has tests of its own
+        pytest.skip("ten seconds: run with --full")
     first, *_ = structures(arms())
     assert first.machine == "motor"
     assert "with dead zone" in first.why
