@@ -54,11 +54,12 @@ def values(texts: Sequence[str], model: Preset) -> dict[str, float]:
 
 def in_si(text: str, name: str, model: Preset, where: str) -> float:
     """A value of the model's parameter `name` in SI; the printed unit of Z0 is converted with a notice."""
-    from ident.units.quantity import parameter_value, printed_notice
+    from ident.presets import angles
+    from ident.units.quantity import printed_notice
 
     if notice := printed_notice(text):
         print(f"notice: {notice}", file=sys.stderr)
-    return parameter_value(text, model.parameter(name).unit, where)
+    return angles.in_si(text, model.parameter(name).unit, where)
 
 
 def definitions(files: Sequence[Path], terms: int | None = None) -> tuple[dict[str, Any], ...]:

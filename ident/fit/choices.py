@@ -8,7 +8,7 @@ from typing import Any, TypedDict, cast
 from ident.custom.definition import definition_of, preset_with
 from ident.errors import Unusable
 from ident.fit.settings import Settings
-from ident.units.quantity import parameter_value
+from ident.presets.angles import in_si
 
 Value = float | str
 """A plain number, SI, or text that carries a unit, as "1 ms"."""
@@ -45,7 +45,7 @@ def settings_of(choices: Choices, usual: Settings | None = None) -> Settings:
     model = preset_with(chosen["model"] or Settings().model, effects, custom)
 
     def si(name: str, value: Value) -> float:
-        return parameter_value(value, model.parameter(name).unit, name)
+        return in_si(value, model.parameter(name).unit, name)
 
     bounds = {name: (si(name, lower), si(name, upper)) for name, (lower, upper) in chosen["bounds"].items()}
     for name, (lower, upper) in bounds.items():

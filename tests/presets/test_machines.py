@@ -118,7 +118,7 @@ def test_a_motor_is_found(seed):
     fit = identify(matrix, Settings(model="motor"))
     assert fit.values["Kt"] / fit.values["c0"] == pytest.approx(3.5, rel=0.005)
     assert fit.values["m0"] / fit.values["c0"] == pytest.approx(0.3, rel=0.01)
-    assert fit.parameters["Kt"].unit == "N/V"
+    assert fit.parameters["Kt"].unit == "N*m/V"
     assert max(fit.error["fit"], fit.error["verify"]) < 0.0115
 
 

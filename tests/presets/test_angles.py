@@ -1,0 +1,60 @@
+"""What turns is shown in angles, torques and inertias; what goes along a way in metres, newtons and kilograms."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ident.effects import effect
+from ident.errors import Unusable
+from ident.matrix import Matrix
+from ident.presets import preset
+from ident.presets.angles import in_si
+from ident.units.grammar import powers_of
+from tests.fit.test_windows import cylinder
+from tests.presets.test_machines import motor
+
+EFFECTS = ("dead_zone", "coulomb_friction", "end_stop")
+
+
+def units(matrix: Matrix, model: str) -> dict[str, str]:
+    """The unit of each parameter of a machine with effects, as it is shown of a matrix."""
+    shown, _ = preset(model).with_effects(tuple(map(effect, EFFECTS))).for_matrix(matrix)
+    return {parameter.name: shown.unit(parameter) for parameter in shown.parameters}
+
+
+def along(matrix: Matrix, unit: str) -> Matrix:
+    """The same with the output in another unit."""
+    runs = (replace(run, units={**run.units, run.output: unit}) for run in matrix.runs)
+    return replace(matrix, runs=tuple(runs))
+
+
+def test_a_motor_turns():
+    found = units(along(motor(8), "rad/s"), "motor")
+    assert found["m0"] == "kg*m^2"
+    assert found["c0"] == "N*m*s/rad"
+    assert found["Kt"] == "N*m/V"
+    assert found["coulomb_friction.force"] == "N*m"
+    assert found["end_stop.inverse_way"] == "1/rad"
+    assert found["dead_zone.half_width"] == "V"  # of the command, which is none of the motion
+    assert all(powers_of(unit) is not None for unit in found.values())  # they can be read
+
+
+@pytest.mark.parametrize("model", ["motor", "open_valve"])
+def test_a_cylinder_does_not(model):
+    found = units(along(cylinder(2, wander=0.0), "m"), model)
+    assert found["m0"] == "kg"
+    assert found["end_stop.inverse_way"] == "1/m"
+
+
+def test_where_oil_turns_it_no_volume_a_radian_is_stated():
+    assert units(along(cylinder(2, wander=0.0), "rad"), "open_valve")["c0"] == "N*s/m"
+
+
+def test_a_setting_may_have_the_unit_that_is_shown():
+    assert in_si("3 N*m*s/rad", "N*s/m", "c0") == in_si("3 N*s/m", "N*s/m", "c0") == in_si("3", "N*s/m", "c0") == 3.0
+    assert in_si("180 deg", "m", "displacement") == pytest.approx(np.pi)
+    with pytest.raises(Unusable, match="not a unit of the same kind as N"):
+        in_si("3 s", "N*s/m", "c0")
