@@ -99,11 +99,7 @@ class Diagnoser:
         Where with the last effect they do, and something is left, it is told without that: one that makes the valve's
         lag another, as its stiction, holds this lag in its place.
         """
-        try:
-            self.course.tell(Progress("lags and delays", 0, 1))
-        except TimeIsUp:
-            selection.complete = False
-        if not selection.complete:
+        if not self._has_time(selection, "lags and delays"):
             return ()
         models, steps = selection.models, [refit for _, refit in selection.ladder() if refit.stable][::-1]
         for refit in steps[: _LATE if models.something_left(selection.found) else 1]:
@@ -112,13 +108,17 @@ class Diagnoser:
                 return (told_late(late, models.spoken, without),)
         return ()
 
-    def _pairs(self, selection: StepwiseSelection) -> Sequence[tuple[str, ...]]:
-        """Lags and delays of which no two can be told from two others, where there was time."""
+    def _has_time(self, selection: StepwiseSelection, stage: str) -> bool:
+        """Whether a stage may begin after a search that came to its end; where time is up that has not."""
         try:
-            self.course.tell(Progress("lags and delays", 0, 1))
+            self.course.tell(Progress(stage, 0, 1))
         except TimeIsUp:
             selection.complete = False
-        if not selection.complete:
+        return selection.complete
+
+    def _pairs(self, selection: StepwiseSelection) -> Sequence[tuple[str, ...]]:
+        """Lags and delays of which no two can be told from two others, where there was time."""
+        if not self._has_time(selection, "lags and delays"):
             return ()
         return undecided_pairs(selection.models, selection.found, selection.added)
 
@@ -223,11 +223,7 @@ class Diagnoser:
             self.course.found(replace(self._said(selection, ()), seconds=self.course.taken))
 
     def _doubted(self, selection: StepwiseSelection) -> list[Suspect]:
-        try:
-            self.course.tell(Progress("labels", 0, 1))
-        except TimeIsUp:
-            selection.complete = False
-        if not selection.complete:
+        if not self._has_time(selection, "labels"):
             return []
         return suspects(selection.models, selection.found, selection.models.floors.by_run)
 

@@ -10,9 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import chain, combinations
 
 from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.ladder import without
 from ident.diagnosis.refit import Refit, alike
 from ident.diagnosis.significance import improvement
 from ident.fit.levenberg_marquardt import Way
@@ -83,33 +85,29 @@ def undecided_pairs(models: ModelFamily, refit: Refit, added: Sequence[str]) -> 
     """
     times = [name for name, effect in models.effects.items() if is_late(effect) and effect.strength.unit == "s"]
     free, found = [name for name in times if name not in refit.effects], []
-    for pair in combinations([name for name in added if name in times], 2):
+    pairs = list(combinations([name for name in added if name in times], 2))
+    asked = _PROMISING * models.tried(refit) if pairs else 0.0
+    for pair in pairs:
         rest = tuple(name for name in refit.effects if name not in pair)
         others = [two for two in combinations(free, 2) if models.fit_together((*rest, *two))]
-        as_good = [two for two, good in zip(others, each(_InPlaceOf(models, refit, pair), others), strict=True) if good]
+        tried = each(partial(_in_place_of, models, refit, pair, asked), others)
+        as_good = [two for two, good in zip(others, tried, strict=True) if good]
         if as_good:
             found.append(tuple(dict.fromkeys((*pair, *chain(*as_good)))))
     return found
 
 
-@dataclass(frozen=True)
-class _InPlaceOf:
-    """Whether two other lags or delays do as well in the place of a `pair` of a refit, but for chance."""
-
-    models: ModelFamily
-    refit: Refit
-    pair: tuple[str, str]
-
-    def __call__(self, two: tuple[str, str]) -> bool:
-        models, refit = self.models, self.refit
-        rest = tuple(name for name in refit.effects if name not in self.pair)
-        others = {name: value for name, value in refit.values.items() if name.partition("__")[0] not in self.pair}
-        first, second = (refit.values[models.strength(name)] for name in self.pair)
-        one, other = map(models.strength, two)
-        starts = [{**others, one: first, other: second}, {**others, one: second, other: first}]
-        asked = _PROMISING * models.tried(refit)
-        trial = models.trial((*rest, *two), starts, asked)
-        if not trial.here.error < asked:
-            return False
-        found = models.refit(trial.effects, trial.values)
-        return found.finite and alike(refit, found)
+def _in_place_of(
+    models: ModelFamily, refit: Refit, pair: tuple[str, str], asked: float, two: tuple[str, str]
+) -> bool:  # fmt: skip
+    """Whether two others do as well in the place of a pair, but for chance: a first refit has to come below `asked`."""
+    rest = tuple(name for name in refit.effects if name not in pair)
+    values = without(without(refit.values, pair[0]), pair[1])
+    first, second = (refit.values[models.strength(name)] for name in pair)
+    one, other = map(models.strength, two)
+    starts = [{**values, one: first, other: second}, {**values, one: second, other: first}]
+    trial = models.trial((*rest, *two), starts, asked)
+    if not trial.here.error < asked:
+        return False
+    found = models.refit(trial.effects, trial.values)
+    return found.finite and alike(refit, found)
