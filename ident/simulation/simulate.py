@@ -174,9 +174,8 @@ class Simulation:
         for name, row in built.memories.items():
             rows[row] = found[name]
         for known_filter in built.filters:
-            rows[known_filter.first] = rows[known_filter.first + known_filter.order] = constant(
-                known_filter.input, found
-            )
+            if known_filter.first not in built.states.values():  # else it begins in its state
+                rows[known_filter.first] = constant(known_filter.input, found)
 
 
 def _at_rest(chain: Chain, known: Mapping[str, Any]) -> dict[str, Any]:
@@ -219,11 +218,7 @@ def _begun_late(command: _Input, held: Array) -> Array:
 
 
 def pack_filter(rows: Array, known: Filter, values: Mapping[str, Array]) -> None:
-    """The gains of a filter over half a step and a whole step, exactly for an input that is a parabola.
-
-    Rows of a block: for each state, the gains of the states at the start, then of three inputs half a step apart, the
-    last where the block ends. A filter without any time constant passes its input on.
-    """
+    """The gains of a filter at the start of a step, over half of it and over the whole: see :func:`_gains`."""
     order, lanes = known.order, rows.shape[1]
     entries = np.empty((lanes, order + 1))
     for i, node in enumerate(known.coefficients):
@@ -232,27 +227,27 @@ def pack_filter(rows: Array, known: Filter, values: Mapping[str, Array]) -> None
     same = np.all(entries == entries[0])
     numbers: dict[tuple[float, ...], int] = {}  # of the lanes' different cases
     case = [numbers.setdefault(tuple(entry), len(numbers)) for entry in (entries[:1] if same else entries).tolist()]
-    block = order * (order + 3)
-    gains = np.array([_gains(entry[:-1], entry[-1]) for entry in numbers])  # (cases, 3 blocks)
-    first = known.first + order + 1
-    rows[first : first + 3 * block] = gains[case].T  # one case serves every lane
+    gains = np.array([_gains(entry[:-1], entry[-1]) for entry in numbers])  # (cases, rows)
+    first = known.first + order
+    rows[first : first + gains.shape[1]] = gains[case].T  # one case serves every lane
 
 
 @lru_cache(4096)
 def _gains(of: tuple[float, ...], step: float) -> Array:
-    """The three blocks for one filter: start, half step, whole step; flat."""
+    """The gains of a filter, flat: of its states at the start of a step and then of its input, a row for each state.
+
+    At the start of the input there; over half a step of the input at both ends, for one that is a line; over the whole
+    of the input at the start, the middle and the end, for a parabola. A filter without any time constant passes its
+    input on. A value before the step is not asked for: the command may have jumped.
+    """
     coefficients, order = np.array(of), len(of)
-    start, half, whole = (np.zeros((order, order + 3)) for _ in range(3))
+    start, half, whole = (np.zeros((order, order + inputs)) for inputs in (1, 2, 3))
     if not np.any(coefficients > 0):
-        start[0, order] = half[0, order + 2] = whole[0, order + 2] = 1.0
+        start[0, -1] = half[0, -1] = whole[0, -1] = 1.0
         return np.concatenate([start.ravel(), half.ravel(), whole.ravel()])
     start[:, :order] = np.eye(order)
-    phi, constant_, ramp, parabola = _responses(coefficients, step / 2)
-    # x₋, x0, x1 at −1, 0, 1: x = x0 + (x1 − x₋) σ/2 + (x1 − 2 x0 + x₋) σ²/2
-    half[:, :order] = phi
-    half[:, order] = (parabola - ramp) / 2
-    half[:, order + 1] = constant_ - parabola
-    half[:, order + 2] = (parabola + ramp) / 2
+    phi, constant_, ramp, _ = _responses(coefficients, step / 2)
+    half[:, :order], half[:, order], half[:, order + 1] = phi, constant_ - ramp, ramp
     phi, constant_, ramp, parabola = _responses(coefficients, step)
     whole[:, :order] = phi
     # x0, xm, x1 at 0, ½, 1: x = x0 + (−3 x0 + 4 xm − x1) σ + (2 x0 − 4 xm + 2 x1) σ²

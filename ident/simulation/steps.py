@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.chain.chain import INPUT_RATE, Chain
+from ident.chain.exact_lags import with_exact_lags
 from ident.effects.effect import Effect
 
 Modes = NDArray[np.complex128]
@@ -22,8 +23,12 @@ FASTEST = FINE * MOST  # radians a sample of the fastest mode that is followed c
 
 
 def fastest_mode(chain: Chain, values: Mapping[str, Any], output: str) -> Modes:
-    """The eigenvalue of the chain's small-signal behaviour that is largest, 1/s, for a batch of values."""
-    jacobian = chain.linearise({name: values[name] for name in chain.symbols}, output).A
+    """The eigenvalue of the chain's small-signal behaviour that is largest, 1/s, for a batch of values.
+
+    Lags that are advanced exactly ask for no steps: they count as if they followed at once.
+    """
+    followed = with_exact_lags(chain)
+    jacobian = followed.linearise({name: values[name] for name in followed.symbols}, output).A
     found = np.linalg.eigvals(np.where(np.isfinite(jacobian), jacobian, 0.0)).astype(np.complex128)
     return np.asarray(np.take_along_axis(found, np.abs(found).argmax(axis=-1)[..., None], axis=-1)[..., 0])
 

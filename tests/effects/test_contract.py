@@ -127,20 +127,28 @@ def test_a_command_that_begins_with_a_jump_may_be_late_by_a_sample(samples):
         assert np.std(got - wanted) < 1e-4 * np.std(wanted)
 
 
+def _read(effect: Effect) -> frozenset[str]:
+    return frozenset().union(*(equation.names for equation in effect.equations))
+
+
 @pytest.mark.parametrize("output", ["displacement", "load_pressure", "force"])
 def test_all_effects_off_is_the_chain_without_them(output, full):
     """The kernel of the whole catalogue, every strength 0, is the chain's own kernel to 1e-12.
 
-    In the short form pressure and force are those of the effects at their own places: another kernel of the whole
-    catalogue would take longest of all to compile.
+    But for effects that act on the rate of the valve's lag or let it act on what it follows: with them steps resolve
+    it, which is else advanced exactly, so that the difference is theirs, here of a few to a time constant. In the
+    short form pressure and force are those of the effects at their own places: another kernel of the whole catalogue
+    would take longest of all to compile.
     """
     places = {"load_pressure": ("pressure",), "force": ("load",)}.get(output, ())
-    on = [effect.name for effect in EFFECTS if full or not places or effect.place in places]
-    whole = preset("qian2014", tuple(on))
+    on = [effect for effect in EFFECTS if full or not places or effect.place in places]
+    every = preset("qian2014", tuple(effect.name for effect in on))
+    still = preset("qian2014", tuple(effect.name for effect in on if not {"dq", "q1"} & _read(effect)))
     for number, cell in enumerate(CELLS):
         plain = ours(PRESETS["qian2014"], {}, cell, command(number), "linear", output, steps=1)
-        got = ours(whole, {}, cell, command(number), "linear", output, steps=1)
-        assert np.std(got - plain) <= 1e-12 * np.std(plain)
+        for whole, most in ((still, 1e-12), (every, 1e-6)):
+            got = ours(whole, {}, cell, command(number), "linear", output, steps=1)
+            assert np.std(got - plain) <= most * np.std(plain)
 
 
 @pytest.mark.parametrize("hold", ["linear", "zoh"])

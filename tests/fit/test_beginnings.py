@@ -27,7 +27,7 @@ from ident.workflows import compare, diagnose, identify
 from tests.rounding import perturbed_run
 
 RATE = 50.0
-SATURATED = Settings(model="qian2014", effects=("command_limit",))
+SATURATED = Settings(model="qian2014", effects=("command_limit",), seed=3)  # 31 of the seeds 0 to 32 find it
 
 
 def staircase(seed: int, first: float, lowest: float = -5.0, highest: float = 5.0) -> np.ndarray:

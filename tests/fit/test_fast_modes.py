@@ -12,7 +12,18 @@ from tests.reference import measured_load_reference as reference
 from tests.reference.qian_reference import Plant
 
 PLANT, GAIN = Plant(), 7.0
-FASTEST = np.abs(np.linalg.eigvals(reference.system(PLANT, GAIN)[:4, :4])).max()  # 1/s, without specimen
+
+
+def fastest() -> float:
+    """The fastest mode without specimen, 1/s, of a valve that follows at once: its lag asks for no steps."""
+    system = reference.system(PLANT, GAIN)[:4, :4]
+    lag = int(np.flatnonzero(np.isclose(np.diag(system), -1.0 / PLANT.tau))[0])
+    rest = np.arange(4) != lag
+    reduced = system[np.ix_(rest, rest)] + np.outer(system[rest, lag], system[lag, rest]) * PLANT.tau
+    return float(np.abs(np.linalg.eigvals(reduced)).max())
+
+
+FASTEST = fastest()
 
 
 def notes(radians: float, searched: bool) -> list[str]:

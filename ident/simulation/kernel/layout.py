@@ -72,5 +72,5 @@ class Kernel:
 
 
 def filter_rows(order: int) -> int:
-    """Rows of a filter in the buffer: states, its input half a step ago, gains of start, half and whole step."""
-    return order + 1 + 3 * order * (order + 3)
+    """Rows of a filter in the buffer: its states, then its gains at the start, over half a step and over the whole."""
+    return order + order * sum(order + inputs for inputs in (1, 2, 3))

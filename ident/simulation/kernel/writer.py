@@ -25,6 +25,8 @@ class Writer(Source):
     shift: ast.expr | None = None
     keys: dict[tuple[str, ...], str] = field(default_factory=dict)
     beside: tuple[str, ...] = ()
+    followers: frozenset[str] = frozenset()
+    """States that the chain writes as lags: their rows are those of the filters."""
 
     def kernel(self) -> Kernel:
         """The kernel of the chain for the output."""
@@ -36,11 +38,17 @@ class Writer(Source):
         inputs = {name: self._row(3) for name in (INPUT, *MEASURED) if name == INPUT or name in read}
         shown, beside = self._row(), {channel: self._row() for channel in self.beside}
         body = self._body(needed, rates, states, memories, inputs, {self.output: shown} | beside)
+        states |= {lag.target: self._row_of(lag) for lag in needed if lag.target in self.followers}
         loads = [f"c{row} = b[{row * LANES} + lane]" for row, _ in self.constants.values()]
         return Kernel(
             chain, self.output, (*loads, *body), self.rows, tuple(self.constants.values()),
             tuple(self.filters.values()), states, memories, inputs, self.shift, shown, beside,
         )  # fmt: skip
+
+    def _row_of(self, lag: Equation) -> int:
+        """The row of the state of an equation ``s = lag(E, T)``."""
+        arguments = tuple(ast.unparse(argument) for argument in lag.tree.args)  # type: ignore[attr-defined]
+        return self.filters[self.keys[arguments]].first
 
     def _folded(self) -> tuple[list[Equation], list[Equation]]:
         """Signals and rates, with the signals that never change put in where they are read."""
@@ -92,7 +100,6 @@ class Writer(Source):
         for key, known in self.filters.items():
             for i in range(known.order):
                 self._write(f"b[{(known.first + i) * LANES} + lane]", f"{key}_{'zp'[i]}_4")
-            self._write(f"b[{(known.first + known.order) * LANES} + lane]", f"{key}_x_m")
         for row in inputs.values():
             self._write(f"b[{row * LANES} + lane]", f"b[{(row + 1) * LANES} + lane]")
             self._write(f"b[{(row + 1) * LANES} + lane]", f"b[{(row + 2) * LANES} + lane]")
@@ -207,18 +214,13 @@ class Writer(Source):
         value = f"{key}_x_{stage}"
         self._write(value, self._lower(x, stage))
         memory = [f"b[{(known.first + i) * LANES} + lane]" for i in range(order)]
-        before = f"b[{(known.first + order) * LANES} + lane]"
-        inputs = {name: f"{key}_x_{name}" for name in "f1234"}
-        through = {
-            "f": [inputs["f"]], "1": [inputs["1"]], "2": [before, inputs["1"], inputs["2"]],
-            "3": [before, inputs["1"], inputs["3"]], "4": [inputs["1"], f"{key}_x_m", inputs["4"]],
-        }  # fmt: skip
         if stage == "4":  # their errors of second order cancel
-            self._write(f"{key}_x_m", f"0.5 * ({inputs['2']} + {inputs['3']})")
-        terms = [*memory, *through[stage]]
-        first = known.first + order + 1 + {"f": 0, "1": 0, "2": 1, "3": 1, "4": 2}[stage] * order * (order + 3)
+            self._write(f"{key}_x_m", f"0.5 * ({key}_x_2 + {key}_x_3)")
+        inputs = {"f": "f", "1": "1", "2": "12", "3": "13", "4": "1m4"}[stage]
+        terms = [*memory, *(f"{key}_x_{of}" for of in inputs)]
+        first = known.first + order + sum(order * (order + before) for before in range(1, len(inputs)))
         for i in range(order):
-            row = first + i * (order + 3)
+            row = first + i * len(terms)
             gains = [f"b[{(row + j) * LANES} + lane]" for j in range(len(terms))]
             self._write(f"{key}_{'zp'[i]}_{stage}", " + ".join(f"{g} * {t}" for g, t in zip(gains, terms, strict=True)))
         return key, value
