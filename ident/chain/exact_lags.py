@@ -17,8 +17,9 @@ from ident.stages import Stage
 def with_exact_lags(chain: Chain) -> Chain:
     """The chain with its first-order lags as signals, ``s = lag(E, T)`` for ``d = (E − s)/T, s' = d``.
 
-    Only where T is one of the chain's symbols and nothing else reads it or the rate d, no effect redefines d, and the
-    signals still have an order: so the equations stay what they are, and a small T makes none of them stiff.
+    Only where T is one of the chain's symbols and nothing else reads it or the rate d, no effect redefines d, small
+    signals are taken about no state of it, and the signals still have an order: so the equations stay what they are,
+    and a small T makes none of them stiff.
     """
     lags = {lag.target: lag for lag in _lags(chain)}
     if not lags or len(lags) == len(chain.states):
@@ -38,6 +39,8 @@ def _lags(chain: Chain) -> Iterator[Equation]:
         rate = ast.unparse(state.tree)
         written = equations.get(rate)
         if written is None or rate in chain.outputs.values() or f"{rate}__0" in equations:
+            continue
+        if state.target in dict(chain.about):
             continue
         match written.tree:
             case ast.BinOp(

@@ -1,9 +1,10 @@
 """The compiled simulation of a chain with its effects: generated from the equations, one vector a SIMD lane.
 
 Classical Runge-Kutta steps of order 4, sixteen systems side by side. What an equation writes with `lag`, `lag2` and
-`delay` is advanced exactly over each stage for an input that is a parabola through its values every half step, so that
-a time constant may go to zero without making the equations stiff, and is an exact identity there. Dry friction is a
-force held over a step: what would stop the mass at its end, at most the limit; so it sticks.
+`delay`, and a valve that only follows (:mod:`ident.chain.exact_lags`), is advanced exactly over each stage for an input
+that is a parabola through its values at the step's start, middle and end, so that a time constant may go to zero
+without making the equations stiff, and is an exact identity there. Dry friction is a force held over a step: what
+would stop the mass at its end, at most the limit; so it sticks.
 
 One flat buffer holds everything at constant offsets, and comparisons stand for min, max, abs and sgn: only so does the
 compiler see that nothing overlaps and put the lanes side by side.
