@@ -32,6 +32,11 @@ def with_exact_lags(chain: Chain) -> Chain:
     return found
 
 
+def exact_lags(chain: Chain) -> frozenset[str]:
+    """The states of a chain that are such lags."""
+    return frozenset(chain.states) - frozenset(with_exact_lags(chain).states)
+
+
 def _lags(chain: Chain) -> Iterator[Equation]:
     """Each ``s = lag(E, T)`` that stands in the chain as a rate of its own."""
     equations = {equation.target: equation for equation in chain.equations}

@@ -13,7 +13,7 @@ compiler see that nothing overlaps and put the lanes side by side.
 from functools import lru_cache
 
 from ident.chain.chain import Chain
-from ident.chain.exact_lags import with_exact_lags
+from ident.chain.exact_lags import exact_lags, with_exact_lags
 from ident.simulation.kernel.layout import HELD, SHARE, Filter, Kernel
 from ident.simulation.kernel.machine_code import LANES, WIDE
 from ident.simulation.kernel.source import constant
@@ -28,8 +28,7 @@ def kernel(
 
     Channels `beside` the output are left in rows of the buffer at every step.
     """
-    written = with_exact_lags(chain)
-    followers = frozenset(chain.states) - frozenset(written.states)
+    written, followers = with_exact_lags(chain), exact_lags(chain)
     return Writer(written, output, dict(plain), beside=beside, followers=followers).kernel()
 
 
