@@ -16,6 +16,8 @@ from ident.parallel import each
 
 _AS_GOOD = 1.02  # times the error: what is no better by chance, nor by more than that, stands as listed
 _ENDS = 1.05  # times the error: so far apart end refits with what acts in jumps
+_AS_MUCH = 0.9  # of what the best takes, in power
+_OF_REST = 0.05  # of what nothing explains, in power: what is missing may have turned so much the other way
 
 
 @dataclass(frozen=True)
@@ -90,15 +92,26 @@ def not_outdone(tied: Sequence[Candidate]) -> list[Candidate]:
     return [one for one in tied if one.refit is None or not any(outdone(one.refit, by) for by in refits)]
 
 
-def group(name: str, here: Refit, ranking: Sequence[Candidate]) -> list[Candidate]:
-    """The effect itself, and the candidates that are no worse than the best but by chance.
+def group(name: str, here: Refit, ranking: Sequence[Candidate], noise: float) -> list[Candidate]:
+    """The effect itself, and the candidates that are no worse than the best but by chance, or by what is missing.
 
-    But for those that others of them outdo on whole runs. What nothing replaced is in its group, come what may.
+    Where more than the `noise` is left, eq. (17), something acts that no effect stands for, which one candidate may
+    meet a little more than another whatever is true: what takes nearly as much as the best stands beside it. But for
+    those that others of them outdo on whole runs. What nothing replaced is in its group, come what may.
     """
     refits = [c for c in ranking if c.refit is not None]
     best = min([here, *(c.refit for c in refits if c.refit)], key=lambda refit: refit.held_out.score)
-    as_good = not_outdone([c for c in refits if c.refit and alike(best, c.refit, c.base)])
-    return [*(c for c in refits if c.effect == name), *(c for c in as_good if c.effect != name)]
+    as_good = [c for c in refits if c.refit and (alike(best, c.refit, c.base) or _nearly(best, c, noise))]
+    return [*(c for c in refits if c.effect == name), *(c for c in not_outdone(as_good) if c.effect != name)]
+
+
+def _nearly(best: Refit, other: Candidate, noise: float) -> bool:
+    """Whether a candidate takes nearly as much as the best refit, beside what neither explains."""
+    if other.base is None or other.refit is None:
+        return False
+    least, here, without = (refit.held_out.error**2 for refit in (best, other.refit, other.base))
+    takes_as_much = without - here > _AS_MUCH * (without - least)
+    return takes_as_much and here - least < _OF_REST * (least - noise**2)
 
 
 def _alike(best: Candidate, other: Candidate) -> bool:

@@ -300,6 +300,7 @@ class StepwiseSelection:
         if len(self.added) > 1:
             self._backward("")
         self.groups, here = {}, self.found
+        noise = here.held_out.error if self.models.at_floor(here) else self.models.floor or 0.0
         for name, ranking in zip(self.added, self._in_place_of_each(self.added), strict=True):
             best = next((c for c in ranking if c.refit is not None), None)
             if best is None or best.refit is None:
@@ -309,7 +310,7 @@ class StepwiseSelection:
                 self._step(best.refit.listed(tuple(order)))
                 self._backward(best.effect)
                 return True
-            self.groups[name] = group(name, here, ranking)
+            self.groups[name] = group(name, here, ranking, noise)
         return False
 
     def _better_instead(self, name: str, other: Candidate) -> bool:

@@ -47,14 +47,40 @@ def test_what_ties_on_blocks_is_told_apart_by_whole_runs(of_friction, of_stop, f
     in_order = [one.effect for one in ranked(MODELS, [stop, friction])]
     assert in_order[0] == first
     named: Any = {"friction": friction, "stop": stop}[first]
-    as_good = [one.effect for one in group(first, named.refit, [friction, stop])]
+    as_good = [one.effect for one in group(first, named.refit, [friction, stop], 0.2)]
     assert as_good == (["stop"] if first == "stop" else ["friction", "stop"])
 
 
 def test_what_nothing_replaced_is_in_its_group():
     """By rounding it stands first, and just beyond chance behind the best."""
     delay, lag = candidate("delay", 0.2, 0.2), candidate("lag", 0.1, 0.1)
-    assert [one.effect for one in group("delay", delay.refit, [delay, lag])] == ["delay", "lag"]  # type: ignore[arg-type]
+    assert [one.effect for one in group("delay", delay.refit, [delay, lag], 0.1)] == ["delay", "lag"]  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("of_leak", "noise", "beside"),
+    [
+        (0.2015, 0.1, True),  # a hundredth more in power, beside three quarters that nothing explains
+        (0.2015, 0.2, False),  # noise: told apart, and nothing is missing that could have decided it
+        (0.206, 0.1, False),  # more than a twentieth of the rest
+        (0.2015, None, False),  # it takes less than nine tenths of what the other takes
+    ],
+)
+def test_what_is_missing_tells_no_two_effects_apart(of_leak, noise, beside):
+    """They differ beyond chance, chunk by chunk, and by less than what neither of them explains."""
+
+    def refit(error: float) -> Any:
+        squares = np.full((RUNS, CHUNKS), error**2 / CHUNKS)
+        held_out = CrossValidation(squares, np.ones(RUNS), np.zeros(RUNS), 60_000, 30_000.0)
+        return SimpleNamespace(held_out=held_out, error=error, between_runs=None, effects=(), jumping=frozenset())
+
+    without = refit(0.3 if noise else 0.204)
+    asymmetry, leak = (
+        Candidate(SimpleNamespace(effect=name), refit=refit(error), base=without)  # type: ignore[arg-type]
+        for name, error in (("asymmetry", 0.2), ("leak", of_leak))
+    )
+    found = group("asymmetry", asymmetry.refit, [asymmetry, leak], noise or 0.1)  # type: ignore[arg-type]
+    assert ("leak" in [one.effect for one in found]) is beside
 
 
 def test_what_is_better_on_blocks_comes_first_whatever_whole_runs_say():
