@@ -24,7 +24,7 @@ KINDS = (
 BENCH = ("static", "frequency", "speed-levels", "speed-continuous")
 """Kinds of records of a bench, whose input is a current."""
 HOLDS = ("linear", "zoh")
-USES = ("fit", "verify")
+USES, STILL = ("fit", "verify"), "still"
 MOTIONS = ("displacement", "velocity")
 """Channels that may be imposed on a machine that answers with a force, such as a damper."""
 CHANNELS = (
@@ -307,13 +307,13 @@ class Matrix(Shown):
             serials = f"{self.actuator.serial} and {other.actuator.serial}"
             raise Unusable("two-actuators", f"what is stated of the actuators {serials} differs", "matrix + matrix",
                            "state the same of both: a matrix is of one actuator")  # fmt: skip
-        twice = {run.id for run in self.runs} & {run.id for run in other.runs}
-        if twice:
+        if twice := {run.id for run in self.runs} & {run.id for run in other.runs}:
             what = f"two runs are called {min(twice)!r}"
             raise Unusable("duplicate-id", what, "matrix + matrix", 'give each its own, as id="kp7"')
         both = hashlib.sha256(f"{self.data_hash} {other.data_hash}".encode()).hexdigest()
-        notices = tuple(dict.fromkeys((*self.notices, *other.notices)))
-        return replace(self, runs=(*self.runs, *other.runs), data_hash=both, notices=notices)
+        runs, still = import_module("ident.readers.still").still_apart((*self.runs, *other.runs))
+        notices = tuple(dict.fromkeys((*self.notices, *other.notices, *still)))
+        return replace(self, runs=runs, data_hash=both, notices=notices)
 
     def listings(self) -> Sequence[Listing | str]:
         """What it holds, as a notebook shows it."""

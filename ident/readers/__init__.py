@@ -20,6 +20,7 @@ from ident.readers.run import read_run
 from ident.readers.run_description import RunDescription
 from ident.readers.source import DESCRIPTION, Beside, Folder, Source, alone, beside
 from ident.readers.stated import of_file
+from ident.readers.still import still_apart
 from ident.readers.table import Table
 from ident.readers.text import read_text
 from ident.words.number import count
@@ -89,6 +90,8 @@ def read_source(source: Source, limits: Limits = LIMITS) -> Matrix:
     text = source.read(DESCRIPTION, limits.description)
     described = describe(text, limits)
     runs, notices, digest = read_runs(source, described, text, limits)
+    runs, of_still = still_apart(runs)
+    notices += of_still
     stated = "" if described.limits is None else limits_text(source, described.limits, limits)
     return Matrix(
         described.actuator, runs, digest, described.controller, described.limits, stated, notices, described.machine

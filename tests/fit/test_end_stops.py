@@ -51,6 +51,12 @@ def test_stops_at_both_ends_are_found_wherever_the_transducer_has_its_zero():
     assert identify(cylinder(), Settings(model="motor")).error["fit"] > 0.2
 
 
+@pytest.mark.parametrize("low", [-0.3, -0.05])
+def test_where_nothing_stops_a_machine_its_zero_is_the_middle_where_it_was_covered(low):
+    model, _ = preset("motor").with_effects((effect("end_stop"),)).for_matrix(cylinder(low, 0.2, stops=False))
+    assert model.parameter("end_stop.middle").value == 0.0
+
+
 def test_the_middle_goes_with_the_fit_to_runs_that_cover_another_way():
     """What was found of the machine holds for its other records: the middle is a value of the fit, not of the data."""
     fit = identify(cylinder(), Settings(model="motor", effects=("end_stop",)))
@@ -61,7 +67,7 @@ def test_the_middle_goes_with_the_fit_to_runs_that_cover_another_way():
 
 def test_a_fit_of_stops_that_knew_no_middle_can_be_read_and_has_it_at_zero():
     matrix = cylinder(-0.25, 0.25)
-    fit = identify(matrix, Settings(model="motor", effects=("end_stop",)))
+    fit = identify(matrix, Settings(model="motor", effects=("end_stop",), fixed={"end_stop.middle": 0.0}))
     data = fit.to_json()
     del data["parameters"]["end_stop.middle"]
     found = compare(matrix, FitResult.from_json(data))
@@ -69,9 +75,10 @@ def test_a_fit_of_stops_that_knew_no_middle_can_be_read_and_has_it_at_zero():
 
 
 @pytest.mark.parametrize(
-    ("low", "high", "middle"), [(500.0, 500.5, 500.25), (-0.3, 0.2, 0.0), (LOW, HIGH, 1.45), (-1.7, -1.2, -1.45)]
+    ("low", "high", "middle"),
+    [(500.0, 500.5, 500.25), (-0.3, 0.2, -0.05), (-0.05, 0.45, 0.2), (LOW, HIGH, 1.45), (-1.7, -1.2, -1.45)],
 )
-def test_the_middle_of_a_stroke_is_that_of_the_way_covered_where_the_zero_lies_outside(low, high, middle):
+def test_the_middle_of_a_stroke_is_that_of_the_way_between_stops_wherever_the_zero_lies(low, high, middle):
     model, _ = preset("motor").with_effects((effect("end_stop"),)).for_matrix(cylinder(low, high))
     found = model.parameter("end_stop.middle")
     assert found.value == pytest.approx(middle, abs=2e-3)
