@@ -97,8 +97,10 @@ def verdict_text(
     else:
         parts.append(f"No effect of the catalogue lowers the error of {percent(before)} beyond chance.")
     parts += [_BOUNDED.format(named(name)) for name in bounded]
-    for group in groups:
-        parts.append(f"This matrix {not_told(group, added, named)}; their refits differ by less than chance.")
+    chance = "chance, or than what is left could have made" if unexplained else "chance"
+    parts += [
+        f"This matrix {not_told(group, added, named)}; their refits differ by less than {chance}." for group in groups
+    ]
     for suspect in suspects:
         parts.append(f"Run {suspect.run} is doubted ({suspect.what}): {suspect.evidence}.")
     if unexplained:
