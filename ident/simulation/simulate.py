@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
@@ -17,8 +15,9 @@ from ident.chain.channels import READABLE
 from ident.equations.grammar import TIME
 from ident.matrix import Run
 from ident.parallel import cores, each
+from ident.simulation.filters import pack_filter
 from ident.simulation.inputs import fine, jump_share
-from ident.simulation.kernel import HELD, LANES, SHARE, WIDE, Filter, Kernel, constant, kernel
+from ident.simulation.kernel import HELD, LANES, SHARE, WIDE, Kernel, constant, kernel
 from ident.simulation.machine_call import advance_groups
 
 Array = NDArray[np.float64]
@@ -212,71 +211,6 @@ def _begun_late(command: _Input, held: Array) -> Array:
     return np.array(
         [np.where(drawn & (whole == 1), front, before), np.where(drawn & (whole == 1), last, record[begin])]
     )
-
-
-# Filters ----------------------------------------------------------------------------------------------------------
-
-
-def pack_filter(rows: Array, known: Filter, values: Mapping[str, Array]) -> None:
-    """The gains of a filter at the start of a step, over half of it and over the whole: see :func:`_gains`."""
-    order, lanes = known.order, rows.shape[1]
-    entries = np.empty((lanes, order + 1))
-    for i, node in enumerate(known.coefficients):
-        entries[:, i] = constant(node, values)
-    entries[:, order] = values[STEP]
-    same = np.all(entries == entries[0])
-    numbers: dict[tuple[float, ...], int] = {}  # of the lanes' different cases
-    case = [numbers.setdefault(tuple(entry), len(numbers)) for entry in (entries[:1] if same else entries).tolist()]
-    gains = np.array([_gains(entry[:-1], entry[-1]) for entry in numbers])  # (cases, rows)
-    first = known.first + order
-    rows[first : first + gains.shape[1]] = gains[case].T  # one case serves every lane
-
-
-@lru_cache(4096)
-def _gains(of: tuple[float, ...], step: float) -> Array:
-    """The gains of a filter, flat: of its states at the start of a step and then of its input, a row for each state.
-
-    At the start of the input there; over half a step of the input at both ends, for one that is a line; over the whole
-    of the input at the start, the middle and the end, for a parabola. A filter without any time constant passes its
-    input on. A value before the step is not asked for: the command may have jumped.
-    """
-    coefficients, order = np.array(of), len(of)
-    start, half, whole = (np.zeros((order, order + inputs)) for inputs in (1, 2, 3))
-    if not np.any(coefficients > 0):
-        start[0, -1] = half[0, -1] = whole[0, -1] = 1.0
-        return np.concatenate([start.ravel(), half.ravel(), whole.ravel()])
-    start[:, :order] = np.eye(order)
-    phi, constant_, ramp, _ = _responses(coefficients, step / 2)
-    half[:, :order], half[:, order], half[:, order + 1] = phi, constant_ - ramp, ramp
-    phi, constant_, ramp, parabola = _responses(coefficients, step)
-    whole[:, :order] = phi
-    # x0, xm, x1 at 0, ½, 1: x = x0 + (−3 x0 + 4 xm − x1) σ + (2 x0 − 4 xm + 2 x1) σ²
-    whole[:, order] = constant_ - 3 * ramp + 2 * parabola
-    whole[:, order + 1] = 4 * ramp - 4 * parabola
-    whole[:, order + 2] = 2 * parabola - ramp
-    return np.concatenate([start.ravel(), half.ravel(), whole.ravel()])
-
-
-def _responses(coefficients: Array, duration: float) -> tuple[Array, Array, Array, Array]:
-    """Transition matrix over `duration`, and the states' responses to the inputs 1, σ and σ², σ = t/duration."""
-    order = len(coefficients)
-    if order == 1:
-        system, drive = np.array([[-duration / coefficients[0]]]), np.array([duration / coefficients[0]])
-    else:
-        a1, a2 = coefficients[0], max(coefficients[1], (1e-3 * duration) ** 2)
-        system = np.array([[0.0, duration], [-duration / a2, -duration * a1 / a2]])
-        drive = np.array([0.0, duration / a2])
-    augmented = np.zeros((order + 3, order + 3))
-    augmented[:order, :order], augmented[:order, order] = system, drive
-    augmented[order, order + 1] = augmented[order + 1, order + 2] = 1.0
-    if order == 2:  # the second state is a rate: taken in units of the duration it is of the size of the first
-        scale = np.ones(order + 3)
-        scale[1] = duration
-        augmented = augmented * scale[:, None] / scale
-    phi = scipy.linalg.expm(augmented)
-    if order == 2:
-        phi = phi / scale[:, None] * scale
-    return phi[:order, :order], phi[:order, order], phi[:order, order + 1], 2.0 * phi[:order, order + 2]
 
 
 def responses(
