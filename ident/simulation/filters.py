@@ -25,9 +25,9 @@ def pack_filter(rows: Array, known: Filter, values: Mapping[str, Array]) -> None
     and the end, for a parabola. A filter without any time constant passes its input on. A value before the step is not
     asked for: the command may have jumped.
     """
-    coefficients = [np.broadcast_to(constant(node, values), rows.shape[1:]) for node in known.coefficients]
-    steps = np.broadcast_to(values[STEP], rows.shape[1:])
-    gains = _of_first_order(coefficients[0], steps) if known.order == 1 else _of_second_order(*coefficients, steps)
+    given = (*(constant(node, values) for node in known.coefficients), values[STEP])
+    lanes = [np.broadcast_to(value, rows.shape[1:]) for value in given]
+    gains = (_of_first_order if known.order == 1 else _of_second_order)(*lanes)
     first = known.first + known.order
     rows[first : first + len(gains)] = gains
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from ident.chain.chain import INPUT, STEP, Chain
 from ident.errors import Unusable
-from ident.simulation.kernel import HELD, LANES, SHARE, WIDE, Kernel, constant, kernel
 from ident.simulation.filters import pack_filter
+from ident.simulation.kernel import HELD, LANES, SHARE, WIDE, Kernel, constant, kernel
 
 Array = NDArray[np.float64]
 
