@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import combinations, takewhile
+from math import inf
 
 from ident.diagnosis.candidate import Candidate, group, not_outdone, ranked
 from ident.diagnosis.family import ModelFamily
@@ -300,7 +301,7 @@ class StepwiseSelection:
         if len(self.added) > 1:
             self._backward("")
         self.groups, here = {}, self.found
-        noise = here.held_out.error if self.models.at_floor(here) else self.models.floor or 0.0
+        noise = inf if self.models.at_floor(here) else self.models.floor or 0.0
         for name, ranking in zip(self.added, self._in_place_of_each(self.added), strict=True):
             best = next((c for c in ranking if c.refit is not None), None)
             if best is None or best.refit is None:

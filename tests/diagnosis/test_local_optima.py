@@ -66,7 +66,7 @@ def in_place(selection: StepwiseSelection, rankings: list[list[list[Any]]], monk
     monkeypatch.setattr(selection, "_in_place_of_each", lambda _added: next(rounds))
     monkeypatch.setattr(selection, "_backward", lambda _latest: False)
     monkeypatch.setattr(stepwise, "helps", lambda less, more: more.error < 0.99 * less.error)
-    monkeypatch.setattr(stepwise, "group", lambda name, _here, _ranking: [name])
+    monkeypatch.setattr(stepwise, "group", lambda name, _here, _ranking, _noise: [name])
 
 
 def test_what_replaces_an_effect_stands_on_its_rung_and_is_weighed_until_nothing_is_replaced(models, monkeypatch):

@@ -28,6 +28,9 @@ from tests.rounding import perturbed_run
 
 RATE = 50.0
 SATURATED = Settings(model="qian2014", effects=("command_limit",), seed=3)  # 31 of the seeds 0 to 32 find it
+SERVO = {"Z0/A^2": 9.004, "tau": 0.02998, "m0": 1.0, "c0": 6.829, "Ka/A^2": 2.615e-6, "Cl/A^2": 1.805e-5,
+         "command_limit.inverse_limit": 7.144}  # fmt: skip
+"""Values of that machine, of which a search ends in one with such a c0 and Ka or another: rounding decides."""
 
 
 def staircase(seed: int, first: float, lowest: float = -5.0, highest: float = 5.0) -> np.ndarray:
@@ -203,11 +206,11 @@ def test_a_machine_in_saturation_that_moves_at_first_is_found(saturated):
 
 @pytest.mark.parametrize("far", [-0.3, 0.3])
 def test_first_states_go_on_only_while_less_is_left(saturated, far):
-    """From a place that a straight step overshoots, at the fitted values, what is left falls to the noise."""
-    matrix, fit = saturated
+    """From a place that a straight step overshoots, at the machine's values, what is left falls to the noise."""
+    matrix, _ = saturated
     preset = Identification(matrix, SATURATED).objective.preset
     runs = every_run(preset, matrix)
-    found = {preset.parameter(name).in_equations: value for name, value in fit.values.items()}
+    found = {preset.parameter(name).in_equations: value for name, value in SERVO.items()}
     values = {p.in_equations: p.value for p in preset.parameters} | found
     runs.begin(values)
     for run in matrix.runs:
@@ -218,9 +221,9 @@ def test_first_states_go_on_only_while_less_is_left(saturated, far):
 
 def test_of_two_guesses_the_one_that_leads_to_less_counts(saturated, monkeypatch):
     """From a place off the first, and the better one behind it."""
-    matrix, fit = saturated
+    matrix, _ = saturated
     preset = Identification(matrix, SATURATED).objective.preset
-    found = {preset.parameter(name).in_equations: value for name, value in fit.values.items()}
+    found = {preset.parameter(name).in_equations: value for name, value in SERVO.items()}
     values = {p.in_equations: p.value for p in preset.parameters} | found
     guessed, place = SimulatedRuns._guesses, np.array(preset.chain.states) == "x"
     for first in (-0.45, -0.3, -0.25):
@@ -257,10 +260,10 @@ def test_few_samples_a_second_show_that_a_machine_stood_before_its_command_jumpe
 
 def test_first_states_are_followed_where_what_they_promise_is_worth_it(saturated):
     """From a place off, where the model is not straight: what is left falls only where they are followed."""
-    matrix, fit = saturated
+    matrix, _ = saturated
     fitness = ModelFamily.of(matrix, SATURATED).fitness(("command_limit",))
     known = {p.in_equations: p.value for p in fitness.preset.parameters}
-    found = {fitness.preset.parameter(name).in_equations: value for name, value in fit.values.items()}
+    found = {fitness.preset.parameter(name).in_equations: value for name, value in SERVO.items()}
     point = fitness.space.point({**known, **found, **fitness.space.fixed})
 
     def off(trusting: bool) -> SimulatedFitness:
