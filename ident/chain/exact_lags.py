@@ -9,6 +9,7 @@ from functools import lru_cache
 
 from ident.chain.chain import Chain
 from ident.equations.equation import Equation
+from ident.equations.grammar import reads
 from ident.errors import Unusable
 from ident.stages import Stage
 
@@ -52,7 +53,7 @@ def _lags(chain: Chain) -> Iterator[Equation]:
                 left=ast.BinOp(left=E, op=ast.Sub(), right=ast.Name(id=state.target)),
                 op=ast.Div(),
                 right=ast.Name(id=T),
-            ) if T in chain.symbols and state.target not in _names(E):
+            ) if T in chain.symbols and state.target not in reads(E)[0]:
                 readers = [e.target for e in equations.values() if {T, rate} & e.names]
                 if sorted(readers) == sorted((rate, state.target)):
                     yield Equation(f"{state.target} = lag({ast.unparse(E)}, {T})", state.place, state.meaning)
@@ -69,7 +70,3 @@ def _rewritten(stage: Stage, lags: dict[str, Equation]) -> Stage:
         publishes=tuple(q for q in stage.publishes if q.name not in own.values()),
         equations=tuple(kept),
     )
-
-
-def _names(node: ast.expr) -> set[str]:
-    return {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
