@@ -301,7 +301,7 @@ class StepwiseSelection:
         if len(self.added) > 1:
             self._backward("")
         self.groups, here = {}, self.found
-        noise = inf if self.models.at_floor(here) else self.models.floor or 0.0
+        noise = (self.models.floor or 0.0) if self.models.something_left(here) else inf
         for name, ranking in zip(self.added, self._in_place_of_each(self.added), strict=True):
             best = next((c for c in ranking if c.refit is not None), None)
             if best is None or best.refit is None:

@@ -27,8 +27,8 @@ def refit(*effects: str, error: float) -> Any:
 def models():
     """A family of models in which nothing is at the noise, each effect as simple as the others."""
     return SimpleNamespace(
-        floor=0.1, at_floor=lambda _refit: False, simplicity=lambda name: (1, name), settled=lambda one: one,
-        tried=lambda one: one.error,
+        floor=0.1, at_floor=lambda _refit: False, something_left=lambda _refit: True,
+        simplicity=lambda name: (1, name), settled=lambda one: one, tried=lambda one: one.error,
     )  # fmt: skip
 
 

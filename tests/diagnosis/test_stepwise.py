@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import inf
 from types import SimpleNamespace
 from typing import Any
 
@@ -75,7 +76,11 @@ class Judged:
 
     def at_floor(self, refit):
         """Whether nothing is left."""
-        return refit.held_out.score <= self.floor
+        return self.floor is not None and refit.held_out.score <= self.floor
+
+    def something_left(self, refit):
+        """Whether more than noise is left, which may be known where the floor is not."""
+        return refit.held_out.score > 0.1
 
     def scattered(self, effects):
         """An effect that no start near the fit leads to is found from anywhere."""
@@ -247,3 +252,16 @@ def test_the_last_effect_goes_where_its_rung_refitted_does_better_without_it(mon
     found = selection.run()
     assert (found.added, found.ladder()[-1][1].held_out.score) == (("a", "b", "c"), 0.4)
     assert "d" not in found.groups
+
+
+@pytest.mark.parametrize(("left", "floor", "noise"), [(0.05, None, inf), (0.4, None, 0.0), (0.4, 0.1, 0.1)])
+def test_a_group_is_judged_beside_what_is_left_whether_or_not_a_floor_is_known(monkeypatch, left, floor, noise):
+    """Nothing is left; something is, of unknown noise; something above a floor of 0.1."""
+    judged = Judged({"": 1.0, "a": left, "b": 0.9, "ab": left}, needed={"a"}, far="", late="", off="")
+    judged.floor = floor  # type: ignore[assignment]
+    judged.stand_in(monkeypatch)
+    asked: list[float] = []
+    monkeypatch.setattr(stepwise, "group", lambda _name, _here, _ranking, noise: asked.append(noise) or [])
+    selection = StepwiseSelection(judged, judged.refit((), {}), 2, lambda *_: None).run()  # type: ignore[arg-type]
+    assert selection.added == ("a",)
+    assert set(asked) == {noise}
