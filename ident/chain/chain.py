@@ -12,6 +12,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from graphlib import CycleError, TopologicalSorter
 from typing import Any
 
@@ -68,8 +69,8 @@ class Chain:
         return hash((self.stages, tuple(self.outputs.items()), self.effects, self.about))
 
     def with_effects(self, effects: tuple[Effect, ...]) -> Chain:
-        """The chain with these effects instead of its own."""
-        return replace(self, effects=effects)
+        """The chain with these effects instead of its own: one object each time, which keeps what it worked out."""
+        return _with_effects(self, effects)
 
     @cached_property
     def _core(self) -> frozenset[str]:
@@ -103,7 +104,7 @@ class Chain:
         for effect, written in entries:
             equation, target, names = written, written.target, {}
             if effect is not None:
-                names = _local_names(effect, equation, self._core)
+                names = effect.names_in(equation, self._core)
                 redefined = {e.target for e in effect.equations} & self._core
                 names |= {name: version(name, so_far[name] - 1) for name in redefined & equation.names}
                 equation = read_whole(written, self._core | names.keys())
@@ -309,6 +310,11 @@ class Chain:
         return tuple(sorted(found))
 
 
+@lru_cache(maxsize=1024)
+def _with_effects(chain: Chain, effects: tuple[Effect, ...]) -> Chain:
+    return replace(chain, effects=effects)
+
+
 def integrates(chain: Chain, runs: Iterable[Run], actuator: Actuator) -> bool:
     """See :meth:`Chain.integrates`: under the conditions of any of the runs."""
     return any(chain.integrates(output, off) for output, off in {(run.output, zeros(run, actuator)) for run in runs})
@@ -335,14 +341,3 @@ def _needs(equation: Equation) -> frozenset[str]:
 
 def _still(equation: Equation) -> str:
     return "0.0" if dry_friction(equation) else equation.python
-
-
-def _local_names(effect: Effect, equation: Equation, core: frozenset[str]) -> dict[str, str]:
-    """Names of the effect's own quantities in the equations of the chain."""
-    own = {e.target for e in effect.equations} - core
-    memories = {e.target for e in effect.equations if e.is_memory}
-    names = {name: effect.symbol(name) for name in own}
-    names |= {parameter.symbol: parameter.in_equations for parameter in effect.added}
-    if equation.is_memory:
-        names |= {name: f"{effect.symbol(name)}__old" for name in memories}
-    return names

@@ -7,6 +7,7 @@ from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import next_fast_len
 
 from ident.diagnosis.refit import Refit
 from ident.effects.effect import Effect
@@ -71,21 +72,29 @@ def lines(base: Refit, lower: float, upper: float) -> tuple[float, ...]:
     grid = np.arange(lower, min(upper, fitness.band / 2.0), 1.0 / (_FINE * longest))
     total = np.zeros(len(grid), complex)
     for run in fitness.runs:
-        left, moved = (_rate(run, signal, fitness.band) for signal in (run.measured - outputs[run.id], outputs[run.id]))
+        rates = (_rate(run, signal, fitness.band) for signal in (run.measured - outputs[run.id], outputs[run.id]))
+        (left, interval), (moved, _) = rates
         size = float(np.std(moved)) * float(np.std(left)) or 1.0
-        n = _FINE * run.length
-        spectrum = np.fft.rfft(left * moved / size, n) / run.sample_rate
-        frequencies = np.fft.rfftfreq(n, 1.0 / run.sample_rate)
+        n = _FINE * len(left)
+        spectrum = np.fft.rfft(left * moved / size, n) * interval
+        frequencies = np.fft.rfftfreq(n, interval)
         total += np.interp(grid, frequencies, spectrum.real) + 1j * np.interp(grid, frequencies, spectrum.imag)
     return _peaks(grid, np.abs(total), 1.0 / longest)
 
 
-def _rate(run: Run, signal: Array, band: float) -> Array:
-    """The rate of a displacement, any other signal itself, within the band (rad/s) and without its mean."""
+def _rate(run: Run, signal: Array, band: float) -> tuple[Array, float]:
+    """The rate of a displacement, any other signal itself, within twice the band (rad/s) and without its mean.
+
+    As few samples as a product of two such signals needs, which reaches to four times the band, and their interval (s).
+    """
+    n = len(signal)
     spectrum = np.fft.rfft(signal - signal.mean())
-    omega = 2 * np.pi * np.fft.rfftfreq(len(signal), 1.0 / run.sample_rate)
-    spectrum[omega > 2.0 * band] = 0.0
-    return np.fft.irfft(spectrum * 1j * omega if run.output == "displacement" else spectrum, len(signal))
+    omega = 2 * np.pi * np.fft.rfftfreq(n, 1.0 / run.sample_rate)
+    within = int(np.searchsorted(omega, 2.0 * band, side="right"))
+    spectrum, omega = spectrum[:within], omega[:within]
+    few = min(n, next_fast_len(5 * within, real=True))
+    rate = np.fft.irfft(spectrum * 1j * omega if run.output == "displacement" else spectrum, few)
+    return rate * (few / n), n / run.sample_rate / few
 
 
 def _peaks(grid: Array, heights: Array, apart: float) -> tuple[float, ...]:

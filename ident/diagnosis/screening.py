@@ -20,7 +20,7 @@ from ident.diagnosis.beginnings import beginnings, shown
 from ident.diagnosis.cross_validation import scored, weight_of_offsets
 from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.refit import Refit
-from ident.fit.bounded_step import bounded_step
+from ident.fit.bounded_step import bounded_steps
 from ident.fit.responses import Responses, Sensitivities
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import Space
@@ -39,6 +39,7 @@ _BETWEEN = (0.2, 0.4, 0.6, 0.8)  # powers of the step
 _BACK = (0.67, 0.33, 0.0)  # powers of the share of the simulated strength
 _ROUNDING = 1e-9  # of a score, by which nothing is better
 _ROUNDS = 3  # of weighting each run by what it is left with
+_TOGETHER = 64  # trials whose sums of products lie side by side in memory
 
 
 @dataclass(frozen=True)
@@ -159,7 +160,8 @@ class _Sensitivities:
     @cached_property
     def before(self) -> Outlook:
         """Without any effect."""
-        return _after(self.gram, self.means, self.records, self.point, len(self.point))[0]
+        ((outlook, _),) = _after(self.gram[None], self.means[None], self.records, self.point, len(self.point))
+        return outlook
 
 
 @dataclass(frozen=True)
@@ -172,9 +174,9 @@ class _Seen:
 
     def outlooks(self) -> Iterator[tuple[_Trial, Outlook, Array]]:
         """What was simulated, what is left with a share of its response, and the step to there."""
-        for i, trial in enumerate(self.trials):
-            if self._power(i) > 0:
-                yield trial, *self._after(i)
+        shown = [i for i in range(len(self.trials)) if self._power(i) > 0]
+        for few in (shown[first : first + _TOGETHER] for first in range(0, len(shown), _TOGETHER)):
+            yield from ((self.trials[i], *found) for i, found in zip(few, self._after(few), strict=True))
 
     def thresholds(self) -> list[_Trial]:
         """Strengths between two neighbours of which one does next to nothing and the other much."""
@@ -190,15 +192,16 @@ class _Seen:
     def _power(self, trial: int) -> float:
         return float(self.responses.power[:, trial].sum())
 
-    def _after(self, trial: int) -> tuple[Outlook, Array]:
+    def _after(self, trials: Sequence[int]) -> Iterator[tuple[Outlook, Array]]:
         p, sight, responses = len(self.sight.point), self.sight, self.responses
-        order = [*range(p), p + 1, p]  # the effect's share behind the parameters, the residual last
-        gram = np.empty((len(sight.gram), p + 2, p + 2))
-        gram[:, : p + 1, : p + 1] = sight.gram
-        gram[:, p + 1, : p + 1] = gram[:, : p + 1, p + 1] = responses.products[:, :, trial]
-        gram[:, p + 1, p + 1] = responses.power[:, trial]
-        means = np.column_stack([sight.means, responses.means[:, trial]])
-        return _after(gram[:, order][:, :, order], means[:, order], sight.records, sight.point, p)
+        old = [*range(p), p + 1]  # the effect's share stands behind the parameters, the residual last
+        gram = np.empty((len(trials), len(sight.gram), p + 2, p + 2))
+        gram[:, :, *np.ix_(old, old)] = sight.gram
+        gram[:, :, old, p] = gram[:, :, p, old] = responses.products[:, :, trials].transpose(2, 0, 1)
+        gram[:, :, p, p] = responses.power[:, trials].T
+        means = np.empty(gram.shape[:3])
+        means[..., old], means[..., p] = sight.means, responses.means[:, trials].T
+        return _after(gram, means, sight.records, sight.point, p)
 
 
 def _starts(models: ModelFamily, base: Refit, trial: _Trial, step: Array) -> tuple[dict[str, float], ...]:
@@ -245,28 +248,35 @@ class _Records:
     lengths: Array
 
 
-def _after(
-    gram: Array, means: Array, records: _Records, point: Array, fitted: int
-) -> tuple[Outlook, Array]:  # fmt: skip
-    """What is left after the best step of the `fitted` parameters and, where there is one, the strength's share."""
-    p, runs = gram.shape[-1] - 1, len(gram)
+def _after(gram: Array, means: Array, records: _Records, point: Array, fitted: int) -> Iterator[tuple[Outlook, Array]]:
+    """What is left after the best step of the `fitted` parameters and, where there is one, the strength's share.
+
+    Of n problems side by side: `gram` (n, runs, p+1, p+1), `means` (n, runs, p+1); the residual is last.
+    """
+    count, runs, p = *gram.shape[:2], gram.shape[-1] - 1
     here = np.append(point, np.zeros(p - fitted))  # the strength's axis runs from 0 to _REACH
     scale = np.append(np.ones(fitted), np.full(p - fitted, _REACH))
     share = weight_of_offsets(runs, int(records.lengths.sum()))
-    offsets = (means - means.mean(axis=0)) / np.sqrt(records.totals / records.lengths)[:, None]
-    of_offsets = offsets.T @ offsets
-    left = gram[:, p, p]
-    step, direction = np.zeros(p), np.append(np.zeros(p), 1.0)
+    offsets = (means - means.mean(axis=1, keepdims=True)) / np.sqrt(records.totals / records.lengths)[:, None]
+    of_offsets = offsets.transpose(0, 2, 1) @ offsets
+    flat, left = gram.reshape(count, runs, -1), gram[..., p, p]
+    step, direction = np.zeros((count, p)), np.append(np.zeros((count, p)), np.ones((count, 1)), axis=1)
     for _ in range(_ROUNDS):
         weights = 1.0 / np.sqrt(np.maximum(left, 1e-24 * records.totals) * records.totals)
-        joint = (weights @ gram.reshape(runs, -1)).reshape(p + 1, p + 1)
-        error = float(np.mean(np.sqrt(left / records.totals)))
-        squared = max(float(direction @ of_offsets @ direction), 1e-18 * runs)
-        joint += share * runs * error * of_offsets / squared  # the gradient of the score's second part
-        H, g = joint[:p, :p], -joint[:p, p]
-        step = scale * bounded_step(here / scale, H * scale[:, None] * scale, g * scale)
-        direction = np.append(-step, 1.0)
-        left = np.maximum(gram @ direction @ direction, 1e-12 * records.totals)
-    error = float(np.mean(np.sqrt(left / records.totals)))
-    offset = float(np.sqrt(max(direction @ of_offsets @ direction, 1e-18 * runs) / runs))
-    return Outlook(error, offset, scored(error, offset, share)), step
+        joint = (weights[:, None] @ flat).reshape(count, p + 1, p + 1)
+        error = np.mean(np.sqrt(left / records.totals), axis=1)
+        squared = np.maximum(_along(of_offsets[:, None], direction)[:, 0], 1e-18 * runs)
+        joint += (share * runs * error / squared)[:, None, None] * of_offsets  # the gradient of the second part
+        H, g = joint[:, :p, :p], -joint[:, :p, p]
+        step = scale * bounded_steps(here / scale, H * scale[:, None] * scale, g * scale)
+        direction = np.append(-step, np.ones((count, 1)), axis=1)
+        left = np.maximum(_along(gram, direction), 1e-12 * records.totals)
+    error = np.mean(np.sqrt(left / records.totals), axis=1)
+    offset = np.sqrt(np.maximum(_along(of_offsets[:, None], direction)[:, 0], 1e-18 * runs) / runs)
+    for one, other, found in zip(error.tolist(), offset.tolist(), step, strict=True):
+        yield Outlook(one, other, scored(one, other, share)), found
+
+
+def _along(products: Array, direction: Array) -> Array:
+    """dᵀ P d of each of n problems, (n, runs): `products` (n, runs, q, q), `direction` (n, q)."""
+    return np.asarray((products @ direction[:, None, :, None])[..., 0] @ direction[:, :, None])[..., 0]

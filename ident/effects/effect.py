@@ -79,6 +79,16 @@ class Effect:
         """The name of one of its own quantities in the equations of a whole chain."""
         return f"{self.name}__{name}"
 
+    def names_in(self, equation: Equation, core: frozenset[str]) -> dict[str, str]:
+        """What the names of one of its equations are in a whole chain; those of the `core` stay."""
+        own = {e.target for e in self.equations} - core
+        memories = {e.target for e in self.equations if e.is_memory}
+        names = {name: self.symbol(name) for name in own}
+        names |= {parameter.symbol: parameter.in_equations for parameter in self.added}
+        if equation.is_memory:
+            names |= {name: f"{self.symbol(name)}__old" for name in memories}
+        return names
+
 
 def off_values(effects: Iterable[Effect]) -> dict[str, float]:
     """The values of effects' parameters where they are off, by the equations' names."""

@@ -72,11 +72,10 @@ class Equation:
 
     def renamed(self, names: Mapping[str, str], target: str) -> Equation:
         """The same equation with other names for what it reads, and another target."""
-        if target == self.target and not self.names & names.keys():
+        read = self.names & names.keys()
+        if target == self.target and not read:
             return self
-        values = {name: ast.Name(other, ast.Load()) for name, other in names.items()}
-        sign = "' = " if self.is_rate else " := " if self.is_memory else " = "
-        return Equation(f"{target}{sign}{_replaced(self.python, values)}", self.place, self.meaning)
+        return _renamed(self, tuple(sorted((name, names[name]) for name in read)), target)
 
     def with_values(self, values: Mapping[str, ast.expr]) -> Equation:
         """The same equation with expressions in place of names."""
@@ -91,7 +90,7 @@ class Equation:
         # The tree passed the grammar, so nothing but arithmetic on `known` can happen here.
         return eval(_code(self.text), namespace, dict(known))
 
-    @property
+    @cached_property
     def python(self) -> str:
         """The right-hand side as Python source, to be put into a generated function."""
         return ast.unparse(self.tree)
@@ -101,6 +100,14 @@ class Equation:
 def _tree(text: str, first: int) -> ast.expr:
     """The right-hand side from its first character on; the same few thousand lines are read again and again."""
     return parsed(text, first)
+
+
+@lru_cache(maxsize=8192)
+def _renamed(equation: Equation, names: tuple[tuple[str, str], ...], target: str) -> Equation:
+    """An equation with other names: those of an effect are the same in every chain that holds it."""
+    values = {name: ast.Name(other, ast.Load()) for name, other in names}
+    sign = "' = " if equation.is_rate else " := " if equation.is_memory else " = "
+    return Equation(f"{target}{sign}{_replaced(equation.python, values)}", equation.place, equation.meaning)
 
 
 @lru_cache(maxsize=8192)

@@ -1,4 +1,4 @@
-"""A Newton step that stays in the unit cube."""
+"""Newton steps that stay in the unit cube."""
 
 from __future__ import annotations
 
@@ -43,3 +43,12 @@ def bounded_step(point: Array, H: Array, g: Array) -> Array:
         step[free[worst]] = inside[worst] - point[free[worst]]
         free = free[np.arange(count) != worst]
     return step
+
+
+@njit(cache=True, nogil=True)
+def bounded_steps(point: Array, H: Array, g: Array) -> Array:
+    """The step of each of n problems from one point (p,), of H (n, p, p) and g (n, p): (n, p)."""
+    steps = np.empty_like(g)
+    for i in range(len(g)):
+        steps[i] = bounded_step(point, H[i], g[i])
+    return steps

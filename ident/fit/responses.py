@@ -154,25 +154,18 @@ class Sensitivities:
 def _add(rows: Array, Z: Array, cross: Array, power: Array) -> None:
     """Add to `cross` (runs, q, n) and `power` (runs, n) what the changes d give over the samples of a block.
 
-    `rows` (samples, runs, 1+n) holds the model's output, then the changed ones; `Z` (runs, q, samples).
+    `rows` (samples, runs, 1+n) holds the model's output, then the changed ones; `Z` (runs, q, samples). The changes lie
+    side by side in memory, and so they stay: a product of matrices sums them with what is read once.
     """
     samples, runs, lanes = rows.shape
-    q = Z.shape[1]
-    d = np.empty((lanes, CHUNK))
+    d = np.empty((CHUNK, lanes - 1))
     for run in range(runs):
         for first in range(0, samples, CHUNK):
-            count = min(CHUNK, samples - first)
-            for t in range(count):
-                base = rows[first + t, run, 0]
-                for j in range(1, lanes):
-                    d[j, t] = rows[first + t, run, j] - base
-            for j in range(1, lanes):
-                total = 0.0
-                for t in range(count):
-                    total += d[j, t] * d[j, t]
-                power[run, j - 1] += total
-                for i in range(q):
-                    total = 0.0
-                    for t in range(count):
-                        total += Z[run, i, first + t] * d[j, t]
-                    cross[run, i, j - 1] += total
+            last = min(first + CHUNK, samples)
+            for t in range(first, last):
+                base = rows[t, run, 0]
+                for j in range(lanes - 1):
+                    change = rows[t, run, j + 1] - base
+                    d[t - first, j] = change
+                    power[run, j] += change * change
+            cross[run] += np.dot(np.ascontiguousarray(Z[run, :, first:last]), d[: last - first])

@@ -196,10 +196,10 @@ class Preset:
             return self
         added = {parameter.in_equations for effect in effects for parameter in effect.added}
         known = {parameter.in_equations for parameter in self.parameters} | added | CONDITIONS.keys() | set(READABLE)
-        for effect in effects:
-            if set(self.chain.with_effects((effect,)).symbols) - known:
-                raise unfit(effect)
-        return replace(self, chain=self.chain.with_effects(tuple(about(effect, self.middle) for effect in effects)))
+        chain = self.chain.with_effects(tuple(about(effect, self.middle) for effect in effects))
+        if set(chain.symbols) - known:
+            raise unfit(next(e for e in effects if set(self.chain.with_effects((e,)).symbols) - known))
+        return replace(self, chain=chain)
 
     def takes(self, effect: Effect) -> bool:
         """Whether the model has a place for an effect and no circle of signals with it."""

@@ -10,11 +10,13 @@ from __future__ import annotations
 
 import ast
 import ctypes
+import hashlib
 import os
 import struct
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
+from pathlib import Path
 from typing import Any
 
 import llvmlite.binding as llvm
@@ -64,7 +66,7 @@ def advance(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int = L
 
 @lru_cache(maxsize=256)
 def _machine_code(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int) -> Any:
-    return _engine(_program(lines, fed, shown, lanes))
+    return _engine(lambda: _program(lines, fed, shown, lanes), (_writer(), repr((fed, shown, lanes)), *lines))
 
 
 def address(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int) -> tuple[int, object]:
@@ -272,12 +274,18 @@ def _host() -> tuple[str, str]:
     return llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
 
 
-def _engine(program: str) -> llvm.ExecutionEngine:
-    """The program, compiled; it lives as long as the engine does."""
+@cache
+def _writer() -> str:
+    """What writes the programs: a change of this file makes others of the same lines."""
+    return hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
+
+
+def _engine(program: Callable[[], str], written: Sequence[str]) -> llvm.ExecutionEngine:
+    """The program, compiled, as long as the engine lives; all that it is `written` from says which one it is."""
     processor, features = _processor()
     machine = _target().create_target_machine(cpu=processor, features=features, opt=2, jit=True)
-    decides = (".".join(map(str, llvm.llvm_version_info)), machine.triple, processor, features, program)
-    code = kept("\n".join(decides), lambda: _object(program, machine))
+    decides = (".".join(map(str, llvm.llvm_version_info)), machine.triple, processor, features, *written)
+    code = kept("\n".join(decides), lambda: _object(program(), machine))
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
     engine.add_object_file(llvm.ObjectFileRef.from_data(code))
     engine.finalize_object()
