@@ -20,7 +20,7 @@ def in_order(
 ) -> list[Item]:  # fmt: skip
     """The items from the least size on; what ties with the least of them, or is `alike` with it, as it stood.
 
-    Or as `tied` puts in order what ties.
+    What ties with the least of all as `tied` puts it in order.
     """
     rest = sorted(enumerate(items), key=lambda one: size(one[1]))
     found: list[Item] = []
@@ -29,7 +29,8 @@ def in_order(
         bound = _bound(size(least))
         behind = (n for n, (_, item) in enumerate(rest) if n and size(item) > bound and not alike(least, item))
         count = next(behind, len(rest))
-        found += tied([item for _, item in sorted(rest[:count], key=lambda one: one[0])])
+        ties = [item for _, item in sorted(rest[:count], key=lambda one: one[0])]
+        found += ties if found else tied(ties)
         rest = rest[count:]
     return found
 

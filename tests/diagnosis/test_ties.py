@@ -25,11 +25,12 @@ def test_those_that_are_alike_with_the_least_stand_as_they_were_given():
     assert in_order(list("eb"), SIZES.__getitem__, lambda *_: True) == list("eb")
 
 
-def test_what_ties_stands_as_it_is_put_in_order():
-    """And nothing else does."""
+def test_what_ties_with_the_least_stands_as_it_is_put_in_order():
+    """And nothing else does, not what ties behind it either."""
     alike = lambda best, other: {best, other} <= {"b", "c", "e"}  # noqa: E731
     assert in_order(list("aebc"), SIZES.__getitem__, alike, sorted) == list("bcea")
     assert in_order(list("aebc"), SIZES.__getitem__, alike) == list("ebca")
+    assert in_order(list("fad"), SIZES.__getitem__, tied=sorted) == list("dfa")
 
 
 def test_of_those_that_tie_for_the_least_the_first_is_taken():
