@@ -17,32 +17,54 @@ def bounded_step(point: Array, H: Array, g: Array) -> Array:
     step = np.zeros(len(point))
     if not np.all(np.isfinite(H)):
         return step
-    least = 1e-12 * max(np.diag(H).max(), 1e-300)
-    free = np.arange(len(point))
-    while len(free):
-        count = len(free)
+    largest = 1e-300
+    for i in range(len(point)):
+        largest = max(largest, H[i, i])
+    free, count = np.arange(len(point)), len(point)
+    while count:
         scale, rest, A = np.empty(count), np.empty(count), np.empty((count, count))
-        for i, axis in enumerate(free):
-            scale[i] = np.sqrt(max(H[axis, axis], least))
-        for i, axis in enumerate(free):
-            rest[i] = (g[axis] + np.sum(H[axis] * step)) / scale[i]
-            for j, other in enumerate(free):
-                A[i, j] = H[axis, other] / (scale[i] * scale[j])
-        strengths, directions = np.linalg.eigh(A)
-        move = np.zeros(count)
         for i in range(count):
-            if strengths[i] > _LOST * strengths[-1]:
-                move -= directions[:, i] * (np.sum(directions[:, i] * rest) / strengths[i])
-        move /= scale
-        there = point[free] + move
-        inside = np.minimum(np.maximum(there, 0.0), 1.0)
-        worst = int(np.argmax(np.abs(there - inside)))
-        if there[worst] == inside[worst]:
-            step[free] = move
+            scale[i] = np.sqrt(max(H[free[i], free[i]], 1e-12 * largest))
+        for i in range(count):
+            rest[i] = g[free[i]]
+            for axis in range(len(point)):
+                rest[i] += H[free[i], axis] * step[axis]
+            rest[i] /= scale[i]
+            for j in range(count):
+                A[i, j] = H[free[i], free[j]] / (scale[i] * scale[j])
+        move = _newton(A, rest)
+        worst, beyond, bound = -1, 0.0, 0.0
+        for i in range(count):
+            move[i] /= scale[i]
+            there = point[free[i]] + move[i]
+            inside = min(max(there, 0.0), 1.0)
+            if abs(there - inside) > beyond:
+                worst, beyond, bound = i, abs(there - inside), inside
+        if worst < 0:
+            for i in range(count):
+                step[free[i]] = move[i]
             break
-        step[free[worst]] = inside[worst] - point[free[worst]]
-        free = free[np.arange(count) != worst]
+        step[free[worst]] = bound - point[free[worst]]
+        count -= 1
+        for i in range(worst, count):
+            free[i] = free[i + 1]
     return step
+
+
+@njit(cache=True, nogil=True)
+def _newton(A: Array, rest: Array) -> Array:
+    """−A⁻¹ rest, in the directions that A sees."""
+    strengths, directions = np.linalg.eigh(A)
+    count = len(rest)
+    move = np.zeros(count)
+    for i in range(count):
+        if strengths[i] > _LOST * strengths[count - 1]:
+            along = 0.0
+            for j in range(count):
+                along += directions[j, i] * rest[j]
+            for j in range(count):
+                move[j] -= directions[j, i] * (along / strengths[i])
+    return move
 
 
 @njit(cache=True, nogil=True)
@@ -50,5 +72,7 @@ def bounded_steps(point: Array, H: Array, g: Array) -> Array:
     """The step of each of n problems from one point (p,), of H (n, p, p) and g (n, p): (n, p)."""
     steps = np.empty_like(g)
     for i in range(len(g)):
-        steps[i] = bounded_step(point, H[i], g[i])
+        step = bounded_step(point, H[i], g[i])
+        for j in range(len(step)):
+            steps[i, j] = step[j]
     return steps

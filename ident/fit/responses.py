@@ -168,4 +168,7 @@ def _add(rows: Array, Z: Array, cross: Array, power: Array) -> None:
                     change = rows[t, run, j + 1] - base
                     d[t - first, j] = change
                     power[run, j] += change * change
-            cross[run] += np.dot(np.ascontiguousarray(Z[run, :, first:last]), d[: last - first])
+            sums = np.dot(np.ascontiguousarray(Z[run, :, first:last]), d[: last - first])
+            for i in range(len(sums)):
+                for j in range(lanes - 1):
+                    cross[run, i, j] += sums[i, j]
