@@ -6,11 +6,12 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import import_module
-from typing import Any, Literal, Protocol, Unpack
+from typing import Any, Protocol, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ident.beginning import Beginning, beginning, standing_for
 from ident.cached import cached_property
 from ident.errors import Unusable
 from ident.words.shown import Listing, Shown
@@ -70,8 +71,7 @@ class Controller:
     kv: float
 
 
-_LEAST, _ROUNDING = 16, 1e-9  # samples that a command is held; of its largest value: it is held but for rounding
-Beginning = Literal["at rest", "standing", "moving"]
+_ROUNDING = 1e-9  # of a command's largest value: it is held but for rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,59 +197,28 @@ class Run:
 
     @cached_property
     def begins(self) -> Beginning:
-        """How the measured output begins: a model may start at rest, in its equilibrium, or in a state to be found.
-
-        "at rest": it stands still at zero. "standing": it stands still elsewhere, under a command that is held there.
-        "moving": what acted before the record still shows.
-
-        A line is fitted to the first millisecond (at least 4 samples): a servo-hydraulic machine needs longer than
-        that to follow a jump of its command; of few samples a second two say it. Of many outputs the position, where
-        it was recorded, says it for all. Still: speed below 5 % of the typical speed; at zero: value below 2 % of the
-        record's deviation; or either within 4 standard errors of zero. About one moving record in a thousand passes.
-        """
-        n, x = self._first, self._first_seen
-        size, speed = float(np.std(x)), float(np.std(x[n:] - x[:-n])) / n
-        slope, value = np.polyfit(np.arange(n), x[:n], 1)
-        # Differences of fourth order leave the noise of a well sampled record (their gain on white noise is √70).
-        noise = min(float(np.std(np.diff(x, 4))) / np.sqrt(70.0), 0.03 * size) if len(x) > 8 else 0.0
-        if "command" in self.channels and abs(self.command[0]) > 0.05 * np.std(self.command):
-            few = abs(x[0]) <= 0.02 * size and abs(x[1] - x[0]) <= 0.05 * speed
-            if few or (self.stepped and abs(x[0]) <= max(0.05 * size, 4 * noise)):
-                return "at rest"  # the step comes with the first sample, and what follows it is its answer
-        slope_error = noise * np.sqrt(12.0 / (n * (n**2 - 1)))
-        value_error = np.hypot(noise / np.sqrt(n), slope_error * (n - 1) / 2)
-        still = abs(slope) <= max(0.05 * speed, 4 * slope_error)
-        if still and abs(value) <= max(0.02 * size, 4 * value_error):
-            return "at rest"
-        return "standing" if still and self.stands else "moving"
+        """How the measured output begins: a model may start at rest, in its equilibrium, or in a state to be found."""
+        return beginning(self)
 
     @property
     def stands(self) -> int:
-        """For how many samples the command is held first while the output stands; 0 where it is not, or moves.
+        """For how many samples the command is held first while the output stands; 0 where it is not, or moves."""
+        return standing_for(self)
 
-        Standing: the means of the quarters of this time lie, from each other and from the first samples, within 2 %
-        of the record's standard deviation or four standard errors. Fewer samples than 16 may be a step that has not
-        arrived yet.
-        """
-        x = self._first_seen
-        command = self.channels.get("command", x)
-        changes = np.flatnonzero(np.abs(command - command[0]) > _ROUNDING * np.abs(command).max())
-        count = int(changes[0]) if len(changes) else 0
-        if count < _LEAST:
-            return 0
-        parts = (x[: self._first], *np.array_split(x[:count], 4))
-        means, errors = [part.mean() for part in parts], [part.std() / np.sqrt(len(part)) for part in parts]
-        return count if np.ptp(means) <= 0.02 * np.std(x) + 4.0 * max(errors) else 0
+    @cached_property
+    def mean(self) -> float:
+        """The mean of what a model must reproduce."""
+        return float(self.measured.mean())
 
-    @property
-    def _first_seen(self) -> Samples:
-        """The channel by which the beginning is told."""
-        return self.channels.get("displacement", self.measured) if self.record else self.measured
+    @cached_property
+    def centred(self) -> Samples:
+        """What a model must reproduce less its mean, which eq. (17) does not see, (n,)."""
+        return self.measured - self.mean
 
-    @property
-    def _first(self) -> int:
-        """The samples by which the beginning is told."""
-        return min(self.length, max(4, round(0.001 * self.sample_rate)))
+    @cached_property
+    def power(self) -> float:
+        """Σ (x_m − mean)²: what a model that explains nothing leaves."""
+        return float(np.sum(self.centred**2))
 
 
 def output_id(record: str, output: str) -> str:

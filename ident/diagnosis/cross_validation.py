@@ -8,13 +8,14 @@ for a linear least-squares problem, so that sums of products of each block are a
     δ = −H⁻¹ g  from the other folds,   Σ (r − J δ − N ν)²  over the fold
 
 with J the sensitivities to the parameters, N to what is free in each record (its mean, its first state). Where the
-step is too long for one linearisation the other folds are fitted in full.
+step is too long for one linearisation the other folds are fitted in full: an output alone tells whether a step kept
+what it promised, and only where it did not is it linearised there once more.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,7 @@ from numpy.typing import NDArray
 from ident.cached import cached_property
 from ident.fit.bounded_step import bounded_step
 from ident.fit.fitness import Local, Worth, local
-from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
+from ident.fit.levenberg_marquardt import Way, levenberg_marquardt, promise
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.products import without
 
@@ -88,10 +89,12 @@ def scored(error: float, offset: float, weight: float) -> float:
 
 
 def cross_validated(
-    point: Array, here: Local, evaluate: Callable[[Array, Worth], Local], independent: float, whole_runs: bool = False
-) -> CrossValidation:
+    point: Array, here: Local, evaluate: Callable[[Array, Worth], Local], independent: float, whole_runs: bool = False,
+    glance: Callable[[Array], Local] | None = None,
+) -> CrossValidation:  # fmt: skip
     """The held-out errors at the optimum `point` of the unit cube; `evaluate` is the objective, where first
-    states that promise much are followed if that is worth it.
+    states that promise much are followed if that is worth it, and `glance` the same without sensitivities, if it costs
+    less.
 
     Chunks of every record are left out in turn, or `whole_runs`, of which there have to be two at least.
     """
@@ -101,7 +104,7 @@ def cross_validated(
     fold_of = (_folds_of_runs if whole_runs else _folds_of_chunks)(len(here.runs), count)
     for fold in range(fold_of.max() + 1):
         used = [folds[of] != fold for folds, of in zip(fold_of, chunks, strict=True)]
-        there, step = _without(point, here, used, evaluate)
+        there, step = _Without(used, evaluate, glance).ends(point, here)
         for i, (run, of) in enumerate(zip(there.runs, chunks, strict=True)):
             inside = fold_of[i] == fold
             squares[i, inside] = _by_chunk(run, of, count, step)[inside]
@@ -146,28 +149,56 @@ def _folds_of_runs(runs: int, count: int) -> Indices:
     return np.repeat(dealt[:, None], count, axis=1)
 
 
-def _without(
-    point: Array, here: Local, used: list[Mask], evaluate: Callable[[Array, Worth], Local]
-) -> tuple[Local, Array]:
-    """Where the fit of the used blocks ends: a linearisation, and the step from there that is left."""
-    step = _step(point, here, [_projected(run, of) for run, of in zip(here.runs, used, strict=True)])
-    if not len(step) or np.abs(step).max() <= _FAR:
-        return here, step
+@dataclass
+class _Without:
+    """The fit of the `used` blocks alone: `at` is how far it came, with the objective of these blocks there."""
 
-    seen: dict[bytes, Local] = {point.tobytes(): here}
+    used: list[Mask]
+    evaluate: Callable[[Array, Worth], Local]
+    glance: Callable[[Array], Local] | None
+    seen: dict[bytes, Local] = field(default_factory=dict)
+    at: tuple[Array, Local] = field(init=False)
 
-    def better(trial: Array, least: float) -> Local | None:
-        there = seen[trial.tobytes()] = evaluate(trial, lambda promised: _partly(promised, used).error < least)
-        part = _partly(there, used)
-        return part if part.error < least else None
+    def ends(self, point: Array, here: Local) -> tuple[Local, Array]:
+        """Where it ends: a linearisation, and the step from there that is left; an output that no step leads from."""
+        step = _step(point, here, [_projected(run, of) for run, of in zip(here.runs, self.used, strict=True)])
+        if not len(step) or np.abs(step).max() <= _FAR:
+            return here, step
+        self.at = point, _partly(here, self.used)
+        end, last = levenberg_marquardt(lambda _here: self.at[1], point, _CLOSE, better=self._better)
+        self.seen.setdefault(point.tobytes(), here)
+        tried = [one.error for one in self.seen.values() if one is not here]
+        if not any(
+            map(np.isfinite, tried)
+        ):  # the point lies at the edge of what is stable: judged by its linearisation
+            return here, step
+        there = self.seen[end.tobytes()]
+        if len(there.gradient) < len(point):
+            return there, np.empty(0)
+        rest = bounded_step(end, last.curvature, last.gradient)
+        return there, rest if promise(last, rest) <= _CLOSE.converged * last.error else np.zeros(len(point))
 
-    end, last = levenberg_marquardt(lambda _here: _partly(here, used), point, _CLOSE, better=better)
-    tried = [one.error for one in seen.values() if one is not here]
-    if not any(map(np.isfinite, tried)):  # the point lies at the edge of what is stable: judged by its linearisation
-        return here, step
-    rest = bounded_step(end, last.curvature, last.gradient)
-    promised = -(last.gradient @ rest + 0.5 * rest @ last.curvature @ rest)
-    return seen[end.tobytes()], rest if promised <= _CLOSE.converged * last.error else np.zeros(len(point))
+    def _better(self, trial: Array, least: float) -> Local | None:
+        """The objective at a trial where it is less; flat, which ends the search, where its error is as promised."""
+        there = self._glanced(trial)
+        if there is None:
+            there = self.evaluate(trial, lambda promised: _partly(promised, self.used).error < least)
+        self.seen[trial.tobytes()], part = there, _partly(there, self.used)
+        if not part.error < least:
+            return None
+        if len(part.gradient) < len(trial):
+            part = replace(part, gradient=np.zeros(len(trial)), curvature=np.zeros((len(trial), len(trial))))
+        self.at = trial, part
+        return part
+
+    def _glanced(self, trial: Array) -> Local | None:
+        """What a glance shows of a trial where that is enough: it is no better, or as much as was promised."""
+        if self.glance is None:
+            return None
+        there, (point, before) = self.glance(trial), self.at
+        error, expected = _partly(there, self.used).error, before.error - promise(before, trial - point)
+        known = not error < before.error or abs(error - expected) <= _CLOSE.converged * expected
+        return there if known else None
 
 
 def _partly(here: Local, used: list[Mask]) -> Local:

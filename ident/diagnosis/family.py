@@ -32,7 +32,7 @@ from ident.words.titles import title
 
 Array = NDArray[np.float64]
 _TRIAL = 131_072  # samples of a first refit; the finalists take every sample
-FITTING, TRYING = Way(1e-7, 20, rough=1e-5), Way(1e-5, 10, rough=1e-4)  # of a refit, a first one
+FITTING, TRYING = Way(1e-6, 20, rough=1e-5), Way(1e-5, 10, rough=1e-4)  # of a refit, a first one
 _SETTING_OUT, _SEARCHING = TRYING, Way(1e-5, 20, rough=1e-4)  # of one far off, and where it is ahead of others
 _SCATTERED, _LEADING = 128, 4  # points of a whole search space, and those of them from which a refit begins
 FIRST_STEPS, _AHEAD = Way(1e-5, 3), 8  # of it, and how many go on
@@ -243,8 +243,7 @@ class ModelFamily:
         setting_out = replace(_SETTING_OUT, aim=aim)
         tried = each(lambda start: self.refit(refit.effects, start, _TRIAL, setting_out), starts)
         ahead = first_least(tried, lambda one: one.here.error)
-        on = replace(_SEARCHING, aim=aim)
-        return self.refit(refit.effects, ahead.values, _TRIAL, on) if ahead.finite else ahead
+        return self.gone_on(ahead, replace(_SEARCHING, aim=aim), _TRIAL) if ahead.finite else ahead
 
     def scattered(self, effects: tuple[str, ...]) -> list[Refit]:
         """First steps of a model from where in its whole search space the error is least, on the records' beginnings.
@@ -265,7 +264,7 @@ class ModelFamily:
             asked, rest = rest[: _AHEAD - len(leading)], rest[_AHEAD - len(leading) :]
             leading += [one for one, kept in zip(asked, each(lambda one: one.finite, asked), strict=True) if kept]
         on = replace(TRYING, aim=aim)
-        return each(lambda one: self.refit(one.effects, one.values, _TRIAL, on), leading)
+        return each(lambda one: self.gone_on(one, on, _TRIAL), leading)
 
     def refit(
         self,
@@ -283,6 +282,12 @@ class ModelFamily:
         off = {p.in_equations for name, e in self.effects.items() if name not in effects for p in e.added}
         values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}
         return Refit(effects, values, fitness.space, point, here, fitness)
+
+    def gone_on(self, refit: Refit, way: Way, samples: int = 0) -> Refit:
+        """First steps that are gone on with; as they are, where they came to an end too far off."""
+        if way.leads_nowhere(refit.point, refit.here):
+            return refit
+        return self.refit(refit.effects, refit.values, samples, way)
 
     def settled(self, refit: Refit) -> Refit:
         """A refit on all records, gone on with until it stays: in a long narrow valley one is stopped on its way."""

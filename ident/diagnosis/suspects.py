@@ -112,7 +112,7 @@ def _label(models: ModelFamily, fitted: Refit, run: Run, what: str) -> tuple[str
 def _of_channel(models: ModelFamily, fitted: Refit, run: Run) -> list[tuple[str, float, float, float]]:
     """What a turned, scaled or shifted displacement would explain."""
     y = _outputs(models, fitted, run, {})[:, 0]
-    measured = run.measured - run.measured.mean()
+    measured = run.centred
     power, model = float(measured @ measured), y - y.mean()
     if not np.all(np.isfinite(model)) or not model.any():
         return [("unit", 1.0, 1.0, np.inf)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from typing import Protocol, TypeVar
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 STEPS = 200  # at most: along a curved valley it takes more than 60
-_LEAST, _MOST = 1e-12, 1e6  # damping
+_LEAST, _DAMPING, _MOST = 1e-12, 1e-4, 1e6  # least, at first, most
 _HOPE = 4.0  # times what a step takes off: what a few more may
 
 
@@ -57,9 +57,14 @@ class Way:
     aim: float = np.inf
     enough: float = -np.inf
 
-    def is_lost(self, error: float, promised: float, gained: Sequence[float]) -> bool:
-        """Whether what is missing is many times what the last two steps `gained`, and what the next one promises."""
-        return len(gained) > 1 and error - self.aim > _HOPE * max(promised, *gained[-2:])
+    def is_lost(self, error: float, promised: float, *gained: float) -> bool:
+        """Whether what is missing is many times what the next step promises, and what the last ones `gained`."""
+        return error - self.aim > _HOPE * max((promised, *gained))
+
+    def leads_nowhere(self, point: Array, here: Shape) -> bool:
+        """Whether from a point that steps have led to the next one promises nothing near what is missing."""
+        step = np.clip(point + _step(point, here, _DAMPING, self.within), *self.within) - point
+        return self.is_lost(here.error, promise(here, step))
 
 
 def levenberg_marquardt(
@@ -77,7 +82,7 @@ def levenberg_marquardt(
     where it costs less to tell that it is not.
     """
     way, better = way or Way(), better or partial(_better, evaluate)
-    point, here, damping, rise = start.copy(), evaluate(start), 1e-4, 2.0
+    point, here, damping, rise = start.copy(), evaluate(start), _DAMPING, 2.0
     gained: list[float] = []
     accept(here)
     for count in range(way.most):
@@ -85,12 +90,12 @@ def levenberg_marquardt(
         free_step = np.clip(_step(point, here, damping, way.within), -way.longest, way.longest)
         trial = np.clip(point + free_step, *way.within)
         step = trial - point
-        promised = -float(here.gradient @ step + 0.5 * step @ here.curvature @ step)
+        promised = promise(here, step)
         # A step cut at a bound may promise nothing where a shorter one does.
         cut = bool(np.any(trial != point + free_step))
         if not promised > way.converged * here.error and not cut:
             break
-        if here.error <= way.enough or way.is_lost(here.error, promised, gained):
+        if here.error <= way.enough or (len(gained) > 1 and way.is_lost(here.error, promised, *gained[-2:])):
             break
         there = better(trial, here.error) if promised > 0 else None
         if there is not None:
@@ -103,6 +108,11 @@ def levenberg_marquardt(
         else:
             damping, rise = damping * rise, 2.0 * rise
     return point, here
+
+
+def promise(here: Shape, step: Array) -> float:
+    """By how much a step lowers the error, were the model straight."""
+    return -float(here.gradient @ step + 0.5 * step @ here.curvature @ step)
 
 
 def _fall(kept: float) -> float:

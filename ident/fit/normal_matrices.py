@@ -62,7 +62,7 @@ class NormalMatrices:
     @property
     def promises(self) -> bool:
         """Whether better first states would explain much of the residual, were the model straight up to them."""
-        return bool(self.gram[-1, -1] < (1.0 - _MUCH) * self.power)
+        return bool(len(self.release)) and bool(self.gram[-1, -1] < (1.0 - _MUCH) * self.power)
 
     @property
     def power(self) -> float:
@@ -112,7 +112,7 @@ def errors_of(run: Run, model: LinearModel) -> Array:
     if run.begins == "moving":  # each has decays of its own
         parts = (LinearModel(model.system[..., i : i + 1]) for i in range(len(model.B)))
         return np.array([normal_matrices(run, part, np.empty(0)).error for part in parts])
-    measured, sums = run.measured - run.measured.mean(), np.zeros((2, len(model.B)))
+    measured, sums = run.centred, np.zeros((2, len(model.B)))
     for rows, first, last in responses(_begun(run, model), run.command):
         residual = measured[first:last, None] - rows[: last - first, : len(model.B)]
         sums += residual.sum(axis=0), np.einsum("nv,nv->v", residual, residual)
@@ -122,8 +122,7 @@ def errors_of(run: Run, model: LinearModel) -> Array:
 
 def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[NormalMatrices]:
     """The moments of runs from sums of products of [J, N, 1, r] of each block, (runs, b, q, q), of mean-free runs."""
-    means = np.array([run.measured.mean() for run in runs])
-    totals = np.array([np.sum((run.measured - mean) ** 2) for run, mean in zip(runs, means, strict=True)])
+    means, totals = np.array([(run.mean, run.power) for run in runs]).T
     gram = blocks.sum(axis=1)
     sound = np.all(np.isfinite(gram), axis=(1, 2)) & ~(gram[:, -1, -1] > _ESCAPED * totals)
     remove = removal(np.where(sound[:, None, None], gram, 0.0), p, totals)
@@ -199,7 +198,7 @@ def _products(run: Run, systems: Recursion, strides: Array) -> Array:
     """Sums of products of [J, releases, 1, r] for each block of the record, (blocks, q, q)."""
     length, q = max(16, -(-run.length // _BLOCKS)), len(systems.D) + 1
     sums = np.zeros((-(-run.length // length), q, q))
-    measured = (run.measured - run.measured.mean())[:, None]
+    measured = run.centred[:, None]
     for rows, first, last in responses(systems, run.command):
         for block in range(first // length, -(-last // length)):
             begin, end = max(first, block * length), min(last, (block + 1) * length)

@@ -189,7 +189,7 @@ def _gram(run: Run, basis: Basis) -> tuple[Array, float]:
         filters = replace(filters, start=basis.filters.standing(run.command[0], 0.0))
     systems = filters.beside(_decays(filters)) if run.begins == "moving" else filters
     # The mean of a record would cost digits in the sums of squares, so it goes first; the model is blind to it anyway.
-    measured = run.measured - run.measured.mean()
+    measured = run.centred
     now, then = np.append(run.command[:-1], 0.0), np.append(run.command[1:], 0.0)
     beside = np.column_stack([now, then, measured, np.ones(run.length)])
     sums, last = np.zeros((len(systems.D), 4)), np.zeros(len(systems.D))

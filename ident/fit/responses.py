@@ -66,7 +66,7 @@ class Sensitivities:
         fitness.begin({name: float(value[0]) for name, value in values.items()})
 
         def of_share(runs: tuple[Run, ...]) -> list[_Columns]:
-            measured = np.array([run.measured - run.measured.mean() for run in runs])
+            measured = np.array([run.centred for run in runs])
             released = fitness.released(runs, values, steps)
             Z = np.ones((len(runs), released.shape[1] + 1, runs[0].length))
             with np.errstate(over="ignore", invalid="ignore"):
@@ -96,7 +96,7 @@ class Sensitivities:
         found = [self.columns[run.id] for run in self.fitness.runs]
         means = np.array([-known.remove[-2] for known in found])
         if self.fitness.horizon is None:  # else each window begins anew, and no mean is left
-            means[:, -1] += [run.measured.mean() for run in self.fitness.runs]
+            means[:, -1] += [run.mean for run in self.fitness.runs]
         return np.array([without(known.remove, known.gram) for known in found]), means
 
     def beside(self, fitness: SimulatedFitness, known: Mapping[str, float], values: Mapping[str, Array]) -> Responses:

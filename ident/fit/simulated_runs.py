@@ -137,7 +137,7 @@ class SimulatedRuns:
         released = self.released(runs, values, steps)
         length, anchoring = max(16, -(-runs[0].length // _BLOCKS)), self.anchoring(runs[0])
         free = runs[0].output not in self.absolute
-        records = np.column_stack([run.measured - (run.measured.mean() if free else 0.0) for run in runs])
+        records = np.column_stack([run.centred if free else run.measured for run in runs])
         if window := anchoring.window:
             length, records = -(-length // window) * window, anchoring(records)
         q = released.shape[1] + 1

@@ -161,7 +161,7 @@ class Search:
         plain = [one for one in ranked[_MOST_CLOSE:] if one[0].plain][:_PLAIN]
         close = [one for one in (*ranked[:_MOST_CLOSE], *plain) if one[1].error <= _CLOSE * ranked[0][1].error]
         on = replace(FITTING, aim=_AS_GOOD * ranked[0][1].here.error)
-        return _followed(each(lambda one: _gone_on(*one, on), close))
+        return _followed(each(lambda one: _gone_on(one, on), close))
 
     def _prune(self, latest: str) -> None:
         """Leave out what the model does as well without since the latest term."""
@@ -247,7 +247,7 @@ def _held_out(search: Search) -> float:
 def _ahead(begun: Sequence[Tried], least: float) -> list[Tried]:
     """Rough refits, given up where they cannot come near what was `least` before, or is ahead after the first steps."""
     on = replace(TRYING, aim=_CLOSE * min([least, *(refit.here.error for _, refit, _ in begun)]))
-    return _followed(each(lambda one: _gone_on(*one, on), begun))
+    return _followed(each(lambda one: _gone_on(one, on), begun))
 
 
 def _followed(tried: Sequence[Tried]) -> list[Tried]:
@@ -255,9 +255,10 @@ def _followed(tried: Sequence[Tried]) -> list[Tried]:
     return [one for one, finite in zip(tried, each(lambda one: one[1].finite, tried), strict=True) if finite]
 
 
-def _gone_on(candidate: Candidate, refit: Refit, family: ModelFamily, way: Way) -> Tried:
+def _gone_on(tried: Tried, way: Way) -> Tried:
     """A refit that is gone on with."""
-    return candidate, family.refit(refit.effects, refit.values, way=way), family
+    candidate, refit, family = tried
+    return candidate, family.gone_on(refit, way), family
 
 
 def _chosen(base: Refit, tried: Sequence[Tried], runs: Sequence[Run]) -> Tried:
