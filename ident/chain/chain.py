@@ -66,7 +66,14 @@ class Chain:
                     raise of_other_unit(effect, signal, self.units[signal])
 
     def __hash__(self) -> int:
+        return self._hash
+
+    @cached_property
+    def _hash(self) -> int:
         return hash((self.stages, tuple(self.outputs.items()), self.effects, self.about))
+
+    def __getstate__(self) -> dict[str, object]:
+        return {name: value for name, value in self.__dict__.items() if name != "_hash"}  # another in each process
 
     def with_effects(self, effects: tuple[Effect, ...]) -> Chain:
         """The chain with these effects instead of its own: one object each time, which keeps what it worked out."""

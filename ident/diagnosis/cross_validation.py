@@ -34,6 +34,7 @@ CHUNKS, FOLDS = 8, 4
 _FINER = 32  # chunks of a record where there are fewer records than CHUNKS
 _DEALT = 0  # seed by which runs are dealt to folds: a matrix lists them in an order of its own
 _FAR = 0.01  # of an axis: a longer step is beyond what one linearisation tells
+_KEPT = 0.01  # of a promise: what is kept so closely ended where it was promised, and needs no linearisation
 _CLOSE = Way(converged=1e-4, most=20)  # of a fit without a fold: it starts close by, and one linearisation ends it
 
 
@@ -196,8 +197,8 @@ class _Without:
         if self.glance is None:
             return None
         there, (point, before) = self.glance(trial), self.at
-        error, expected = _partly(there, self.used).error, before.error - promise(before, trial - point)
-        known = not error < before.error or abs(error - expected) <= _CLOSE.converged * expected
+        error, promised = _partly(there, self.used).error, promise(before, trial - point)
+        known = not error < before.error or abs(before.error - error - promised) <= _KEPT * promised
         return there if known else None
 
 

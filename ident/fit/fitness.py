@@ -15,6 +15,7 @@ from typing import Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.cached import cached_property
 from ident.fit.levenberg_marquardt import Way
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.space import Space
@@ -88,7 +89,7 @@ class Local:
         """All that the data say: the runs, and their means where these count."""
         return self.runs if self.means is None else (*self.runs, self.means)
 
-    @property
+    @cached_property
     def weights(self) -> Array:
         """What each of them counts in gradient and curvature."""
         whole = sum(run.share for run in self.runs)
@@ -116,9 +117,8 @@ def local(runs: Sequence[NormalMatrices], with_means: bool = False) -> Local:
     error = float(over_runs([run.error for run in runs], runs))
     means = means_of(runs, error) if with_means else None
     here = Local(error, gradient, curvature, tuple(runs), means)
-    for weight, run in zip(here.weights, here.terms, strict=True):
-        gradient -= weight * run.gram[:p, p]
-        curvature += weight * run.gram[:p, :p]
+    weighted = (here.weights[:, None, None] * np.array([term.gram for term in here.terms])).sum(axis=0)
+    here = replace(here, gradient=-weighted[:p, p], curvature=weighted[:p, :p])
     if means is None:
         return here
     share = len(runs) / sum(run.length for run in runs)

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.cached import cached_property
 from ident.fit.products import add_products, completed, removal, without
 from ident.linear import LinearModel
 from ident.matrix import Run
@@ -46,7 +47,7 @@ class NormalMatrices:
     remove: Array = field(default_factory=lambda: np.empty((0, 0)), repr=False)
     share: float = 1.0
 
-    @property
+    @cached_property
     def error(self) -> float:
         """Eq. (17) of the run."""
         value = float(np.sqrt(max(self.gram[-1, -1], 0.0) / self.total))
@@ -128,7 +129,7 @@ def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Norma
     remove = removal(np.where(sound[:, None, None], gram, 0.0), p, totals)
     with np.errstate(invalid="ignore", over="ignore"):
         projected = without(remove, gram)
-        scores = np.einsum("rai,rbac,rc->rbi", remove[:, :, :p], blocks, remove[:, :, -1], optimize=True)
+        scores = (blocks @ remove[:, None, :, -1:])[..., 0] @ remove[:, :, :p]
     release = -remove[:, p:-1]  # of each nuisance in each of [J, r], the constant last
     release[:, -1, -1] += means
     return [

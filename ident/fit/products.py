@@ -55,7 +55,17 @@ def add_block_products(rows: Array, measured: Array, moved: int, length: int, su
 def completed(sums: Array, strides: Array) -> Array:
     """Both triangles of sums of products (…, q, q) of [J, N, 1, r], the differences J over the strides (p,)."""
     scale = np.append(strides, np.ones(sums.shape[-1] - len(strides)))
-    return np.asarray((sums + np.swapaxes(np.tril(sums, -1), -1, -2)) / scale[:, None] / scale)
+    return np.asarray(_completed(sums.reshape(-1, *sums.shape[-2:]), 1.0 / scale).reshape(sums.shape))
+
+
+@njit(cache=True, nogil=True)
+def _completed(sums: Array, factors: Array) -> Array:
+    whole = np.empty(sums.shape)
+    for n in range(len(sums)):
+        for i in range(len(factors)):
+            for j in range(i + 1):
+                whole[n, i, j] = whole[n, j, i] = sums[n, i, j] * factors[i] * factors[j]
+    return whole
 
 
 def removal(gram: Array, p: int, totals: Array) -> Array:
@@ -82,6 +92,8 @@ def shares_of(inner: Array, columns: Array, totals: Array) -> Array:
     """
     power = np.diagonal(inner, axis1=1, axis2=2)
     shown = power > _ROUNDING**2 * totals[:, None]
+    if inner.shape[-1] == 1:
+        return np.where(shown[:, :, None], columns / np.maximum(inner, 1e-300), 0.0)
     size = np.where(shown, np.sqrt(np.maximum(power, 1e-300)), np.inf)
     outer = size[:, :, None] * size[:, None, :]
     return np.asarray((np.linalg.pinv(inner / outer, rcond=_BLIND, hermitian=True) / outer) @ columns)

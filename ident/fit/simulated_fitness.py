@@ -108,9 +108,10 @@ class SimulatedFitness(SimulatedRuns):
         with np.errstate(over="ignore", invalid="ignore"):
             found = self.settled(values, strides, steps)
             promised = local([found[run.id] for run in self.runs], with_means)
-            if p and any(run.promises for run in promised.runs) and worth(promised):
-                self.settled({name: value[:1] for name, value in values.items()}, np.empty(0), steps)
-                found = {run: moments.as_begun() for run, moments in self.settled(values, strides, steps).items()}
+            if not (p and any(run.promises for run in promised.runs) and worth(promised)):
+                return promised
+            self.settled({name: value[:1] for name, value in values.items()}, np.empty(0), steps)
+            found = {run: moments.as_begun() for run, moments in self.settled(values, strides, steps).items()}
         return local([found[run.id] for run in self.runs], with_means)
 
     def fresh(self, runs: tuple[Run, ...]) -> SimulatedFitness:

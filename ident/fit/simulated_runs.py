@@ -33,10 +33,10 @@ from ident.simulation.simulate import Simulation
 from ident.simulation.steps import Modes, steps_needed
 
 Array = NDArray[np.float64]
-_TOGETHER = 256  # lanes simulated in one go: memory stays small, the cores stay busy
+_TOGETHER = 1024  # lanes simulated in one go: what is done once for all of them costs little
 _BLOCKS = 32  # of a record: see ident.fit.normal_matrices
 _REACH = 1e-3  # of a state's size, for sensitivities to the first state
-_BLOCK = 4096  # samples simulated at a time
+_BLOCK = 512  # samples simulated at a time: what they leave stays near the core
 
 
 @dataclass

@@ -15,6 +15,9 @@ from ident.simulation.kernel import Filter, constant
 
 Array = NDArray[np.float64]
 _TERMS = 18  # of a series in a ≤ 1
+_SERIES = [
+    np.array([[(-1) ** k * factorial(m) / factorial(m + k + 1)] for m in (1, 2)]) for k in reversed(range(_TERMS))
+]
 
 
 def pack_filter(rows: Array, known: Filter, values: Mapping[str, Array]) -> None:
@@ -48,10 +51,10 @@ def _of_lag(T: Array, duration: Array) -> tuple[Array, Array, Array, Array]:
     """
     with np.errstate(divide="ignore"):
         a = duration / np.maximum(T, 0.0)
-    short = np.minimum(a, 1.0)
-    of_ramp, of_parabola = (
-        sum(((-1) ** k * factorial(m) / factorial(m + k + 1)) * short ** (k + 1) for k in range(_TERMS)) for m in (1, 2)
-    )
+    short, series = np.minimum(a, 1.0), np.zeros((2, *a.shape))
+    for terms in _SERIES:
+        series = (series + terms) * short
+    of_ramp, of_parabola = series
     of_constant, long = -np.expm1(-a), np.maximum(a, 1.0)
     ramp = np.where(a > 1.0, 1.0 - of_constant / long, of_ramp)
     return np.exp(-a), of_constant, ramp, np.where(a > 1.0, 1.0 - 2.0 * ramp / long, of_parabola)

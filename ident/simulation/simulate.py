@@ -21,7 +21,7 @@ from ident.simulation.kernel import HELD, LANES, SHARE, WIDE, Kernel, constant, 
 from ident.simulation.machine_call import advance_groups
 
 Array = NDArray[np.float64]
-_CHUNK = 1 << 20  # outputs that are simulated in one go
+_CHUNK = 1 << 18  # outputs that are simulated in one go: they stay near the core
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.proposals.search import Search
 from ident.diagnosis.refit import Refit, alike
 from ident.effects import effect
+from ident.fit.levenberg_marquardt import Way
 
 MEASURED = np.sin(np.arange(1000) / 50.0)
 
@@ -62,10 +63,20 @@ def test_of_first_steps_the_eight_that_leave_least_go_on():
                         stable=np.isfinite(error), finite=np.isfinite(error) and error != lying)
         for error in errors
     ]  # fmt: skip
-    family = SimpleNamespace(refit=lambda _effects, values, _samples, way: (values["s"], way.aim))
+    family = SimpleNamespace(gone_on=lambda step, way, _samples: (step.values["s"], way.aim))
     found = ModelFamily.ahead(family, steps, 0.45)
     assert [aim for _, aim in found] == 8 * [0.45]
     assert [error for error, _ in found] == [error for error in sorted(errors) if error != lying][:8]
+
+
+@pytest.mark.parametrize("aim", [0.05, 0.099])
+def test_first_steps_that_ended_far_from_what_they_have_to_reach_are_not_begun_again(aim):
+    """They are gone on with where the next step promises anything near what is missing."""
+    here = SimpleNamespace(error=0.1, gradient=np.array([0.02]), curvature=np.array([[0.1]]))  # promises 0.002
+    first = SimpleNamespace(effects=("e",), values={"s": 1.0}, point=np.array([0.5]), here=here)
+    family = SimpleNamespace(refit=lambda *told: told)
+    way = Way(aim=aim)
+    assert ModelFamily.gone_on(family, first, way, 7) == (first if aim == 0.05 else (("e",), {"s": 1.0}, 7, way))
 
 
 @pytest.mark.parametrize(("equation", "joined"), [("R = R + s * (v**3)", 3.0), ("R = R + s * (v**2)", 2.0)])

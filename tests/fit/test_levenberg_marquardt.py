@@ -54,6 +54,15 @@ def test_what_cannot_come_below_an_error_is_given_up_on_the_way():
     assert here.error >= best.error
 
 
+def test_from_its_end_nothing_leads_to_an_error_far_below_it():
+    """From its start, and to an error that it comes near, something does."""
+    end, here = levenberg_marquardt(Flat(), START)
+    assert Way(aim=0.1 * LEAST).leads_nowhere(end, here)
+    assert not Way(aim=1.05 * LEAST).leads_nowhere(end, here)
+    assert not Way(aim=0.9 * LEAST).leads_nowhere(START, Flat()(START))
+    assert not Way().leads_nowhere(end, here)
+
+
 def test_what_has_come_far_enough_goes_no_further():
     plain, asked = Flat(), Flat()
     levenberg_marquardt(plain, START)
