@@ -19,13 +19,18 @@ if TYPE_CHECKING:
     from ident.drafts.draft import Answer, Answers, Draft
     from ident.drafts.text import Gathered
 
+_SHOWN = 5  # names of files in a remedy
 _FORM = "NAME=COLUMN:UNIT"
 _Texts = list[str] | None
 
 
 def init(
     files: Annotated[list[Path], typer.Argument(metavar="FILES…", help="Raw files of one actuator, a run each.")],
-    out: Annotated[Path, typer.Option(metavar="MATRIX", help="Folder to write: matrix.yaml and runs/.")],
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="MATRIX", help="Folder to write: matrix.yaml and runs/; else one named as the serial "
+                     "number."),
+    ] = None,
     serial: Annotated[str, typer.Option(metavar="TEXT", help="Serial number of the actuator.")] = "",
     channel: Annotated[
         _Texts,
@@ -35,7 +40,8 @@ def init(
     time: Annotated[str, typer.Option(metavar="COLUMN:UNIT", help="The column of the time.")] = "",
     rate: Annotated[str, typer.Option(metavar="HZ", help="Sample rate, as in '4096 Hz', where no column has it.")] = "",
     output: Annotated[str, typer.Option(metavar="NAME", help="Channel that a model is to reproduce.")] = "",
-    verify: Annotated[_Texts, typer.Option(metavar="FILE", help="A run to verify; may be repeated.")] = None,
+    verify: Annotated[_Texts, typer.Option(metavar="FILE", help="A run to verify, with its suffix or without; may be "
+                                                      "repeated.")] = None,
     area: Annotated[str, typer.Option(metavar="AREA", help="Piston area, as in '497 mm^2'.")] = "",
     gain: Annotated[str, typer.Option(metavar="KP", help="Gain of the loop in every run.")] = "",
     hold: Annotated[str, typer.Option(metavar="NAME", help="The command between samples: linear, zoh.")] = "",
@@ -49,22 +55,45 @@ def init(
     from ident.drafts.raw import read_raw
     from ident.drafts.text import gathered
 
-    if (out / "matrix.yaml").exists():
-        raise Unusable("there-already", "there is a matrix.yaml", str(out), "name another folder")
+    if out is not None:
+        _free(out)
     contents = [_content(file) for file in files]
     found = [read_raw(content, file.name) for file, content in zip(files, contents, strict=True)]
     given = {"gain": gain, "hold": hold}
     answers = Answers(
         serial=serial, channels=dict(_channel(text) for text in channel or []), time=_answer(time), rate=rate,
-        output=output, verify=tuple(Path(name).name for name in verify or []),
+        output=output, verify=tuple(_among(files, name) for name in verify or []),
         actuator={"piston_area": area} if area else {}, common={name: text for name, text in given.items() if text},
     )  # fmt: skip
-    if strange := sorted(set(answers.verify) - {file.name for file in files}):
-        raise Unusable("missing-file", f"{strange[0]!r} is none of the files", "--verify", "name one of them")
     draft = Draft(found, answers)
     while draft.missing and sys.stdin.isatty():
         draft = _asked(draft, NONE)
-    _made(draft, gathered(draft, contents), out)
+    made = gathered(draft, contents)
+    _made(draft, made, _free(out or _of_serial(draft.answers.serial)))
+
+
+def _free(out: Path) -> Path:
+    """A folder that holds no matrix yet. Raises Unusable."""
+    if (out / "matrix.yaml").exists():
+        raise Unusable("there-already", "there is a matrix.yaml", str(out), "name another folder with --out")
+    return out
+
+
+def _of_serial(serial: str) -> Path:
+    """The folder that is named as a serial number. Raises Unusable where none can be."""
+    if Path(serial).name != serial or serial.startswith("."):
+        raise Unusable("bad-name", f"no folder can be named {serial!r}", "--serial", "name one with --out")
+    return Path(serial)
+
+
+def _among(files: list[Path], name: str) -> str:
+    """The name of one of the files, given with its suffix or without. Raises Unusable."""
+    wanted, names = Path(name).name, [file.name for file in files]
+    found = [wanted] if wanted in names else [one for one in names if Path(one).stem == wanted]
+    if len(found) != 1:
+        what = f"{name!r} is {'none' if not found else 'more than one'} of the files"
+        raise Unusable("missing-file", what, "--verify", f"name one of {', '.join(names[:_SHOWN])}")
+    return found[0]
 
 
 def _made(draft: Draft, files: Gathered, out: Path) -> None:

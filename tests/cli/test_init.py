@@ -47,6 +47,42 @@ def test_with_answers_as_options_a_matrix_is_written_that_check_takes(servoident
     assert (again.returncode, "there is a matrix.yaml" in again.stderr) == (2, True)
 
 
+KNOWN = ("--channel", "command=c0:mm", "--channel", "displacement=2:mm", "--time", "time:s")
+
+
+def test_without_a_folder_it_is_named_as_the_serial_number(servoident, record, tmp_path, monkeypatch):
+    """What is missing is told first, all at once; a serial number that names no folder is refused."""
+    monkeypatch.chdir(tmp_path)
+    assert "--serial TEXT" in servoident("init", record).stderr
+    assert servoident("init", record, "--serial", "SW-3", *KNOWN).returncode == 0
+    assert read_matrix(tmp_path / "SW-3").actuator.serial == "SW-3"
+    again = servoident("init", record, "--serial", "SW-3", *KNOWN)
+    assert (again.returncode, "name another folder with --out" in again.stderr) == (2, True)
+    for serial in ("../SW-3", ".", "..", "a/b"):
+        refused = servoident("init", record, "--serial", serial, *KNOWN)
+        assert (refused.returncode, "name one with --out" in refused.stderr) == (2, True)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["SW-3", "a.csv"]
+
+
+@pytest.mark.parametrize("name", ["b", "b.csv"])
+def test_a_run_to_verify_is_named_with_its_suffix_or_without(servoident, record, tmp_path, name):
+    (tmp_path / "b.csv").write_bytes(record.read_bytes().replace(b",0.9", b",0.8"))
+    (tmp_path / "c.csv").write_bytes(record.read_bytes().replace(b",0.9", b",0.7"))
+    files = [tmp_path / f"{stem}.csv" for stem in "abc"]
+    made = servoident("init", *files, "--serial", "SW-4", *KNOWN, "--verify", name, "--out", tmp_path / "m")
+    assert made.returncode == 0, made.stderr
+    assert [run.file for run in read_matrix(tmp_path / "m").of_use("verify")] == ["runs/b.csv"]
+
+
+def test_a_run_to_verify_that_is_none_of_the_files_or_two_is_refused(servoident, record, tmp_path):
+    (tmp_path / "a.txt").write_bytes(record.read_bytes())
+    files = (record, tmp_path / "a.txt", "--serial", "SW-5", *KNOWN, "--out", tmp_path / "m")
+    for name, what in (("d", "'d' is none of the files"), ("a", "'a' is more than one of the files")):
+        refused = servoident("init", *files, "--verify", name)
+        assert (refused.returncode, what in refused.stderr, "a.csv, a.txt" in refused.stderr) == (2, True, True)
+    assert not (tmp_path / "m").exists()
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="no pseudo-terminal")
 def test_on_a_terminal_what_is_missing_is_asked(record, tmp_path):
     """One question after another; an answer that names no column is asked again."""
