@@ -111,14 +111,14 @@ def local(runs: Sequence[NormalMatrices], with_means: bool = False) -> Local:
     `with_means`: the runs' means count too, see :func:`means_of`.
     """
     p = len(runs[0].gram) - 1
-    gradient, curvature = np.zeros(p), np.zeros((p, p))
-    if not all(np.isfinite(run.error) for run in runs):
-        return Local(np.inf, gradient, curvature, tuple(runs))
-    error = float(over_runs([run.error for run in runs], runs))
+    errors, still = np.array([run.error for run in runs]), (np.zeros(p), np.zeros((p, p)))
+    if not np.all(np.isfinite(errors)):
+        return Local(np.inf, *still, tuple(runs))
+    error = float(over_runs(errors, runs))
     means = means_of(runs, error) if with_means else None
-    here = Local(error, gradient, curvature, tuple(runs), means)
+    here = Local(error, *still, tuple(runs), means)
     weighted = (here.weights[:, None, None] * np.array([term.gram for term in here.terms])).sum(axis=0)
-    here = replace(here, gradient=-weighted[:p, p], curvature=weighted[:p, :p])
+    here = replace(here, gradient=-weighted[:p, p], curvature=weighted[:p, :p].copy())
     if means is None:
         return here
     share = len(runs) / sum(run.length for run in runs)
