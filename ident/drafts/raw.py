@@ -132,13 +132,16 @@ def read_raw(data: bytes, name: str, limits: Limits = LIMITS) -> RawFile:
 
 def lines_above(text: bytes) -> int:
     """The lines above the line of names: that is the last of words before two lines of as many numbers, or the one
-    before it where that is a line of units; 0 where nothing of the kind is found."""
+    before it where that is a line of units. A line that is not cut into fields as these are, such as a title or an
+    empty one, holds no names: it stands above, too. 0 where nothing of the kind is found."""
     lines = [line.decode("utf-8", "replace").rstrip("\r") for line in text[: 1 << 20].split(b"\n")[:_LOOKED_THROUGH]]
     for n in range(1, len(lines) - 1):
         delimiter = sniff(lines[n], lines[n + 1])
         counts = [_numbers(line, delimiter) for line in lines[n - 1 : n + 2]]
         if counts[1] and counts[1] == counts[2] and not counts[0] and (counts[1] > 1 or n == 1 or delimiter is None):
             fields = [len(split_line(line, delimiter)) for line in lines[max(n - 2, 0) : n]]
+            if fields[-1] < 2 <= counts[1]:
+                return n
             has_units = n > 1 and len(fields) == 2 and fields[0] == fields[1] and not _numbers(lines[n - 2], delimiter)
             return n - 2 if has_units else n - 1
     return 0

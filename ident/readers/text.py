@@ -24,7 +24,8 @@ LONGEST_LINE = 1 << 16
 
 
 def read_text(data: bytes, where: str, limits: Limits, skip_rows: int = 0) -> Table:
-    """The table below `skip_rows` lines; the first line holds the names, unless it holds numbers only.
+    """The table below `skip_rows` lines; the first line holds the names, unless it holds numbers only, but for a
+    delimiter at its end.
 
     Raises Unusable: ``empty-file``, ``not-text``, and on loading ``not-numeric``, ``ragged-row``, ``too-large``.
     """
@@ -36,9 +37,10 @@ def read_text(data: bytes, where: str, limits: Limits, skip_rows: int = 0) -> Ta
     delimiter = sniff(header, first)
     names = [name.strip().strip("\"'").strip() for name in split_line(header, delimiter)]
     notices: tuple[str, ...] = ()
-    if all(is_number(name, delimiter) for name in names):
+    filled_in = names[: max((n for n, name in enumerate(names, 1) if name), default=0)]
+    if filled_in and all(is_number(name, delimiter) for name in filled_in):
         below, notices = start, (f"{where} has no line of column names: its first line was read as samples",)
-        names = [str(number) for number in range(len(names))]
+        names = [str(number) for number in range(len(filled_in))]
     units = units_row(names, first, text, below, delimiter, where)
     if units:
         below = line_start(text, 1, below)

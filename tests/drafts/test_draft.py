@@ -130,6 +130,19 @@ def test_units_of_headers_and_of_a_row_below_them_are_found(head):
     assert (made.sample_rate, made.units) == (100.0, {"command": "V", "displacement": "m"})
 
 
+@pytest.mark.parametrize("end", ["", ";"])
+@pytest.mark.parametrize("title", ["+++++ Data log +++++", "", "Motor 1 of 4, 9 V"])
+def test_a_table_without_names_below_a_title_is_read_from_its_first_row(title, end):
+    """What is not cut into fields as the samples are names none of them."""
+    lines = [f"{k};{np.sin(k / 9):.6f};{np.sin(k / 9 - 1):.6f}{end}" for k in range(200)]
+    content = "\n".join(["Bench 4", "Duty cycle [%]", "Speed: [deg/s]", title, *lines]).encode()
+    file = read_raw(content, "run.txt")
+    assert ([column.number for column in file.columns], file.skip_rows) == ([0, 1, 2], 4)
+    answers = Answers("SW-1", {"command": Answer(1, "V"), "velocity": Answer(2, "deg/s")}, Answer(0, "ms"))
+    run = drafted(gathered(Draft([file], answers), [content])).runs[0]
+    assert (run.length, run.sample_rate, run.units["velocity"]) == (200, 1000.0, "rad/s")
+
+
 @pytest.mark.parametrize("form", ["uff", "lvm", "mts", "xlsx"])
 def test_files_that_state_units_are_asked_only_what_a_column_is(form):
     ending, made, (time, u, x) = FILES[form]

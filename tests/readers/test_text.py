@@ -57,6 +57,14 @@ def test_samples_without_a_line_of_names_are_all_kept_and_said():
     assert "no line of column names" in table.notices[0]
 
 
+def test_a_delimiter_at_the_end_of_every_line_is_no_name():
+    """Small controllers print it; the name of a column of its own would make a name of the first samples."""
+    table = read_text(rows(";", header=False).replace("\n", ";\n").encode(), "file", LIMITS)
+    assert table.names == ("0", "1")
+    assert np.array_equal(np.column_stack(table.load([0, 1])), VALUES)
+    assert read_text(b",0,1\n0,0.1,0.2\n1,0.3,0.4\n", "file", LIMITS).names == ("", "0", "1")  # an index has none
+
+
 def test_a_name_that_stands_twice_must_be_given_by_number():
     with pytest.raises(Unusable) as refused:
         read(rows(",").replace("a,b", "a,a"))
