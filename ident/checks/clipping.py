@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ident.checks.finding import Finding
 from ident.matrix import Run, Samples
@@ -40,20 +41,23 @@ def clipping(run: Run) -> Iterator[Finding]:
 
 
 def peaks_at_the_top(signal: Samples) -> int:
-    """Number of separate peaks of a random signal within NEAR of its range from the top; 0 below PEAKS.
-
-    Two peaks are separate where the signal falls by BETWEEN in the meantime, which its noise does not.
-    """
-    extent = float(np.ptp(signal))
-    high = signal >= signal.max() - BETWEEN * extent
-    starts = high & ~np.concatenate([[False], high[:-1]])
-    near = signal >= signal.max() - NEAR * extent
-    count = len(np.unique(np.cumsum(starts)[near]))
+    """Number of separate peaks of a random signal within NEAR of its range from the top; 0 below PEAKS."""
+    near = signal >= signal.max() - NEAR * float(np.ptp(signal))
+    count = len(np.unique(_visits(signal)[near]))
     return count if count >= PEAKS else 0
 
 
+def _visits(signal: Samples) -> NDArray[np.intp]:
+    """Of each sample, how often the signal has come to the top since the first.
+
+    Two peaks are separate where it falls by BETWEEN in the meantime, which its noise does not.
+    """
+    high = signal >= signal.max() - BETWEEN * float(np.ptp(signal))
+    return np.cumsum(high & ~np.concatenate([[False], high[:-1]]))
+
+
 def plateaus_at_the_top(signal: Samples) -> int:
-    """Number of plateaus of equal samples at the top that are entered at speed; 0 below PLATEAUS."""
+    """Number of separate plateaus of equal samples at the top that are entered at speed; 0 below PLATEAUS."""
     top = signal == signal.max()
     if top.mean() > AT_REST:
         return 0
@@ -66,5 +70,5 @@ def plateaus_at_the_top(signal: Samples) -> int:
         return 0
     least = max(STEP * float(np.sqrt(np.mean(moving**2))), RESOLUTIONS * float(moving.min()))
     entered = steps[starts[long] - 1] > least
-    count = int(np.count_nonzero(entered))
+    count = len(np.unique(_visits(signal)[starts[long][entered]]))
     return count if count >= PLATEAUS else 0

@@ -40,6 +40,19 @@ def test_a_clipped_sine_is_found_and_a_whole_one_is_not_even_when_rounded(faulty
         assert (("run-0", "clipping") in found) is expected
 
 
+def test_what_flickers_by_a_digit_at_rest_is_not_clipped_though_rest_is_its_lowest_value(faulty):
+    """A speed in whole numbers that goes from rest to many of them; one that is cut at rest again and again is."""
+    rng = np.random.default_rng(4)
+    speed = np.zeros(8192)
+    for first in range(10, 4000, 90):
+        speed[first : first + 20] = -4.0
+    speed[4000:] = np.round(1000.0 * (1.0 - np.exp(-np.arange(4192) / 300)) + rng.normal(0, 2.0, 4192))
+    assert ("run-0", "clipping") not in faulty.channel(0, "displacement", speed).run(0, kind="other").found()
+    sine = np.round(5000.0 * np.sin(2 * np.pi * 3 * np.arange(8192) / 4096))
+    cut = np.maximum(sine, -4000.0)
+    assert ("run-0", "clipping") in faulty.channel(0, "displacement", cut).run(0, kind="other").found()
+
+
 def test_a_displacement_that_stands_still_is_found(faulty):
     samples = faulty.matrix.runs[2].measured.copy()
     samples[3000:3600] = samples[3000]
