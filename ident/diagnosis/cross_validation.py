@@ -168,11 +168,8 @@ class _Without:
         self.at = point, _partly(here, self.used)
         end, last = levenberg_marquardt(lambda _here: self.at[1], point, _CLOSE, better=self._better)
         self.seen.setdefault(point.tobytes(), here)
-        tried = [one.error for one in self.seen.values() if one is not here]
-        if not any(
-            map(np.isfinite, tried)
-        ):  # the point lies at the edge of what is stable: judged by its linearisation
-            return here, step
+        if not any(np.isfinite(one.error) for one in self.seen.values() if one is not here):
+            return here, step  # the point lies at the edge of what is stable: judged by its linearisation
         there = self.seen[end.tobytes()]
         if len(there.gradient) < len(point):
             return there, np.empty(0)
