@@ -32,7 +32,7 @@ from ident.words.titles import title
 
 Array = NDArray[np.float64]
 _TRIAL = 131_072  # samples of a first refit; the finalists take every sample
-FITTING, TRYING = Way(1e-6, 20, rough=1e-5), Way(1e-5, 10, rough=1e-4)  # of a refit, a first one
+FITTING, TRYING = Way(1e-7, 20, rough=1e-5), Way(1e-5, 10, rough=1e-4)  # of a refit, a first one
 _SETTING_OUT, _SEARCHING = TRYING, Way(1e-5, 20, rough=1e-4)  # of one far off, and where it is ahead of others
 _SCATTERED, _LEADING = 128, 4  # points of a whole search space, and those of them from which a refit begins
 FIRST_STEPS, _AHEAD = Way(1e-5, 3), 8  # of it, and how many go on
