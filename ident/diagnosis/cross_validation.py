@@ -8,14 +8,13 @@ for a linear least-squares problem, so that sums of products of each block are a
     δ = −H⁻¹ g  from the other folds,   Σ (r − J δ − N ν)²  over the fold
 
 with J the sensitivities to the parameters, N to what is free in each record (its mean, its first state). Where the
-step is too long for one linearisation the other folds are fitted in full: an output alone tells whether a step kept
-what it promised, and only where it did not is it linearised there once more.
+step is too long for one linearisation the other folds are fitted in full.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +33,6 @@ CHUNKS, FOLDS = 8, 4
 _FINER = 32  # chunks of a record where there are fewer records than CHUNKS
 _DEALT = 0  # seed by which runs are dealt to folds: a matrix lists them in an order of its own
 _FAR = 0.01  # of an axis: a longer step is beyond what one linearisation tells
-_KEPT = 0.01  # of a promise: what is kept so closely ended where it was promised, and needs no linearisation
 _CLOSE = Way(converged=1e-4, most=20)  # of a fit without a fold: it starts close by, and one linearisation ends it
 
 
@@ -90,12 +88,10 @@ def scored(error: float, offset: float, weight: float) -> float:
 
 
 def cross_validated(
-    point: Array, here: Local, evaluate: Callable[[Array, Worth], Local], independent: float, whole_runs: bool = False,
-    glance: Callable[[Array], Local] | None = None,
-) -> CrossValidation:  # fmt: skip
+    point: Array, here: Local, evaluate: Callable[[Array, Worth], Local], independent: float, whole_runs: bool = False
+) -> CrossValidation:
     """The held-out errors at the optimum `point` of the unit cube; `evaluate` is the objective, where first
-    states that promise much are followed if that is worth it, and `glance` the same without sensitivities, if it costs
-    less.
+    states that promise much are followed if that is worth it.
 
     Chunks of every record are left out in turn, or `whole_runs`, of which there have to be two at least.
     """
@@ -105,7 +101,7 @@ def cross_validated(
     fold_of = (_folds_of_runs if whole_runs else _folds_of_chunks)(len(here.runs), count)
     for fold in range(fold_of.max() + 1):
         used = [folds[of] != fold for folds, of in zip(fold_of, chunks, strict=True)]
-        there, step = _Without(used, evaluate, glance).ends(point, here)
+        there, step = _without(point, here, used, evaluate)
         for i, (run, of) in enumerate(zip(there.runs, chunks, strict=True)):
             inside = fold_of[i] == fold
             squares[i, inside] = _by_chunk(run, of, count, step)[inside]
@@ -150,53 +146,27 @@ def _folds_of_runs(runs: int, count: int) -> Indices:
     return np.repeat(dealt[:, None], count, axis=1)
 
 
-@dataclass
-class _Without:
-    """The fit of the `used` blocks alone: `at` is how far it came, with the objective of these blocks there."""
+def _without(
+    point: Array, here: Local, used: list[Mask], evaluate: Callable[[Array, Worth], Local]
+) -> tuple[Local, Array]:
+    """Where the fit of the used blocks ends: a linearisation, and the step from there that is left."""
+    step = _step(point, here, [_projected(run, of) for run, of in zip(here.runs, used, strict=True)])
+    if not len(step) or np.abs(step).max() <= _FAR:
+        return here, step
 
-    used: list[Mask]
-    evaluate: Callable[[Array, Worth], Local]
-    glance: Callable[[Array], Local] | None
-    seen: dict[bytes, Local] = field(default_factory=dict)
-    at: tuple[Array, Local] = field(init=False)
+    seen: dict[bytes, Local] = {point.tobytes(): here}
 
-    def ends(self, point: Array, here: Local) -> tuple[Local, Array]:
-        """Where it ends: a linearisation, and the step from there that is left; an output that no step leads from."""
-        step = _step(point, here, [_projected(run, of) for run, of in zip(here.runs, self.used, strict=True)])
-        if not len(step) or np.abs(step).max() <= _FAR:
-            return here, step
-        self.at = point, _partly(here, self.used)
-        end, last = levenberg_marquardt(lambda _here: self.at[1], point, _CLOSE, better=self._better)
-        self.seen.setdefault(point.tobytes(), here)
-        if not any(np.isfinite(one.error) for one in self.seen.values() if one is not here):
-            return here, step  # the point lies at the edge of what is stable: judged by its linearisation
-        there = self.seen[end.tobytes()]
-        if len(there.gradient) < len(point):
-            return there, np.empty(0)
-        rest = bounded_step(end, last.curvature, last.gradient)
-        return there, rest if promise(last, rest) <= _CLOSE.converged * last.error else np.zeros(len(point))
+    def better(trial: Array, least: float) -> Local | None:
+        there = seen[trial.tobytes()] = evaluate(trial, lambda promised: _partly(promised, used).error < least)
+        part = _partly(there, used)
+        return part if part.error < least else None
 
-    def _better(self, trial: Array, least: float) -> Local | None:
-        """The objective at a trial where it is less; flat, which ends the search, where its error is as promised."""
-        there = self._glanced(trial)
-        if there is None:
-            there = self.evaluate(trial, lambda promised: _partly(promised, self.used).error < least)
-        self.seen[trial.tobytes()], part = there, _partly(there, self.used)
-        if not part.error < least:
-            return None
-        if len(part.gradient) < len(trial):
-            part = replace(part, gradient=np.zeros(len(trial)), curvature=np.zeros((len(trial), len(trial))))
-        self.at = trial, part
-        return part
-
-    def _glanced(self, trial: Array) -> Local | None:
-        """What a glance shows of a trial where that is enough: it is no better, or as much as was promised."""
-        if self.glance is None:
-            return None
-        there, (point, before) = self.glance(trial), self.at
-        error, promised = _partly(there, self.used).error, promise(before, trial - point)
-        known = not error < before.error or abs(before.error - error - promised) <= _KEPT * promised
-        return there if known else None
+    end, last = levenberg_marquardt(lambda _here: _partly(here, used), point, _CLOSE, better=better)
+    tried = [one.error for one in seen.values() if one is not here]
+    if not any(map(np.isfinite, tried)):  # the point lies at the edge of what is stable: judged by its linearisation
+        return here, step
+    rest = bounded_step(end, last.curvature, last.gradient)
+    return seen[end.tobytes()], rest if promise(last, rest) <= _CLOSE.converged * last.error else np.zeros(len(point))
 
 
 def _partly(here: Local, used: list[Mask]) -> Local:

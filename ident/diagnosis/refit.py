@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,7 +45,8 @@ class Refit:
     @cached_property
     def held_out(self) -> CrossValidation:
         """Its errors on blocks that were left out in turn."""
-        return self._with_the_past(self._cross_validated(whole_runs=False))
+        found = cross_validated(self.point, self.here, self._evaluated, self._simulated.independent)
+        return self._with_the_past(found)
 
     @cached_property
     def not_held_out(self) -> CrossValidation:
@@ -71,12 +71,7 @@ class Refit:
         """Its errors on whole runs that were left out in turn; None of a single run."""
         if len(self.here.runs) < 2:
             return None
-        return self._cross_validated(whole_runs=True)
-
-    def _cross_validated(self, whole_runs: bool) -> CrossValidation:
-        glance = None if self._moving else partial(self.fitness.exact, sensitivities=False)  # first states cost more
-        independent = self._simulated.independent
-        return cross_validated(self.point, self.here, self._evaluated, independent, whole_runs, glance)
+        return cross_validated(self.point, self.here, self._evaluated, self._simulated.independent, whole_runs=True)
 
     @property
     def stable(self) -> bool:

@@ -137,41 +137,6 @@ def test_what_only_tells_runs_apart_does_not_carry_over(rng, lawful):
     assert carries_over(less, more) is helps(less, more) is lawful
 
 
-@pytest.mark.parametrize(("bend", "straight"), [(0.0, True), (0.3, True), (8.0, False)])
-@pytest.mark.parametrize("whole_runs", [False, True])
-def test_the_output_alone_confirms_a_fit_without_a_fold(rng, bend, straight, whole_runs):
-    """Sensitivities are asked for only where a model is too far from straight; what is held out leaves the same."""
-    data = [(run, J[:120]) for run, J in records(rng, 9)]
-    data = [(run.part(0, 120), J) for run, J in data]
-    asked, glances = [], []
-
-    def at(point: np.ndarray, sensitivities: bool = True) -> Local:
-        offset = point - 0.5
-        shape, slopes = offset + bend * offset**2, 1.0 + 2.0 * bend * offset
-        runs: list[NormalMatrices] = []
-        for run, J in data:
-            residual = run.measured - run.measured.mean() - J @ shape
-            of = [*(J * slopes).T] if sensitivities else []
-            z = np.stack([*of, np.ones(len(residual)), residual], axis=-1).reshape(24, 5, -1)
-            runs += normal_matrices_of([run], np.einsum("bni,bnj->bij", z, z)[None], len(of))
-        return local(runs)
-
-    point = np.array([0.7, 0.4])
-    for _ in range(20):
-        here = at(point)
-        point = point - np.linalg.solve(here.curvature, here.gradient)
-    here = at(point)
-    plain = cross_validated(point, here, lambda p, _: at(p), 1.0, whole_runs)
-    glanced = cross_validated(
-        point, here, lambda p, _: (asked.append(p), at(p))[1], 1.0, whole_runs,
-        lambda p: (glances.append(p), at(p, sensitivities=False))[1],
-    )  # fmt: skip
-    assert glances
-    assert straight == (not asked)
-    assert glanced.squares == pytest.approx(plain.squares, rel=2e-3)
-    assert glanced.error == pytest.approx(plain.error, rel=2e-4)
-
-
 def test_at_the_edge_of_what_is_stable_the_linearisation_judges(rng):
     """Where the model itself cannot be run again, the held-out errors are those of one step."""
     data, point = records(rng, 9), np.array([0.7, 0.4])
