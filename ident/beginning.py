@@ -2,20 +2,52 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Mapping
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-
-if TYPE_CHECKING:
-    from ident.matrix import Run
 
 Samples = NDArray[np.float64]
 Beginning = Literal["at rest", "standing", "moving"]
 _LEAST, _ROUNDING = 16, 1e-9  # samples that a command is held; of its largest value: it is held but for rounding
 
 
-def beginning(run: Run) -> Beginning:
+class Recorded(Protocol):
+    """What is asked of a run."""
+
+    @property
+    def channels(self) -> Mapping[str, Samples]:
+        """Its samples, (n,), by channel."""
+        ...
+
+    @property
+    def command(self) -> Samples:
+        """Its command, (n,)."""
+        ...
+
+    @property
+    def measured(self) -> Samples:
+        """Its output, (n,)."""
+        ...
+
+    @property
+    def stepped(self) -> bool:
+        """Whether its command is one step."""
+        ...
+
+    @property
+    def sample_rate(self) -> float:
+        """In Hz."""
+        ...
+
+    @property
+    def record(self) -> str:
+        """The record that it is one output of; empty where it is the only one."""
+        ...
+
+
+def beginning(run: Recorded) -> Beginning:
     """How the measured output of a run begins: what of its first state a model has to find.
 
     "at rest": it stands still at zero. "standing": it stands still elsewhere, under a command that is held there.
@@ -43,7 +75,7 @@ def beginning(run: Run) -> Beginning:
     return "standing" if still and standing_for(run) else "moving"
 
 
-def standing_for(run: Run) -> int:
+def standing_for(run: Recorded) -> int:
     """For how many samples the command is held first while the output stands; 0 where it is not, or moves.
 
     Standing: the means of the quarters of this time lie, from each other and from the first samples, within 2 %
@@ -61,11 +93,11 @@ def standing_for(run: Run) -> int:
     return count if np.ptp(means) <= 0.02 * np.std(x) + 4.0 * max(errors) else 0
 
 
-def _seen(run: Run) -> Samples:
+def _seen(run: Recorded) -> Samples:
     """The channel by which the beginning is told."""
     return run.channels.get("displacement", run.measured) if run.record else run.measured
 
 
-def _first(run: Run) -> int:
+def _first(run: Recorded) -> int:
     """The samples by which it is told."""
-    return min(run.length, max(4, round(0.001 * run.sample_rate)))
+    return min(len(run.measured), max(4, round(0.001 * run.sample_rate)))

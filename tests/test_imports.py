@@ -73,10 +73,10 @@ def test_what_a_benchmark_or_a_picture_imports_is_there(file):
 
 
 ROOMS = (
-    "errors", "plain", "cached", "progress", "parallel", "words", "matrix", "parameter", "linear", "statistics",
-    "equations", "units", "stages", "effects", "chain", "presets", "foreign", "readers", "custom", "noise", "checks",
-    "drafts", "simulation", "fit", "comparison", "residuals", "design", "diagnosis", "bench", "hybrid", "export",
-    "figures", "synthesis", "workflows",
+    "errors", "plain", "cached", "progress", "parallel", "words", "beginning", "matrix", "parameter", "linear",
+    "statistics", "equations", "units", "stages", "effects", "chain", "presets", "foreign", "readers", "custom",
+    "noise", "checks", "drafts", "simulation", "fit", "comparison", "residuals", "design", "diagnosis", "bench",
+    "hybrid", "export", "figures", "synthesis", "workflows",
 )  # fmt: skip
 """The files and folders of `ident`; each may use those before it."""
 
@@ -161,7 +161,9 @@ def chosen_by_name(tree: ast.Module, names: set[str]) -> Iterator[int]:
 def test_there_is_no_loose_file_but_the_basic_words_and_the_workflows():
     """What belongs together stands in a folder."""
     loose = {file.stem for file in files("ident/*.py")} - {"__init__"}
-    assert loose == {"errors", "plain", "cached", "progress", "parallel", "matrix", "parameter", "linear", "workflows"}
+    assert loose == {
+        "errors", "plain", "cached", "progress", "parallel", "beginning", "matrix", "parameter", "linear", "workflows",
+    }  # fmt: skip
 
 
 def test_effects_never_import_each_other():

@@ -62,9 +62,13 @@ class Way:
         return error - self.aim > _HOPE * max((promised, *gained))
 
     def leads_nowhere(self, point: Array, here: Shape) -> bool:
-        """Whether from a point that steps have led to the next one promises nothing near what is missing."""
-        step = np.clip(point + _step(point, here, _DAMPING, self.within), *self.within) - point
-        return self.is_lost(here.error, promise(here, step))
+        """Whether from a point that steps have led to the next one promises nothing near what is missing.
+
+        Of a step that is cut at a bound nobody knows: a shorter one may promise more.
+        """
+        step = _step(point, here, _DAMPING, self.within)
+        cut = bool(np.any(np.clip(point + step, *self.within) != point + step))
+        return not cut and self.is_lost(here.error, promise(here, step))
 
 
 def levenberg_marquardt(

@@ -79,6 +79,14 @@ def test_first_steps_that_ended_far_from_what_they_have_to_reach_are_not_begun_a
     assert ModelFamily.gone_on(family, first, way, 7) == (first if aim == 0.05 else (("e",), {"s": 1.0}, 7, way))
 
 
+@pytest.mark.parametrize(("error", "aim"), [(0.1, 0.01), (0.1, 0.11), (0.1, 0.05)])
+def test_first_steps_whose_next_one_is_cut_at_a_bound_are_gone_on_with(error, aim):
+    """What such a step promises is nothing, or less, and a shorter one may promise more."""
+    curvature = np.array([[1.0, 0.99], [0.99, 1.0]])
+    here = SimpleNamespace(error=error, gradient=np.array([-1.0, 0.9]), curvature=curvature)
+    assert not Way(aim=aim).leads_nowhere(np.array([0.9, 0.5]), here)
+
+
 @pytest.mark.parametrize(("equation", "joined"), [("R = R + s * (v**3)", 3.0), ("R = R + s * (v**2)", 2.0)])
 def test_a_term_that_is_added_twice_is_tried_as_one_with_both_strengths(equation, joined):
     custom = [
