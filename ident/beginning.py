@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 Samples = NDArray[np.float64]
 Beginning = Literal["at rest", "standing", "moving"]
-_LEAST, _ROUNDING = 16, 1e-9  # samples that a command is held; of its largest value: it is held but for rounding
+ROUNDING = 1e-9  # of a command's largest value: it is held but for rounding
+_LEAST = 16  # samples that a command is held
 
 
 class Recorded(Protocol):
@@ -84,7 +85,7 @@ def standing_for(run: Recorded) -> int:
     """
     x = _seen(run)
     command = run.channels.get("command", x)
-    changes = np.flatnonzero(np.abs(command - command[0]) > _ROUNDING * np.abs(command).max())
+    changes = np.flatnonzero(np.abs(command - command[0]) > ROUNDING * np.abs(command).max())
     count = int(changes[0]) if len(changes) else 0
     if count < _LEAST:
         return 0

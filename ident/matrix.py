@@ -11,7 +11,7 @@ from typing import Any, Protocol, Unpack
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ident.beginning import Beginning, beginning, standing_for
+from ident.beginning import ROUNDING, Beginning, beginning, standing_for
 from ident.cached import cached_property
 from ident.errors import Unusable
 from ident.words.shown import Listing, Shown
@@ -71,9 +71,6 @@ class Controller:
     kv: float
 
 
-_ROUNDING = 1e-9  # of a command's largest value: it is held but for rounding
-
-
 @dataclass(frozen=True, eq=False)
 class Run:
     """One measured record in SI (or in the record's own units where the matrix says ``1``).
@@ -116,12 +113,12 @@ class Run:
     @cached_property
     def stepped(self) -> bool:
         """Whether the command is held from the first sample to the last: a step from nothing, before the record."""
-        return bool(np.ptp(self.command) <= _ROUNDING * np.abs(self.command).max())
+        return bool(np.ptp(self.command) <= ROUNDING * np.abs(self.command).max())
 
     @cached_property
     def dwell(self) -> float:
         """The lower quartile of the times between changes of the command, s; 0 of one that changes less than thrice."""
-        changes = np.flatnonzero(np.abs(np.diff(self.command)) > _ROUNDING * np.abs(self.command).max())
+        changes = np.flatnonzero(np.abs(np.diff(self.command)) > ROUNDING * np.abs(self.command).max())
         return float(np.quantile(np.diff(changes), 0.25)) / self.sample_rate if len(changes) > 2 else 0.0
 
     @cached_property

@@ -66,9 +66,8 @@ class Way:
 
         Of a step that is cut at a bound nobody knows: a shorter one may promise more.
         """
-        step = _step(point, here, _DAMPING, self.within)
-        cut = bool(np.any(np.clip(point + step, *self.within) != point + step))
-        return not cut and self.is_lost(here.error, promise(here, step))
+        trial, cut = _trial(point, here, _DAMPING, self)
+        return not cut and self.is_lost(here.error, promise(here, trial - point))
 
 
 def levenberg_marquardt(
@@ -91,12 +90,9 @@ def levenberg_marquardt(
     accept(here)
     for count in range(way.most):
         report(count, here.error)
-        free_step = np.clip(_step(point, here, damping, way.within), -way.longest, way.longest)
-        trial = np.clip(point + free_step, *way.within)
-        step = trial - point
-        promised = promise(here, step)
+        trial, cut = _trial(point, here, damping, way)
+        promised = promise(here, trial - point)
         # A step cut at a bound may promise nothing where a shorter one does.
-        cut = bool(np.any(trial != point + free_step))
         if not promised > way.converged * here.error and not cut:
             break
         if here.error <= way.enough or (len(gained) > 1 and way.is_lost(here.error, promised, *gained[-2:])):
@@ -128,6 +124,13 @@ def _better(evaluate: Callable[[Array], S], trial: Array, least: float) -> S | N
     """The objective at a trial where it is less than so far."""
     there = evaluate(trial)
     return there if there.error < least else None
+
+
+def _trial(point: Array, here: Shape, damping: float, way: Way) -> tuple[Array, bool]:
+    """Where a step leads within the bounds, and whether it was cut at one."""
+    free_step = np.clip(_step(point, here, damping, way.within), -way.longest, way.longest)
+    trial = np.clip(point + free_step, *way.within)
+    return trial, bool(np.any(trial != point + free_step))
 
 
 def _step(point: Array, here: Shape, damping: float, within: tuple[float | Array, float | Array]) -> Array:

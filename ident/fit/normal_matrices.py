@@ -117,7 +117,7 @@ def errors_of(run: Run, model: LinearModel) -> Array:
     for rows, first, last in responses(_begun(run, model), run.command):
         residual = measured[first:last, None] - rows[: last - first, : len(model.B)]
         sums += residual.sum(axis=0), np.einsum("nv,nv->v", residual, residual)
-    found = np.sqrt(np.maximum(sums[1] - sums[0] ** 2 / run.length, 0.0) / np.sum(measured**2))
+    found = np.sqrt(np.maximum(sums[1] - sums[0] ** 2 / run.length, 0.0) / run.power)
     return np.where(np.isfinite(found), found, np.inf)
 
 
