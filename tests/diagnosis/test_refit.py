@@ -13,7 +13,7 @@ from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.proposals.search import Search
 from ident.diagnosis.refit import Refit, alike
 from ident.effects import effect
-from ident.fit.levenberg_marquardt import Way
+from ident.fit.levenberg_marquardt import Way, promise
 
 MEASURED = np.sin(np.arange(1000) / 50.0)
 
@@ -83,8 +83,9 @@ def test_first_steps_that_ended_far_from_what_they_have_to_reach_are_not_begun_a
 def test_first_steps_whose_next_one_is_cut_at_a_bound_are_gone_on_with(error, aim):
     """What such a step promises is nothing, or less, and a shorter one may promise more."""
     curvature = np.array([[1.0, 0.99], [0.99, 1.0]])
-    here = SimpleNamespace(error=error, gradient=np.array([-1.0, 0.9]), curvature=curvature)
-    assert not Way(aim=aim).leads_nowhere(np.array([0.9, 0.5]), here)
+    here = SimpleNamespace(error=error, gradient=np.array([-0.02, 0.0]), curvature=curvature)
+    assert promise(here, np.array([0.05, -0.995])) < 0  # what is left within the bounds of (1.005, -0.995)
+    assert not Way(aim=aim).leads_nowhere(np.array([0.95, 0.999]), here)
 
 
 @pytest.mark.parametrize(("equation", "joined"), [("R = R + s * (v**3)", 3.0), ("R = R + s * (v**2)", 2.0)])
