@@ -32,11 +32,13 @@ def serve(pipe: Connection) -> None:
 
 
 def _worked_out(pipe: Connection, act: Any, given: tuple[Any, ...], reports: bool) -> tuple[str, Any]:
-    """What a function returned, or raised."""
+    """What a function returned, or raised. Its threads report one after the other: each waits for its own answer."""
+    exchange = threading.Lock()
 
     def report(progress: Progress) -> None:
-        pipe.send(("report", progress))
-        raised = pipe.recv()
+        with exchange:
+            pipe.send(("report", progress))
+            raised = pipe.recv()
         if raised is not None:
             raise raised
 

@@ -6,6 +6,7 @@ import os
 import signal
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from ident.progress import Progress, Report
@@ -63,3 +64,15 @@ def sleeps(folder: Path) -> None:
 def unsent() -> Callable[[], None]:
     """Return what cannot pass."""
     return lambda: None
+
+
+def told_by_many(threads: int, times: int, report: Report) -> str:
+    """Reports from several threads at once, as side by side refits do."""
+
+    def tell(thread: int) -> None:
+        for done in range(times):
+            report(Progress(f"thread {thread}", done, times))
+
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(tell, range(threads)))
+    return "all told"

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -83,6 +84,13 @@ def test_reports_are_made_here_and_end_the_work_there(place: Place) -> None:
         place.call(acts.told, 9, report=report)
     assert seen == [1, 2, 1, 2, 3]
     assert place.call(acts.told, 1, report=report) == "all told"
+
+
+def test_threads_that_report_at_once_are_each_heard(apart: Apart) -> None:
+    """Two that read one pipe together tear each other's answers: a diagnosis failed by it, once in many."""
+    heard: list[Progress] = []
+    assert apart.call(acts.told_by_many, 4, 300, report=heard.append) == "all told"
+    assert Counter(progress.stage for progress in heard) == {f"thread {thread}": 300 for thread in range(4)}
 
 
 def test_work_whose_process_was_ended_is_done_again(apart: Apart, tmp_path: Path) -> None:
