@@ -87,9 +87,9 @@ def _of_serial(serial: str) -> Path:
 
 
 def _among(files: list[Path], name: str) -> str:
-    """The name of one of the files, given with its suffix or without. Raises Unusable."""
+    """The name of one of the files, given with its suffixes or without. Raises Unusable."""
     wanted, names = Path(name).name, [file.name for file in files]
-    found = [wanted] if wanted in names else [one for one in names if Path(one).stem == wanted]
+    found = [wanted] if wanted in names else [one for one in names if one.startswith(f"{wanted}.")]
     if len(found) != 1:
         what = f"{name!r} is {'none' if not found else 'more than one'} of the files"
         raise Unusable("missing-file", what, "--verify", f"name one of {', '.join(names[:_SHOWN])}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import os
 import subprocess
 import sys
@@ -64,14 +65,15 @@ def test_without_a_folder_it_is_named_as_the_serial_number(servoident, record, t
     assert sorted(path.name for path in tmp_path.iterdir()) == ["SW-3", "a.csv"]
 
 
-@pytest.mark.parametrize("name", ["b", "b.csv"])
-def test_a_run_to_verify_is_named_with_its_suffix_or_without(servoident, record, tmp_path, name):
-    (tmp_path / "b.csv").write_bytes(record.read_bytes().replace(b",0.9", b",0.8"))
+@pytest.mark.parametrize(("file", "name"), [("b.csv", "b"), ("b.csv", "b.csv"), ("b.csv.gz", "b")])
+def test_a_run_to_verify_is_named_with_its_suffixes_or_without(servoident, record, tmp_path, file, name):
+    second = record.read_bytes().replace(b",0.9", b",0.8")
+    (tmp_path / file).write_bytes(gzip.compress(second) if file.endswith(".gz") else second)
     (tmp_path / "c.csv").write_bytes(record.read_bytes().replace(b",0.9", b",0.7"))
-    files = [tmp_path / f"{stem}.csv" for stem in "abc"]
+    files = [record, tmp_path / file, tmp_path / "c.csv"]
     made = servoident("init", *files, "--serial", "SW-4", *KNOWN, "--verify", name, "--out", tmp_path / "m")
     assert made.returncode == 0, made.stderr
-    assert [run.file for run in read_matrix(tmp_path / "m").of_use("verify")] == ["runs/b.csv"]
+    assert [run.file for run in read_matrix(tmp_path / "m").of_use("verify")] == [f"runs/{file}"]
 
 
 def test_a_run_to_verify_that_is_none_of_the_files_or_two_is_refused(servoident, record, tmp_path):
