@@ -313,12 +313,14 @@ class SimulatedRuns:
             for share in np.array_split(np.arange(len(runs)), shares):
                 yield tuple(runs[i] for i in share)
 
-    def steps(self, values: Mapping[str, Array], kinks: bool = True) -> NDArray[np.int64]:
-        """Steps a sample for each vector."""
-        found, kinds = self.fastest(values), {(run.hold, self.band / run.sample_rate) for run in self.matrix.runs}
+    def steps(self, values: Mapping[str, Array], kinks: bool = True, of: Chain | None = None) -> NDArray[np.int64]:
+        """Steps a sample for each vector; `of` a chain that shows more than the own, where one is given."""
+        chain = of or self.chain
+        found = fastest(chain, self._extreme, self.matrix.actuator, values)
+        kinds = {(run.hold, self.band / run.sample_rate) for run in self.matrix.runs}
         on = [effect for effect in self.preset.effects if kinks and self._is_on(effect, values)]
         least = self.preset.steps if kinks and not self.roughly else 1
-        needed = [steps_needed(self.chain, found, hold, on, band, least) for hold, band in kinds]
+        needed = [steps_needed(chain, found, hold, on, band, least) for hold, band in kinds]
         return np.asarray(np.max(needed, axis=0))
 
     def fastest(self, values: Mapping[str, Array]) -> Modes:

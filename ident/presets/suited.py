@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Protocol
 
+import numpy as np
+
 from ident.chain.disturbance import can_be_disturbed
 from ident.errors import Unusable
-from ident.matrix import BENCH, DISTURBANCES, MOTIONS
+from ident.matrix import BENCH, DISTURBANCES, MOTIONS, Run
 from ident.presets import PRESETS, Preset, preset
 from ident.stages import OPENED_BY_COMMAND
 
 _OPEN, _UNLIKELY = 2, 5  # ranks: a command in open loop; a motion that something else may drive
+_STRETCHES, _NEAR = 20, 0.1  # of a record whose means are compared; how near they are, a share of the command's
 
 
 class Described(Protocol):
@@ -47,8 +50,8 @@ def suited(runs: Sequence[Described]) -> tuple[Preset, ...]:
     """The models that every run drives and shows, the likeliest first, of equals that with the fewest parameters.
 
     What is driven by a channel of its own comes first. A loop is taken for one where command and what it compares are
-    lengths or forces alike or a loop gain is stated; else the command opens a valve or drives a motor. Raises Unusable
-    where no model has such inputs and outputs.
+    lengths or forces alike, or in unknown units but the one where the other is, or a loop gain is stated; else the
+    command opens a valve or drives a motor. Raises Unusable where no model has such inputs and outputs.
     """
     found = [known for known in PRESETS.values() if all(_allows(known, run) for run in runs)]
     if not found:
@@ -69,6 +72,26 @@ def in_question(runs: Sequence[Described], machine: str = "") -> tuple[Preset, .
     if _rank(found[0], runs) < _OPEN:
         return found[:1]
     return tuple(known for known in found if not known.chain.reads("Kp"))
+
+
+def follows(run: Described, channel: str) -> bool:
+    """Whether a channel ends where the command does, of a record that was read in unknown units.
+
+    Of what follows by a lag, T y' + y = K r, the mean over a stretch of length t is a + K r̄ − T (y₁ − y₀)/t, and a
+    loop leaves K = 1 and a = 0.
+    """
+    if not isinstance(run, Run) or not {"command", channel} <= {*run.channels}:
+        return False
+    if run.units.get("command") != "1" or run.units.get(channel) != "1":
+        return False
+    r, y = (np.array_split(run.channels[name], _STRETCHES) for name in ("command", channel))
+    command, shown = np.array([part.mean() for part in r]), np.array([part.mean() for part in y])
+    terms = np.column_stack([command, np.ones(_STRETCHES), [part[-1] - part[0] for part in y]])
+    gain, offset, lag = np.linalg.lstsq(terms, shown)[0]
+    off = shown - terms @ (gain, offset, lag)
+    apart = abs(offset + (gain - 1) * command.mean())
+    near = abs(gain - 1) < _NEAR and apart < _NEAR * np.std(run.command)
+    return bool(near and np.std(off) < _NEAR * np.std(command))
 
 
 def unusual(model: Preset, runs: Sequence[Described]) -> bool:
@@ -113,4 +136,4 @@ def _comparable(run: Described, channel: str) -> bool:
     """Whether a controller could compare the command with a channel."""
     units = {"displacement": ("m", "rad"), "velocity": ("m/s", "rad/s"), "force": ("N", "N*m")}
     unit = run.units.get("command")
-    return unit in units[channel] and unit == run.units.get(channel)
+    return (unit in units[channel] and unit == run.units.get(channel)) or follows(run, channel)

@@ -192,9 +192,14 @@ def _simulated(
 def inside(
     simulated: SimulatedRuns, values: Mapping[str, float], signals: Sequence[str]
 ) -> dict[str, dict[str, Array]]:
-    """The internal signals (n,) of simulated runs at some values: name, then the run's id."""
-    _, steps = simulated.settle(values)
-    chain = showing(simulated.chain, tuple(signals))
+    """The internal signals (n,) of simulated runs at some values: name, then the run's id.
+
+    Each is shown by itself: the rate of a lag is there only where the lag is not advanced exactly, and may ask for
+    finer steps then.
+    """
+    vector, _ = simulated.settle(values)
+    shown = {name: showing(simulated.chain, (name,)) for name in signals}
+    steps = {name: int(simulated.steps(vector, of=chain).max()) for name, chain in shown.items()}
 
     def one(entry: tuple[str, Run]) -> Array:
         name, run = entry
@@ -202,7 +207,7 @@ def inside(
         at = {symbol: np.array([[value]]) for symbol, value in known.items()}
         start = simulated.first_states(run, at)
         named = replace(run, output=name, channels={**run.channels, name: run.measured})
-        blocks = Simulation(chain, (named,), at, steps, start).outputs()
+        blocks = Simulation(shown[name], (named,), at, steps[name], start).outputs()
         return np.concatenate([rows[:, 0, 0] for rows, _, _ in blocks])
 
     wanted = [(name, run) for name in signals for run in simulated.runs]

@@ -12,6 +12,7 @@ import pytest
 import scipy.signal
 
 from ident.checks.check import check
+from ident.diagnosis.structures import chosen
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix, Run
@@ -229,3 +230,42 @@ def test_a_force_that_was_recorded_as_the_command_drives_a_mass_on_a_spring():
     found = diagnose(matrix, fit, most=1, propose=False)
     assert found.verdict.effects == ("cubic_stiffness",)
     assert found.ladder[-1].error["verify"] < 0.1 * found.ladder[0].error["verify"]
+
+
+def lagging(seed: int, gain: float = 1.0) -> Matrix:
+    """A staircase in unknown units, answered exactly by T x' + x = K r with T = 0.4 s; noise of 0.5 %."""
+    rng = np.random.default_rng(seed)
+    r = np.repeat(rng.uniform(0.0, 10.0, 30), 100)
+    x, out = r[0], np.zeros(len(r))
+    for k in range(len(r)):
+        out[k] = gain * x
+        x += (r[k] - x) * -np.expm1(-1.0 / RATE / 0.4)
+    out += 0.005 * out.std() * rng.standard_normal(len(out))
+    run = Run("r", "", RATE, {"command": r, "displacement": out}, {"command": "1", "displacement": "1"}, hold="zoh")
+    return Matrix(Actuator("UNKNOWN"), (run,))
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_in_unknown_units_a_loop_is_known_by_where_its_output_is(seed):
+    matrix = lagging(seed)
+    assert [model.name for model in in_question(matrix.runs)] == ["qian2014"]
+    said = "No model was named: qian2014, a loop that compares both, since what was recorded is where the command is."
+    assert said in chosen(matrix).matrix.notices
+    of_force = replace(matrix.runs[0], output="force", units={"command": "1", "force": "1"},
+                       channels={"command": matrix.runs[0].command, "force": matrix.runs[0].measured})  # fmt: skip
+    assert [model.name for model in in_question([of_force])] == ["force_loop"]
+
+
+@pytest.mark.parametrize(
+    "run",
+    [
+        lagging(1, gain=0.8).runs[0],  # elsewhere than the command
+        replace(lagging(1).runs[0], units={"command": "V", "displacement": "m"}),
+        replace(lagging(1).runs[0], output="velocity", channels={
+            "command": lagging(1).runs[0].command, "velocity": lagging(1).runs[0].measured}),
+        replace(lagging(1).runs[0], channels={"command": np.ones(3000), "displacement": np.ones(3000)}),
+    ],
+    ids=["another-gain", "other-units", "speed", "one-value"],
+)  # fmt: skip
+def test_else_a_command_in_unknown_units_is_in_open_loop(run):
+    assert "qian2014" not in [model.name for model in in_question([run])]
