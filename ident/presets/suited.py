@@ -80,7 +80,7 @@ def follows(run: Described, channel: str) -> bool:
     Of what follows by a lag, T y' + y = K r, the mean over a stretch of length t is a + K r̄ − T (y₁ − y₀)/t, and a
     loop leaves K = 1 and a = 0.
     """
-    if not isinstance(run, Run) or not {"command", channel} <= {*run.channels}:
+    if not isinstance(run, Run) or not {"command", channel} <= {*run.channels} or run.length < _STRETCHES:
         return False
     if run.units.get("command") != "1" or run.units.get(channel) != "1":
         return False

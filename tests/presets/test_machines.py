@@ -264,8 +264,9 @@ def test_in_unknown_units_a_loop_is_known_by_where_its_output_is(seed):
         replace(lagging(1).runs[0], output="velocity", channels={
             "command": lagging(1).runs[0].command, "velocity": lagging(1).runs[0].measured}),
         replace(lagging(1).runs[0], channels={"command": np.ones(3000), "displacement": np.ones(3000)}),
+        replace(lagging(1).runs[0], channels={"command": np.arange(9.0), "displacement": np.arange(9.0)}),
     ],
-    ids=["another-gain", "other-units", "speed", "one-value"],
+    ids=["another-gain", "other-units", "speed", "one-value", "short"],
 )  # fmt: skip
 def test_else_a_command_in_unknown_units_is_in_open_loop(run):
     assert "qian2014" not in [model.name for model in in_question([run])]
