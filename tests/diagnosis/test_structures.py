@@ -76,7 +76,7 @@ def lift(rate: float = 20.0) -> Matrix:
         behind = shown[k - 1] - reference[k - 1]
         shown[k] = reference[k - 1] + behind * np.exp(-1 / (rate * (0.6 if behind < 0 else 3.0)))
     channels = {"command": reference, "displacement": np.round(shown / 0.005) * 0.005}
-    return Matrix(Actuator("LIFT"), (Run("steps", "", rate, channels, {"command": "1", "displacement": "1"}),))
+    return Matrix(Actuator("LIFT"), (Run("steps", "", rate, channels, {"command": "V", "displacement": "m"}),))
 
 
 def test_what_follows_whole_runs_is_not_judged_by_windows():
