@@ -23,7 +23,7 @@ from ident.fit.settings import Settings
 from ident.fit.summary import noticed
 from ident.matrix import Matrix
 from ident.presets import Preset, preset
-from ident.presets.suited import follows, in_question, unusual
+from ident.presets.suited import in_question, told_by_following, unusual
 from ident.progress import Progress, Report, silent
 from ident.words.percent import percent
 from ident.words.titles import title
@@ -65,7 +65,7 @@ def _compared(matrix: Matrix, report: Report) -> tuple[tuple[Structure, ...], Fi
     if len(models) == 1:
         only = models[0]
         shown = f"{only.name} is driven by {only.driven_by} and shows what was recorded"
-        if _by_following(only, matrix):
+        if told_by_following(only, matrix.runs):
             shown = f"{only.name}, a loop that compares both, since what was recorded is where the command is"
         why = "the matrix describes it" if matrix.machine else shown
         return (Structure(only.name, {"held_out": None}, len(only.parameters), why),), None
@@ -80,12 +80,6 @@ def _compared(matrix: Matrix, report: Report) -> tuple[tuple[Structure, ...], Fi
     others = (with_effects.get(one.machine, one) for one in tried if one.machine != best.machine)
     said = (best.structure(over, why), *(one.structure(over, "") for one in others))
     return said, fitted[best.machine].fit
-
-
-def _by_following(model: Preset, matrix: Matrix) -> bool:
-    """Whether only the records themselves, in unknown units, tell that it is a loop."""
-    compared = model.compares or "displacement"
-    return not matrix.machine and all(run.gain is None and follows(run, compared) for run in matrix.runs)
 
 
 def _with_an_effect_each(first: _Judged, tried: Sequence[_Judged], report: Report) -> dict[str, _Judged]:
@@ -172,7 +166,7 @@ def chosen(matrix: Matrix, report: Report = silent) -> Choice:
     found, fit = _compared(matrix, report)
     first, *others = found
     usual = first.machine in (Settings().model, matrix.machine) and not others
-    if usual and not _by_following(preset(first.machine), matrix):
+    if usual and (matrix.machine or not told_by_following(preset(first.machine), matrix.runs)):
         return Choice(matrix, found, fit)
     said = "; ".join(f"{one.machine} {one.why}" for one in found) if others else first.why
     notice = f"No model was named: {said}."

@@ -315,20 +315,18 @@ class SimulatedRuns:
 
     def steps(self, values: Mapping[str, Array], kinks: bool = True, of: Chain | None = None) -> NDArray[np.int64]:
         """Steps a sample for each vector; `of` a chain that shows more than the own, where one is given."""
-        chain = of or self.chain
-        found = fastest(chain, self._extreme, self.matrix.actuator, values)
-        kinds = {(run.hold, self.band / run.sample_rate) for run in self.matrix.runs}
+        found, kinds = self.fastest(values, of), {(run.hold, self.band / run.sample_rate) for run in self.matrix.runs}
         on = [effect for effect in self.preset.effects if kinks and self._is_on(effect, values)]
         least = self.preset.steps if kinks and not self.roughly else 1
-        needed = [steps_needed(chain, found, hold, on, band, least) for hold, band in kinds]
+        needed = [steps_needed(of or self.chain, found, hold, on, band, least) for hold, band in kinds]
         return np.asarray(np.max(needed, axis=0))
 
-    def fastest(self, values: Mapping[str, Array]) -> Modes:
+    def fastest(self, values: Mapping[str, Array], of: Chain | None = None) -> Modes:
         """Each vector's fastest mode in radians a sample, of the linear core and the effects at small signals.
 
         Beyond :data:`ident.simulation.steps.FASTEST` it is followed only roughly.
         """
-        return fastest(self.chain, self._extreme, self.matrix.actuator, values)
+        return fastest(of or self.chain, self._extreme, self.matrix.actuator, values)
 
     def _is_on(self, effect: Effect, values: Mapping[str, Array]) -> bool:
         """Whether an effect has a strength that is not zero."""

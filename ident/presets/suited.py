@@ -74,7 +74,17 @@ def in_question(runs: Sequence[Described], machine: str = "") -> tuple[Preset, .
     return tuple(known for known in found if not known.chain.reads("Kp"))
 
 
-def follows(run: Described, channel: str) -> bool:
+def told_by_following(model: Preset, runs: Sequence[Described]) -> bool:
+    """Whether only the records themselves, in unknown units, tell that it is a loop."""
+    return all(run.gain is None and _follows(run, _compared(model)) for run in runs)
+
+
+def _compared(model: Preset) -> str:
+    """The channel that a loop compares with its command."""
+    return model.compares or "displacement"
+
+
+def _follows(run: Described, channel: str) -> bool:
     """Whether a channel ends where the command does, of a record that was read in unknown units.
 
     Of what follows by a lag, T y' + y = K r, the mean over a stretch of length t is a + K r̄ − T (y₁ − y₀)/t, and a
@@ -87,8 +97,8 @@ def follows(run: Described, channel: str) -> bool:
     r, y = (np.array_split(run.channels[name], _STRETCHES) for name in ("command", channel))
     command, shown = np.array([part.mean() for part in r]), np.array([part.mean() for part in y])
     terms = np.column_stack([command, np.ones(_STRETCHES), [part[-1] - part[0] for part in y]])
-    gain, offset, lag = np.linalg.lstsq(terms, shown)[0]
-    off = shown - terms @ (gain, offset, lag)
+    found = np.linalg.lstsq(terms, shown)[0]
+    gain, offset, off = found[0], found[1], shown - terms @ found
     apart = abs(offset + (gain - 1) * command.mean())
     near = abs(gain - 1) < _NEAR and apart < _NEAR * np.std(run.command)
     return bool(near and np.std(off) < _NEAR * np.std(command))
@@ -118,7 +128,7 @@ def _rank(model: Preset, runs: Sequence[Described]) -> int:
         bare = not any("command" in run.channels for run in runs)
         return 0 if bare or model.driven_by not in MOTIONS else _UNLIKELY
     if model.compares or model.chain.reads("Kp"):
-        compared = model.compares or "displacement"
+        compared = _compared(model)
         looped = any(run.gain is not None for run in runs) and compared in {run.output for run in runs}
         looped = looped or all(_comparable(run, compared) for run in runs)
         return 1 if looped else _UNLIKELY - 1
@@ -136,4 +146,4 @@ def _comparable(run: Described, channel: str) -> bool:
     """Whether a controller could compare the command with a channel."""
     units = {"displacement": ("m", "rad"), "velocity": ("m/s", "rad/s"), "force": ("N", "N*m")}
     unit = run.units.get("command")
-    return (unit in units[channel] and unit == run.units.get(channel)) or follows(run, channel)
+    return (unit in units[channel] and unit == run.units.get(channel)) or _follows(run, channel)

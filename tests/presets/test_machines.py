@@ -232,15 +232,18 @@ def test_a_force_that_was_recorded_as_the_command_drives_a_mass_on_a_spring():
     assert found.ladder[-1].error["verify"] < 0.1 * found.ladder[0].error["verify"]
 
 
-def lagging(seed: int, gain: float = 1.0) -> Matrix:
-    """A staircase in unknown units, answered exactly by T x' + x = K r with T = 0.4 s; noise of 0.5 %."""
+def lagging(seed: int, gain: float = 1.0, beside: float = 0.0, wander: float = 0.0) -> Matrix:
+    """A staircase in unknown units, answered exactly by T x' + x = K r with T = 0.4 s; noise of 0.5 %.
+
+    The record may lie `beside` it, or `wander` about it by so much.
+    """
     rng = np.random.default_rng(seed)
     r = np.repeat(rng.uniform(0.0, 10.0, 30), 100)
     x, out = r[0], np.zeros(len(r))
     for k in range(len(r)):
         out[k] = gain * x
         x += (r[k] - x) * -np.expm1(-1.0 / RATE / 0.4)
-    out += 0.005 * out.std() * rng.standard_normal(len(out))
+    out += 0.005 * out.std() * rng.standard_normal(len(out)) + beside + wander * np.sin(np.arange(len(r)) / RATE)
     run = Run("r", "", RATE, {"command": r, "displacement": out}, {"command": "1", "displacement": "1"}, hold="zoh")
     return Matrix(Actuator("UNKNOWN"), (run,))
 
@@ -260,13 +263,15 @@ def test_in_unknown_units_a_loop_is_known_by_where_its_output_is(seed):
     "run",
     [
         lagging(1, gain=0.8).runs[0],  # elsewhere than the command
+        lagging(1, beside=1.0).runs[0],
+        lagging(1, wander=0.5).runs[0],
         replace(lagging(1).runs[0], units={"command": "V", "displacement": "m"}),
         replace(lagging(1).runs[0], output="velocity", channels={
             "command": lagging(1).runs[0].command, "velocity": lagging(1).runs[0].measured}),
         replace(lagging(1).runs[0], channels={"command": np.ones(3000), "displacement": np.ones(3000)}),
         replace(lagging(1).runs[0], channels={"command": np.arange(9.0), "displacement": np.arange(9.0)}),
     ],
-    ids=["another-gain", "other-units", "speed", "one-value", "short"],
+    ids=["another-gain", "beside", "wandering", "other-units", "speed", "one-value", "short"],
 )  # fmt: skip
 def test_else_a_command_in_unknown_units_is_in_open_loop(run):
     assert "qian2014" not in [model.name for model in in_question([run])]
