@@ -20,18 +20,17 @@ def in_order(
 ) -> list[Item]:  # fmt: skip
     """The items from the least size on; what ties with the least of them, or is `alike` with it, as it stood.
 
-    What ties with the least of all as `tied` puts it in order.
+    What is not alike comes behind what is, though it be nearer in size: else it would hang on which of two others a
+    processor sees below the other whether a third ties. What ties with the least of all as `tied` puts it in order.
     """
-    rest = sorted(enumerate(items), key=lambda one: size(one[1]))
+    rest = sorted(range(len(items)), key=lambda n: size(items[n]))
     found: list[Item] = []
     while rest:
-        least = rest[0][1]
-        bound = _bound(size(least))
-        behind = (n for n, (_, item) in enumerate(rest) if n and size(item) > bound and not alike(least, item))
-        count = next(behind, len(rest))
-        ties = [item for _, item in sorted(rest[:count], key=lambda one: one[0])]
-        found += ties if found else tied(ties)
-        rest = rest[count:]
+        first = rest[0]
+        bound = _bound(size(items[first]))
+        ties = sorted(n for n in rest if n == first or size(items[n]) <= bound or alike(items[first], items[n]))
+        found += (list if found else tied)([items[n] for n in ties])
+        rest = [n for n in rest if n not in ties]
     return found
 
 

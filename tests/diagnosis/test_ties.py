@@ -17,11 +17,12 @@ def test_those_that_tie_stand_as_they_were_given():
 
 
 def test_those_that_are_alike_with_the_least_stand_as_they_were_given():
-    """But not those behind the first that is not: what is alike is told of the best alone."""
+    """Whatever stands between: what is not alike comes behind, though its size be nearer to the least."""
     assert in_order(list("abce"), SIZES.__getitem__, lambda best, other: {best, other} <= {"b", "c", "e"}) == list(
         "bcea"
     )
-    assert in_order(list("abe"), SIZES.__getitem__, lambda best, other: (best, other) == ("b", "a")) == list("bea")
+    assert in_order(list("abe"), SIZES.__getitem__, lambda best, other: (best, other) == ("b", "a")) == list("abe")
+    assert in_order(list("abed"), SIZES.__getitem__, lambda best, other: (best, other) == ("d", "e")) == list("edba")
     assert in_order(list("eb"), SIZES.__getitem__, lambda *_: True) == list("eb")
 
 
