@@ -10,7 +10,7 @@ import pytest
 
 from ident.diagnosis.candidate import Candidate, group, ranked
 from ident.diagnosis.cross_validation import CrossValidation
-from ident.diagnosis.ranking import rank_each
+from ident.diagnosis.ranking import _finalists, rank_each
 
 MODELS: Any = SimpleNamespace(simplicity=lambda name: (1, name))
 RUNS, CHUNKS = 6, 8
@@ -115,3 +115,18 @@ def test_where_the_boldest_promise_is_not_kept_more_is_tried(monkeypatch, kept, 
     base: Any = SimpleNamespace(effects=())
     rank_each(models, [(base, list(promises))], lambda _: None, thorough=False)
     assert set(asked) == tried
+
+
+@pytest.mark.parametrize(("quick", "refitted"), [(True, 6), (False, 5)])
+def test_what_leaves_as_much_as_the_last_finalist_is_one_in_a_small_matrix(monkeypatch, quick, refitted):
+    """Else rounding would choose which of the two is refitted, and so may stand in a group: one leaves 1 % more."""
+    monkeypatch.setattr("ident.diagnosis.ranking._is_quick", lambda *_: quick)
+    trials = [
+        Candidate(SimpleNamespace(effect=f"n{n}"), SimpleNamespace(here=SimpleNamespace(error=error)))  # type: ignore[arg-type]
+        for n, error in enumerate([0.3, 0.32, 0.36, 0.38, 0.4, 0.404, 0.409])
+    ]
+    models: Any = SimpleNamespace(tried=lambda _base: 1.0)
+    base: Any = None
+    assert len(_finalists(models, base, trials, sure=5)) == refitted
+    nothing_more: Any = SimpleNamespace(tried=lambda _base: 0.404)
+    assert len(_finalists(nothing_more, base, trials, sure=5)) == 5
