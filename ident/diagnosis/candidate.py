@@ -11,10 +11,9 @@ from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.refit import Refit, alike, carries_over, outdone
 from ident.diagnosis.screening import Prediction
 from ident.diagnosis.significance import Improvement, improvement
-from ident.diagnosis.ties import in_order
+from ident.diagnosis.ties import AS_GOOD, in_order
 from ident.parallel import each
 
-_AS_GOOD = 1.02  # times the error: what is no better by chance, nor by more than that, stands as listed
 _ENDS = 1.05  # times the error: so far apart end refits with what acts in jumps
 _AS_MUCH = 0.9  # of what the best takes, in power
 _OF_REST = 0.05  # of what nothing explains, in power: what is missing may have turned so much the other way
@@ -121,7 +120,7 @@ def _alike(best: Candidate, other: Candidate) -> bool:
     """
     if best.refit is None or other.refit is None:
         return False
-    most = _AS_GOOD if best.refit.jumping == other.refit.jumping else _ENDS
+    most = AS_GOOD if best.refit.jumping == other.refit.jumping else _ENDS
     if other.refit.error > most * best.refit.error:
         return False
     return alike(best.refit, other.refit, other.base)

@@ -15,7 +15,7 @@ from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.refit import Refit
 from ident.diagnosis.screening import Prediction, predict
 from ident.diagnosis.significance import VISIBLE, WORTHWHILE
-from ident.diagnosis.ties import first_least, in_order
+from ident.diagnosis.ties import AS_GOOD, first_least, in_order
 from ident.parallel import each
 from ident.progress import Expected, Progress, Report
 
@@ -25,7 +25,6 @@ _QUICK = 200_000  # steps of a matrix so small that every promise can be tried, 
 _NEAR = 1.3  # times the best predicted error: the contenders for a further effect
 _FINALISTS = 5
 _CLOSE = 1.05  # times the best trial's error: also a finalist, where it promises anything
-_AS_LAST = 1.02  # times the error of the last that is one, and so is this, in a small matrix: rounding parts them
 _ANEW = 0.98  # times the error: a model that is known is at another, better optimum
 _DEEPER = 2  # of the finalists are looked for elsewhere, too
 _STRONG = (1.0, 0.6, 0.3)  # of the largest strength, from where
@@ -168,10 +167,10 @@ def _promised(models: ModelFamily, base: Refit, names: Sequence[str], report: Re
 def _finalists(models: ModelFamily, base: Refit, tried: Sequence[Candidate], sure: int) -> list[Candidate]:
     """Those of the trials that are refitted to every sample: the first, and what is as good and promises anything.
 
-    As good as the best of them or, in a small matrix, as the last.
+    As good as the best of them or, in a small matrix, as the last: rounding does not choose between these.
     """
     best = tried[0].score if tried else 0.0
-    as_last = _AS_LAST * tried[sure - 1].score if len(tried) > sure and _is_quick(models, base) else 0.0
+    as_last = AS_GOOD * tried[sure - 1].score if len(tried) > sure and _is_quick(models, base) else 0.0
     good = min(max(_CLOSE * best, as_last), (1.0 - _PROMISING) * models.tried(base))
     return [one for i, one in enumerate(tried) if one.trial and (i < sure or one.score < good)]
 

@@ -12,6 +12,7 @@ from typing import TypeVar
 
 Item = TypeVar("Item")
 TIE = 1e-4  # relative difference of two errors: refits end within about a hundredth of it
+AS_GOOD = 1.02  # times the error: within so much, in a flat valley, rounding decides where a refit ends
 
 
 def in_order(
@@ -29,7 +30,8 @@ def in_order(
         first = rest[0]
         bound = _bound(size(items[first]))
         ties = sorted(n for n in rest if n == first or size(items[n]) <= bound or alike(items[first], items[n]))
-        found += (list if found else tied)([items[n] for n in ties])
+        tying = [items[n] for n in ties]
+        found += tying if found else tied(tying)
         rest = [n for n in rest if n not in ties]
     return found
 
