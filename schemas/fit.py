@@ -126,7 +126,11 @@ class JobPage(BaseModel):
 
 
 class FitView(BaseModel):
-    """A stored fit: the contract's fit JSON and where it belongs."""
+    """A stored fit: the contract's fit JSON and where it belongs.
+
+    `objections` say why an approval needs a reason: an error far above the noise floor, verify runs that
+    contradict the fit.
+    """
 
     id: str
     matrix: str
@@ -135,6 +139,7 @@ class FitView(BaseModel):
     created_at: str
     approved_at: str | None
     current: bool
+    objections: list[str] = Field(default_factory=list)
     result: FitResultView
 
 

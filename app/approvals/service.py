@@ -5,7 +5,9 @@ from __future__ import annotations
 from sqlalchemy.orm import Session
 
 from app.approvals import repository
+from app.approvals.objections import objections
 from app.context import Context
+from app.diagnoses.repository import verdicts
 from app.errors import Failure, missing
 from app.fits import repository as fits
 from app.limits.broken import tell_broken
@@ -18,7 +20,8 @@ from schemas.webhooks import SetApproved, SetWithdrawn
 def approve(context: Context, fit: str, who: str, why: str) -> None:
     """Make a fit the set in force of its actuator. One that is in force stays so, since then.
 
-    Raises Failure 404, and 409 where the search of the fit ran out of its time.
+    Raises Failure 404, 409 where the search of the fit ran out of its time, and 422 where something speaks against the
+    fit and no reason is given.
     """
     with context.sessions.begin() as session:
         row = _fit(session, fit)
@@ -26,9 +29,27 @@ def approve(context: Context, fit: str, who: str, why: str) -> None:
             raise Failure(409, "ended-early", "the search of this fit ran out of its time", f"fit {fit}",
                           "fit again without a budget")  # fmt: skip
         if not row.set.current:
+            against = of_fit(session, row)
+            if against and not why.strip():
+                raise Failure(422, "reason-needed", "; ".join(against), f"fit {fit}",
+                              "find what the model lacks first, or give a reason (--why, why over HTTP)")  # fmt: skip
             repository.put_in_force(session, row.serial, row.set.number, who, why)
             announce(session, SetApproved, serial=row.serial, fit=fit, who=who, why=why)
             tell_broken(session, row.set)
+
+
+def of_fit(session: Session, row: FitRow) -> tuple[str, ...]:
+    """What speaks against approving a fit, each a clause: its errors, and what was found on the fit before it."""
+    found = row.result
+    verdict = verdicts(session, [row.parent]).get(row.parent) if row.parent else None
+    contradicted = (verdict or {}).get("contradicted_by", ())
+    return objections(found.get("error", {}), found.get("noise_floor") or {}, found.get("effects", ()), contradicted)
+
+
+def against(context: Context, fit: str) -> tuple[str, ...]:
+    """The same by the id of the fit; raises Failure 404."""
+    with context.sessions() as session:
+        return of_fit(session, _fit(session, fit))
 
 
 def withdraw(context: Context, fit: str, who: str, why: str) -> None:

@@ -123,6 +123,7 @@ def get(context: Context, fit_id: str) -> FitView:
     return FitView(
         id=row.id, matrix=row.matrix, serial=row.serial, parent=row.parent, created_at=row.created_at,
         approved_at=row.set.approved_at, current=row.set.current, result=FitResultView(**result),
+        objections=list(approvals.against(context, fit_id)),
     )  # fmt: skip
 
 

@@ -19,6 +19,7 @@ from app.pages.job_view import settings_facts
 from app.pages.kept_view import Keeping, KeptRow, keeping, kept_rows
 from app.pages.ladder_view import Step, steps
 from app.pages.matrix_view import counted
+from app.pages.next_view import Next
 from app.pages.run_view import Conditions, conditions
 from ident.custom.definition import HANDED_ON, preset_with
 from ident.equations.equation import Equation
@@ -72,6 +73,8 @@ class FitPageView:
     figures: tuple[FigureForm, ...]
     profile: FigureForm | None
     ended_early: bool
+    next: Next
+    objections: tuple[str, ...]
     equations: tuple[tuple[str, str, Markup], ...]
     facts: tuple[tuple[str, str], ...]
     missing: MissingView
@@ -88,12 +91,13 @@ class FitPageView:
 
 
 def fit_page(
-    stored: Stored, matrix: MatrixView, lacks: MissingView, ladder: LadderView,
+    stored: Stored, matrix: MatrixView, lacks: MissingView, ladder: LadderView, step: Next, objections: tuple[str, ...],
     others: Iterable[ParameterSetView] = (), newer: str | None = None, kept: Sequence[Kept] = (),
 ) -> FitPageView:  # fmt: skip
     """The page of a fit of this matrix; `others` are fits of the same actuator, to compare it with.
 
-    `newer` is the newest revision of the matrix, None where it is this one; `kept` are the lab's own effects.
+    `step` is what to do next, `objections` speak against an approval without a reason. `newer` is the newest revision
+    of the matrix, None where it is this one; `kept` are the lab's own effects.
     """
     fit = stored.found
     model = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
@@ -123,6 +127,8 @@ def fit_page(
         figures=tuple(figure for figure in figures if figure.name != MAP),
         profile=profile_form(fit),
         ended_early=fit.ended_early,
+        next=step,
+        objections=objections,
         equations=tuple((line.place, line.meaning, Markup(mathml(line.text))) for line in _equations(model)),
         facts=_facts(fit),
         missing=lacks,

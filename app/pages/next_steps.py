@@ -1,4 +1,4 @@
-"""The next step of every actuator of a list, with a fixed number of queries."""
+"""The next step of every actuator of a list, with a fixed number of queries, and that of one fit."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from collections.abc import Iterable, Mapping
 from app.context import Context
 from app.diagnoses import service as diagnoses
 from app.fits import service as fits
-from app.pages.next_view import Next, next_step
+from app.pages.next_view import Next, fit_step, next_step
+from app.parameters import service as parameters
+from app.parameters.wanted import Wanted
 from schemas.fit import JobView
 from schemas.parameters import ActuatorView, ParameterSetView
 
@@ -27,3 +29,9 @@ def next_steps(
         known = fit.id if fit else ""
         steps[each.serial] = next_step(each, fit, job, yardsticks.get(known), searches.get(known))
     return steps
+
+
+def of_fit(context: Context, fit: str) -> Next:
+    """What to do next with a fit, in the words of the first page."""
+    (stored,) = parameters.page(context, Wanted(ids=[fit]), None, 1).items
+    return fit_step(stored, fits.yardsticks(context, [fit]).get(fit), diagnoses.searches(context, [fit]).get(fit))

@@ -22,7 +22,7 @@ NEAR = 1.1  # times the noise floor: a fit as near as that leaves little to find
 class Next:
     """Where an actuator stands, and the link that leads on; `waits` is a job whose end changes that.
 
-    `main` marks a step that changes the model.
+    `main` marks a step that changes the model. `does`, "diagnose" or "approve", is what the page of the fit does at once.
     """
 
     words: str
@@ -30,6 +30,7 @@ class Next:
     at: str
     waits: str = ""
     main: bool = True
+    does: str = ""
 
 
 def next_step(
@@ -42,34 +43,40 @@ def next_step(
         return Next(words, "Watch it", f"/fits/{job.id}", waits=job.id, main=False)
     if newest is None:
         return Next("Its runs are here, but no fit is.", "Start a fit", f"/actuators/{quote(actuator.serial)}")
-    at = f"/fits/{newest.id}"
-    if newest.current:
+    return fit_step(newest, yardstick, search)
+
+
+def fit_step(fit: ParameterSetView, yardstick: Yardstick | None = None, search: Search | None = None) -> Next:
+    """The next step with a fit; the first page and the page of the fit name the same one."""
+    at = f"/fits/{fit.id}"
+    if fit.current:
         return Next("Its parameters are in force: nothing to do.", "Look at them", at, main=False)
     search = search or Search()
     if search.job is not None:
         words = "It is being searched for what its model lacks."
         return Next(words, "Watch it", f"{at}#missing", waits=search.job, main=False)
-    return _fitted(newest, yardstick or Yardstick(), search.verdict, at)
+    return _fitted(fit, yardstick or Yardstick(), search.verdict, at)
 
 
 def _fitted(newest: ParameterSetView, yardstick: Yardstick, verdict: Verdict | None, at: str) -> Next:
     """Of a fit that waits for its user."""
     error, before = newest.error_fit, yardstick.before
     if error is None or not yardstick.floor:
-        return Next("It is fitted; how much of its error is noise cannot be told.", "See where it fails", at)
+        words = "It is fitted; how much of its error is noise cannot be told."
+        return Next(words, "See where it fails", f"{at}#fails")
     if error > NEAR * yardstick.floor:
         return _failing(error / yardstick.floor, verdict, f"{at}#missing")
     if before is not None and before > NEAR * error:
         fell = f"The error fell from {percent_in_print(before)} to {percent_in_print(error)}, which is noise."
         return Next(fell, "Compare before and after", f"/compare?fits={yardstick.parent},{newest.id}")
-    return Next("The model explains all but the noise.", "Look and approve it", at, main=False)
+    return Next("The model explains all but the noise.", "Look and approve it", at, main=False, does="approve")
 
 
 def _failing(ratio: float, verdict: Verdict | None, at: str) -> Next:
     """Of a fit whose error is so many times the noise."""
     fails = f"The error is {plain(ratio, 2)} times the noise"
     if verdict is None:
-        return Next(f"{fails}: the model lacks something.", "Find what is missing", at)
+        return Next(f"{fails}: the model lacks something.", "Find what is missing", at, does="diagnose")
     if verdict.effects:
         sure = verdict.standing in (None, "found")
         said = "The model lacks" if sure else "Not all of it is explained; what helps is"

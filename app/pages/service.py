@@ -24,7 +24,7 @@ from app.pages.fit_page import FitPageView, fit_page
 from app.pages.job_view import JobPageView, job_page
 from app.pages.kept_view import kept_rows
 from app.pages.matrix_view import counted, matrix_view
-from app.pages.next_steps import next_steps
+from app.pages.next_steps import next_steps, of_fit
 from app.pages.side_view import further, side_view
 from app.pages.start_view import start_view
 from app.pages.thumbnails import thumbnail
@@ -167,4 +167,5 @@ def fit(context: Context, fit_id: str) -> FitPageView | JobPageView:
     way = lineage.ladder(context, fit_id)
     others = parameters.page(context, Wanted(serial=stored.serial), None, _ROWS).items
     newer = matrices.newer(context, stored.matrix)
-    return fit_page(stored, matrix, lacks, way, others, newer, own_effects.every(context))
+    step, against = of_fit(context, fit_id), approvals.against(context, fit_id)
+    return fit_page(stored, matrix, lacks, way, step, against, others, newer, own_effects.every(context))

@@ -12,7 +12,7 @@ def test_a_set_is_approved_judged_rechecked_and_withdrawn(page: Page, site: Serv
     page.goto(f"{site.address}/fits/{fitted}")
     if page.locator("[data-approve$='/withdraw']").count() == 0:
         page.fill("#why", "sound")
-        page.click("[data-approve$='/approve']")
+        page.click("[data-approve$='/approve'] button")
     expect(page.locator("[data-approve$='/withdraw']")).to_be_visible()
     page.goto(f"{site.address}/limits?model=qian2014")
     row = page.locator("tr[data-name=tau]")
@@ -30,7 +30,7 @@ def test_a_set_is_approved_judged_rechecked_and_withdrawn(page: Page, site: Serv
     expect(page.locator("p[role=status]")).to_contain_text("1 same", timeout=120_000)
     page.goto(f"{site.address}/fits/{fitted}")
     page.fill("#why", "leaks")
-    page.click("[data-approve$='/withdraw']")
+    page.click("[data-approve$='/withdraw'] button")
     expect(page.locator("[data-approve$='/approve']")).to_be_visible()
     found = site.client.get(f"/actuators/{serial.replace('/', '%2F')}/verdict")
     assert found.json()["reasons"] == ["no parameter set is in force: approve a fit"]

@@ -1,12 +1,10 @@
-// The button that approves or withdraws a parameter set; why is kept with it.
+// The form that approves or withdraws a parameter set; the reason is kept with it.
 
-import { guarded, send } from "./api.js";
+import { send, submitted } from "./api.js";
 
-for (const button of document.querySelectorAll("button[data-approve]")) {
-  button.addEventListener("click", () =>
-    guarded(button, document.querySelector("#approve-problem"), async () => {
-      await send("POST", button.dataset.approve, { why: document.querySelector("#why").value.trim() });
-      location.reload();
-    }),
-  );
+for (const form of document.querySelectorAll("form[data-approve]")) {
+  submitted(form, async () => {
+    await send("POST", form.dataset.approve, { why: form.elements.why.value.trim() });
+    location.reload();
+  });
 }

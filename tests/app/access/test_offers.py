@@ -50,7 +50,8 @@ class Offers(HTMLParser):
         if tag == "form":
             self.form = here
             self._acts(here, str(here.get("method") or "get").upper(), str(here.get("action") or ""))
-        if tag == "button" and not self._asks(here) and self.form is None and not WITHIN & here.keys():
+        elsewhere = "form" in here  # such a button sends a form that is looked at by itself
+        if tag == "button" and not (self._asks(here) or self.form or elsewhere or WITHIN & here.keys()):
             self.unknown.append(str(here))
 
     def handle_endtag(self, tag: str) -> None:

@@ -56,7 +56,7 @@ FELL = Yardstick(parent="p", before=0.12, floor=NOISE)
         (step(0.1, yardstick=FELL), "20 times the noise", "Find what is missing", MISSING),
         (step(NOISE, yardstick=FELL), "from 12.0 % to 0.500 %", "Compare before and after", "/compare?fits=p,f"),
         (step(NOISE, yardstick=FAR), "all but the noise", "Look and approve it", "/fits/f"),
-        (step(NOISE), "cannot be told", "See where it fails", "/fits/f"),
+        (step(NOISE), "cannot be told", "See where it fails", "/fits/f#fails"),
         (step(0.1, current=True, yardstick=FAR), "nothing to do", "Look at them", "/fits/f"),
     ],
 )  # fmt: skip
