@@ -22,7 +22,7 @@ NEAR = 1.1  # times the noise floor: a fit as near as that leaves little to find
 class Next:
     """Where an actuator stands, and the link that leads on; `waits` is a job whose end changes that.
 
-    `main` marks a step that changes the model. `does`, "diagnose" or "approve", is what the page of the fit does at once.
+    `main` marks a step that changes the model. `does` is "diagnose" or "approve" where the fit's own page does it.
     """
 
     words: str

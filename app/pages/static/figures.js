@@ -50,6 +50,15 @@ async function refilled(figure, { datasets, params }, kept) {
   return true;
 }
 
+// The canvas says in words what is drawn: the heading of the figure, which follows what the figure shows.
+function name(figure) {
+  const { text, subtitle } = figure.heading ?? {};
+  const said = (part) => [part?.expr ? figure.view.signal(part.expr) : part].flat().filter(Boolean);
+  const canvas = figure.querySelector("canvas");
+  canvas.setAttribute("role", "img");
+  canvas.setAttribute("aria-label", [...said(text), ...said(subtitle)].join(". ") || figure.querySelector(".plot").ariaLabel);
+}
+
 async function draw(figure) {
   const plot = figure.querySelector(".plot");
   const wanted = query(figure);
@@ -63,8 +72,9 @@ async function draw(figure) {
   note.textContent = "";
   try {
     if (await moved(figure, wanted)) {
-      if (turn === figure.turn) figure.dataset.drawn = hand;
-      return;
+      if (turn !== figure.turn) return;
+      figure.dataset.drawn = hand;
+      return name(figure);
     }
     const address = `${figure.dataset.url}.json?${wanted}&share=${figure.dataset.share}&live=1`;
     figure.asked?.abort(); // nobody waits for the answer before
@@ -78,6 +88,8 @@ async function draw(figure) {
     if (turn !== figure.turn) return;
     figure.frame = kept;
     figure.dataset.drawn = hand;
+    figure.heading = typeof spec.title === "string" ? { text: spec.title } : spec.title;
+    name(figure);
   } catch (error) {
     if (turn === figure.turn) note.textContent = `This figure cannot be drawn: ${error.message}.`;
   } finally {
