@@ -1,4 +1,4 @@
-"""`python3 -m docs [FOLDER]`: set up what is needed, then build the site; by default into docs/_site."""
+"""`python3 -m docs [FOLDER] [--serve [PORT]]`: set up what is needed, then build the site; by default in docs/_site."""
 
 from __future__ import annotations
 
@@ -7,5 +7,4 @@ import sys
 from app.environment import enter
 
 if __name__ == "__main__":
-    folder = sys.argv[1] if len(sys.argv) > 1 else "docs/_site"
-    enter("requirements-tests.lock", ["-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", "docs", folder])
+    enter("requirements-tests.lock", ["-m", "docs.build", *sys.argv[1:]])

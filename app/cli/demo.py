@@ -13,6 +13,7 @@ import typer
 
 from app.cli.data_options import settings
 from app.cli.failures import report
+from app.cli.local_service import DEMO
 from app.cli.remote import items, request
 from app.cli.serving import LOOPBACK, address, free_port, run
 from app.cli.upload import files_of
@@ -51,7 +52,7 @@ def demo(
     from app.settings import default_data
 
     host = LOOPBACK
-    chosen = settings(data or default_data() / "demo", "", host=host, port=free_port(host, port))
+    chosen = settings(data or default_data() / DEMO, "", host=host, port=free_port(host, port))
     run(chosen, lambda: welcome(address(chosen), chosen.token))
 
 

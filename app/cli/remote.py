@@ -10,19 +10,30 @@ from uuid import uuid4
 
 import typer
 
+from app.cli.local_service import running
 from ident.errors import Unusable
 
 if TYPE_CHECKING:
     import httpx
 
 Server = Annotated[
-    str, typer.Option(metavar="URL", envvar="SERVOIDENT_SERVER", help="Address of the service (SERVOIDENT_SERVER).")
-]
+    str,
+    typer.Option(
+        metavar="URL", envvar="SERVOIDENT_SERVER", show_default=False,
+        help="Address of the service (SERVOIDENT_SERVER); else the one that you run on this machine.",
+    ),
+]  # fmt: skip
 Token = Annotated[
     str,
-    typer.Option(metavar="TOKEN", envvar="SERVOIDENT_TOKEN", help="Its token (SERVOIDENT_TOKEN).", show_envvar=False),
-]
-DEFAULT = "http://127.0.0.1:8000"
+    typer.Option(
+        metavar="TOKEN", envvar="SERVOIDENT_TOKEN", show_envvar=False,
+        help="Its token (SERVOIDENT_TOKEN); not needed for a service that you run on this machine.",
+    ),
+]  # fmt: skip
+DEFAULT = ""
+"""No address is given: the service that runs on this machine is meant."""
+USUAL = "http://127.0.0.1:8000"
+"""Where a service listens that was started without options."""
 PATIENCE = 60.0  # s without an answer; fits are jobs, so nothing that is asked here takes longer
 
 
@@ -30,6 +41,7 @@ def request(server: str, token: str, method: str, path: str, **content: Any) -> 
     """The answer of the service to one request. Raises Unusable where it refuses, or where there is none."""
     import httpx
 
+    server, token = reached(server, token)
     headers = {"Idempotency-Key": str(uuid4())} if method == "POST" else {}
     if token:
         headers["Authorization"] = f"Bearer {token}"
@@ -48,12 +60,25 @@ def request(server: str, token: str, method: str, path: str, **content: Any) -> 
     return answer
 
 
+def reached(server: str, token: str) -> tuple[str, str]:
+    """Address and token of the service that is meant; what is not given is that of the one that runs here."""
+    if server and token:
+        return server, token
+    here = running()
+    if here is None:
+        return server or USUAL, token
+    if server.rstrip("/") in (DEFAULT, here.address):
+        return here.address, token or here.token
+    return server, token
+
+
 def receive(server: str, token: str, path: str, file: Path) -> int:
     """The file that a POST is answered by, whole or not at all; its size in bytes. Raises Unusable."""
     import httpx
 
     from app.client import received
 
+    server, token = reached(server, token)
     headers = {"Authorization": f"Bearer {token}"} if token else {}
     patience = httpx.Timeout(PATIENCE, read=None)  # it is made before the first byte comes
     try:

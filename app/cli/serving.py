@@ -10,6 +10,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
+from app.cli.local_service import announced
 from ident.errors import Unusable
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ def run(settings: Settings, once_ready: Callable[[], None]) -> None:
     from app.main import run as served
 
     threading.Thread(target=wait_and, args=(settings, once_ready), daemon=True).start()
-    with suppress(KeyboardInterrupt):
+    with announced(settings, address(settings)), suppress(KeyboardInterrupt):
         served(settings)
     print("stopped; unfinished jobs go on at the next start")
 

@@ -20,6 +20,7 @@ def simulate(
     effect: Annotated[
         list[str] | None, typer.Option(metavar="NAME[.PARAM=VALUE]", help="Effect to switch on; may be repeated.")
     ] = None,
+    serial: Annotated[str, typer.Option(help="Serial number of the simulated actuator.")] = "SIM-0001",
     small: Annotated[bool, typer.Option("--small", help="18 runs to fit and 9 to verify.")] = False,
 ) -> None:
     """Write a simulated test matrix. It holds 63 runs to fit and 21 at Kp = 6 to verify."""
@@ -27,5 +28,5 @@ def simulate(
 
     effects = effect_values(effect or [], preset)
     with shown() as report:
-        simulate_matrix(out, preset, seconds, seed, noise, effects, report, small=small)
+        simulate_matrix(out, preset, seconds, seed, noise, effects, report, serial, small)
     print(f"wrote {out / 'matrix.yaml'}, a simulated matrix; next: servoident check {out}")

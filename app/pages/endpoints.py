@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from fastapi import APIRouter, HTTPException, Request
-from fastapi.responses import HTMLResponse, RedirectResponse, Response
+from fastapi.responses import FileResponse, HTMLResponse, RedirectResponse, Response
 
 from app.access.roles import ADMIN, LAB, READERS
 from app.context import Here
 from app.pages import access_endpoints, admin_endpoints, assets, line_endpoints, service, use_endpoints
 from app.pages.draft_view import column_picture, draft_page
 from app.pages.job_view import JobPageView
+from app.pages.manual import file_of, manual_page
 from app.pages.problems import PageRoute, Unknown
 from app.pages.rendering import page
 
@@ -100,6 +101,17 @@ def compare(request: Request, here: Here, fits: str) -> HTMLResponse:
     """Two fits side by side, or more in one table and plot."""
     template, shown = service.compared(here, fits)
     return page(request, template, **shown, vega=assets.VEGA)
+
+
+@router.get("/manual/{name:path}", dependencies=[READERS], response_model=None)
+def manual(request: Request, name: str) -> Response:
+    """A page of the documentation, or a picture of it."""
+    path = file_of(name)
+    if path is None:
+        raise HTTPException(404)
+    if path.suffix == ".png":
+        return FileResponse(path, media_type="image/png")
+    return page(request, "manual.html", manual=manual_page(path))
 
 
 def unknown() -> None:

@@ -10,6 +10,7 @@ from fastapi import Request
 from fastapi.responses import HTMLResponse
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from app.pages.manual import is_there
 from ident.words.percent import percent_in_print
 from ident.words.titles import title
 
@@ -44,6 +45,7 @@ def _environment() -> Environment:
     environment.filters["percent"] = percent_in_print
     environment.filters["in_words"] = title
     environment.globals["static"] = static
+    environment.globals["has_manual"] = is_there
     return environment
 
 

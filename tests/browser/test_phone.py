@@ -26,7 +26,7 @@ def addresses(site: Service, matrix: str, fitted: str) -> dict[str, str]:
     site.ended(job)
     about = {
         "serial": "SW/1%20%3Cb%3E", "matrix": matrix, "fit": fitted, "draft": draft, "regression": regression,
-        "job": job, "path": "nothing/here",
+        "job": job, "path": "nothing/here", "name": "cli",
     }  # fmt: skip
     return {call.path: f"{call.path.format(**about)}?{call.query.format(**about)}" for call in SHOWN}
 

@@ -150,6 +150,7 @@ PAGES = (
     read("/fits/{fit}/use/what-if.json"),
     Call("POST", "/use/reading", EVERY, {"text": "a: 1", "where": "case"}),
     read("/effects"),
+    read("/manual/{name}"),
     read("/compare", "fits={fit},{fit}"),
     read("/statistics", "parameter=tau"),
     read("/limits"),

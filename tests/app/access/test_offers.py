@@ -74,7 +74,8 @@ def call_of(method: str, address: str) -> Call | None:
     """The route that an address is of."""
     path = urlsplit(address).path
     for route, call in ROUTES:
-        pattern = re.sub(r"\\{\w+\\}", lambda _: "[^/]+", re.escape(route).replace("\\{serial\\}", ".+"))
+        whole = re.escape(route).replace("\\{serial\\}", ".+").replace("/manual/\\{name\\}", "/manual/.+")
+        pattern = re.sub(r"\\{\w+\\}", lambda _: "[^/]+", whole)
         if call.method == method and (re.fullmatch(pattern, path) or re.fullmatch(pattern, f"{path}.kind")):
             return call
     return None
@@ -93,7 +94,8 @@ def pages(service: TestClient, matrix: str, fitted: str) -> Iterator[dict[str, s
     service.post(f"{API}/webhooks", json={"url": "http://127.0.0.1:9/offered", "events": ["limit.broken"]})
     regression = service.post(f"{API}/regressions", json={"serial": "nobody"}).json()["id"]
     draft = service.post(f"{API}/drafts", files={"files": ("run.csv", RAW)}).json()["id"]
-    about = {"serial": "SW-1", "matrix": matrix, "fit": fitted, "regression": regression, "draft": draft}
+    about = {"serial": "SW-1", "matrix": matrix, "fit": fitted, "regression": regression, "draft": draft,
+             "name": "index"}  # fmt: skip
     shown = [call for call in PAGES if call.method == "GET" and not re.search(r"\.svg|\.json|job|\{path", call.path)]
     found = {call.path: f"{call.path.format(**about)}?{call.query.format(**about)}" for call in shown}
     yield found | {"a running job": f"/fits/{running['id']}"}

@@ -77,7 +77,8 @@ def asked(service: TestClient, call: Call, headers: dict[str, str]) -> int:
                  "draft", "webhook"):  # fmt: skip
         path = path.replace(f"{{{name}}}", "nothing")
     path = (
-        path.replace("{name}", "bode")
+        path.replace("/manual/{name}", "/manual/index")
+        .replace("{name}", "bode")
         .replace("{kind}", "svg")
         .replace("{place}", "0")
         .replace("{file}/{column}", "0/0")

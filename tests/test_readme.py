@@ -1,0 +1,72 @@
+"""The commands of the README run as they stand, one after the other in one terminal, beside the running demo."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import typer
+
+from tests.running import command, free_port
+
+ROOT = Path(__file__).resolve().parents[1]
+SLOW = {"compare", "diagnose"}
+"""Commands of the README that take tens of seconds: run in the long form, in the short form only read."""
+
+
+def lines() -> list[str]:
+    """The indented lines below *Try the commands*, without their comments."""
+    section = (ROOT / "README.md").read_text().partition("## Try the commands\n")[2].partition("\n## ")[0]
+    block = section.partition("In Python")[0]
+    return [shlex.join(shlex.split(line, comments=True)) for line in re.findall(r"^    (.+)$", block, re.MULTILINE)]
+
+
+@pytest.fixture(scope="module")
+def environment(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
+    """That of a new user whose demo runs: a home of their own, nothing set."""
+    home = tmp_path_factory.mktemp("home")
+    named = {"XDG_DATA_HOME": str(home / "data"), "XDG_STATE_HOME": str(home / "state")}
+    with pytest.MonkeyPatch.context() as own:
+        for name in ("SERVOIDENT_DATA", "SERVOIDENT_TOKEN", "SERVOIDENT_SERVER", "SERVOIDENT_DATABASE"):
+            own.delenv(name, raising=False)
+        for name, value in named.items():
+            own.setenv(name, value)
+        with command("demo", "--port", free_port(), until="token="):
+            yield {**os.environ}
+
+
+def test_the_lines_run_as_they_stand_in_one_terminal(environment: dict[str, str], tmp_path: Path, full: bool) -> None:
+    """In their order, in one shell that stops at the first failure; the last ones reach the demo by themselves."""
+    (tmp_path / ".venv").symlink_to(sys.prefix)
+    given = lines()
+    assert given[0] == ". .venv/bin/activate"
+    assert {line.split()[1] for line in given[1:]} >= {"simulate", "check", "fit", "diagnose", "upload", "query"}
+    run = [line for line in given if full or line.split()[1] not in SLOW]
+    done = subprocess.run(
+        ["bash", "-e"], input="\n".join(run), cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    uploaded, _, listed = done.stdout.partition(": 27 runs, new")
+    assert re.search(r"matrix \w+ of SIM-0003$", uploaded)
+    assert re.search(r"SIM-0001 +\w+ +qian2014", listed)
+    assert (tmp_path / "better.json").exists()
+
+
+def test_every_line_is_one_that_the_command_line_takes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also those that the short form does not run: each option is there, each argument of its kind."""
+    from app.cli.program import program
+
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "demo").mkdir()
+    (tmp_path / "fit.json").write_text("{}")
+    group = typer.main.get_command(program)
+    for line in lines()[1:]:
+        _, name, *arguments = shlex.split(line)
+        assert isinstance(group, typer.core.TyperGroup)
+        group.commands[name].make_context(name, arguments)
