@@ -2,7 +2,7 @@
 
     structure:  {mass: 87.5 kg, stiffness: 87.5 kN/m, damping: 3.5 kN*s/m}
     physical:   {mass: 8.75 kg, stiffness: 17.5 kN/m, damping: 0 N*s/m, storey: 1}
-    gain: 2                     # Kp of the actuator's loop
+    gain: 2                     # Kp of the actuator's loop, or 160 V/m where the loop's output is a voltage
     piston_area: 497 mm^2       # where the fit knew one: it is no parameter of the model; so supply_pressure
     ground:     {file: el_centro.txt, unit: g, step: 0.02 s, scale: 1}      # or the record itself: {text: ..., name}
     sample_rate: 4096 Hz        # of the outer loop
@@ -29,6 +29,7 @@ from ident.errors import Unusable
 from ident.hybrid.ground import Ground, ground_of
 from ident.matrix import Specimen
 from ident.readers.fields import Fields
+from ident.readers.loop_settings import loop_gain, sample_rate
 from ident.readers.strict_yaml import read_yaml
 from ident.units.quantity import quantity, shown, split
 
@@ -61,8 +62,8 @@ class Case:
 
     M x'' + C x' + K x = −M 1 a(t) is the whole structure: `mass`, `stiffness`, `damping` (n, n) hold its physical part
     too, x its displacements against the ground. `physical` is that part: mass, spring and damper between the ground and
-    storey `place` (0 is the lowest), which the actuator moves. `gain` is Kp of the actuator's loop; `delay` the samples
-    from a measurement to the command that answers it, at least 1.
+    storey `place` (0 is the lowest), which the actuator moves. `gain` is Kp of the actuator's loop, in V/m where its
+    output is a voltage; `delay` the samples from a measurement to the command that answers it, at least 1.
 
     Raises Unusable where the matrices do not go together, or what is physical is more than there is.
     """
@@ -242,7 +243,7 @@ def case_of(data: Any, base: Path | None = Path(), name: str = "case") -> Case:
     stiffness = _matrix(structure, "stiffness", "stiffness")
     physical, place = _physical(top, mass, stiffness)
     delay = top.whole("delay", 1)
-    rate, gain = top.positive("sample_rate", "frequency"), top.number("gain")
+    rate, gain = sample_rate(top), loop_gain(top)
     return Case(
         name=top.text("name", name),
         mass=mass,

@@ -10,6 +10,7 @@ from ident.errors import Unusable
 from ident.matrix import BENCH, HOLDS, KINDS, MOTIONS, USES, Run, Specimen
 from ident.readers.channel_description import ChannelDescription, describe_channels, describe_disturbance
 from ident.readers.fields import Fields
+from ident.readers.loop_settings import loop_gain, sample_rate
 from ident.readers.source import inside
 from ident.units.quantity import quantity, shown, split, unit_scale
 
@@ -132,16 +133,10 @@ def describe_clock(fields: Fields) -> tuple[TimeColumn | None, float, str]:
         clock.need("unit", "add unit: s")
         factor = unit_scale(clock.text("unit"), "time", clock.place("unit")).factor
         return TimeColumn(column, factor, clock.positive("resample", "frequency")), 0.0, "s"
-    text = fields.data["sample_rate"]
-    unit = split(text, fields.place("sample_rate"))[1].replace(" ", "")
-    dimension = "per sample" if unit in ("1/sample", "sample^-1") else "frequency"
-    if unit.endswith("/s") and unit[:-2] in ("S", "Sa", "sample", "samples"):
-        text = str(text).replace(unit, "Hz")
-    rate = quantity(text, dimension, fields.place("sample_rate"))
-    if rate <= 0:
-        remedy = "give the number of samples a second"
-        raise Unusable("not-positive", f"{shown(text)} is not above 0", fields.place("sample_rate"), remedy)
-    return None, rate, "sample" if dimension == "per sample" else "s"
+    unit = split(fields.data["sample_rate"], fields.place("sample_rate"))[1].replace(" ", "")
+    if unit in ("1/sample", "sample^-1"):
+        return None, fields.positive("sample_rate", "per sample") or 0.0, "sample"
+    return None, sample_rate(fields) or 0.0, "s"
 
 
 def describe_specimen(fields: Fields) -> Specimen | None:
@@ -155,8 +150,7 @@ def describe_specimen(fields: Fields) -> Specimen | None:
 
 def describe_gain(fields: Fields) -> float | None:
     """Kp, a dial, or V/m. Raises Unusable: ``zero-gain``, ``negative-gain``."""
-    in_volts = "gain" in fields and "V" in split(fields.data["gain"], fields.place("gain"))[1]
-    gain = fields.number("gain", "V/m" if in_volts else "1")
+    gain = loop_gain(fields)
     if gain is not None and gain <= 0:
         raise Unusable(
             "zero-gain" if gain == 0 else "negative-gain",
