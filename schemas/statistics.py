@@ -47,6 +47,14 @@ class CapabilityView(BaseModel):
     outside: int
 
 
+class ProductLimitsView(BaseModel):
+    """The limits that are set for the quantity, either of which may be open, and how many values lie outside."""
+
+    lower: float | None
+    upper: float | None
+    outside: int
+
+
 class OutlierView(BaseModel):
     """A value far from the others, with its modified z-score."""
 
@@ -68,7 +76,8 @@ class DriftView(BaseModel):
 class StatisticsView(BaseModel):
     """Statistics of one parameter over sets; values are in `unit`, percentiles by their number.
 
-    `left_out` is true where there are more sets than were taken, which are the newest.
+    `left_out` is true where there are more sets than were taken, which are the newest. `limits` are those of the
+    product, null where none are set; `capability` is null where Cpk is not given, and `no_capability` says why.
     """
 
     parameter: str
@@ -86,3 +95,5 @@ class StatisticsView(BaseModel):
     drift: DriftView | None
     points: list[PointView]
     left_out: bool
+    limits: ProductLimitsView | None = None
+    no_capability: str = ""

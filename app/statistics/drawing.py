@@ -28,7 +28,7 @@ def control_chart(
     if chart is None:
         raise Failure(409, "too-few", "one set makes no chart", "parameter", "approve a second one")
     where = f"serial number {serial}" if serial is not None else f"batch {batch}" if batch else "every batch"
-    limits = (found.capability.lower, found.capability.upper) if found.capability else (None, None)
+    limits = (found.limits.lower, found.limits.upper) if found.limits else (None, None)
     labels = [point.serial if serial is None else point.created_at[:10] for point in found.points]
     figure = drawn(chart, symbol(parameter, ""), found.unit, where, labels, limits, look(*style))
     return render(figure, kind), MEDIA[kind]

@@ -10,13 +10,24 @@ from app.errors import Failure
 from app.limits.repository import EVERY, in_batch
 from app.statistics import repository
 from app.statistics.repository import Chosen, Point
-from ident.statistics import Capability, ControlChart, capability, control_chart, drift, outliers, summary
+from ident.statistics import (
+    Capability,
+    ControlChart,
+    capability,
+    control_chart,
+    drift,
+    outliers,
+    outside,
+    summary,
+    withheld,
+)
 from schemas.statistics import (
     CapabilityView,
     ControlChartView,
     DriftView,
     OutlierView,
     PointView,
+    ProductLimitsView,
     SignalView,
     StatisticsView,
 )
@@ -42,7 +53,8 @@ def statistics(
         percentiles={str(share): value for share, value in found.percentiles.items()},
         control_chart=_chart(chart), capability=_capability(capability(values, lower, upper), lower, upper),
         outliers=_outliers(points), drift=_drift(points) if serial is not None else None,
-        points=_points(points, chart), left_out=left_out,
+        points=_points(points, chart), left_out=left_out, limits=_limits(values, lower, upper),
+        no_capability=withheld(values, lower, upper),
     )  # fmt: skip
 
 
@@ -68,6 +80,12 @@ def _chart(chart: ControlChart | None) -> ControlChartView | None:
 
 def _capability(found: Capability | None, lower: float | None, upper: float | None) -> CapabilityView | None:
     return None if found is None else CapabilityView(lower=lower, upper=upper, **vars(found))
+
+
+def _limits(values: Sequence[float], lower: float | None, upper: float | None) -> ProductLimitsView | None:
+    if lower is None and upper is None:
+        return None
+    return ProductLimitsView(lower=lower, upper=upper, outside=outside(values, lower, upper))
 
 
 def _outliers(points: Sequence[Point]) -> list[OutlierView]:

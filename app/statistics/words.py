@@ -39,9 +39,12 @@ def _numbers(found: StatisticsView) -> Iterator[tuple[str, str]]:
     if chart := found.control_chart:
         yield "Control limits, 3 σ", f"{of(chart.lower)} to {of(chart.upper)}"
         yield "Mean moving range", of(chart.mean_range)
+    if limits := found.limits:
+        yield "Limits of the product", f"{of(limits.lower)} to {of(limits.upper)}; {limits.outside} outside"
     if able := found.capability:
-        yield "Limits of the product", f"{of(able.lower)} to {of(able.upper)}; {able.outside} outside"
         yield "Cpk, 95 % interval", f"{plain(able.cpk, 3)} ({plain(able.low, 3)} to {plain(able.high, 3)})"
+    elif found.no_capability:
+        yield "Cpk", f"not given: {found.no_capability}"
     if drift := found.drift:
         told = "significant" if drift.significant else "within chance"
         yield "Drift a year", f"{of(drift.slope)} ± {of(drift.std_error)}, {told} (p = {plain(drift.p, 2)})"

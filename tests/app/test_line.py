@@ -12,6 +12,7 @@ from fastapi.testclient import TestClient
 from sqlalchemy import text
 from sqlalchemy.exc import IntegrityError
 
+from app.cli.statistics import show
 from app.limits.verdict import Judged, verdict
 from app.tables import ActuatorRow, ApprovalRow, FitRow, MatrixRow, SetRow, ValueRow
 
@@ -102,10 +103,13 @@ def test_statistics_of_a_batch_and_its_chart(line: TestClient) -> None:
     assert found["mean"] == pytest.approx(1e-6 * sum(VALUES) / 10)
     assert [one["serial"] for one in found["outliers"]] == ["LINE-9"]
     assert (9, 1) in {(signal["place"], signal["rule"]) for signal in found["control_chart"]["signals"]}
-    assert found["capability"] is None
+    assert (found["capability"], found["no_capability"]) == (None, "no limits are set")
     body = {"batch": "LINE", "limits": {"Z0": {"lower": 2.4e-6, "upper": 2.8e-6, "unit": "m^4/s"}}}
     assert line.put(f"{API}/limits/qian2014", json=body).status_code == 200
-    able = line.get(f"{API}/statistics", params=asked).json()["capability"]
+    judged = line.get(f"{API}/statistics", params=asked).json()
+    able = judged["capability"]
+    assert judged["limits"] == {"lower": 2.4e-6, "upper": 2.8e-6, "outside": 1}
+    assert judged["no_capability"] == ""
     assert able["outside"] == 1
     assert able["low"] < able["cpk"] < able["high"]
     for kind, magic in (("svg", b"<svg"), ("png", b"\x89PNG"), ("pdf", b"%PDF"), ("json", b"{")):
@@ -118,6 +122,22 @@ def test_statistics_of_a_batch_and_its_chart(line: TestClient) -> None:
     assert line.get(f"{API}/statistics", params={"batch": "LINE", "parameter": "error.fit"}).json()[
         "mean"
     ] == pytest.approx(0.01)
+
+
+def test_cpk_of_too_few_sets_is_not_given_over_http_on_the_page_or_the_terminal(
+    line: TestClient, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """One set against limits: the limits and what lies outside stand, Cpk does not, and each says why."""
+    body = {"batch": "LINE", "limits": {"Z0": {"lower": 2.4e-6, "upper": 2.8e-6, "unit": "m^4/s"}}}
+    assert line.put(f"{API}/limits/qian2014", json=body).status_code == 200
+    asked = {"parameter": "Z0", "batch": "LINE", "serial": "LINE-9"}
+    found = line.get(f"{API}/statistics", params=asked).json()
+    assert (found["n"], found["capability"], found["limits"]["outside"]) == (1, None, 1)
+    why = "1 set; given from 10 on"
+    assert found["no_capability"] == why
+    show(found)
+    for shown in (line.get("/statistics", params=asked).text, capsys.readouterr().out):
+        assert f"not given: {why}" in " ".join(shown.split())
 
 
 def test_limits_are_kept_with_their_units(line: TestClient) -> None:

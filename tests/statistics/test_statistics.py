@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from ident.statistics import capability, control_chart, drift, outliers, summary
+from ident.statistics import FEWEST_SETS, capability, control_chart, drift, outliers, summary, withheld
 
 FLOW = (49.6, 47.6, 49.9, 51.3, 47.8, 51.2, 52.6, 52.4, 53.6, 52.1)
 """The flow rates of ten batches in NIST/SEMATECH e-Handbook of Statistical Methods, 6.3.2.2."""
@@ -57,6 +57,21 @@ def test_the_confidence_interval_of_cpk_holds_the_true_one_in_95_of_100():
     found = [capability(draw.normal(0, 1, 50), -3.6, 6.0) for _ in range(2000)]
     held = np.mean([one.low <= 1.2 <= one.high for one in found])
     assert 0.93 < held < 0.97
+
+
+@pytest.mark.parametrize("limits", [(-3.6, 6.0), (None, 6.0), (-3.6, None)])
+def test_cpk_is_given_from_ten_sets_on_and_its_absence_has_a_reason(limits):
+    """Of 0 to 9 sets there is none, and the reason names both numbers; of 10 and more there is."""
+    draw = np.random.default_rng(3)
+    for count in range(31):
+        values = draw.normal(0, 1, count)
+        found, why = capability(values, *limits), withheld(values, *limits)
+        assert (found is None) == (count < 10) == bool(why)
+        if count < 10:
+            assert why.startswith(f"{count} set")
+            assert str(FEWEST_SETS) in why
+    assert withheld([1.0] * 12, *limits) == "all values are the same"
+    assert withheld(draw.normal(0, 1, 12), None, None) == "no limits are set"
 
 
 def test_percentiles_and_moments_are_numpy_s_and_scipy_s():
