@@ -8,26 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.matrix import BENCH, MOTIONS, USES, Matrix, Run, over_runs
+from ident.matrix import USES, Matrix, Run, over_runs
 from ident.noise.effective_sample_size import independent_samples
 from ident.noise.power_density import power_density
+from ident.noise.repeats import Repeat, repeated
 from ident.parallel import each
 
 Array = NDArray[np.float64]
 _CLEAR = 1.6  # times the band edge: beyond it a Hann window lets less than 1e-6 of the band's power through
 _LEAST = 0.2  # of the Nyquist frequency must be left above that, to average over
 _UPPER_HALF = 0.5  # of the spectrum shows the noise
-_SAME = 1e-3  # relative difference of two commands that are one
-_SAME_START = 0.05  # of the way that a step goes
-_ROUNDING = 1e-9
-_GLANCE = 64  # samples that show most commands to be different
-_SETTLED = 0.1  # of a record, in which the states that it begins with die away
-_DRIVES = ("command", "drive_force", *MOTIONS)
 _FEW, _OF_ONE_SIZE = 3, 0.02  # records, and their spread in logarithms, from which nothing is told of the noise's size
 
 
@@ -92,26 +86,30 @@ def noise_floors(runs: Sequence[Run], band: float, left_out: Collection[str] = (
     displacement or in proportion to it, as the pairs say, or where these are few, the spectra. Each output is told by
     itself: two of one record are no repeats, and their noise has nothing in common.
     """
+    pairs = repeated([run for run in runs if run.id not in left_out])
     by_output: dict[str, list[Run]] = {}
     for run in runs:
         by_output.setdefault(run.output, []).append(run)
-    if len(by_output) > 1:
-        parts = [noise_floors(alike, band, left_out) for alike in by_output.values()]
-        return Floors(
-            {run: floor for part in parts for run, floor in part.by_run.items()},
-            min(part.degrees_of_freedom for part in parts),
-            min(part.independent_share for part in parts),
-            measured=all(part.measured for part in parts),
-        )
-    pairs = repeated([run for run in runs if run.id not in left_out])
+    parts = [_of_one_output(of, [p for p in pairs if p.first.output == name], band) for name, of in by_output.items()]
+    if len(parts) == 1:
+        return parts[0]
+    return Floors(
+        {run: floor for part in parts for run, floor in part.by_run.items()},
+        min(part.degrees_of_freedom for part in parts),
+        min(part.independent_share for part in parts),
+        measured=all(part.measured for part in parts),
+    )
+
+
+def _of_one_output(runs: Sequence[Run], pairs: Sequence[Repeat], band: float) -> Floors:
     if not pairs:
         degrees_of_freedom = _UPPER_HALF * sum(run.length for run in runs if run.use == "fit")
         seen = zip(runs, by_spectrum(runs, band), strict=True)
         return Floors({run.id: floor for run, floor in seen}, max(degrees_of_freedom, 1.0))
-    differences = [_settled(a.measured, b) - _settled(b.measured, a) for a, b in pairs]
+    differences = [pair.difference() for pair in pairs]
     degrees_of_freedom = sum(independent_samples(difference) for difference in differences)
     powers = np.array([0.5 * np.var(difference) for difference in differences])
-    shares = powers / [0.5 * (np.var(a.measured) + np.var(b.measured)) for a, b in pairs]
+    shares = powers / [0.5 * (np.var(a.measured) + np.var(b.measured)) for a, b, _ in pairs]
     sizes = np.array([np.std(run.measured) for run in runs])
     steady = like_transducer(np.sqrt(powers / shares), list(np.sqrt(shares)))
     if steady is None:
@@ -119,21 +117,6 @@ def noise_floors(runs: Sequence[Run], band: float, left_out: Collection[str] = (
     floors = np.full(len(runs), np.sqrt(np.median(shares))) if steady is False else np.sqrt(np.median(powers)) / sizes
     by_run = {run.id: float(floor) for run, floor in zip(runs, floors, strict=True)}
     return Floors(by_run, degrees_of_freedom, degrees_of_freedom / sum(map(len, differences)), measured=True)
-
-
-def repeated(runs: Sequence[Run]) -> list[tuple[Run, Run]]:
-    """Pairs of runs of one use, specimen, gain and command: not the same record under two names.
-
-    A run to verify is not taken for a repeat of one to fit: something was changed on purpose, such as an added load.
-    Of runs of which nothing is stated something may have been changed, too; but what no channel and no label tells no
-    model can follow, and the checks say that they count as repeats.
-    """
-    groups: dict[object, list[Run]] = {}
-    for run in runs:
-        if run.kind in BENCH:  # these differ in what else was set
-            continue
-        groups.setdefault((run.use, run.specimen, run.gain, run.sample_rate), []).append(run)
-    return [pair for members in groups.values() for pair in combinations(members, 2) if _same(*pair)]
 
 
 def like_transducer(sizes: Array, floors: Sequence[float | None]) -> bool | None:
@@ -145,41 +128,3 @@ def like_transducer(sizes: Array, floors: Sequence[float | None]) -> bool | None
     if len(sizes) < _FEW or not np.all(known > 0) or np.std(np.log(sizes)) < _OF_ONE_SIZE:
         return None
     return bool(np.std(np.log(known * sizes)) < np.std(np.log(known)))
-
-
-def _same(a: Run, b: Run) -> bool:
-    if abs(a.length - b.length) > 0.1 * a.length:
-        return False
-    u, v = _settled(_driven(a), b), _settled(_driven(b), a)
-    if at_rest(u) or at_rest(v):
-        return _same_step(a, b, u, v)
-    thin = slice(None, None, 1 + len(u) // _GLANCE)
-    if np.std(u[thin] - v[thin]) > 3.0 * _SAME * np.std(u[thin]):  # most pairs differ at a glance
-        return False
-    different = not np.array_equal(_settled(a.measured, b), _settled(b.measured, a))
-    return different and bool(np.std(u - v) < _SAME * np.std(u))
-
-
-def at_rest(samples: Array) -> bool:
-    """Whether samples stand still, but for their rounding."""
-    return bool(np.ptp(samples) <= _ROUNDING * np.abs(samples).max())
-
-
-def _same_step(a: Run, b: Run, u: Array, v: Array) -> bool:
-    """Whether two runs whose drives `u` and `v` stand still are one step: to one level, from one place."""
-    level = max(np.abs(u).max(), np.abs(v).max())
-    size = max(np.ptp(a.measured), np.ptp(b.measured))
-    alike = at_rest(u) and at_rest(v) and abs(u[0] - v[0]) <= _SAME * level
-    different = not np.array_equal(_settled(a.measured, b), _settled(b.measured, a))
-    return bool(alike and different and abs(a.measured[0] - b.measured[0]) <= _SAME_START * size)
-
-
-def _driven(run: Run) -> Array:
-    """What drives a run: its command, else the force on the load, else the motion."""
-    return next(run.channels[name] for name in _DRIVES if name in run.channels and name != run.output)
-
-
-def _settled(samples: Array, other: Run) -> Array:
-    """What two records have in common once they have settled."""
-    count = min(len(samples), other.length)
-    return samples[int(_SETTLED * count) : count]

@@ -202,10 +202,14 @@ def test_the_same_samples_under_two_names_are_found(faulty):
     assert verifies["run-2", "duplicate-run"] == "fault"
 
 
-def test_the_same_conditions_twice_are_a_repeat_and_no_doubt(faulty):
-    again = faulty.run(1, gain=5.0)
-    assert again.found()[None, "repeat"] == "note"
-    assert "run-0 and run-1" in again.text("repeat")
+def test_one_command_twice_under_the_same_conditions_is_a_repeat_and_no_doubt(faulty):
+    labelled_alike = faulty.run(1, gain=5.0)
+    assert (None, "repeat") not in labelled_alike.found()  # the commands are others
+    noise = 1e-6 * np.random.default_rng(60).standard_normal(faulty.matrix.runs[0].length)
+    channels = {"command": faulty.matrix.runs[0].command, "displacement": faulty.matrix.runs[0].measured + noise}
+    again = labelled_alike.run(1, channels=channels)
+    assert again.found() == {(None, "repeat"): "note"}
+    assert "runs run-0 and run-1 repeat one command under the same stated conditions" in again.text("repeat")
 
 
 def test_one_command_twice_with_nothing_stated_counts_as_a_repeat_and_says_what_to_state(faulty):

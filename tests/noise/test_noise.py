@@ -9,7 +9,8 @@ import pytest
 
 from ident.fit.reduction import excited_band
 from ident.matrix import Run
-from ident.noise.floor import noise_floors, repeated
+from ident.noise.floor import noise_floors
+from ident.noise.repeats import repeated
 from tests.blind.machines import Machine
 from tests.blind.noises import with_noise
 from tests.reference import qian_reference as linear
@@ -83,12 +84,12 @@ def test_a_pair_with_a_run_that_is_not_trusted_tells_nothing(clean):
 
 def test_repeats_are_measurements_of_one_command_at_the_same_conditions(clean):
     first, second, *_ = with_noise(clean, "low_passed", SHARE, seed=6, repeats=1).runs
-    assert repeated([first, second]) == [(first, second)]
+    assert repeated([first, second]) == [(first, second, 0)]
     assert repeated([first, replace(first, id="copy")]) == []
     assert repeated([first, replace(second, gain=2.0 * second.Kp)]) == []
     assert repeated([first, replace(second, use="verify")]) == []
     unstated = [replace(run, specimen=None, gain=None) for run in (first, second)]
-    assert repeated(unstated) == [tuple(unstated)]  # what tells them apart no model can know
+    assert repeated(unstated) == [(*unstated, 0)]  # what tells them apart no model can know
     louder = {**second.channels, "command": 1.01 * second.command}
     assert repeated([first, replace(second, channels=louder)]) == []
     later = {name: samples[: second.length // 2] for name, samples in second.channels.items()}
@@ -106,4 +107,4 @@ def test_of_steps_those_to_one_level_from_one_place_are_repeats():
 
     one, again, other, back = step("one", 0.1), step("again", 0.1), step("other", 0.35), step("back", 0.1, 0.3)
     fall, still = step("fall", 0.0, 0.3), step("still", 0.0)
-    assert repeated([one, again, other, back, fall, still]) == [(one, again)]
+    assert repeated([one, again, other, back, fall, still]) == [(one, again, 0)]
