@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from ident.checks.amplitude import amplitude
 from ident.checks.band import band
 from ident.checks.clipping import clipping
+from ident.checks.copied import copied
 from ident.checks.delay import delays
 from ident.checks.feedback import feedback
 from ident.checks.finding import Finding, Findings
@@ -53,6 +54,7 @@ def one_run(run: Run, response: Response | None, actuator: Actuator) -> Iterator
     yield from timing(run, response)
     yield from clipping(run)
     yield from flat(run)
+    yield from copied(run)
     yield from band(run, response)
     yield from amplitude(run)
     yield from gain(run, response)

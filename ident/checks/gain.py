@@ -8,11 +8,10 @@ from math import degrees, log
 import numpy as np
 
 from ident.checks.finding import Finding
-from ident.checks.response import Response, response
+from ident.checks.response import RELATED, Response, response
 from ident.matrix import Run
 
 BAND = (0.0, 0.1)  # of the command's power
-RELATED = 0.3  # mean coherence; far above the 0.12 that chance makes of 8 frames
 TURNED = 120.0  # degrees; the loop lags by less than 90 there
 LARGE, SMALL = 2.0, 1 / 7  # a closed position loop gives 0.5 to 1.2; stiff specimens and leakage lower it
 FACTORS = {2.54: "in for cm", 10.0: "cm for mm", 25.4: "in for mm", 100.0: "m for cm", 1000.0: "m for mm"}

@@ -13,6 +13,7 @@ POINTS = 80  # frequencies at which the response is wanted
 HALF_WIDTH = 8  # spectral lines either side of each
 DEGREE = 2  # of the polynomials
 UNKNOWNS = 2 * (DEGREE + 1)
+EMPTY = 1e-9  # of the strongest lines' amplitude: below, it is the spectrum's rounding, not the command
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +29,8 @@ def local_response(u: Samples, y: Samples, sample_rate: float, highest: float) -
     """Around each frequency, Y = H U + T over the lines of the whole record, H and T polynomials of the line.
 
     T takes the transients at both ends, which averages over windows leave in as an error of several per cent. u and y
-    are (n,); `highest` in Hz ends the band. None where the band has too few lines.
+    are (n,); `highest` in Hz ends the band. Frequencies at which the command has no power are left out. None where the
+    band has too few lines, or the command has power nowhere.
     """
     spectra = np.fft.rfft(u - u.mean()), np.fft.rfft(y - y.mean())
     last = min(int(highest * len(u) / sample_rate), len(spectra[0]) - 1 - HALF_WIDTH)
@@ -38,8 +40,13 @@ def local_response(u: Samples, y: Samples, sample_rate: float, highest: float) -
     beside = np.arange(-HALF_WIDTH, HALF_WIDTH + 1)
     powers = (beside / HALF_WIDTH)[:, None] ** np.arange(DEGREE + 1)
     lines_u, lines_y = (spectrum[centres[:, None] + beside] for spectrum in spectra)
-    scale = np.sqrt(np.mean(np.abs(lines_u) ** 2, axis=1))[:, None] + np.finfo(float).tiny
-    lines_u, lines_y = lines_u / scale, lines_y / scale
+    size = np.sqrt(np.mean(np.abs(lines_u) ** 2, axis=1))
+    rounding = np.finfo(float).eps * np.sqrt(len(u)) * np.abs(u).max()
+    excited = size > max(EMPTY * size.max(), rounding)
+    if not excited.any():
+        return None
+    centres, scale = centres[excited], size[excited, None]
+    lines_u, lines_y = lines_u[excited] / scale, lines_y[excited] / scale
     regressor = np.concatenate(
         [lines_u[:, :, None] * powers, np.broadcast_to(powers, (len(centres), *powers.shape))], 2
     )

@@ -14,6 +14,11 @@ from ident.noise.power_density import hann
 LONGEST_FRAME = 8192
 FRAMES = 8  # at least: with fewer, chance alone makes a coherence of 0.4
 SHORTEST_FRAME = 16
+RELATED = 0.3  # mean coherence of two signals that have to do with each other; chance makes 0.12 of 8 frames
+RESTS = 0.05  # scatter of a command that rests, over its level or the deviation of an output of the same unit
+WHITE = (
+    0.7  # of its power, at least, that a recorder's noise changes by from sample to sample; 0.06 of 10 samples a cycle
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,10 +57,27 @@ class Response:
 
 
 def respond(run: Run) -> Response | None:
-    """The response from command to output; None where there is no command or the record is too short to average."""
-    if "command" not in run.channels:
+    """The response from command to output; None where there is none, it rests, or the record is too short to average.
+
+    A command that is held throughout has no band and is followed by nothing: what spectrum it shows is that of its
+    rounding, or of the noise with which it was recorded.
+    """
+    if "command" not in run.channels or run.stepped:
         return None
-    return response(run.command, run.measured, run.sample_rate)
+    found = response(run.command, run.measured, run.sample_rate)
+    return None if found is None or (_may_rest(run) and found.coherence.mean() < RELATED) else found
+
+
+def _may_rest(run: Run) -> bool:
+    """Whether the command changes from sample to sample, as a recorder's noise does, and little for what it moves.
+
+    White excitation does so, too; but that the output follows. One that moves as far as an output of its own unit is
+    no rest: where that does not follow it, it is the record of something else.
+    """
+    power, successive = float(np.var(run.command)), 0.5 * float(np.mean(np.diff(run.command) ** 2))
+    if successive < WHITE * power or run.units.get("command") != run.units.get(run.output):
+        return successive >= WHITE * power
+    return power <= (RESTS * max(abs(float(run.command.mean())), float(np.std(run.measured)))) ** 2
 
 
 def response(u: Samples, y: Samples, sample_rate: float) -> Response | None:

@@ -8,8 +8,8 @@ from math import exp, log
 import numpy as np
 
 from ident.checks.finding import Finding
-from ident.checks.gain import FACTORS, RELATED
-from ident.checks.response import Response
+from ident.checks.gain import FACTORS
+from ident.checks.response import RELATED, Response
 from ident.matrix import Run
 
 LEAST = 10.0  # a dead zone or dry friction makes small and large commands differ by less

@@ -56,7 +56,11 @@ def timing(run: Run, response: Response | None) -> Iterator[Finding]:
 
 
 def _too_quick(run: Run) -> Iterator[Finding]:
-    """A held command's steps that are answered within two samples: how the machine goes there is not recorded."""
+    """A held command's steps that are answered within two samples: how the machine goes there is not recorded.
+
+    Answered is what then stays: an answer that swings, or is seen without its sign, may be where it ends up after
+    two samples by chance, and goes on.
+    """
     size = np.abs(np.diff(run.command))
     steps = np.flatnonzero(size > 0.5 * np.std(run.command))
     alone = [k for k in steps if k + 1 + SETTLED < run.length and not size[k + 1 : k + 1 + SETTLED].any()]
@@ -65,8 +69,9 @@ def _too_quick(run: Run) -> Iterator[Finding]:
     told = np.abs(whole) > 0.2 * np.std(x)
     if told.sum() < STEPS:
         return
-    early = np.array([x[k + 1 + QUICK] - x[k] for k in alone])
-    share = float(np.median(early[told] / whole[told]))
+    later = np.array([x[k + 1 + QUICK : k + 2 + SETTLED] - x[k] for k in alone])
+    away = np.abs(later[told] / whole[told][:, None] - 1.0).max(axis=1)  # from where it ends up, at most
+    share = 1.0 - float(np.median(away))
     if share > MOST:
         text = (
             f"run {run.id} answers a step of its command by {share:.0%} within {QUICK} samples: how it goes is not "

@@ -1,0 +1,28 @@
+"""An output that is its command once more: one column taken for both."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ident.checks.finding import Finding
+from ident.matrix import Run
+
+EXACT = 1e-6
+"""Of the output's deviation, what no gain and no offset of the command explains: any recorder's noise is larger."""
+
+
+def copied(run: Run) -> Iterator[Finding]:
+    """A doubt where the output is a gain times the command, and an offset, without delay, dynamics or noise."""
+    if "command" not in run.channels or run.stepped:
+        return
+    u, x = run.command - run.command.mean(), run.measured - run.measured.mean()
+    rest = x - u * (float(u @ x) / float(u @ u))
+    if not x.any() or float(np.std(rest)) > EXACT * float(np.std(x)):
+        return
+    text = (
+        f"{run.output} of run {run.id} is its command once more, without delay, dynamics or noise: no sensor gives "
+        "that; check that its column is that of the sensor"
+    )
+    yield Finding(run.id, "doubt", "copied", text)

@@ -1,0 +1,137 @@
+"""Sound records of many kinds raise no doubt and no warning of NumPy; wrong records of the same kinds do."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ident.checks.check import check
+from ident.checks.local_response import local_response
+from ident.checks.response import respond
+from ident.matrix import Actuator, Matrix, Run
+
+from .sound_records import (
+    KINDS,
+    Draw,
+    band,
+    lag,
+    levels,
+    measured,
+    noisy,
+    one_step,
+    random_noise,
+    rectified,
+    ringing,
+    slow_sine,
+    staircase,
+    sweep,
+    swing,
+)  # fmt: skip
+
+
+def doubts(*runs: Run) -> set[tuple[str | None, str]]:
+    """Run and code of every doubt and fault."""
+    return {(found.run, found.code) for found in check(Matrix(Actuator("X"), runs)) if found.severity != "note"}
+
+
+@pytest.mark.parametrize("draw", KINDS, ids=lambda draw: draw.__name__)
+def test_sound_records_raise_no_doubt_and_no_warning(draw: Draw, full: bool) -> None:
+    """A hundred in all; a thousand in the long form."""
+    for number in range(KINDS[draw] * (10 if full else 1)):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            found = check(measured(draw, [list(KINDS).index(draw), number]))
+        assert [each for each in found if each.severity != "note"] == [], number
+
+
+def test_there_are_a_hundred_of_them() -> None:
+    assert sum(KINDS.values()) == 100
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize(
+    "seen", [lambda y: y, np.abs, lambda y: np.round(50 * y) / 50], ids=["", "rectified", "coarse"]
+)
+def test_steps_that_are_answered_within_two_samples_are_doubted(seed: int, seen) -> None:
+    """A lag of a sample, and a swing of four samples a cycle that is damped well."""
+    rng = np.random.default_rng(seed)
+    u = np.abs(levels(rng, 1500, 30)) + 0.5
+    for clean in (lag(u, 100.0, 0.008), swing(u, 100.0, 25.0, 0.8)):
+        channels = {"command": u, "velocity": seen(noisy(rng, clean, 0.005))}
+        run = Run("r", "", 100.0, channels, {"command": "V", "velocity": "rad/s"}, output="velocity", hold="zoh")
+        assert ("r", "sample-rate") in doubts(run)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("samples", [2.2, 4.0, 8.0])
+def test_noise_with_too_few_samples_a_cycle_is_doubted(seed: int, samples: float) -> None:
+    """About zero or about a level a hundred times as large, up to a command that fills the spectrum."""
+    rng = np.random.default_rng(seed)
+    u = band(rng, 4000, 100.0, 100.0 / samples)
+    for level in (0.0, 100.0):
+        channels = {"command": u + level, "velocity": noisy(rng, lag(u, 100.0, 0.03), 0.03) + level}
+        run = Run("r", "", 100.0, channels, {"command": "V", "velocity": "rad/s"}, output="velocity")
+        assert ("r", "sample-rate") in doubts(run)
+
+
+@pytest.mark.parametrize(
+    "draw", [ringing, slow_sine, one_step, staircase, random_noise, sweep], ids=lambda d: d.__name__
+)
+def test_an_output_that_is_the_command_once_more_is_doubted(draw: Draw) -> None:
+    """The command's column taken for both, as it is, turned, or in another unit and with another zero."""
+    (run, _) = measured(draw, [20, 1]).runs
+    for gain, zero in ((1.0, 0.0), (-1.0, 0.0), (25.4, 3.0)):
+        copy = replace(run, channels={"command": run.command, run.output: gain * run.command + zero})
+        assert (run.id, "copied") in doubts(copy)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_channel_whose_delay_is_not_that_of_its_sisters_is_doubted(seed: int) -> None:
+    """Of four sound runs one lacks the three samples by which the output of the others is late."""
+    rng, rate, runs = np.random.default_rng(seed), 1000.0, []
+    for number, late in enumerate((3, 3, 3, 0)):
+        u = band(rng, 6000, rate, 80.0)
+        x = noisy(rng, swing(u, rate, 30.0, 0.7), 0.003)
+        channels = {"command": u[10:], "displacement": x[10 - late : 6000 - late]}
+        runs.append(Run(f"r{number}", "", rate, channels, {"command": "V", "displacement": "m"}))
+    assert ("r3", "skew") in doubts(*runs)
+
+
+@pytest.mark.parametrize("unit", ["m", "V"])
+def test_a_white_command_is_no_rest_where_the_output_follows_or_is_of_its_size(unit: str) -> None:
+    rng = np.random.default_rng(8)
+    u = rng.standard_normal(4000)
+    units = {"command": unit, "displacement": "m"}
+    follows = Run("follows", "", 100.0, {"command": u, "displacement": lag(u, 100.0, 0.03)}, units)
+    assert respond(follows) is not None
+    other = replace(follows, id="other", channels={"command": u, "displacement": rng.standard_normal(4000)})
+    assert (("other", "unrelated") in doubts(other)) is (unit == "m")
+
+
+def test_a_response_is_told_only_where_the_command_has_power() -> None:
+    rng, t = np.random.default_rng(9), np.arange(4000) / 100.0
+    y = rng.standard_normal(4000)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert local_response(np.full(4000, 0.1), y, 100.0, 40.0) is None
+        two = local_response(np.sin(2 * np.pi * 5 * t) + np.sin(2 * np.pi * 20 * t), y, 100.0, 40.0)
+        empty = local_response(np.where(np.arange(4000) < 2000, 1e-200, 0.0), 1e200 * y, 100.0, 40.0)
+    assert two is not None
+    assert all(min(abs(f - 5), abs(f - 20)) < 0.5 for f in two.frequency)
+    assert empty is None or np.isfinite(empty.gain).all()
+
+
+def test_some_of_the_ringing_and_rectified_answers_are_past_their_end_after_two_samples() -> None:
+    """So that where they are then tells nothing: the check is asked about such records above."""
+    past = 0
+    for draw in (ringing, rectified):
+        for number in range(KINDS[draw]):
+            for run in measured(draw, [list(KINDS).index(draw), number]).runs:
+                steps = np.flatnonzero(np.diff(run.command))
+                steps = steps[steps < run.length - 12]
+                whole, early = (run.measured[steps + later] - run.measured[steps] for later in (11, 3))
+                past += int(np.median(early / whole) > 0.8)
+    assert past > 0
