@@ -21,6 +21,9 @@ ROOT = Path(__file__).resolve().parents[1]
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
+# A warning of a number ends the processes that tests start, too; those of the tests themselves: pyproject.toml.
+os.environ["PYTHONWARNINGS"] = "error::RuntimeWarning"
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--full", action="store_true", help="run the acceptance tests at full length (many minutes)")
@@ -135,6 +138,7 @@ def servoident(tmp_path_factory) -> Iterator[Program]:
         out, err = io.StringIO(), io.StringIO()
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), pytest.raises(SystemExit) as ended:
             main([str(argument) for argument in arguments])
+        assert "Warning" not in err.getvalue()
         return Outcome(ended.value.code, out.getvalue(), err.getvalue())
 
     yield run
