@@ -174,7 +174,9 @@ class Draft:
     def doubts(self) -> tuple[str, ...]:
         """What was taken from names and heads, file by file, and what no file states, once each."""
         known = [self.known(file) for file in self.files]
-        return tuple(dict.fromkeys([*(doubt for one in known for doubt in one.doubts), *self._on_hold(known)]))
+        remarks = (remark for file in self.files for remark in file.remarks)
+        taken = (doubt for one in known for doubt in one.doubts)
+        return tuple(dict.fromkeys([*remarks, *taken, *self._on_hold(known)]))
 
     def _on_hold(self, known: Sequence[Known]) -> Iterator[str]:
         """What was taken of the command between its samples."""
@@ -234,7 +236,8 @@ def _unit(columns: Sequence[Column]) -> str:
 
 
 def _listed(file: RawFile) -> str:
-    return f"{file.name} ({some_of([column.name for column in file.columns])})"
+    left_out = "".join(f"; {why}" for why in file.left_out)
+    return f"{file.name} ({some_of([column.name for column in file.columns])}{left_out})"
 
 
 def _option(key: str) -> str:

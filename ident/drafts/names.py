@@ -1,52 +1,22 @@
-"""What a column is called where its name leaves no doubt: the words of benches, and the channel that each means."""
+"""Which column is which channel by what the columns are called: a suggestion, which is shown to the user."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
-from ident.drafts.raw import Column, bare
+from ident.drafts.raw import Column
+from ident.readers.column_names import PAIRS, UNITS_BY_NAME, channel_of, is_time, said, stem_of
 
-WORDS = {
-    "command": ("command", "cmd", "reference", "ref", "setpoint", "set point", "demand", "desired", "drive command"),
-    "displacement": ("displacement", "disp", "position", "pos", "lvdt", "stroke", "measured displacement"),
-    "velocity": ("velocity", "vel", "speed", "rpm"),
-    "force": ("force", "load", "load cell", "measured force"),
-    "load_pressure": ("load pressure", "differential pressure", "dp", "pl"),
-    "pressure_a": ("pressure a", "pa side", "p a"),
-    "pressure_b": ("pressure b", "pb side", "p b"),
-    "supply_pressure": ("supply pressure", "ps"),
-    "spool": ("spool", "spool position", "spool displacement"),
-    "current": ("current", "valve current"),
-    "temperature": ("temperature", "temp", "oil temperature"),
-}
-"""Names of columns, in small letters, with the channel of matrix.yaml that they are."""
-TIMES = ("time", "t", "x_value", "timestamp", "elapsed time", "time stamp", "zeit")
-"""Names of a column of times."""
-UNITS_BY_NAME = ("rpm",)
-"""Names that are a unit: what is called so is measured in it."""
-
-
-def said(name: str) -> str:
-    """A column's name as it would be said: small letters, spaces, no unit, no group."""
-    return " ".join(re.sub(r"[^0-9a-z_]+|_", " ", bare(name).lower()).split())
-
-
-def channel_of(name: str) -> str:
-    """The channel that a name means; nothing where it could be another thing."""
-    return next((channel for channel, words in WORDS.items() if said(name) in words), "")
-
-
-def is_time(name: str) -> bool:
-    """Whether a column of this name holds the time."""
-    return bare(name).lower().replace("-", " ") in TIMES
+__all__ = ["channel_of", "is_time", "suggested", "unit_of"]
 
 
 def suggested(columns: Sequence[Column]) -> dict[str, Column]:
     """The column of each channel that one column alone is called after."""
     found: dict[str, list[Column]] = {}
+    inputs = [given for given, out in PAIRS if {given, out} <= {stem_of(column.name) for column in columns}]
     for column in columns:
-        if channel := channel_of(column.name):
+        channel = "command" if stem_of(column.name) in inputs else channel_of(column.name, column.unit)
+        if channel:
             found.setdefault(channel, []).append(column)
     return {channel: candidates[0] for channel, candidates in found.items() if len(candidates) == 1}
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,17 +14,24 @@ from ident.cached import cached_property
 from ident.errors import Unusable
 from ident.matrix import Samples
 from ident.readers import PACKED, TEXT, ending_of, read_table
+from ident.readers.column_names import bare, bracketed, is_time, is_unit, measures_time, suffix
 from ident.readers.controldesk import is_controldesk
 from ident.readers.gzipped import unpacked
+from ident.readers.layout import Form, line_start, recognise
 from ident.readers.limits import LIMITS, Limits
 from ident.readers.table import NUMERIC, Table
-from ident.readers.text import as_utf8, is_number, line_start, sniff, split_line
-from ident.units.quantity import si_scale
+from ident.readers.text import as_utf8
+from ident.units.quantity import unit_scale
 
-_LOOKED_THROUGH = 100  # lines in front of a table
-_IN_NAME = re.compile(r"^(.*\S)\s*[\[(]\s*([^\[\]()]+?)\s*[\])]$")
-_RATE = re.compile(r"^\W*sampl\w*[\s_]*(?:rate|frequency)\W*?\s*([0-9][0-9.eE+]*)\s*([A-Za-z/]*)\W*$", re.I | re.M)
-_STEP = re.compile(r"^\W*sampl\w*[\s_]*(?:interval|period)\W*?\s*([0-9][0-9.eE+-]*)\s*([A-Za-zµ]*)\W*$", re.I | re.M)
+__all__ = ["Column", "Rate", "RawFile", "bare", "is_unit", "read_raw"]
+
+_LETTER_M = "m"  # behind a name it may be metres, or say that it was measured
+_SAMPLING = r"^\W*(?:sampl|abtast|[ée]chantillon|campion)\w*[\s_]*"
+_NUMBER = r"\W*?\s*([0-9][0-9.,eE+-]*)\s*"
+_RATE = re.compile(
+    _SAMPLING + r"(?:rate|frequency|frequen[zc]\w*|fr[ée]quence)?" + _NUMBER + r"([A-Za-z/]*)\W*$", re.I | re.M
+)
+_STEP = re.compile(_SAMPLING + r"(?:time|interval\w*|period\w*|zeit)?" + _NUMBER + r"([A-Za-zµ]*)\W*$", re.I | re.M)
 
 
 @dataclass(frozen=True)
@@ -45,12 +53,17 @@ class Rate:
 
 @dataclass(frozen=True)
 class RawFile:
-    """A file by its name, read: `skip_rows` lines stand above the line of names of a text, `preamble` is their text."""
+    """A file by its name, read: `skip_rows` lines stand above the line of names of a text, `preamble` is their text.
+
+    `form` is how a text is cut; `period` what a row of the heading such as Interval says: a number and its unit.
+    """
 
     name: str
     table: Table
     skip_rows: int
     preamble: str
+    form: Form | None = None
+    period: tuple[float, str] | None = None
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:
@@ -73,21 +86,79 @@ class RawFile:
 
     @property
     def rate(self) -> Rate | None:
-        """The sample rate that the lines above the table state; without its unit where the interval confirms it."""
-        rate, step = _RATE.search(self.preamble), _STEP.search(self.preamble)
-        if rate is None:
-            return None
-        value, unit = float(rate[1]), rate[2]
-        if unit.lower() in ("hz", "khz"):
-            return Rate(value * (1e3 if unit.lower() == "khz" else 1.0), True)
-        confirmed = step is not None and not step[2] and np.isclose(value * float(step[1]), 1.0, rtol=1e-3)
-        return Rate(value, False) if confirmed and not unit else None
+        """The sample rate that the heading or the lines above the table state; a rate without a unit where an interval
+        confirms it. An interval in a row of the heading that names no unit is in seconds."""
+        if self.period is not None and (step := _seconds(self.period[0], self.period[1] or "s")):
+            return Rate(1.0 / step, bool(self.period[1]))
+        rates = [(value, unit) for value, unit in _stated(_RATE, self.preamble) if unit.lower() in ("", "hz", "khz")]
+        steps = [(value, unit) for value, unit in _stated(_STEP, self.preamble) if unit.lower() not in ("hz", "khz")]
+        for value, unit in rates:
+            if unit:
+                return Rate(value * (1e3 if unit.lower() == "khz" else 1.0), True)
+        for value, unit in steps:
+            if unit and (step := _seconds(value, unit)):
+                return Rate(1.0 / step, True)
+        for value, _ in rates:
+            if any(not unit and np.isclose(value * step, 1.0, rtol=1e-3) for step, unit in steps):
+                return Rate(value, False)
+        return None
 
     def _unit(self, number: int) -> str:
-        """The unit in the row of units, else that in brackets behind the name; nothing that is no unit."""
+        """The unit in the row of units, else in brackets behind the name, else at its end; nothing that is no unit."""
         stated = self.table.units[number] if number < len(self.table.units) else ""
-        behind = _IN_NAME.match(self.table.names[number])
-        return next((unit for unit in (stated, behind[2] if behind else "") if is_unit(unit)), "")
+        name = self.table.names[number]
+        found = next((unit for unit in (stated, bracketed(name)[1]) if is_unit(unit)), "")
+        return found or self._suffix(number) or (self._unit_of_period(number) if is_time(name) else "")
+
+    def _suffix(self, number: int) -> str:
+        """The unit that ends a name, as in Force_kN; x_m is in metres where another name ends with a unit, too."""
+        unit = suffix(self.table.names[number])[1]
+        others = (suffix(name)[1] for n, name in enumerate(self.table.names) if n != number)
+        return unit if unit != _LETTER_M or any(other not in ("", _LETTER_M) for other in others) else ""
+
+    def _unit_of_period(self, number: int) -> str:
+        """The unit of a time that runs in steps of the interval that the heading states."""
+        if self.period is None or not self._fine[number]:
+            return ""
+        step = float(np.median(np.diff(self.samples(number))))
+        return (self.period[1] or "s") if np.isclose(step, self.period[0], rtol=1e-3) else ""
+
+    @cached_property
+    def named_units(self) -> tuple[str, ...]:
+        """The columns whose unit is taken from the end of the name, each with the unit, in words."""
+        return tuple(
+            f"{column.name!r} is taken in {column.unit}, by its name" for column in self.columns
+            if column.unit and column.unit == self._suffix(column.number) and not self._has_stated(column.number)
+        )  # fmt: skip
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What reading assumed of the file, and what it took from the names of columns."""
+        assumed = ""
+        if self.period is not None and not self.period[1]:
+            assumed = f"{self.name}: the interval of {self.period[0]:g} names no unit and is taken in seconds"
+        return tuple(filter(None, (*self.table.notices, assumed, *self.named_units, *self.left_out)))
+
+    def _has_stated(self, number: int) -> bool:
+        stated = self.table.units[number] if number < len(self.table.units) else ""
+        return is_unit(stated) or is_unit(bracketed(self.table.names[number])[1])
+
+    @cached_property
+    def left_out(self) -> tuple[str, ...]:
+        """The columns that hold numbers, but not throughout, each with the row that breaks it, in words."""
+        return tuple(why for number, fine in enumerate(self._fine) if not fine and (why := self._flaw(number)))
+
+    def _flaw(self, number: int) -> str:
+        """What breaks a column of numbers; nothing where it holds none."""
+        try:
+            samples = self.samples(number)
+        except Unusable as refused:
+            words = refused.code != "not-numeric" or number not in self.table.mostly
+            return "" if words else f"{self.table.names[number]!r} is left out: {refused.what}"
+        bad = np.flatnonzero(~np.isfinite(samples))
+        if not len(bad) or len(bad) > len(samples) // 2:
+            return ""
+        return f"{self.table.names[number]!r} is left out: sample {bad[0]} is {samples[bad[0]]}"
 
     def _holds_numbers(self, number: int) -> bool:
         try:
@@ -100,52 +171,32 @@ def _is_finite(samples: NDArray[Any]) -> bool:
     return len(samples) > 1 and samples.dtype.kind in NUMERIC and bool(np.isfinite(samples).all())
 
 
-def is_unit(text: str) -> bool:
-    """Whether a text is a unit that is known here; the 1 of unknown units is none, which a file may not choose."""
-    if not text or text[0].isdigit():
-        return False
-    try:
-        si_scale(text, "unit")
-    except Unusable:
-        return False
-    return True
+def _stated(pattern: re.Pattern[str], text: str) -> Sequence[tuple[float, str]]:
+    """The numbers with their units that lines of a preamble state."""
+    found = []
+    for match in pattern.finditer(text):
+        try:
+            found.append((float(match[1].rstrip(",").replace(",", ".")), match[2]))
+        except ValueError:
+            continue
+    return [(value, unit) for value, unit in found if value > 0]
 
 
-def bare(name: str) -> str:
-    """The name of a column without its groups and without a unit in brackets."""
-    behind = _IN_NAME.match(name)
-    return (behind[1] if behind else name).rpartition("/")[2].strip()
+def _seconds(value: float, unit: str) -> float:
+    """A time in seconds; 0 where the unit is none of time."""
+    return value * unit_scale(unit, "time", "unit").factor if is_unit(unit) and measures_time(unit) else 0.0
 
 
 def read_raw(data: bytes, name: str, limits: Limits = LIMITS) -> RawFile:
     """A raw file. Raises Unusable: ``no-columns`` and what the readers raise."""
-    ending, skip, preamble = ending_of(name), 0, ""
+    ending, skip, preamble, form, period = ending_of(name), 0, "", None, None
     if ending.removesuffix(PACKED) in TEXT:
         text = as_utf8(unpacked(data, name, limits) if ending.endswith(PACKED) else data)
-        skip = 0 if is_controldesk(text) else lines_above(text)
+        if not is_controldesk(text):
+            layout = recognise(text, name)
+            skip, form, period = layout.skip_rows, layout.form, layout.heading.period
         preamble = text[: line_start(text, skip)].decode("utf-8", "replace")
-    read = RawFile(name, read_table(data, name, skip, limits), skip, preamble)
+    read = RawFile(name, read_table(data, name, skip, limits), skip, preamble, form, period)
     if not read.columns:
         raise Unusable("no-columns", "no column holds numbers throughout", name, "look into the file")
     return read
-
-
-def lines_above(text: bytes) -> int:
-    """The lines above the line of names: that is the last of words before two lines of as many numbers, or the one
-    before it where that is a line of units. A line that is not cut into fields as these are, such as a title or an
-    empty one, holds no names: it stands above, too. 0 where nothing of the kind is found."""
-    lines = [line.decode("utf-8", "replace").rstrip("\r") for line in text[: 1 << 20].split(b"\n")[:_LOOKED_THROUGH]]
-    for n in range(1, len(lines) - 1):
-        delimiter = sniff(lines[n], lines[n + 1])
-        counts = [_numbers(line, delimiter) for line in lines[n - 1 : n + 2]]
-        if counts[1] and counts[1] == counts[2] and not counts[0] and (counts[1] > 1 or n == 1 or delimiter is None):
-            fields = [len(split_line(line, delimiter)) for line in lines[max(n - 2, 0) : n]]
-            if fields[-1] < 2 <= counts[1]:
-                return n
-            has_units = n > 1 and len(fields) == 2 and fields[0] == fields[1] and not _numbers(lines[n - 2], delimiter)
-            return n - 2 if has_units else n - 1
-    return 0
-
-
-def _numbers(line: str, delimiter: str | None) -> int:
-    return sum(is_number(field.strip(), delimiter) for field in split_line(line, delimiter) if field.strip())

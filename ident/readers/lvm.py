@@ -10,9 +10,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from ident.errors import Unusable
+from ident.readers.layout import line_start
 from ident.readers.limits import Limits
 from ident.readers.table import Array, Table, filled
-from ident.readers.text import as_utf8, line_start, read_text
+from ident.readers.text import as_utf8, read_text
 
 SIGNATURE, END = b"LabVIEW Measurement", b"***End_of_Header***"
 TIME = "X_Value"

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from ident.errors import Unusable
+from ident.readers.layout import line_start
 from ident.readers.limits import Limits
 from ident.readers.table import Table
-from ident.readers.text import as_utf8, is_number, line_start, next_line, read_text
+from ident.readers.text import as_utf8, is_number, read_text
 
 _LINES = 200  # looked through for the first line of numbers
 
@@ -21,7 +22,7 @@ def read_mts(data: bytes, where: str, limits: Limits) -> Table:
         if start >= len(text):
             break
         end = line_start(text, 1, start)
-        fields = next_line(text, start, where).split("\t") if text[start:end].strip() else []
+        fields = text[start:end].decode("utf-8", "replace").split("\t") if text[start:end].strip() else []
         if line > 1 and fields and all(is_number(field.strip(), "\t") for field in fields if field.strip()):
             return read_text(data, where, limits, line - 2)
         start = end

@@ -25,13 +25,18 @@ class Table:
 
     `notices` says in words what reading assumed; `units`, where there are any, what the file says of each column, as it
     is written there and for a suggestion alone: what counts is the unit that matrix.yaml states. Loading checks
-    declared sizes before it allocates.
+    declared sizes before it allocates. `aliases` are further names of the columns, each a row of them, for a heading of
+    several lines; `stamps` are the columns that were time stamps and are loaded in seconds, `mostly` those of a text in
+    which most rows hold numbers.
     """
 
     names: tuple[str, ...]
     load: Callable[[Sequence[int]], list[Array]]
     notices: tuple[str, ...] = ()
     units: tuple[str, ...] = ()
+    aliases: tuple[tuple[str, ...], ...] = ()
+    stamps: frozenset[int] = frozenset()
+    mostly: frozenset[int] = frozenset()
 
     def number(self, column: str | int, where: str) -> int:
         """The number of a column given by name or by 0-based number.
@@ -69,7 +74,8 @@ class Table:
         exact = [number for number, name in enumerate(self.names) if name == column]
         same = [number for number, name in enumerate(self.names) if name.replace(".", "/") == path]
         ends = [number for number, name in enumerate(self.names) if name.replace(".", "/").endswith("/" + path)]
-        return exact or same or ends
+        also = [number for row in self.aliases for number, name in enumerate(row) if name == column]
+        return exact or same or ends or list(dict.fromkeys(also))
 
     def listed(self) -> str:
         """What columns there are, in words."""

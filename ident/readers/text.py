@@ -1,4 +1,4 @@
-"""Text tables: .csv, .tsv, .txt, with any delimiter, Windows line ends, and rows that trail event words.
+"""Text tables: .csv, .tsv, .txt, laid out as :mod:`ident.readers.layout` finds them, with rows that trail event words.
 
 The columns that are asked for are read by pyarrow; where it meets a ragged row the lines are read one by one, which
 either works or says which line is wrong.
@@ -6,6 +6,8 @@ either works or says which line is wrong.
 
 from __future__ import annotations
 
+import codecs
+import csv
 import io
 import re
 from array import array
@@ -14,95 +16,82 @@ from collections.abc import Sequence
 import numpy as np
 
 from ident.errors import Unusable
+from ident.readers.layout import Layout, mixes_thousands, recognise
 from ident.readers.limits import Limits, check_size
-from ident.readers.table import Array, Table, filled
+from ident.readers.table import Array, Table
+from ident.readers.time_stamp import seconds
 from ident.units.quantity import shown
 
-DELIMITERS = ("\t", ";", ",")
-DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
-LONGEST_LINE = 1 << 16
+_HEAD = 1 << 20  # bytes by which an encoding is told
+_HALF = 0.4  # of the bytes of the head: the zeros of a text of two bytes a sign
 
 
 def read_text(data: bytes, where: str, limits: Limits, skip_rows: int = 0) -> Table:
-    """The table below `skip_rows` lines; the first line holds the names, unless it holds numbers only, but for a
-    delimiter at its end.
+    """The table below `skip_rows` lines, the next one being that of names; where none are stated they are found.
 
-    Raises Unusable: ``empty-file``, ``not-text``, and on loading ``not-numeric``, ``ragged-row``, ``too-large``.
+    A column of time stamps is read in seconds since its first row.
+
+    Raises Unusable: ``empty-file``, ``not-text``, ``comma-twice``, and on loading ``not-numeric``, ``ragged-row``,
+    ``too-large``, ``bad-time-stamp``.
     """
     text = as_utf8(data)
-    start = line_start(text, skip_rows)
-    header = next_line(text, start, where)
-    below = line_start(text, 1, start)
-    first = next_line(text, below, where) if below < len(text) else ""
-    delimiter = sniff(header, first)
-    names = [name.strip().strip("\"'").strip() for name in split_line(header, delimiter)]
-    notices: tuple[str, ...] = ()
-    filled_in = names[: max((n for n, name in enumerate(names, 1) if name), default=0)]
-    if filled_in and all(is_number(name, delimiter) for name in filled_in):
-        below, notices = start, (f"{where} has no line of column names: its first line was read as samples",)
-        names = [str(number) for number in range(len(filled_in))]
-    units = units_row(names, first, text, below, delimiter, where)
-    if units:
-        below = line_start(text, 1, below)
-        first = next_line(text, below, where)
-        notices = (f"{where}: the line below the column names was read as units: {', '.join(filter(None, units))}",)
-    comma = delimiter != "," and any(DECIMAL_COMMA.fullmatch(field.strip()) for field in split_line(first, delimiter))
+    layout = recognise(text, where, skip_rows)
 
     def load(numbers: Sequence[int]) -> list[Array]:
-        return columns(text, below, numbers, delimiter, comma, where, limits)
+        plain = [number for number in dict.fromkeys(numbers) if number not in layout.stamps]
+        form, below, end = layout.form, layout.below, layout.end
+        loaded = columns(text, below, plain, form.delimiter, form.comma, where, limits, end) if plain else []
+        found = dict(zip(plain, loaded, strict=True))
+        return [found[n] if n in found else _stamped(text, layout, n, where, limits) for n in numbers]
 
-    return Table(tuple(names), load, notices, units)
+    return Table(
+        layout.heading.names, load, layout.notices, _units(layout), layout.heading.aliases, layout.stamps,
+        layout.numbers,
+    )  # fmt: skip
 
 
-def units_row(
-    names: Sequence[str], first: str, text: bytes, below: int, delimiter: str | None, where: str
-) -> tuple[str, ...]:
-    """The units in the line below the names: it has no number, and the line below it has one. Else nothing."""
-    fields = [field.strip().strip("\"'[]()").strip() for field in split_line(first, delimiter)]
-    after = line_start(text, 1, below)
-    if any(is_number(field, delimiter) for field in (*fields, *names)) or not any(fields) or after >= len(text):
-        return ()
-    following = split_line(next_line(text, after, where), delimiter)
-    if not any(is_number(field.strip(), delimiter) for field in following):
-        return ()
-    return filled(fields, len(names))
+def _units(layout: Layout) -> tuple[str, ...]:
+    """The units that the heading states; a time stamp is read in seconds."""
+    names, units = layout.heading.names, layout.heading.units
+    if not layout.stamps:
+        return units
+    return tuple("s" if n in layout.stamps else units[n] if n < len(units) else "" for n in range(len(names)))
+
+
+def _stamped(text: bytes, layout: Layout, number: int, where: str, limits: Limits) -> Array:
+    """The time stamps of a column in seconds since the first one. Raises Unusable."""
+    check_size(8 * (text.count(b"\n", layout.below, layout.end) + 1), limits.channel, "a column", where)
+    lines = text[layout.below : layout.end].decode("utf-8", "replace").splitlines()
+    cut = (layout.form.fields(line) for line in lines if line.strip())
+    return seconds([fields[number] if number < len(fields) else "" for fields in cut], layout.first_line, where)
 
 
 def as_utf8(data: bytes) -> bytes:
-    """The text without a byte order mark, UTF-16 turned into UTF-8, old Macintosh line ends into newlines."""
+    """The text without a byte order mark, other encodings turned into UTF-8, old Macintosh line ends into newlines.
+
+    What is no UTF-8 is taken for Windows-1252, which has the µ, ° and ² of benches where Latin-1 has them.
+    """
     for mark, encoding in ((b"\xff\xfe", "utf-16-le"), (b"\xfe\xff", "utf-16-be")):
         if data.startswith(mark):
             data = data[2:].decode(encoding, "replace").encode()
     data = data.removeprefix(b"\xef\xbb\xbf")
+    head = data[:_HEAD]
+    if not head.isascii():
+        try:
+            codecs.getincrementaldecoder("utf-8")().decode(head)
+        except UnicodeDecodeError:
+            data = data.decode("cp1252", "replace").encode()
+    elif encoding := _of_two_bytes(head):
+        data = data.decode(encoding, "replace").encode()
     return data if b"\n" in data else data.replace(b"\r", b"\n")
 
 
-def line_start(text: bytes, lines: int, start: int = 0) -> int:
-    """Where the line after so many lines begins."""
-    for _ in range(lines):
-        end = text.find(b"\n", start)
-        if end < 0:
-            return len(text)
-        start = end + 1
-    return start
-
-
-def next_line(text: bytes, start: int, where: str) -> str:
-    """The line that begins at `start`."""
-    end = text.find(b"\n", start)
-    line = text[start : len(text) if end < 0 else end]
-    if not line.strip() and start + len(line) >= len(text.rstrip()):
-        raise Unusable("empty-file", "there is no line of column names", where, "check skip_rows and the file")
-    if len(line) > LONGEST_LINE or b"\0" in line:
-        raise Unusable("not-text", "this is not a table of text", where, "give the file the ending of its type")
-    return line.decode("utf-8", "replace").rstrip("\r")
-
-
-def sniff(header: str, first: str) -> str | None:
-    """The delimiter of a table from its first two lines; None for columns aligned by spaces."""
-    counts = {delimiter: min(line.count(delimiter) for line in (header, first or header)) for delimiter in DELIMITERS}
-    best = max(DELIMITERS, key=lambda delimiter: counts[delimiter])
-    return best if counts[best] else None
+def _of_two_bytes(head: bytes) -> str:
+    """The encoding of a text of two bytes a sign without a mark: every other byte is zero."""
+    even, odd = head[::2].count(0), head[1::2].count(0)
+    if max(even, odd) < _HALF * len(head) or min(even, odd):
+        return ""
+    return "utf-16-be" if even else "utf-16-le"
 
 
 def split_line(line: str, delimiter: str | None) -> list[str]:
@@ -120,14 +109,21 @@ def is_number(field: str, delimiter: str | None) -> bool:
 
 
 def columns(
-    text: bytes, below: int, numbers: Sequence[int], delimiter: str | None, comma: bool, where: str, limits: Limits
+    text: bytes, below: int, numbers: Sequence[int], delimiter: str | None, comma: bool | None, where: str,
+    limits: Limits, end: int | None = None,
 ) -> list[Array]:  # fmt: skip
-    """The columns of the rows from byte `below` on. Raises Unusable: ``not-numeric``, ``ragged-row``, ``too-large``."""
+    """The columns of the rows in text[below:end]; `comma` is the decimal sign, None where the rows tell.
+
+    Raises Unusable: ``not-numeric``, ``ragged-row``, ``too-large``.
+    """
     rows = text.count(b"\n", below) + 1
     check_size(8 * rows, limits.channel, "a column", where)
-    quick = None if delimiter is None else by_arrow(text[below:], numbers, delimiter, comma)
+    body = text[below:end]
+    if comma is None:
+        comma = delimiter != "," and b"," in body and not re.search(rb"\d\.\d", body)
+    quick = None if delimiter is None or (comma and delimiter == ",") else by_arrow(body, numbers, delimiter, comma)
     above = text.count(b"\n", 0, below)
-    return by_line(text[below:], numbers, delimiter, comma, where, above) if quick is None else quick
+    return by_line(body, numbers, delimiter, comma, where, above) if quick is None else quick
 
 
 def by_arrow(text: bytes, numbers: Sequence[int], delimiter: str, comma: bool) -> list[Array] | None:
@@ -160,7 +156,7 @@ def by_line(
     separator = delimiter.encode() if delimiter else None
     columns = [array("d") for _ in numbers]
     for number, line in enumerate(io.BytesIO(text), before + 1):
-        fields = line.split(separator)
+        fields = _unquoted(line, delimiter) if delimiter and b'"' in line else line.split(separator)
         if not line.strip():
             continue
         for column, values in zip(numbers, columns, strict=True):
@@ -171,11 +167,27 @@ def by_line(
     return [np.frombuffer(values, np.float64) for values in columns]
 
 
+def _unquoted(line: bytes, delimiter: str) -> list[bytes]:
+    """The fields of a line in which something is quoted, which may hold the delimiter."""
+    try:
+        cut = next(csv.reader([line.decode("utf-8", "replace").rstrip("\r\n")], delimiter=delimiter), [])
+    except csv.Error:
+        return line.split(delimiter.encode())
+    return [field.encode() for field in cut]
+
+
 def as_float(field: bytes, comma: bool, line: int, where: str) -> float:
-    """One field as a number."""
+    """One field as a number. Raises Unusable ``not-numeric`` with its line."""
+    text = field.decode("utf-8", "replace").strip()
+    if comma and mixes_thousands(text):
+        what = f"line {line} holds {shown(text)!r} among decimal commas, where the point may part thousands"
+        raise Unusable("not-numeric", what, where, "export it without signs between thousands")
     try:
         return float((field.replace(b",", b".") if comma else field).strip(b" \"'"))
     except ValueError:
-        text = shown(field.decode("utf-8", "replace"))
-        remedy = "give the column of numbers, or skip_rows for more lines above"
-        raise Unusable("not-numeric", f"line {line} holds {text!r} where a number belongs", where, remedy) from None
+        pass
+    if not text.strip("\"' "):
+        what = f"line {line} has an empty cell where a number belongs"
+        raise Unusable("not-numeric", what, where, f"fill it, or cut the record before line {line} with rows")
+    remedy = "give the column of numbers, or skip_rows for more lines above"
+    raise Unusable("not-numeric", f"line {line} holds {shown(text)!r} where a number belongs", where, remedy) from None

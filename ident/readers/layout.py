@@ -1,0 +1,309 @@
+"""How a text table is laid out: what separates and which decimal sign, the lines above, names, units, first row, last.
+
+One recogniser for :func:`ident.readers.text.read_text`, `servoident init` and drafts. It judges whole forms, each a
+delimiter with a decimal sign, by how consistently the rows at the end of the head parse as numbers, finds the first row
+that is cut as they are, and reads the lines above that row from the row up.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ident.errors import Unusable
+from ident.readers.heading import Heading, heading, is_label
+from ident.readers.numeral import QUOTES, decimals, has_fraction, in_thousands, is_begun, is_numeral
+from ident.readers.time_stamp import is_stamp
+
+DELIMITERS = ("\t", ";", ",", "|", None)
+"""What may separate columns, the first of equals; None are columns aligned by spaces."""
+HEAD_LINES = 400
+"""Lines that are looked through for the first row: preambles of bench software have up to some hundred lines."""
+_HEAD_BYTES = 1 << 20
+LONGEST_LINE = 1 << 16
+_JUDGED = 12
+"""Rows at the end of the head by which a form is judged: a run has 8 samples at least, so most of them are rows."""
+_ENOUGH = 3
+"""Rows in succession that begin a table: two lines of numbers may stand in a preamble."""
+
+
+@dataclass(frozen=True)
+class Form:
+    """How a line is cut into fields; `comma` is None where no row of the head shows a decimal sign."""
+
+    delimiter: str | None
+    comma: bool | None
+
+    def fields(self, line: str) -> list[str]:
+        """The fields of a line, with quotes taken as such where something is quoted."""
+        if self.delimiter is None:
+            return re.findall(r'"[^"]*"|\S+', line) if '"' in line else line.split()
+        if '"' in line:
+            try:
+                return next(csv.reader([line], delimiter=self.delimiter, skipinitialspace=True))
+            except (csv.Error, StopIteration):
+                pass
+        return line.split(self.delimiter)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """A text table. `skip_rows` lines stand above the names, or above the first row where there are none.
+
+    The rows are in text[below:end], the first of them in line `first_line`, counted from 1. `stamps` are the columns of
+    time stamps. `notices` say what was assumed.
+    """
+
+    form: Form
+    skip_rows: int
+    heading: Heading
+    below: int
+    end: int
+    first_line: int
+    stamps: frozenset[int]
+    numbers: frozenset[int]
+    notices: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class _Shape:
+    """What the rows have in common: so many columns, and which of them hold numbers or time stamps."""
+
+    columns: int
+    numbers: frozenset[int]
+    stamps: frozenset[int]
+
+    def is_full(self, fields: Sequence[str], comma: bool) -> bool:
+        """Whether a line has all that a row has."""
+        return len(fields) >= max((*self.numbers, *self.stamps)) + 1 and all(
+            is_numeral(fields[n], comma) for n in self.numbers
+        ) and all(is_stamp(fields[n]) for n in self.stamps)  # fmt: skip
+
+    def is_flawed(self, fields: Sequence[str], comma: bool) -> bool:
+        """Whether a line is a row with a flaw: numbers in half of the columns, and no word that heads it."""
+        found = sum(n < len(fields) and is_numeral(fields[n], comma) for n in self.numbers)
+        found += sum(n < len(fields) and is_stamp(fields[n]) for n in self.stamps)
+        first = fields[0].strip(QUOTES) if fields else ""
+        words = 0 in self.numbers and is_label(first)
+        return 2 * found >= len(self.numbers) + len(self.stamps) and found > 0 and not words
+
+
+def recognise(text: bytes, where: str, skip_rows: int = 0) -> Layout:
+    """The layout of a table in UTF-8. Where lines above are stated, the next one is the line of names.
+
+    Raises Unusable: ``empty-file``, ``not-text``, ``comma-twice``.
+    """
+    start = line_start(text, skip_rows)
+    lines = head_lines(text, start, where)
+    form, shape = _judged(lines)
+    if shape is None:  # no line of numbers: the first line is one of names, and loading says what is wrong
+        form = Form(sniffed(lines), None)
+        return _without_rows(text, start, lines, form, skip_rows)
+    cut = [form.fields(line) for line in lines]
+    first = _first_row(lines, cut, shape, bool(form.comma))
+    form = _with_sign(form, cut[first:])
+    found = heading(
+        lines[:first], form.fields, shape.columns, frozenset(shape.numbers | shape.stamps), skip_rows > 0, where
+    )
+    _check_commas(form, cut[first : first + _JUDGED], found, where)
+    above = first if found.begin is None else found.begin
+    below = line_start(text, first, start)
+    end, notices = _end(text, below, form, shape, cut[first:], where)
+    return Layout(form, skip_rows + above, found, below, end, skip_rows + first + 1, shape.stamps,
+                  shape.numbers, (*found.notices, *notices))  # fmt: skip
+
+
+def head_lines(text: bytes, start: int, where: str) -> list[str]:
+    """The lines of the head from byte `start` on. Raises Unusable for none, and for what is no text."""
+    raw = text[start : start + _HEAD_BYTES].split(b"\n")[:HEAD_LINES]
+    if not any(line.strip() for line in raw):
+        raise Unusable("empty-file", "there is no line of column names", where, "check skip_rows and the file")
+    if any(len(line) > LONGEST_LINE or b"\0" in line for line in raw):
+        raise Unusable("not-text", "this is not a table of text", where, "give the file the ending of its type")
+    if len(raw) > 2 and start + sum(map(len, raw)) + len(raw) <= len(text) and len(raw) < HEAD_LINES:
+        raw.pop()  # the head ends within this line
+    return [line.decode("utf-8", "replace").rstrip("\r") for line in raw]
+
+
+def line_start(text: bytes, lines: int, start: int = 0) -> int:
+    """Where the line after so many lines begins."""
+    for _ in range(lines):
+        end = text.find(b"\n", start)
+        if end < 0:
+            return len(text)
+        start = end + 1
+    return start
+
+
+def sniffed(lines: Sequence[str]) -> str | None:
+    """The delimiter by counting, where nothing else tells."""
+    some = [line for line in lines if line.strip()][:2]
+    counts = {sign: min(line.count(sign) for line in some) for sign in DELIMITERS if sign}
+    best = max(counts, key=lambda sign: counts[sign])
+    return best if counts[best] else None
+
+
+def _judged(lines: Sequence[str]) -> tuple[Form, _Shape | None]:
+    """The form under which the rows are most consistently numbers, of equals the one of most columns."""
+    filled = [line for line in lines if line.strip()]
+    rows = (filled[:-1] if len(filled) > _ENOUGH else filled[-2:])[-_JUDGED:]
+    best: tuple[tuple[float, int], Form, _Shape] | None = None
+    for delimiter in DELIMITERS:
+        if delimiter is not None and sum(delimiter in row for row in rows) * 2 < len(rows):
+            continue
+        quoted = delimiter == "," and any('"' in row for row in rows)
+        for comma in (False, True) if delimiter != "," or quoted else (False,):
+            form = Form(delimiter, comma)
+            cut = [form.fields(row) for row in rows]
+            shape = _shape(cut, comma)
+            if shape is None:
+                continue
+            score = (_consistency(cut, shape, comma), len(shape.numbers) + len(shape.stamps))
+            if best is None or score > best[0]:
+                shown = any(has_fraction(field, comma) for fields in cut for field in fields)
+                best = score, Form(delimiter, comma if shown else None), shape
+    if best is None:
+        return Form(None, None), None
+    _, form, shape = best
+    if form.delimiter == "," and _is_one_column(filled, rows):
+        form = Form(None, True)
+        return form, _shape([form.fields(row) for row in rows], True)
+    return form, shape
+
+
+def _with_sign(form: Form, rows: Sequence[Sequence[str]]) -> Form:
+    """The form with the decimal sign that any row of the head shows, where the judged rows show none."""
+    if form.comma is not None or form.delimiter == ",":
+        return form
+    shown = [comma for comma in (False, True) if any(has_fraction(field, comma) for row in rows for field in row)]
+    return Form(form.delimiter, shown[0]) if len(shown) == 1 else form
+
+
+def _trimmed(fields: Sequence[str]) -> int:
+    """How many fields there are without blank ones at the end."""
+    return max((n for n, field in enumerate(fields, 1) if field.strip(QUOTES)), default=0)
+
+
+def _shape(cut: Sequence[Sequence[str]], comma: bool) -> _Shape | None:
+    """What most of some rows have in common; None where no column holds numbers."""
+    counts = Counter(map(_trimmed, cut))
+    columns, _ = max(counts.items(), key=lambda item: (item[1], item[0]))
+
+    def most(column: int, kind: bool) -> bool:
+        fields = [fields[column] for fields in cut if column < len(fields) and fields[column].strip(QUOTES)]
+        hits = sum(is_stamp(field) if kind else is_numeral(field, comma) for field in fields)
+        return 2 * hits > len(fields) and 4 * len(fields) >= len(cut)
+
+    numbers = frozenset(n for n in range(columns) if most(n, False))
+    stamps = frozenset(n for n in range(columns) if most(n, True))
+    return _Shape(columns, numbers, stamps) if numbers else None
+
+
+def _consistency(cut: Sequence[Sequence[str]], shape: _Shape, comma: bool) -> float:
+    """The share of all filled fields that are numbers or time stamps, in rows of the same number of columns."""
+    fields = sum(bool(field.strip(QUOTES)) for row in cut for field in row) or 1
+    good = sum(
+        sum(is_numeral(row[n], comma) for n in shape.numbers if n < len(row))
+        + sum(is_stamp(row[n]) for n in shape.stamps if n < len(row))
+        for row in cut
+    )
+    alike = sum(_trimmed(row) == shape.columns for row in cut) / len(cut)
+    return round(good / fields * alike, 2)
+
+
+def _is_one_column(lines: Sequence[str], rows: Sequence[str]) -> bool:
+    """Whether whole numbers with one comma between them are one column of decimal commas: 0,05776 is no pair."""
+    if any("," in line and any(sign.isalpha() for sign in line) for line in lines):
+        return False  # two names
+    pairs = [row.strip(QUOTES).split(",") for row in rows]
+    return all(len(pair) == 2 and pair[1].strip().isdigit() for pair in pairs) and any(
+        len(pair[1].strip()) > 1 and pair[1].strip().startswith("0") for pair in pairs
+    )
+
+
+def _check_commas(form: Form, rows: Sequence[Sequence[str]], found: Heading, where: str) -> None:
+    """Refuse a comma that both separates columns and is the decimal sign: what belongs together cannot be told."""
+    if form.delimiter != "," or not rows:
+        return
+    widths = {_trimmed(row) for row in rows}
+    behind = [row[n].strip(QUOTES) for row in rows for n in range(1, _trimmed(row), 2)]
+    pairs = all(width % 2 == 0 for width in widths) and all(field.isdigit() for field in behind)
+    padded = any(len(field) > 1 and field.startswith("0") for field in behind)
+    if pairs and (padded or found.width * 2 in widths) and found.width not in widths:
+        what = "the comma separates the columns and is the decimal sign, too"
+        raise Unusable("comma-twice", what, where, "export it with semicolons or tabs, or with decimal points")
+
+
+def _first_row(lines: Sequence[str], cut: Sequence[Sequence[str]], shape: _Shape, comma: bool) -> int:
+    """The number of the first line of the table: the first of some rows in succession, and the flawed ones above it."""
+    full = [bool(line.strip()) and shape.is_full(fields, comma) for line, fields in zip(lines, cut, strict=True)]
+    like = [bool(line.strip()) and shape.is_flawed(fields, comma) for line, fields in zip(lines, cut, strict=True)]
+    first = full.index(True) if True in full else 0
+    for n in (n for n, is_row in enumerate(full) if is_row):
+        following = [m for m in range(n, len(lines)) if lines[m].strip()][:_ENOUGH]
+        if all(full[m] or like[m] for m in following):
+            first = n
+            break
+    while first and like[first - 1] and not _numbers_columns(cut[:first]):
+        first -= 1
+    return first
+
+
+def _numbers_columns(above: Sequence[Sequence[str]]) -> bool:
+    """Whether the line above is one of column numbers behind a blank: ``,0,1,2``, as tables with an index have it."""
+    blank, *others = above[-1]
+    return len(above) == 1 and not blank.strip() and [field.strip() for field in others] == list(
+        map(str, range(len(others)))
+    )  # fmt: skip
+
+
+def _end(
+    text: bytes, below: int, form: Form, shape: _Shape, head: Sequence[Sequence[str]], where: str
+) -> tuple[int, tuple[str, ...]]:  # fmt: skip
+    """Where the rows end: before a last row that was cut off, which is told with its number."""
+    last = len(text.rstrip())
+    begin = text.rfind(b"\n", below, last) + 1
+    if begin <= below or last - begin > LONGEST_LINE:
+        return len(text), ()
+    line = text[begin:last].decode("utf-8", "replace").rstrip("\r")
+    fields = form.fields(line)
+    whole = [row for row in head if shape.is_full(row, bool(form.comma))][: -1 or None]
+    if not _is_cut(fields, whole, shape, form, closed=last < len(text)):
+        return len(text), ()
+    number = text.count(b"\n", 0, begin) + 1
+    some = f"{_trimmed(fields)} of {shape.columns} fields"
+    return begin, (f"{where}: line {number}, the last one, is cut off ({some}) and was left out",)
+
+
+def _is_cut(fields: Sequence[str], rows: Sequence[Sequence[str]], shape: _Shape, form: Form, closed: bool) -> bool:
+    """Whether the last row ends before its time: with fewer fields than every other, or within its last number."""
+    count = _trimmed(fields)
+    if not count or not rows or any(_trimmed(row) < shape.columns for row in rows) or count > shape.columns:
+        return False
+    begun = all(is_begun(field) for n, field in enumerate(fields[:count]) if n in shape.numbers)
+    if count < shape.columns:
+        return begun and max(shape.numbers | shape.stamps) >= count
+    last = count - 1
+    if last not in shape.numbers or closed:
+        return False
+    if not is_numeral(fields[last], bool(form.comma)):
+        return begun
+    digits = {decimals(row[last]) for row in rows}
+    return len(digits) == 1 and 0 <= decimals(fields[last]) < digits.pop() and not re.search("[eE]", rows[0][last])
+
+
+def _without_rows(text: bytes, start: int, lines: Sequence[str], form: Form, skip_rows: int) -> Layout:
+    """The layout of a text in which no line of numbers was found."""
+    names = [name.strip().strip("\"'").strip() for name in form.fields(lines[0])]
+    found = Heading(0, tuple(names), (), (), None, (), len(names))
+    return Layout(
+        form, skip_rows, found, line_start(text, 1, start), len(text), skip_rows + 2, frozenset(), frozenset(), ()
+    )
+
+
+def mixes_thousands(field: str) -> bool:
+    """Whether a number with a decimal point in a table of decimal commas may have its thousands parted by it."""
+    return "." in field and in_thousands(field)
