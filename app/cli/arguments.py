@@ -23,9 +23,13 @@ def split(text: str, option: str, form: str) -> tuple[str, str]:
 
 
 def number(text: str, option: str, form: str) -> float:
-    """A plain finite number; raises Unusable that shows the `form` of the option."""
+    """A plain finite number, with a decimal comma too; raises Unusable that shows the `form` of the option."""
+    from ident.units.decimal_sign import with_point
+
     try:
-        value = float(text)
+        value = float(with_point(text, option))
+    except Unusable:
+        raise
     except ValueError:
         value = math.nan
     if not math.isfinite(value):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -113,7 +114,7 @@ def specimen_of(text: str | None) -> Specimen:
     from ident.units.quantity import quantity
 
     form, found = "mass=…,stiffness=…,damping=…", {}
-    for part in (text or "").split(","):
+    for part in re.split(r",(?=\s*\w+\s*=)", text or ""):  # a comma before digits is a decimal sign
         if part.strip():
             name, value = split(part, "--specimen", form)
             if name not in _OF_SPECIMEN:

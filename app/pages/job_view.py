@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from ident.words.sentence import sentence
 from ident.words.titles import title
 from schemas.fit import JobProblem, JobView
 
@@ -89,4 +90,4 @@ def _problem(problem: JobProblem | None) -> str:
     if problem is None:
         return ""
     said = f"{problem.where}: {problem.detail}" if problem.where else problem.detail
-    return f"{said}. {problem.remedy[:1].upper()}{problem.remedy[1:]}." if problem.remedy else f"{said}."
+    return f"{said}. {sentence(problem.remedy)}" if problem.remedy else f"{said}."

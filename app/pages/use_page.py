@@ -20,6 +20,7 @@ from app.pages.what_if_asked import asked
 from app.pages.what_if_view import WhatIfView, what_if_form, what_if_view
 from ident.errors import Unusable
 from ident.readers.strict_yaml import read_yaml
+from ident.words.sentence import sentence
 from schemas.hybrid_result import ControllerView as Controller
 from schemas.hybrid_result import HybridView as Simulation
 from schemas.hybrid_result import WhatIfView as Numbers
@@ -109,4 +110,4 @@ def read(text: str, where: str) -> Any:
 def _sentence(error: Unusable | Failure) -> str:
     """What, where and remedy."""
     said = f"{error.where}: {error.what}" if error.where else error.what
-    return f"{said}. {error.remedy[:1].upper()}{error.remedy[1:]}."
+    return f"{said}. {sentence(error.remedy)}"

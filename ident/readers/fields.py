@@ -24,6 +24,7 @@ class Fields:
         self.data, self.where = data, where
         for key in data:
             if key not in known:
+                _check_comma(data, key, where)
                 near = get_close_matches(key, known, 1, 0.4)
                 remedy = f"did you mean {near[0]!r}?" if near else "known are " + ", ".join(known)
                 raise Unusable("unknown-key", f"unknown key {shown(key)!r}", where, remedy)
@@ -112,7 +113,18 @@ class Fields:
         if value is None:
             return None
         if not isinstance(value, list) or len(value) != 2:
-            raise Unusable(
-                "not-a-pair", f"{shown(value)!r} is not a list of two", self.place(key), "write [first, end]"
-            )
+            raise Unusable("not-a-pair", f"{shown(value)!r} is not a list of two", self.place(key), _PAIR)
         return value[0], value[1]
+
+
+_PAIR = "write [first, end], with decimal points: a comma parts the list"
+
+
+def _check_comma(data: Mapping[Any, Any], key: Any, where: str) -> None:
+    """Refuse ``{mass: 0,87 kg}``, which YAML reads as a mass of 0 and a key ``87 kg``. Raises ``decimal-comma``."""
+    before = dict(zip(list(data)[1:], data.items(), strict=False)).get(key)
+    text = str(key).strip()
+    if before is None or data[key] is not None or not text[:1].isdigit() or not str(before[1]).lstrip("+-").isdigit():
+        return
+    what = f"the comma in '{before[0]}: {before[1]},{shown(text)}' parts two entries of the mapping"
+    raise Unusable("decimal-comma", what, where, f"write {before[0]}: {before[1]}.{shown(text)}, with a decimal point")

@@ -11,13 +11,15 @@ Powers = dict[str, float]
 TOKEN = re.compile(r"\s*(\*\*|[*/^()·⋅×]|[+-]?[0-9]+|[^\W\d]+(?:_[^\W\d]+)*|[%°″\"][CF]?)")
 SIGNS = {"·": "*", "⋅": "*", "×": "*", "**": "^"}
 SUPERSCRIPTS = str.maketrans({"²": "^2", "³": "^3", "⁴": "^4", "⁻": "^-", "¹": "1", "−": "-"})
+ADJACENT = re.compile(r"(?<![^\W\d])([^\W\d]+)([234])(?![\w.])")
+"""A power written right behind its name: mm2, m/s2, in3."""
 POWER = re.compile(r"[+-]?[0-9]{1,2}")
 DEEPEST = 5
 
 
 def powers_of(unit: str) -> Powers | None:
-    """The power of each name: ``N*s/m`` → {N: 1, s: 1, m: -1}, "1" → {}; None where the text is not a unit."""
-    tokens = tokens_of(unit.translate(SUPERSCRIPTS).strip())
+    """The power of each name: ``N*s/m`` → {N: 1, s: 1, m: -1}, ``cm2`` → {cm: 2}, "1" → {}; None for no unit."""
+    tokens = tokens_of(ADJACENT.sub(r"\1^\2", unit.translate(SUPERSCRIPTS)).strip())
     if not tokens:
         return None
     powers, after = product(tokens, 0, DEEPEST)

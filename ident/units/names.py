@@ -79,6 +79,9 @@ SPELLINGS = {
     "%": "percent", "°C": "degC", "°F": "degF", '"': "inch", "hz": "Hz", "HZ": "Hz", "KHz": "kHz", "Khz": "kHz",
     "khz": "kHz", "KN": "kN", "Kn": "kN", "MPA": "MPa", "Mpa": "MPa", "KPa": "kPa", "kpa": "kPa",
     "KPA": "kPa", "PSI": "psi", "Psi": "psi", "KSI": "ksi", "KG": "kg", "IN": "in", "″": "inch", "μm": "µm",
+    "rot": "rev", "turn": "rev", "turns": "rev", "tr": "rev", "U": "rev", "Umdr": "rev", "RPM": "rpm", "Rpm": "rpm",
+    "Sec": "s", "SEC": "s", "Seconds": "s", "Sekunden": "s", "Meter": "m", "Meters": "m", "Degrees": "deg",
+    "degrees": "deg", "Newtons": "N", "Hertz": "Hz",
     "MM": "mm", "CM": "cm", "Bar": "bar", "BAR": "bar", "Volt": "V", "Volts": "V", "Newton": "N", "Pascal": "Pa",
 }  # fmt: skip
 """Ways of writing that leave no doubt about what is meant."""

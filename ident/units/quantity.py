@@ -10,13 +10,14 @@ import math
 import re
 from dataclasses import dataclass
 from decimal import Decimal
-from difflib import get_close_matches
 from functools import cache
 from typing import Any
 
 from ident.errors import Unusable
+from ident.units.decimal_sign import with_point
 from ident.units.grammar import Powers, powers_of
 from ident.units.names import ANGLES, BASE, DERIVED, PREFIXES
+from ident.units.nearest import nearest
 from ident.units.usual import USUAL
 
 DIMENSIONS = {
@@ -28,7 +29,11 @@ DIMENSIONS = {
 }  # fmt: skip
 """Dimension by name to its SI unit; an SI unit (``m^4/s``) may stand wherever a dimension's name may."""
 
-_WRITTEN = {"frequency": "Hz"}  # what one writes where it is not the SI unit's own text
+_WRITTEN = {
+    "frequency": "Hz", "area": "mm^2", "length": "mm", "volume": "cm^3", "pressure": "bar", "flow": "l/min",
+    "temperature": "degC", "angle": "deg",
+}  # fmt: skip
+"""The unit of an example where the SI unit would make an absurd one of a bench's number: 640 mm^2, not 640 m^2."""
 
 PRINTED_Z0 = "m^3/(s*kPa) as printed"
 """The unit that Qian et al. 2014 print beside Z0, which is not its unit."""
@@ -37,6 +42,8 @@ PRINTED_Z0_FACTOR = 0.0254 * 6.894757293168362
 """m⁴/s for one `PRINTED_Z0`: the paper divided a number in in⁴/s by (in³/psi) per (m³/kPa), so what was left out is
 one inch (0.0254 m) times one psi (6.894757 kPa). 1.48e-5 as printed is 2.592e-6 m⁴/s."""
 
+NUMBER_AND_REST = re.compile(r"^\s*[+-]?[\d.,]+(?:[eE][+-]?\d+)?")
+"""What stands before a unit, whatever its decimal sign."""
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.DOTALL)
 LONGEST = 80
 
@@ -65,11 +72,11 @@ def si_unit(dimension: str) -> str:
 
 
 def split(text: object, where: str) -> tuple[float, str]:
-    """The number and the unit's name of ``"497 mm^2"``; the unit is empty where there is none.
+    """The number and the unit's name of ``"497 mm^2"`` or ``"3,6 ms"``; the unit is empty where there is none.
 
-    Raises Unusable: ``not-a-quantity`` for no number, ``not-finite`` for one out of range.
+    Raises Unusable: ``not-a-quantity`` for no number, ``not-finite`` for one out of range, ``decimal-comma``.
     """
-    found = NUMBER.fullmatch(str(text)) if isinstance(text, str | int | float) else None
+    found = NUMBER.fullmatch(with_point(str(text), where)) if isinstance(text, str | int | float) else None
     if isinstance(text, bool) or found is None or len(str(text)) > LONGEST:
         raise Unusable("not-a-quantity", f"{shown(text)} is not a number with a unit", where, "write it as 497 mm^2")
     number = float(found[1])
@@ -104,8 +111,10 @@ def parameter_value(text: str | float, unit: str, where: str) -> float:
 
 def printed_notice(text: object) -> str | None:
     """What to tell a user who wrote a quantity in the printed unit of Z0; None for any other quantity."""
-    found = NUMBER.fullmatch(text) if isinstance(text, str) else None
-    if found is None or not is_printed(found[2]):
+    if not isinstance(text, str) or not is_printed(NUMBER_AND_REST.sub("", text).strip()):
+        return None
+    found = NUMBER.fullmatch(with_point(text, "Z0"))
+    if found is None:
         return None
     value = float(found[1]) * PRINTED_Z0_FACTOR
     return f"Z0 = {shown(text)} was converted to {value:.4g} m^4/s: the printed unit is not that of Z0"
@@ -118,11 +127,11 @@ def unit_scale(unit: str, dimension: str, where: str) -> Scale:
         return Scale(PRINTED_Z0_FACTOR, 0.0, target)
     if dimension == "acceleration" and unit in ("g", "G"):
         unit = "g_n"  # gram has no business here
-    powers = known_powers(unit, where)
+    powers = known_powers(unit, where, target)
     # pint calls an angle a plain number; so may a user who writes a phase, but no channel does
     apart = target in ("1/s", "rad/s", "rad") or dimension == "dimensionless"
     turns = apart and bool(ANGLES & set(powers)) != target.startswith("rad")
-    if turns or shape(powers, where) != shape(known_powers(target, where), where):
+    if turns or shape(powers, where, target) != shape(known_powers(target, where), where):
         what = f"{unit!r} is not a unit of {described(dimension)}"
         raise Unusable("wrong-dimension", what, where, remedy(unit, target))
     return Scale(*factor_and_offset(powers, where), target)
@@ -172,27 +181,26 @@ def shown(text: object) -> str:
     return line if len(line) <= LONGEST else line[: LONGEST - 1] + "…"
 
 
-def known_powers(unit: str, where: str) -> Powers:
-    """The powers of the names in a unit. Raises Unusable: ``unknown-unit``."""
+def known_powers(unit: str, where: str, target: str = "") -> Powers:
+    """The powers of the names in a unit, where one of the kind of `target` is wanted. Raises ``unknown-unit``."""
     powers = powers_of(unit) if len(unit) <= LONGEST else None
     if powers is None:
-        raise not_known(unit, where)
+        raise not_known(unit, where, target)
     return powers
 
 
-def not_known(unit: str, where: str, name: str = "") -> Unusable:
-    """The error for a unit that cannot be read, with the nearest known name."""
-    known = sorted(registry_names())
-    near = get_close_matches(name or unit, known, 1, 0.5)
-    hint = f"did you mean {near[0]}?" if near else "write it as mm, N*s/m or m^3/(s*kPa)"
+def not_known(unit: str, where: str, target: str = "") -> Unusable:
+    """The error for a unit that cannot be read, with the nearest one of the kind that is wanted, else of all."""
+    near = nearest(unit, target)
+    hint = f"did you mean {near}?" if near else "write it as mm, N*s/m or m^3/(s*kPa)"
     return Unusable("unknown-unit", f"unit {shown(unit)!r} is not known", where, hint)
 
 
-def shape(powers: Powers, where: str) -> tuple[tuple[str, float], ...]:
+def shape(powers: Powers, where: str, target: str = "") -> tuple[tuple[str, float], ...]:
     """The dimensions of a unit with their powers, sorted."""
     total: dict[str, float] = {}
     for name, power in powers.items():
-        for base, own in atom(name, where).dimensions:
+        for base, own in atom(name, where, target).dimensions:
             total[base] = total.get(base, 0.0) + power * own
     return tuple(sorted((base, power) for base, power in total.items() if power))
 
@@ -220,13 +228,6 @@ def registry() -> Any:
     return built
 
 
-def registry_names() -> set[str]:
-    """Every unit name that can be written, without prefixes."""
-    lines = [line.partition(";")[0] for line in (BASE + DERIVED).strip().splitlines() if line]
-    parts = [line.split("=") for line in lines]
-    return {part[0].strip() for part in parts} | {name.strip() for part in parts for name in part[2:]} | {"mm", "kN"}
-
-
 def known_atom(name: str) -> Atom | None:
     """One unit name; None where it is none."""
     if name in USUAL:
@@ -249,9 +250,9 @@ def atom_of_pint(name: str) -> Atom | None:
     return Atom(float(one - zero), float(zero), dimensions)
 
 
-def atom(name: str, where: str) -> Atom:
+def atom(name: str, where: str, target: str = "") -> Atom:
     """As :func:`known_atom`, an unknown name being an error."""
     found = known_atom(name)
     if found is None:
-        raise not_known(name, where, name)
+        raise not_known(name, where, target)
     return found

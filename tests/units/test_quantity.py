@@ -53,6 +53,11 @@ READ = [
     ("30 l/min", "flow", 5e-4),
     ("3 mil", "length", 7.62e-5),
     ("1 t", "mass", 1000.0),
+    ("6,4 cm2", "area", 6.4e-4),
+    ("9,81 m/s2", "acceleration", 9.81),
+    ("2 rot", "angle", 12.566370614359172),
+    ("1500 U/min", "angular velocity", 157.07963267948966),
+    ("3 turns", "angle", 18.84955592153876),
 ]
 
 REFUSED = [
@@ -65,7 +70,7 @@ REFUSED = [
     (["1 mm"], "length", "not-a-quantity"),
     ("nan mm", "length", "not-a-quantity"),
     ("inf mm", "length", "not-a-quantity"),
-    ("1,5 mm", "length", "unknown-unit"),
+    ("1,500 mm", "length", "decimal-comma"),
     ("1e999 mm", "length", "not-finite"),
     ("1 furlong", "length", "unknown-unit"),
     ("1 mm^", "length", "unknown-unit"),

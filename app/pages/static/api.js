@@ -49,7 +49,7 @@ function sentence(problem, answer) {
   if (!problem) return `The service answered ${answer.status} ${answer.statusText}.`;
   const parts = [problem.where, problem.what ?? problem.detail ?? problem.title].filter(Boolean).join(": ");
   const remedy = problem.remedy && problem.remedy[0].toUpperCase() + problem.remedy.slice(1);
-  return remedy ? `${parts}. ${remedy}.` : `${parts}.`;
+  return remedy ? `${parts}. ${remedy}${/[.?!]$/.test(remedy) ? "" : "."}` : `${parts}.`; // a question has its own sign
 }
 
 function key() {
