@@ -29,7 +29,8 @@ from ident.fit.result import Estimate, FitResult, RunError, Undetermined
 from ident.fit.search import Search, State, evolution, options_of
 from ident.fit.settings import Settings
 from ident.fit.space import Axis, Space
-from ident.matrix import Matrix
+from ident.fit.typical import typical
+from ident.matrix import BENCH, Matrix
 from ident.parallel import each
 from ident.parameter import Parameter
 from ident.progress import Progress, Report, silent
@@ -74,9 +75,14 @@ class BenchIdentification:
             elif name not in fixed:
                 axes.append(Axis(name, lower, upper, parameter.within(lower, upper).logarithmic))
         axes = [axis for axis in axes if axis.name not in fixed]
-        fastest = max((record.frequency or 0.0 for record in self.bench.records), default=0.0) or _FASTEST
         order = tuple(p.in_equations for p in self.preset.parameters)
-        return Space(tuple(axes), order, fixed, {"W": 2.0 * np.pi * fastest})
+        return Space(tuple(axes), order, fixed, self._sizes())
+
+    def _sizes(self) -> dict[str, float]:
+        """What the ranges of effects are measured by; the current is the command of a bench."""
+        runs = [run.driven_by("current") for run in self.matrix.of_use("fit") if run.kind in BENCH]
+        fastest = max((record.frequency or 0.0 for record in self.bench.records), default=0.0) or _FASTEST
+        return typical(self.matrix, runs, 2.0 * np.pi * fastest)
 
     @property
     def generations(self) -> int:

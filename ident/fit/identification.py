@@ -203,6 +203,7 @@ def check_settings(settings: Settings) -> None:
         _check_without_model(settings)
         return
     preset = preset_with(settings.model, settings.effects, settings.custom)
+    _refuse_circle(preset)
     if settings.method not in (*GENERAL, *preset.methods):
         raise _not_a_method(settings)
     if settings.load not in ("none", "force"):
@@ -212,6 +213,18 @@ def check_settings(settings: Settings) -> None:
     for name in (*settings.bounds, *settings.fixed):
         preset.parameter(name)
     options_of(settings, preset)
+
+
+def _refuse_circle(preset: Preset) -> None:
+    """Raise Unusable where effects make signals depend on each other at once, naming the effects."""
+    if not preset.effects:
+        return
+    try:
+        _ = preset.chain.signals
+    except Unusable as error:
+        names = ", ".join(effect.name for effect in preset.effects)
+        remedy = "choose another effect, or a model that has a lag there"
+        raise Unusable(error.code, error.what, f"model with {names}", remedy) from None
 
 
 def _check_budget(settings: Settings) -> None:

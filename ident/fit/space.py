@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain.conditions import conditions
 from ident.equations.equation import Equation
 from ident.errors import Unusable
 from ident.fit.settings import Settings
+from ident.fit.typical import measured_by
+from ident.fit.typical import typical as sizes_of
 from ident.matrix import Matrix, Run
 from ident.presets import Preset
 from ident.presets.convention import Convention, of_runs
@@ -120,7 +121,7 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     same = same and _stated(preset, runs)
     if all(run.stepped for run in runs):
         band /= _OF_STEPS
-    typical = _typical(matrix, runs, band)
+    typical = sizes_of(matrix, runs, band)
     force = _acting(runs, "force" if settings.load == "force" else "load_disturbance")
     if force:  # a mass that would need it
         typical["mL"] = force / (typical["V"] * band)
@@ -129,7 +130,7 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     fixed = {name: value for name, value in known.items() if name not in given} | fixed
     convention = None
     forced = force or preset.driven_by != "command"
-    scales = preset.scales_by_position if _shown(runs) == "displacement" else preset.scales
+    scales = preset.scales_by_position if measured_by(runs) == "displacement" else preset.scales
     free = {scale.name for scale in scales} - fixed.keys() - given.keys()
     if free & set(preset.share_force[:1]) and not (same or forced or _loaded(runs)):
         convention = preset.share_force[0]
@@ -179,39 +180,6 @@ def _acting(runs: tuple[Run, ...], channel: str) -> float:
     """The deviation of a force that was measured, over the runs that have it."""
     found = [float(np.std(run.channels[channel])) for run in runs if channel in run.channels]
     return float(np.mean(found)) if found else 0.0
-
-
-def _typical(matrix: Matrix, runs: tuple[Run, ...], band: float) -> dict[str, float]:
-    each = [conditions(run, matrix.actuator) for run in runs]
-    mean = {name: float(np.mean([values[name] for values in each])) for name in each[0]}
-    mean["Kp"] = float(np.exp(np.mean([np.log(abs(values["Kp"])) for values in each])))
-    mean |= {
-        "X": _size(runs, lambda run: float(np.std(run.measured))),
-        "U": _size(runs, lambda run: run.drive),
-        "L": float(np.mean([run.motion for run in runs])),
-        "M": max(float(np.max(np.abs(run.command))) for run in runs),
-        "W": band,
-        "H": min(run.dwell for run in runs),
-    }
-    mean["V"] = _speed(runs) or band * mean["L"]
-    return mean | {"mL": mean["mL"] or 1.0}
-
-
-def _speed(runs: tuple[Run, ...]) -> float:
-    """The deviation of the speed where it was recorded; zero where not."""
-    known = all("velocity" in run.channels for run in runs)
-    return float(np.mean([np.std(run.channels["velocity"]) for run in runs])) if known else 0.0
-
-
-def _size(runs: tuple[Run, ...], of: Callable[[Run], float]) -> float:
-    """Of the displacements, where some runs record them and others something else; else of the first run's output."""
-    first = _shown(runs)
-    return float(np.mean([of(run) for run in runs if run.output == first]))
-
-
-def _shown(runs: tuple[Run, ...]) -> str:
-    """The channel by which a machine is measured."""
-    return "displacement" if any(run.output == "displacement" for run in runs) else runs[0].output
 
 
 def _refuse_bad_values(fixed: Mapping[str, float], of_effects: AbstractSet[str]) -> None:
