@@ -17,10 +17,13 @@ from starlette.requests import ClientDisconnect
 from app.matrices.removed import Removed
 from app.storage import Unreachable
 from ident.errors import Unusable
+from ident.fit.extended import EFFECT_THERE
 from schemas.problem import Problem
 
 MEDIA = "application/problem+json"
 DISK_FULL = "53100"  # PostgreSQL's state
+_CONFLICTS = frozenset({EFFECT_THERE})
+"""Codes of input that is sound but does not go with what is there."""
 _log = logging.getLogger("servoident")
 _TITLES = {
     400: "Bad request", 401: "Token needed", 403: "Not allowed", 404: "Not found", 405: "Method not allowed",
@@ -74,7 +77,8 @@ async def _failure(_: Request, error: Exception) -> Response:
 
 async def _unusable(_: Request, error: Exception) -> Response:
     assert isinstance(error, Unusable)
-    return problem(422, error.code, error.what, error.where, error.remedy)
+    status = 409 if error.code in _CONFLICTS else 422
+    return problem(status, error.code, error.what, error.where, error.remedy)
 
 
 async def _removed(_: Request, error: Exception) -> Response:

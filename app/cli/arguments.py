@@ -6,11 +6,14 @@ import math
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ident.errors import Unusable
 
 if TYPE_CHECKING:
+    from ident.custom.definition import Definition
+    from ident.diagnosis.named import Named
+    from ident.diagnosis.result import Diagnosis
     from ident.presets import Preset
 
 
@@ -66,49 +69,57 @@ def in_si(text: str, name: str, model: Preset, where: str) -> float:
     return angles.in_si(text, model.parameter(name).unit, where)
 
 
-def definitions(files: Sequence[Path], terms: int | None = None) -> tuple[dict[str, Any], ...]:
-    """The definitions of own effects in these files, each called like its file where it gives no name.
+def definitions(files: Sequence[Path]) -> tuple[Definition, ...]:
+    """The definitions of own effects in these files: see :func:`additions`."""
+    return additions(files)[0].custom
 
-    Of a diagnosis, as JSON, those of the terms that it proposes, or of the first `terms` of them. A name without a file
-    is that of a kept effect.
+
+def additions(files: Sequence[Path], terms: int | None = None) -> tuple[Named, Diagnosis | None]:
+    """What is defined in these files, each effect called like its file where that gives no name; the last diagnosis.
+
+    Of a diagnosis, as JSON, the terms that it proposes, or the first `terms` of them, with the effects that they stand
+    in addition to. A name without a file is that of a kept effect. Raises Unusable with the file at fault.
     """
     from ident.custom.definition import read_effect
+    from ident.diagnosis.named import Named
 
     if terms is not None and not any(file.exists() and is_diagnosis(file) for file in files):
         raise Unusable("bad-option", "no diagnosis that proposes terms", "--terms", "give one as --custom D.json")
-    found = [(file, definition) for file in files for definition in _defined(file, terms)]
-    for file, definition in found:
-        try:
-            read_effect(definition)
-        except Unusable as error:
-            raise Unusable(error.code, error.what, f"{file} {error.where}", error.remedy) from None
-    return tuple(definition for _, definition in found)
+    effects: list[str] = []
+    custom: list[Definition] = []
+    found = None
+    for file in files:
+        defined, diagnosis = _defined(file, terms)
+        for definition in defined.custom:
+            try:
+                read_effect(definition)
+            except Unusable as error:
+                raise Unusable(error.code, error.what, f"{file} {error.where}", error.remedy) from None
+        effects += defined.effects
+        custom += defined.custom
+        found = diagnosis or found
+    return Named(tuple(dict.fromkeys(effects)), tuple(custom)), found
 
 
-def beside(files: Sequence[Path], terms: int | None = None) -> tuple[str, ...]:
-    """The effects that the proposed terms of the diagnoses among these files were found beside, each once."""
-    from app.cli.given import read_diagnosis
-
-    found = (read_diagnosis(file).proposals or () for file in files if file.exists() and is_diagnosis(file))
-    return tuple(dict.fromkeys(name for proposals in found for name in proposals[:terms][-1].beside))
-
-
-def _defined(file: Path, terms: int | None) -> list[dict[str, Any]]:
+def _defined(file: Path, terms: int | None) -> tuple[Named, Diagnosis | None]:
     """What a file defines: one effect, or, a diagnosis, what that proposes; what is kept under a name."""
     from app.cli.given import read_diagnosis
     from app.cli.kept_here import find
     from ident.custom.definition import definition_of, is_name
+    from ident.diagnosis.named import Named, named, of_fit
 
     if is_name(str(file)) and not file.exists():
-        return [dict(find(str(file)).definition)]
+        return Named(custom=(dict(find(str(file)).definition),)), None
     if not is_diagnosis(file):
-        return [definition_of(file.read_bytes(), file.stem)]
-    proposals = read_diagnosis(file).proposals
+        return Named(custom=(definition_of(file.read_bytes(), file.stem),)), None
+    found = read_diagnosis(file)
+    proposals = found.proposals
     if not proposals:
         raise Unusable("not-an-effect", "the diagnosis proposes no term", str(file), "its notes say why")
     if terms is not None and not 1 <= terms <= len(proposals):
         raise Unusable("bad-option", f"{terms} of {len(proposals)}", "--terms", f"give 1 to {len(proposals)}")
-    return [definition_of(proposal.effect) for proposal in proposals[:terms]]
+    there, last = of_fit(found), named(found, str(proposals[:terms][-1].effect["name"])) or Named()
+    return Named((*there.effects, *last.effects), (*there.custom, *last.custom)), found
 
 
 def is_diagnosis(file: Path) -> bool:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.cli.arguments import beside, definitions, method_options
+from app.cli.arguments import additions, method_options
 from app.cli.arguments import bounds as read_bounds
 from app.cli.arguments import values as read_values
 from ident.fit.settings import METHODS
@@ -113,22 +114,15 @@ def settings(
     terms: int | None = None,
 ) -> Settings:  # fmt: skip
     """The library's settings from what the command line gives. Raises Unusable."""
+    from app.cli.kept_here import defined_here
     from ident.custom.definition import preset_with
+    from ident.diagnosis.named import with_named
     from ident.fit.settings import Settings
 
-    own = definitions(custom or [], terms)
-    listed = dict.fromkeys((*(effect or []), *beside(custom or [], terms)))
-    effects = (*listed, *(definition["name"] for definition in own))
-    preset = preset_with(model, effects, own)
-    return Settings(
-        model=model,
-        effects=effects,
-        method=method,
-        bounds=read_bounds(bounds or [], preset),
-        fixed=read_values(set_ or [], preset),
-        load=load,
-        seed=seed,
-        options=method_options(option or []),
-        custom=own,
-        budget=budget,
-    )
+    own, found = additions(custom or [], terms)
+    base = Settings(model=model, method=method, load=load, seed=seed, options=method_options(option or []),
+                    budget=budget)  # fmt: skip
+    named = dict.fromkeys((*(effect or []), *own.effects))
+    chosen = with_named(base, tuple(named), own.custom, found, defined_here)
+    preset = preset_with(model, chosen.effects, chosen.custom)
+    return replace(chosen, bounds=read_bounds(bounds or [], preset), fixed=read_values(set_ or [], preset))

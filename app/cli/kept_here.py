@@ -34,6 +34,11 @@ def look(name: str) -> Kept | None:
     return find(name) if is_name(name) and _file(name).is_file() else None
 
 
+def defined_here() -> dict[str, Mapping[str, Any]]:
+    """The definitions of all of them by name. Raises Unusable for a file that holds none."""
+    return {kept.name: kept.definition for kept in every()}
+
+
 def beside(definitions: Sequence[Mapping[str, Any]], model: str) -> tuple[Mapping[str, Any], ...]:
     """These definitions, and of those that are kept under other names all that a model can take."""
     from app.own_effects.kept import suited

@@ -16,6 +16,7 @@ from app.own_effects.naming import every, with_kept
 from app.paging import cursor, keys_of
 from app.tables import DiagnosisRow
 from ident.custom.definition import definition_of, read_effect, together
+from ident.diagnosis.named import named
 from ident.diagnosis.result import Diagnosis, Verdict
 from ident.diagnosis.stepwise import MOST, USUAL
 from ident.errors import Unusable
@@ -107,19 +108,15 @@ def refit(context: Context, diagnosis_id: str, fit: FitResult, effect: str) -> F
     With a term that it proposes there are those before it, and the effects beside which it was found.
     """
     found = stored(context, diagnosis_id).found
-    terms = found.proposals or ()
-    upto = next((terms[: i + 1] for i, one in enumerate(terms) if one.effect["name"] == effect), ())
-    candidate = next((one for one in found.candidates if one.effect == effect), None)
-    if candidate is None and not upto:
+    more = named(found, effect)
+    if more is None:
         raise missing("candidate", f"{diagnosis_id}:{effect}")
-    wider = fit.with_custom((*found.settings.get("custom", ()), *(one.effect for one in upto)))
-    more = (*upto[-1].beside, *(str(one.effect["name"]) for one in upto)) if upto else (effect,)
-    parameters = upto[-1].parameters if upto else candidate.parameters if candidate else {}
+    wider = fit.with_custom(together(found.settings.get("custom", ()), more.custom))
     estimates = {
         name: Estimate(entry.value, entry.unit, entry.std_error, entry.value, entry.value, False)
-        for name, entry in parameters.items()
+        for name, entry in more.parameters.items()
     }
-    effects = tuple(dict.fromkeys((*fit.effects, *more)))
+    effects = tuple(dict.fromkeys((*fit.effects, *more.effects)))
     return replace(wider, effects=effects, parameters={**fit.parameters, **estimates})
 
 

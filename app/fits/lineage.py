@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 from app.context import Context
+from app.diagnoses import service as diagnoses
 from app.errors import Failure
 from app.fits import repository, service
-from app.own_effects.naming import with_kept
+from app.own_effects.naming import defined, every
 from app.tables import FitRow
-from ident.custom.definition import definition_of, together
-from ident.effects import effect
+from ident.custom.definition import definition_of
+from ident.diagnosis.named import with_named
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from schemas.fit import EffectsRequest, JobView, LadderRung, LadderView
@@ -22,21 +23,15 @@ def add(context: Context, fit_id: str, request: EffectsRequest, job: str, who: s
     parent = service.find(context, fit_id)
     fit = FitResult.from_json(parent.result)
     settings = Settings.from_json(fit.settings) if fit.settings else Settings(model=fit.model, seed=fit.seed)
-    request = with_kept(context, request, [str(definition["name"]) for definition in settings.custom])
-    more = [definition_of(definition) for definition in request.custom]
-    named = [*([request.effect] if request.effect is not None else []), *request.effects]
-    wanted = dict.fromkeys([*named, *(str(definition["name"]) for definition in more)])
-    if not wanted:
+    more = [definition_of(definition) for definition in defined(context, request.custom)]
+    names = [*([request.effect] if request.effect is not None else []), *request.effects]
+    if not names and not more:
         raise Failure(422, "bad-request", "no effect is given", "effect", "name one of those at /api/v1/effects")
-    settings = replace(settings, custom=together(settings.custom, more))
-    own = {definition["name"] for definition in settings.custom}
-    for name in wanted.keys() - own:
-        effect(name)
-    there = [name for name in wanted if name in fit.effects]
-    if there:
-        raise Failure(409, "effect-there", f"the fit has {', '.join(there)} already", "effect",
-                      "add another one, or start from the fit before it")  # fmt: skip
-    settings = replace(settings, effects=(*fit.effects, *wanted))
+    newest, _ = diagnoses.of_fit(context, fit_id)
+    settings = with_named(
+        replace(settings, effects=fit.effects), names, more, newest.found if newest else None,
+        lambda: {kept.name: kept.definition for kept in every(context)},
+    )  # fmt: skip
     return service.queue(context, job, parent.matrix, settings, parent.id, who)
 
 

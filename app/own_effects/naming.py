@@ -9,12 +9,13 @@ from app.context import Context
 from app.own_effects import repository
 from app.own_effects.kept import Kept
 from ident.custom.definition import definition_of, is_name
-from ident.effects import CATALOGUE
+from ident.effects import CATALOGUE, unknown
 from ident.errors import Unusable
+from ident.words.nearest import did_you_mean
 from schemas.diagnosis import DiagnosisRequest
-from schemas.fit import Chosen, EffectsRequest, FitRequest
+from schemas.fit import Chosen, FitRequest
 
-Asked = TypeVar("Asked", FitRequest, DiagnosisRequest, EffectsRequest)
+Asked = TypeVar("Asked", FitRequest, DiagnosisRequest)
 _CATALOGUE = frozenset(effect.name for effect in CATALOGUE)
 
 
@@ -24,25 +25,27 @@ def every(context: Context) -> tuple[Kept, ...]:
         return tuple(map(repository.kept, repository.every(session)))
 
 
-def with_kept(context: Context, request: Asked, known: Collection[str] = ()) -> Asked:
+def with_kept(context: Context, request: Asked) -> Asked:
     """The request with the definition of each kept effect that stands among its `effects`, or by name in `custom`.
 
-    What it defines itself, what is `known` and the catalogue's come first. Raises Unusable for a name in `custom` that
-    is not kept.
+    What it defines itself and the catalogue's come first. Raises Unusable, with the nearest name, for one that is not
+    known.
     """
-    return request.model_copy(update={"custom": _custom(context, request, known)})
+    return request.model_copy(update={"custom": _custom(context, request)})
 
 
-def _custom(context: Context, request: Chosen | EffectsRequest, known: Collection[str]) -> list[dict[str, Any] | str]:
-    """What a request defines, and what is kept under the names that it gives beside."""
-    custom = list(_defined(context, request.custom))
-    there = {str(definition_of(definition)["name"]) for definition in custom} | _CATALOGUE | set(known)
-    single = [request.effect] if isinstance(request, EffectsRequest) and request.effect is not None else []
-    wanted = [name for name in dict.fromkeys((*single, *request.effects)) if name not in there]
-    return [*custom, *(dict(entry.definition) for entry in _named(context, wanted))]
+def _custom(context: Context, request: Chosen) -> list[dict[str, Any] | str]:
+    """What a request defines, and what is kept under the names that it gives in addition."""
+    custom = list(defined(context, request.custom))
+    there = {str(definition_of(definition)["name"]) for definition in custom} | _CATALOGUE
+    wanted = [name for name in dict.fromkeys(request.effects) if name not in there]
+    found = _named(context, wanted)
+    if strange := [name for name in wanted if name not in {entry.name for entry in found}]:
+        raise unknown(strange[0], (*there, *(entry.name for entry in every(context))))
+    return [*custom, *(dict(entry.definition) for entry in found)]
 
 
-def _defined(context: Context, custom: Iterable[dict[str, Any] | str]) -> Iterable[dict[str, Any] | str]:
+def defined(context: Context, custom: Iterable[dict[str, Any] | str]) -> Iterable[dict[str, Any] | str]:
     """The definitions; a text that is a name stands for the effect that is kept under it."""
     for definition in custom:
         if not (isinstance(definition, str) and is_name(definition.strip())):
@@ -51,7 +54,8 @@ def _defined(context: Context, custom: Iterable[dict[str, Any] | str]) -> Iterab
         name = definition.strip()
         found = _named(context, [name])
         if not found:
-            raise Unusable("no-such-effect", f"there is no own effect {name!r}", "custom", "see /api/v1/own-effects")
+            remedy = did_you_mean(name, (entry.name for entry in every(context)), "see /api/v1/own-effects")
+            raise Unusable("no-such-effect", f"there is no own effect {name!r}", "custom", remedy)
         yield dict(found[0].definition)
 
 

@@ -10,6 +10,7 @@ from markupsafe import Markup
 
 from app.diagnoses.service import Stored
 from app.pages.evidence_view import proposal_evidence
+from ident.diagnosis.named import Named, named
 from ident.diagnosis.proposals.own import curves
 from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.result import Rung
@@ -45,11 +46,8 @@ class ProposedCard:
 def proposed(stored: Stored, run: RunView | None) -> Iterator[ProposedCard]:
     """A card for each term; where no curve shows it, the Bode plot of `run` does."""
     found = stored.found
-    names: list[str] = []
-    definitions: list[str] = []
     for rank, one in enumerate(found.proposals or (), 1):
-        names.append(str(one.effect["name"]))
-        definitions.append(json.dumps(dict(one.effect)))
+        added = named(found, str(one.effect["name"])) or Named()
         shapes = (
             f"{symbol} = {entry['value']:.4g} {entry['unit']}" for symbol, entry in one.effect.get("shape", {}).items()
         )
@@ -68,8 +66,8 @@ def proposed(stored: Stored, run: RunView | None) -> Iterator[ProposedCard]:
             instead_of=_instead_of(one, found.ladder),
             shapes="; ".join(shapes),
             hypothesis=one.hypothesis,
-            effects=(*one.beside, *names),
-            definitions=tuple(definitions),
+            effects=added.effects,
+            definitions=tuple(json.dumps(dict(definition)) for definition in added.custom),
             evidence_of=proposal_evidence(one, stored, run),
         )
 

@@ -1,9 +1,11 @@
 """A name in, an effect out: the catalogue, in the order in which effects act within their place."""
 
+from collections.abc import Iterable
 from importlib import import_module
 
 from ident.effects.effect import Effect
 from ident.errors import Unusable
+from ident.words.nearest import did_you_mean
 
 
 def _of_files(*names: str) -> tuple[Effect, ...]:
@@ -65,10 +67,15 @@ CATALOGUE = (*EFFECTS, *OF_BENCH)
 """All of them: which a model takes its chain says."""
 
 
-def effect(name: str) -> Effect:
-    """The effect called `name`; raises Unusable with the names there are."""
+def effect(name: str, own: Iterable[str] = ()) -> Effect:
+    """The effect called `name`; raises Unusable with the nearest name, those of `own` effects among them."""
     for known in CATALOGUE:
         if known.name == name:
             return known
-    names = ", ".join(known.name for known in CATALOGUE)
-    raise Unusable("unknown-effect", f"no effect {name!r}", "effects", f"choose from {names}")
+    raise unknown(name, own)
+
+
+def unknown(name: str, own: Iterable[str] = ()) -> Unusable:
+    """The refusal of a name that neither the catalogue nor the `own` effects have."""
+    known = (*(known.name for known in CATALOGUE), *own)
+    return Unusable("unknown-effect", f"no effect {name!r}", "effects", did_you_mean(name, known))

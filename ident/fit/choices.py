@@ -7,8 +7,10 @@ from typing import Any, TypedDict, cast
 
 from ident.custom.definition import definition_of, preset_with
 from ident.errors import Unusable
+from ident.fit.extended import extended
 from ident.fit.settings import Settings
 from ident.presets.angles import in_si
+from ident.words.nearest import did_you_mean
 
 Value = float | str
 """A plain number, SI, or text that carries a unit, as "1 ms"."""
@@ -37,12 +39,12 @@ def settings_of(choices: Choices, usual: Settings | None = None) -> Settings:
     given = cast(dict[str, Any], choices)
     unknown = [name for name in given if name not in Choices.__annotations__]
     if unknown:
-        known = ", ".join(Choices.__annotations__)
-        raise Unusable("unknown-option", f"no choice {unknown[0]!r} about a fit", "settings", f"choose {known}")
+        raise Unusable("unknown-option", f"no choice {unknown[0]!r} about a fit", "settings",
+                       did_you_mean(unknown[0], Choices.__annotations__))  # fmt: skip
     chosen = {**vars(usual or Settings()), **given}
     custom = tuple(definition_of(one) for one in chosen["custom"])
-    effects = tuple(dict.fromkeys((*chosen["effects"], *(str(one["name"]) for one in custom))))
-    model = preset_with(chosen["model"] or Settings().model, effects, custom)
+    named = extended(Settings(model=chosen["model"]), chosen["effects"], custom)
+    model = preset_with(named.model or Settings().model, named.effects, named.custom)
 
     def si(name: str, value: Value) -> float:
         return in_si(value, model.parameter(name).unit, name)
@@ -51,4 +53,4 @@ def settings_of(choices: Choices, usual: Settings | None = None) -> Settings:
     for name, (lower, upper) in bounds.items():
         model.parameter(name).within(lower, upper)
     fixed = {name: si(name, value) for name, value in chosen["fixed"].items()}
-    return Settings(**{**chosen, "effects": effects, "custom": custom, "bounds": bounds, "fixed": fixed})
+    return Settings(**{**chosen, "effects": named.effects, "custom": named.custom, "bounds": bounds, "fixed": fixed})

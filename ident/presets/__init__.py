@@ -10,6 +10,7 @@ from ident.errors import Unusable
 from ident.presets.description import is_machine
 from ident.presets.machine import machine
 from ident.presets.preset import Preset
+from ident.words.nearest import did_you_mean
 
 _FILES = (
     "qian2014",
@@ -30,11 +31,11 @@ PRESETS = {preset.name: preset for preset in _PRESETS}
 def preset(name: str, effects: Sequence[str] = (), custom: Sequence[Effect] = ()) -> Preset:
     """The preset called `name` with these effects, of the catalogue or among `custom`; those come last.
 
-    A machine put together from stages has its description for a name. Raises Unusable with the names there are, or
+    A machine put together from stages has its description for a name. Raises Unusable with the nearest name, or
     where two stages do not go together.
     """
     if name not in PRESETS and not is_machine(name):
-        raise Unusable("unknown-model", f"no model {name!r}", "model", f"choose from {', '.join(PRESETS)}")
+        raise Unusable("unknown-model", f"no model {name!r}", "model", did_you_mean(name, PRESETS))
     return _with_effects(name, frozenset(effects), tuple(custom))
 
 
@@ -43,8 +44,8 @@ def _with_effects(name: str, effects: frozenset[str], custom: tuple[Effect, ...]
     own = {known.name for known in custom}
     if len(own) < len(custom):
         raise Unusable("name-taken", "two effects have the same name", "custom effects", "rename one of them")
-    for wanted in effects - own:
-        effect(wanted)
+    for wanted in sorted(effects - own):
+        effect(wanted, own)
     bare = machine(name) if is_machine(name) else PRESETS[name]
     return bare.with_effects(tuple(known for known in (*CATALOGUE, *custom) if known.name in effects))
 

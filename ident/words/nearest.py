@@ -1,0 +1,39 @@
+"""A name that is not known: the nearest one that is, as the remedy of a refusal."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+_NEAR = 0.6
+"""Ratio of difflib (twice the letters in common over all letters) from which on a name may be meant."""
+_NEAR_IF_SHORT, _SHORT = 0.5, 3
+"""The same of a name of at most three letters, one of which may be wrong."""
+
+
+def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:
+    """The remedy ``did you mean dead_zone?`` with the known name that is nearest; where none is near, `otherwise`.
+
+    Without `otherwise` the known names are listed. Neither case, separators nor spaces count for how near a name is.
+    """
+    names = list(dict.fromkeys(known))
+    found = nearest(name, names)
+    if found is not None:
+        return f"did you mean {found}?"
+    return otherwise or (f"choose from {', '.join(names)}" if names else "leave it out")
+
+
+def nearest(name: str, known: Iterable[str]) -> str | None:
+    """The known name that is nearest to a misspelt one; None where none is near."""
+    spelt: dict[str, str] = {}
+    for one in known:
+        spelt.setdefault(_letters(one), one)
+    letters = _letters(name)
+    near = get_close_matches(letters, spelt, 1, _NEAR_IF_SHORT if len(letters) <= _SHORT else _NEAR)
+    return spelt[near[0]] if near and letters else None
+
+
+def _letters(name: str) -> str:
+    """What counts of a name."""
+    return re.sub(r"[\W_]+", "", name.casefold())
