@@ -115,7 +115,7 @@ def _pairs(found: Regression, units: Mapping[str, str]) -> tuple[list[Candidate]
     both = power[i] + power[j] + 2 * signs * found.products[i, j]
     sound = both > _CANCELLED * (power[i] + power[j])
     with_residual = found.with_residual[i] + signs * found.with_residual[j]
-    share = np.where(sound, with_residual**2 / np.where(sound, both, 1.0) / found.left, 0.0)
+    share = found.share(np.where(sound, with_residual**2 / np.where(sound, both, 1.0), 0.0))
 
     def alike(k: int, other: int) -> bool:
         (a, b, s), (c, d, t) = ((i[n], j[n], signs[n]) for n in (k, other))

@@ -18,13 +18,15 @@ BLOCK = 128
 """Terms whose responses are worked out together: those to all at once are large."""
 WIDE = 1.3  # of the command's band is looked at
 _WITHOUT_END = 1e60  # of the output, for a strength of one: no power of a signal comes near
+_ROUNDING = 1e-12  # of what was measured: a residual below it is that of the arithmetic, not one to be explained
 
 
 @dataclass(frozen=True)
 class Columns:
     """One run as its columns see it: `known` is [J, r] within the `band`, (n, p+1), all over the residual's `size`.
 
-    What is free in the run is taken off, and so it is of each column, by the orthonormal `basis`, (n, s).
+    What is free in the run is taken off, and so it is of each column, by the orthonormal `basis`, (n, s). Every number
+    in it is finite: a column that is not is zero, and tells nothing of the run.
     """
 
     record: Record
@@ -36,22 +38,24 @@ class Columns:
     @classmethod
     def of(cls, record: Record, band: float) -> Columns:
         """Those of a run; `band` in rad/s."""
-        known = _within(np.column_stack([record.sensitivities, record.residual]), record, band)
+        known, _ = _within(np.column_stack([record.sensitivities, record.residual]), record, band)
         basis = np.empty((len(known), 0))
         if record.free.shape[1]:
-            free = _within(record.free.copy(), record, band)
+            free, _ = _within(record.free, record, band)
             basis = scipy.linalg.orth(free / np.maximum(np.linalg.norm(free, axis=0), 1e-300), rcond=1e-9)
         known = known - basis @ (basis.T @ known)
-        size = max(float(np.linalg.norm(known[:, -1])), 1e-300)
+        least = _ROUNDING * float(np.std(record.run.measured)) * float(np.sqrt(len(known)))
+        size = max(float(np.linalg.norm(known[:, -1])), least, np.finfo(float).tiny)
         return cls(record, band, known / size, basis, size)
 
-    def to(self, terms: Sequence[Term], path: Response) -> Array:
-        """T * φ of terms that add to one signal, (n, terms); `path` leads from there to the output."""
+    def to(self, terms: Sequence[Term], path: Response) -> tuple[Array, NDArray[np.bool_]]:
+        """T * φ of terms that add to one signal, (n, terms), and which of them are finite, (terms,).
+
+        `path` leads from there to the output. Where small signals are not stable an answer grows without end.
+        """
         samples = np.column_stack([term.samples(self.record.signals, self.record.rate) for term in terms])
-        found = _within(path.to(samples)[:, :, 0], self.record, self.band)
-        # Where small signals are not stable an answer grows without end: it tells nothing of the run.
-        found = np.where(np.max(np.abs(found), axis=0, initial=0.0) < _WITHOUT_END, found, 0.0)
-        return np.asarray((found - self.basis @ (self.basis.T @ found)) / self.size)
+        found, sound = _within(path.to(samples)[:, :, 0], self.record, self.band)
+        return np.asarray((found - self.basis @ (self.basis.T @ found)) / self.size), sound
 
 
 def blocks(terms: Sequence[Term]) -> list[list[int]]:
@@ -62,12 +66,16 @@ def blocks(terms: Sequence[Term]) -> list[list[int]]:
     return [here[k : k + BLOCK] for here in by_signal.values() for k in range(0, len(here), BLOCK)]
 
 
-def _within(rows: Array, record: Record, band: float) -> Array:
-    """Columns over time as what of them is seen: the lines of their spectra in the band, or the windows they begin."""
-    rows[~np.isfinite(rows)] = 0.0
+def _within(rows: Array, record: Record, band: float) -> tuple[Array, NDArray[np.bool_]]:
+    """Columns over time as what of them is seen, and which are finite: zero is what others are.
+
+    Seen are the lines of their spectra in the band, or the windows that they begin.
+    """
+    sound = np.max(np.abs(rows), axis=0, initial=0.0) < _WITHOUT_END  # false of what is no number
+    rows = np.where(sound, rows, 0.0)
     if record.anchoring.window:
-        return record.anchoring(rows)
+        return record.anchoring(rows), sound
     spectrum = np.fft.rfft(rows, axis=0)
     lines = np.fft.rfftfreq(len(rows), 1.0 / record.rate) * 2 * np.pi
     inside = spectrum[(lines > 0) & (lines <= WIDE * band)]
-    return np.concatenate([inside.real, inside.imag])
+    return np.concatenate([inside.real, inside.imag]), sound

@@ -89,7 +89,7 @@ def offered(found: Regression, curves: Sequence[FreeCurve]) -> tuple[Candidate, 
     """The curves that explain most, no two of them alike; the hats of all of them are the terms of the regression."""
     ends = np.cumsum([len(curve.knots) for curve in curves])
     values = [_values(found, np.arange(end - len(curve.knots), end)) for curve, end in zip(curves, ends, strict=True)]
-    gains = np.array([float(found.with_residual[at] @ value) for at, value in values]) / found.left
+    gains = found.share(np.array([float(found.with_residual[at] @ value) for at, value in values]))
     taken: list[int] = []
     for k in map(int, np.argsort(-gains, kind="stable")):
         if (

@@ -40,13 +40,15 @@ class Refused:
 class Proposals:
     """What was found, one term on top of the other, the best that was refused, and how many were looked at.
 
-    `refit` is the model with all of it. Not `complete`, the time was over.
+    `refit` is the model with all of it. So many terms were `left_out`, for no model can hold them or what they add is
+    not finite. Not `complete`, the time was over.
     """
 
     found: tuple[Proposal, ...] = ()
     refit: Refit | None = None
     refused: Refused | None = None
     looked_at: int = 0
+    left_out: int = 0
     complete: bool = True
 
     def or_refused(self, other: Proposals) -> Proposals:
@@ -58,7 +60,8 @@ class Proposals:
             return self
         refused = (one.refused for one in (self, other) if one.refused is not None)
         best = min(refused, key=lambda one: one.error["fit"] or 0.0)
-        return replace(self, refused=best, looked_at=self.looked_at + other.looked_at)
+        counted = {"looked_at": self.looked_at + other.looked_at, "left_out": self.left_out + other.left_out}
+        return replace(self, refused=best, **counted)
 
     def left(self, before: float, what: str = "fit") -> float:
         """The error with all of it on the fitted runs, or "held_out" from the fit in turn; `before` without."""

@@ -81,16 +81,23 @@ def records(refit: Refit, names: Sequence[str], instead_of: Sequence[str] = ()) 
 
 def paths(
     preset: Preset, values: Mapping[str, float], actuator: Actuator, at: str, runs: Sequence[Record]
-) -> list[Response]:
-    """For each record the linear response from what is added to the signal `at` to the output."""
+) -> list[Response] | None:
+    """For each record the linear response from what is added to the signal `at` to the output.
+
+    None where the slopes of the model are not finite on a record. Raises Unusable where no model gives them.
+    """
     broken = injected(preset.core, at)
     found: dict[object, Response] = {}
-
-    def of(record: Record) -> Response:
-        run = record.run
-        key = (run.specimen, run.gain, run.output, record.rate)
+    for record, key in zip(runs, map(_alike, runs), strict=True):
         if key not in found:
-            found[key] = Response.of([linear_model(broken, values, run, actuator)], record.rate)
-        return found[key]
+            model = linear_model(broken, values, record.run, actuator)
+            if not all(np.all(np.isfinite(of)) for of in (model.A, model.B, model.C, model.D)):
+                return None
+            found[key] = Response.of([model], record.rate)
+    return [found[key] for key in map(_alike, runs)]
 
-    return [of(record) for record in runs]
+
+def _alike(record: Record) -> object:
+    """What records have in common that have one linear model."""
+    run = record.run
+    return run.specimen, run.gain, run.output, record.rate

@@ -41,7 +41,8 @@ _AT_ONCE = 4  # runs
 class Regression:
     """Products (m, m) of the terms less what the parameters do, with the residual, (m,); `left` is its power.
 
-    Of each form with shapes the leading one of the `looked_at` terms is there.
+    Of each form with shapes the leading one of the `looked_at` terms is there. A term whose answer is finite in no run
+    is `left_out` of those.
     """
 
     terms: tuple[Term, ...]
@@ -49,11 +50,16 @@ class Regression:
     with_residual: Array
     left: float
     looked_at: int
+    left_out: int = 0
 
     @cached_property
     def gains(self) -> Array:
         """The share of the residual's power that each term takes off by itself, (m,)."""
         return _gains(np.diag(self.products), self.with_residual, self.left)
+
+    def share(self, taken: Array) -> Array:
+        """What part of the residual's power is `taken`: none where there is no residual."""
+        return _share(taken, self.left)
 
     def classes(self) -> list[list[int]]:
         """Terms by what they explain, best first; those of a class, in the list's order, cannot be told apart."""
@@ -76,54 +82,65 @@ def regression(
     """The products of terms over some runs; `paths` has, for each signal that is added to, each run's response."""
     beside = each(partial(Columns.of, band=band), runs)
     known = np.sum([columns.known.T @ columns.known for columns in beside], axis=0)
-    some = _leading(terms, beside, paths, known)
-    m, total = len(some), np.zeros(())
+    some, lost = _leading(terms, beside, paths, known)
+    m, total, sound = len(some), np.zeros(()), np.zeros(len(some), dtype=bool)
     for first in range(0, len(beside), _AT_ONCE):
-        rows = _rows(some, beside, paths, range(first, min(first + _AT_ONCE, len(beside))))
+        rows = _rows(some, beside, paths, range(first, min(first + _AT_ONCE, len(beside))), sound)
         total = total + np.hstack(each(partial(np.matmul, rows.T), np.array_split(rows, 2, axis=1)))
     along = _along(known, np.delete(total[m:-1], np.s_[m:-1], axis=1))
     of = np.delete(np.delete(total, np.s_[m:-1], axis=0), np.s_[m:-1], axis=1) - along.T @ along
     absorbed = np.diag(of)[:m] < _ABSORBED * np.diag(total)[:m]
     products, with_residual = of[:m, :m].copy(), of[:m, m].copy()
     products[absorbed], products[:, absorbed], with_residual[absorbed] = 0.0, 0.0, 0.0
-    return Regression(tuple(some), products, with_residual, float(of[m, m]), len(terms))
+    left_out = lost + sum(not one for one, term in zip(sound, some, strict=True) if not term.free_shapes)
+    return Regression(tuple(some), products, with_residual, float(of[m, m]), len(terms), left_out)
 
 
 def _leading(
     terms: Sequence[Term], beside: Sequence[Columns], paths: Mapping[str, Sequence[Response]], known: Array
-) -> list[Term]:
-    """The terms without shapes that a refit moves, and of each form with such the one that takes off most by itself."""
+) -> tuple[list[Term], int]:
+    """The terms without shapes that a refit moves, and of each form with such the one that takes off most by itself.
+
+    And how many of those with shapes are finite in no run.
+    """
     shaped = [i for i, term in enumerate(terms) if term.free_shapes]
     candidates = [terms[i] for i in shaped]
-    gains = np.round(_alone(candidates, beside, paths, known), _DIGITS)
+    alone, sound = _alone(candidates, beside, paths, known)
+    gains = np.round(alone, _DIGITS)
     leading: dict[object, int] = {}
     for k, term in enumerate(candidates):
         if gains[k] > gains[leading.setdefault(term.form, k)]:
             leading[term.form] = k
     kept = {shaped[k] for k in leading.values()}
-    return [term for i, term in enumerate(terms) if not term.free_shapes or i in kept]
+    return [term for i, term in enumerate(terms) if not term.free_shapes or i in kept], int(np.sum(~sound))
 
 
 def _alone(
     terms: Sequence[Term], beside: Sequence[Columns], paths: Mapping[str, Sequence[Response]], known: Array
-) -> Array:
-    """The share of the residual's power that each of many terms takes off by itself: no products of two of them."""
+) -> tuple[Array, NDArray[np.bool_]]:
+    """The share of the residual's power that each of many terms takes off by itself: no products of two of them.
+
+    And which of them are finite in any run.
+    """
     cross, power = np.zeros((len(known), len(terms))), np.zeros(len(terms))
+    finite = np.zeros(len(terms), dtype=bool)
 
-    def sums(of: tuple[int, list[int]]) -> tuple[list[int], Array, Array]:
+    def sums(of: tuple[int, list[int]]) -> tuple[list[int], Array, Array, NDArray[np.bool_]]:
         run, here = of
-        found = beside[run].to([terms[i] for i in here], paths[terms[here[0]].path][run])
-        return here, beside[run].known.T @ found, np.einsum("nt,nt->t", found, found)
+        found, sound = beside[run].to([terms[i] for i in here], paths[terms[here[0]].path][run])
+        return here, beside[run].known.T @ found, np.einsum("nt,nt->t", found, found), sound
 
-    for here, of_known, of_itself in each(sums, [(run, here) for run in range(len(beside)) for here in blocks(terms)]):
+    todo = [(run, here) for run in range(len(beside)) for here in blocks(terms)]
+    for here, of_known, of_itself, sound in each(sums, todo):
         cross[:, here] += of_known
         power[here] += of_itself
+        finite[here] |= sound
     along = _along(known, np.column_stack([cross[:-1], known[:-1, -1]]))
     beyond = power - np.sum(along[:, :-1] ** 2, axis=0)
     with_residual = cross[-1] - along[:, :-1].T @ along[:, -1]
-    sound = beyond >= _ABSORBED * power
+    seen = beyond >= _ABSORBED * power
     left = known[-1, -1] - along[:, -1] @ along[:, -1]
-    return _gains(np.where(sound, beyond, 0.0), np.where(sound, with_residual, 0.0), left)
+    return _gains(np.where(seen, beyond, 0.0), np.where(seen, with_residual, 0.0), left), finite
 
 
 def _along(known: Array, cross: Array) -> Array:
@@ -136,13 +153,21 @@ def _along(known: Array, cross: Array) -> Array:
 
 
 def _gains(power: Array, with_residual: Array, left: float) -> Array:
-    return np.asarray(np.where(power > 0, with_residual**2 / np.maximum(power, 1e-300), 0.0) / left)
+    return _share(np.where(power > 0, with_residual**2 / np.maximum(power, 1e-300), 0.0), left)
+
+
+def _share(taken: Array, left: float) -> Array:
+    return np.asarray(taken / left if left > 0 else np.zeros_like(taken))
 
 
 def _rows(
-    terms: Sequence[Term], beside: Sequence[Columns], paths: Mapping[str, Sequence[Response]], runs: Sequence[int]
-) -> Array:
-    """[T * φ, J, r] of some runs, one below the other; a block of columns after the other."""
+    terms: Sequence[Term], beside: Sequence[Columns], paths: Mapping[str, Sequence[Response]], runs: Sequence[int],
+    sound: NDArray[np.bool_],
+) -> Array:  # fmt: skip
+    """[T * φ, J, r] of some runs, one below the other; a block of columns after the other.
+
+    `sound` (terms,) becomes true of those that are finite in one of these runs.
+    """
     todo = [(run, here) for run in runs for here in blocks(terms)]
     answers = iter(
         each(lambda of: beside[of[0]].to([terms[i] for i in of[1]], paths[terms[of[1][0]].path][of[0]]), todo)
@@ -153,6 +178,7 @@ def _rows(
         rows = np.empty((len(known), len(terms) + known.shape[1]))
         rows[:, len(terms) :] = known
         for here in blocks(terms):
-            rows[:, here] = next(answers)
+            rows[:, here], finite = next(answers)
+            sound[here] |= finite
         every.append(rows)
     return np.concatenate(every)

@@ -63,6 +63,7 @@ class Search:
     asked: bool = True
     most: int = MOST
     looked_at: int = 0
+    left_out: int = 0
     found: list[Proposal] = field(default_factory=list)
     refused: Refused | None = None
     complete: bool = False
@@ -84,17 +85,17 @@ class Search:
             self.complete = True
         return Proposals(
             found=tuple(map(self._restated, self.found)), refit=self.base, refused=self.refused,
-            looked_at=self.looked_at, complete=self.complete,
+            looked_at=self.looked_at, left_out=self.left_out, complete=self.complete,
         )  # fmt: skip
 
     def _drawn(self, begun: Search) -> None:
         """One free curve beside the terms or, where it leaves no more without them, in the place of all of them."""
         terms = self.found
         self._added(curves=True)
-        begun.looked_at = self.looked_at
+        begun.looked_at, begun.left_out = self.looked_at, self.left_out
         if terms and begun._added(curves=True) and _held_out(begun) <= _AS_GOOD * _held_out(self):
             self.models, self.base, self.beside, self.found = begun.models, begun.base, begun.beside, begun.found
-        self.looked_at = begun.looked_at
+        self.looked_at, self.left_out = begun.looked_at, begun.left_out
 
     def _added(self, curves: bool = False) -> bool:
         """Look for one more term, or for a free curve; True where one passed the bar."""
@@ -106,7 +107,7 @@ class Search:
             return False
         name = next(f"{_PREFIX}{n}" for n in count(1) if f"{_PREFIX}{n}" not in self.models.effects)
         seen = sight(self.models, base, curves=curves)
-        self.looked_at += seen.looked_at
+        self._count(seen)
         self.report(Progress("proposing", len(self.found), self.most, base.error))
         tried = self._all_tried(searching, base, name, seen, curves)
         if not tried:
@@ -130,6 +131,11 @@ class Search:
         self.found.append(replace(proposal, contradicted=self._contradiction(name, without)))
         return True
 
+    def _count(self, seen: Sight) -> None:
+        """Count what was looked at, and what of it was left out."""
+        self.looked_at += seen.looked_at
+        self.left_out += seen.left_out
+
     def _refuse(self, own: Mapping[str, Any], refit: Refit, gained: float, bar: float) -> None:
         """Keep what stayed below the bar, where it is the best of that."""
         if self.refused is None or gained > self.refused.nats:
@@ -145,7 +151,9 @@ class Search:
         """
 
         def refits(candidates: Sequence[Candidate], least: float = np.inf) -> list[Tried]:
-            begun = [one for one in each(lambda c: self._tried(searching, base, name, c, seen), candidates) if one]
+            built = [one for one in (_built(searching, base, name, c, seen) for c in candidates) if one]
+            self.left_out += len(candidates) - len(built)
+            begun = [one for one in each(lambda of: _tried(base, name, *of), built) if one]
             return _ahead(begun, least)
 
         tried = refits(seen.candidates)
@@ -154,7 +162,7 @@ class Search:
         best = first_least(tried, lambda one: one[1].error)
         if not searching.at_floor(best[1]):
             again = sight(self.models, best[1], best[2].effects[name], curves)
-            self.looked_at += again.looked_at
+            self._count(again)
             new = [one for one in again.candidates if not any(map(one.begins_as, seen.candidates))]
             tried += refits(new, best[1].here.error)
         ranked = in_order(tried, lambda one: one[1].error)
@@ -222,22 +230,30 @@ class Search:
             return proposal
         return replace(proposal, effect=as_found(proposal.effect, self.models.effects[name], self.base.values))
 
-    def _tried(self, searching: ModelFamily, base: Refit, name: str, candidate: Candidate, seen: Sight) -> Tried | None:
-        """First steps with a candidate on the runs that search; None where it cannot be added, or leads nowhere."""
+
+def _built(
+    searching: ModelFamily, base: Refit, name: str, candidate: Candidate, seen: Sight
+) -> tuple[Candidate, ModelFamily] | None:
+    """The models with a candidate as an effect of this name; None where no model can hold it."""
+    with np.errstate(all="ignore"):  # bounds that are no numbers are refused below
         own = definition(name, candidate.terms, candidate.signs, candidate.strength, seen.typical, seen.units)
-        try:
-            effect = read_effect(own, model=self.models.preset.name)
-        except Unusable:
-            return None
-        bounds = {**searching.given.bounds, **searched(own, candidate.terms)}
-        given = replace(searching.given, custom=(*searching.given.custom, own), bounds=bounds)
-        family = replace(searching, effects={**searching.effects, name: effect}, given=given, _known={})
-        if not family.fit_together((*base.effects, name)):
-            return None  # it closes a circle of signals with what was found before
-        start = {**base.values, family.strength(name): candidate.strength}
-        start |= {p.in_equations: p.value for p in effect.added[1:]}
-        refit = family.refit((*base.effects, name), start, way=FIRST_STEPS)
-        return (candidate, refit, family) if refit.stable else None
+    try:
+        effect = read_effect(own, model=searching.preset.name)
+    except Unusable:
+        return None
+    bounds = {**searching.given.bounds, **searched(own, candidate.terms)}
+    given = replace(searching.given, custom=(*searching.given.custom, own), bounds=bounds)
+    family = replace(searching, effects={**searching.effects, name: effect}, given=given, _known={})
+    # It may close a circle of signals with what was found before.
+    return (candidate, family) if family.fit_together((*base.effects, name)) else None
+
+
+def _tried(base: Refit, name: str, candidate: Candidate, family: ModelFamily) -> Tried | None:
+    """First steps with a candidate on the runs that search; None where it leads nowhere."""
+    start = {**base.values, family.strength(name): candidate.strength}
+    start |= {p.in_equations: p.value for p in family.effects[name].added[1:]}
+    refit = family.refit((*base.effects, name), start, way=FIRST_STEPS)
+    return (candidate, refit, family) if refit.stable else None
 
 
 def _held_out(search: Search) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,14 +14,16 @@ from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.proposals import free_curves
 from ident.diagnosis.proposals.candidate import Candidate, offered
 from ident.diagnosis.proposals.recorded import recorded_beside, units_of
-from ident.diagnosis.proposals.records import paths, records
+from ident.diagnosis.proposals.records import Record, paths, records
 from ident.diagnosis.proposals.regression import regression
 from ident.diagnosis.proposals.softness import OIL
 from ident.diagnosis.proposals.terms import ALONE, Library
 from ident.diagnosis.refit import Refit
 from ident.effects.effect import Effect
+from ident.errors import Unusable
 from ident.parameter import Parameter
 from ident.presets import Preset
+from ident.residuals.decimation import Response
 
 Array = NDArray[np.float64]
 _PLACES = {
@@ -34,12 +37,16 @@ _PROPORTIONAL = 1.0 - 1e-6  # cosine of signals that are one
 
 @dataclass(frozen=True)
 class Sight:
-    """The candidates, best first, and how many were looked at; samples of the signals they are of, and their units."""
+    """The candidates, best first, and how many terms were looked at; samples of the signals they are of, their units.
+
+    Of the terms so many were `left_out`: what they add cannot be followed to the output, or is not finite there.
+    """
 
     candidates: tuple[Candidate, ...]
     looked_at: int
     typical: Mapping[str, Array]
     units: Mapping[str, str]
+    left_out: int = 0
 
 
 def sight(models: ModelFamily, base: Refit, instead_of: Effect | None = None, curves: bool = False) -> Sight:
@@ -47,30 +54,76 @@ def sight(models: ModelFamily, base: Refit, instead_of: Effect | None = None, cu
 
     Terms, or free `curves`.
     """
-    preset = models.preset
-    named = {equation.target for equation in preset.core.equations if not equation.is_rate} | {*preset.core.states}
-    names = [name for name in _SIGNALS if name in named]
-    places = {at: place for at, place in _PLACES.items() if at in named and (at != _READ or _LOOP in named)}
     numbers = [p.in_equations for p in instead_of.added] if instead_of else []
-    runs = records(base, list(dict.fromkeys((*names, *places, *(named & {OIL})))), numbers)
+    return seen(models, base.values, records(base, list(signals_of(models.preset)), numbers), curves)
+
+
+def seen(models: ModelFamily, values: Mapping[str, float], runs: Sequence[Record], curves: bool = False) -> Sight:
+    """The same of the records of a model with these `values`, by the equations' names."""
+    preset = models.preset
+    places, names = places_of(preset), _inside(preset)
     typical = {name: np.concatenate([record.signals[name] for record in runs]) for name in runs[0].signals}
     units = {name: quantity.unit for name, quantity in CONDITIONS.items()}
     units |= {**units_of(models.runs[0]), **preset.chain.units}
     shortest = min(run.duration for run in models.runs)
-    varied = [name for name in _VARIED if np.ptp(typical[name]) > 0]
-    names = _distinct(names, typical)
-    library = Library(
-        places, _there(preset, places, names), typical, units, models.band, shortest, varied, recorded_beside(models)
-    )
-    responses = {at: paths(preset, base.values, models.matrix.actuator, at, runs) for at in places}
+    with np.errstate(all="ignore"):  # what is not finite is left out below
+        varied = [name for name in _VARIED if np.ptp(typical[name]) > 0]
+        names = _distinct(names, typical)
+        there = _there(preset, places, names)
+        library = Library(places, there, typical, units, models.band, shortest, varied, recorded_beside(models))
+        drawn = free_curves.free_curves(library) if curves else []
+        terms = [hat for curve in drawn for hat in curve.hats()] if curves else list(library.terms())
+    responses = _responses(models, values, list(dict.fromkeys(term.path for term in terms)), runs)
     if curves:
-        drawn = free_curves.free_curves(library)
-        hats = [hat for curve in drawn for hat in curve.hats()]
-        candidates = free_curves.offered(regression(hats, runs, responses, models.band), drawn) if hats else ()
-        return Sight(candidates, len(drawn), typical, units)
-    found = regression(list(library.terms()), runs, responses, models.band)
+        followed = [curve for curve in drawn if curve.term.path in responses]
+        hats = [hat for curve in followed for hat in curve.hats()]
+        found = regression(hats, runs, responses, models.band) if hats else None
+        candidates = free_curves.offered(found, followed) if found else ()
+        return Sight(candidates, len(drawn), typical, units, len(drawn) - len(followed))
+    followed_terms = [term for term in terms if term.path in responses]
+    lost = len(terms) - len(followed_terms)
+    if not followed_terms:
+        return Sight((), len(terms), typical, units, lost)
+    found = regression(followed_terms, runs, responses, models.band)
     candidates, looked_at = offered(found, units)
-    return Sight(candidates, looked_at, typical, units)
+    return Sight(candidates, looked_at, typical, units, lost + found.left_out)
+
+
+def places_of(preset: Preset) -> dict[str, str]:
+    """The signals of a machine that a term may add to, each with its place.
+
+    No state is among them: an effect of one's own redefines signals alone, for what a state shows follows its rate.
+    """
+    signals = _signals(preset)
+    return {at: place for at, place in _PLACES.items() if at in signals and (at != _READ or _LOOP in signals)}
+
+
+def signals_of(preset: Preset) -> tuple[str, ...]:
+    """The signals and states that terms are of or add to."""
+    return tuple(dict.fromkeys((*_inside(preset), *places_of(preset), *(_signals(preset) & {OIL}))))
+
+
+def _signals(preset: Preset) -> set[str]:
+    return {equation.target for equation in preset.core.equations if not equation.is_rate}
+
+
+def _inside(preset: Preset) -> list[str]:
+    """The signals and states that a term may be of."""
+    named = _signals(preset) | {*preset.core.states}
+    return [name for name in _SIGNALS if name in named]
+
+
+def _responses(
+    models: ModelFamily, values: Mapping[str, float], signals: Sequence[str], runs: Sequence[Record]
+) -> dict[str, list[Response]]:
+    """The responses from each of these signals to the output of every run, but for those that no model gives."""
+    found = {}
+    for at in signals:
+        with suppress(Unusable):
+            responses = paths(models.preset, values, models.matrix.actuator, at, runs)
+            if responses is not None:
+                found[at] = responses
+    return found
 
 
 def _there(preset: Preset, places: Mapping[str, str], names: Sequence[str]) -> dict[str, list[str]]:
@@ -92,7 +145,8 @@ def _distinct(names: Sequence[str], typical: Mapping[str, Array]) -> list[str]:
     kept: list[str] = []
     for name in names:
         x = typical[name]
-        if np.ptp(x) > 0 and not any(_cosine(x, typical[other]) > _PROPORTIONAL for other in kept):
+        moves = bool(np.all(np.isfinite(x))) and np.ptp(x) > 0
+        if moves and not any(_cosine(x, typical[other]) > _PROPORTIONAL for other in kept):
             kept.append(name)
     return kept
 

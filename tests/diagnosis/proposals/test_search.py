@@ -15,7 +15,7 @@ from ident.diagnosis.proposals import columns
 from ident.diagnosis.proposals import regression as regressions
 from ident.diagnosis.proposals.candidate import Candidate
 from ident.diagnosis.proposals.records import records
-from ident.diagnosis.proposals.search import Search
+from ident.diagnosis.proposals.search import Search, _built
 from ident.diagnosis.proposals.sight import sight
 from ident.diagnosis.proposals.term import Term
 from ident.diagnosis.result import Diagnosis
@@ -274,7 +274,7 @@ def test_of_each_form_the_term_that_explains_most_is_set_beside_the_others(monke
     regression = regressions.regression
     monkeypatch.setattr("ident.diagnosis.proposals.sight.regression", regressed)
     seen = sight(models, base)
-    monkeypatch.setattr(regressions, "_leading", lambda terms, *_: terms)
+    monkeypatch.setattr(regressions, "_leading", lambda terms, *_: (terms, 0))
     sight(models, base)
     (listed, some), (_, every) = met
     assert (some.looked_at, every.looked_at) == (len(listed), len(listed))
@@ -298,11 +298,11 @@ def test_a_term_that_closes_a_circle_with_those_before_is_not_tried():
         machine(1), Settings(model="qian2014", custom=(given,)), (read_effect(given, model="qian2014"),)
     )
     base = models.refit(("before",), {p.in_equations: p.value for p in models.preset.parameters})
-    search, seen = Search(models, base, report=lambda _: None, given=()), sight(models, base)
+    seen = sight(models, base)
     force = Candidate((Term("spool", "w", "F", "share", ("F",), {}),), (1.0,), 1e-9, 0.5)
-    assert search._tried(models, base, "proposed_1", force, seen) is None
+    assert _built(models, base, "proposed_1", force, seen) is None
     speed = Candidate((Term("spool", "w", "x", "share", ("x",), {}),), (1.0,), 1e-9, 0.5)
-    assert search._tried(models, base, "proposed_1", speed, seen) is not None
+    assert _built(models, base, "proposed_1", speed, seen) is not None
 
 
 def test_an_answer_that_grows_without_end_is_no_column():
