@@ -72,7 +72,7 @@ class Controller:
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class Run(Shown):
     """One measured record in SI (or in the record's own units where the matrix says ``1``).
 
     `channels` maps a channel's name to its samples, all of one length; `sample_rate` is in Hz, or in 1/sample where
@@ -145,6 +145,16 @@ class Run:
     def Kp(self) -> float:
         """The loop gain; 1 where the matrix states none."""
         return 1.0 if self.gain is None else self.gain
+
+    def listings(self) -> Sequence[Listing | str]:
+        """What was recorded, a row a channel: between which values it lies, in its SI unit."""
+        rows = [
+            (name, *(f"{of(samples):.4g}" for of in (np.min, np.max, np.std)), self.units.get(name, "?"))
+            for name, samples in self.channels.items()
+        ]
+        numbers = ("least", "largest", "std")
+        title = f"Run {self.id}: {self.use}, {self.kind}, {self.duration:.4g} {self.time_unit}, {self.length} samples"
+        return [Listing(title, ("channel", *numbers, "unit"), rows, numbers)]
 
     def of_outputs(self, outputs: Sequence[str]) -> tuple[Run, ...]:
         """The run for each of several outputs; itself where it has one."""

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
-
-if TYPE_CHECKING:
-    from ident.bench.acceptance import Line
-    from ident.bench.analysis import Analysis
 
 
 def bench(
@@ -20,8 +16,10 @@ def bench(
     out: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the acceptance sheet as PDF.")] = None,
 ) -> None:
     """Analyse bench records: static, frequency and speed. Exit status 1 where a limit of the matrix is broken."""
+    from app.cli.tables import show
     from ident.bench.acceptance import passed, read_limits, sheet
     from ident.bench.analysis import analyse
+    from ident.bench.listings import listings
     from ident.bench.records import bench_set
     from ident.bench.report import to_json
     from ident.readers import read_matrix
@@ -41,27 +39,7 @@ def bench(
 
         write_bytes(render(acceptance_sheet(read, records, analysis, lines), "pdf"), out)
     if json != STANDARD_OUTPUT:
-        show(analysis, lines)
+        show(listings(analysis, lines))
     analysis.complete()
     if not passed(lines):
         raise typer.Exit(1)
-
-
-def show(analysis: Analysis, lines: tuple[Line, ...]) -> None:
-    """Print the sheet, the delay's correlations, and what is to be known."""
-    from app.cli.tables import output, sheet_rows, table
-
-    console = output()
-    header = ("quantity", "value", "std error", "unit", "min", "max", "")
-    console.print(table(header, sheet_rows(lines), numbers=("value", "std error", "min", "max")))
-    if analysis.delay is not None:
-        related = analysis.delay.correlation
-        console.print(
-            f"correlation: T and delay {related['T']['delay']:.2f}, B and delay {related['B']['delay']:.2f}, "
-            f"T and B {related['T']['B']:.2f}"
-        )
-    for missing in analysis.missing:
-        console.print(f"not found: {missing.text}", markup=False)
-    for note in analysis.notes:
-        console.print(f"note: {note}", markup=False)
-    console.print(f"{len(analysis.errors)} records analysed in {analysis.seconds:.2f} s")

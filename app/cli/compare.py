@@ -30,7 +30,6 @@ def compare(
     ] = None,
 ) -> None:
     """Compare a fitted model with every run of a matrix: error, where it fails, and what the error is made of."""
-    from app.cli.survey_tables import show_survey
     from app.cli.tables import show
     from ident.readers import read_matrix
     from ident.residuals.survey import survey
@@ -50,8 +49,7 @@ def compare(
         means = {"error": dict(comparison.error), "offset": dict(comparison.offset)}
         write_json({**means, "runs": comparison.records(), **found.to_json()}, json)
     if json != STANDARD_OUTPUT:
-        show(comparison.listings())
-        show_survey(found)
+        show((*comparison.listings(), *found.listings()))
     if out is not None:
         draw(read, result, out, other)
 

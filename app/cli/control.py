@@ -36,6 +36,7 @@ def control(
     The controller is designed on the linear part of the fit with the physical specimen, the gain, the sample rate and
     the delay of the case, and tried on 100 actuators drawn from the covariance of the fit.
     """
+    from app.cli.tables import show
     from ident.hybrid.case import read_case
     from ident.hybrid.controller_design import design_controller
     from ident.hybrid.target import QIAN2014_TARGET
@@ -47,7 +48,7 @@ def control(
         delay=given.delay, target=wanted, structure=structure, seed=seed,
     )  # fmt: skip
     _write(made, out, given.name)
-    _show(made)
+    show(made.listings())
     print(f"wrote {', '.join(FILES)} to {out}")
 
 
@@ -72,13 +73,3 @@ def _write(made: ControllerDesign, out: Path, case: str) -> None:
     chart = closed_loop(made, look("light"), f"case {case}")
     for kind in FORMATS:
         write_bytes(render(chart, kind), out / f"closed-loop.{kind}")
-
-
-def _show(made: ControllerDesign) -> None:
-    """Print what the loop can stand and how it follows."""
-    from app.cli.tables import output, table
-
-    console = output()
-    console.print(table(("quantity", "value", "unit"), made.rows, numbers=("value",)))
-    for note in made.notes:
-        console.print(f"note: {note}", markup=False)

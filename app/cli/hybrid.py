@@ -41,6 +41,7 @@ def hybrid(
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures: svg, png, pdf, json.")] = None,
 ) -> None:
     """Simulate a real-time hybrid simulation: a numerical substructure, a controller, the actuator, a specimen."""
+    from app.cli.tables import show
     from ident.hybrid.acting import controller_called
     from ident.hybrid.case import read_case
     from ident.hybrid.followed import followed_in
@@ -62,7 +63,7 @@ def hybrid(
         beside = {"map": found, "feedforward": worth}
         write_json({**main.to_json(), **{name: one.to_json() for name, one in beside.items() if one}}, json)
     if json != STANDARD_OUTPUT:
-        show(main, worth)
+        show((*main.listings(), *(worth.listings() if worth else ())))
     if out is not None:
         draw(runs, found, worth, of, out)
 
@@ -79,38 +80,6 @@ def _map(asked: bool, acting: Any, *rest: Any) -> ShareMap | None:
         raise Unusable("bad-option", "a map needs a linear controller", "map", "leave --map out, or give another")
     fit, case, effects, report = rest
     return share_map(fit, case, acting, effects, report=report)
-
-
-def show(found: HybridResult, worth: Followed | None = None) -> None:
-    """Print the verdict and the scores, and what the feedforward is worth."""
-    from app.cli.tables import output, table
-    from ident.words.engineering import quantity
-    from ident.words.percent import percent
-
-    rows: list[tuple[str, str, str]] = []
-    if (of := found.scores) is not None:
-        rows = [
-            ("delay", "measured behind numerical", quantity(of.delay, "s")),
-            ("tracking_rms", "measured against numerical", percent(of.tracking_rms)),
-            ("tracking_peak", "measured against numerical", percent(of.tracking_peak)),
-            ("reference_rms", "measured against reference", percent(of.reference_rms)),
-            ("reference_peak", "measured against reference", percent(of.reference_peak)),
-            ("numerical_rms", "numerical against reference", percent(of.numerical_rms)),
-            ("command_rms", "standard deviation of the command", quantity(found.command_rms or 0.0, "m")),
-        ]
-    critical = "none" if found.critical_delay is None else quantity(found.critical_delay, "s")
-    rows.append(("critical_delay", "of an otherwise perfect machine", critical))
-    console = output()
-    console.print(table((f"case {found.case.name}", "displacement", "value"), rows, numbers=("value",)))
-    said = "stable" if found.stable else "unstable"
-    if found.ended is not None:
-        said += f": ran away after {quantity(found.ended, 's')}"
-    print(f"{said}; controller {found.controller}; {found.case.ground.name}; {found.seconds:.2f} s of computing")
-    if worth is not None:
-        for line in worth.said:
-            print(f"feedforward: {line}")
-    for note in found.notes:
-        print(f"note: {note}")
 
 
 def draw(runs: dict[str, HybridResult], found: ShareMap | None, worth: Followed | None, case: Case, out: Path) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Container, Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from rich.console import Console
@@ -13,7 +13,6 @@ from rich.table import Table
 from ident.words.shown import Listing
 
 if TYPE_CHECKING:
-    from ident.bench.acceptance import Line
     from ident.fit.result import FitResult
 
 
@@ -48,13 +47,3 @@ def table(header: Sequence[str], rows: Iterable[Sequence[str]], numbers: Contain
     for row in rows:
         made.add_row(*map(escape, row))
     return made
-
-
-def sheet_rows(lines: Iterable[Line]) -> Iterator[tuple[str, ...]]:
-    """One row a quantity of an acceptance sheet."""
-    for line in lines:
-        factor, unit = line.printed
-        numbers = [line.value, line.deviation or None, line.lower, line.upper]
-        value, deviation, lower, upper = ("–" if n is None else f"{factor * n:.4g}" for n in numbers)
-        verdict = {None: "", True: "pass", False: "FAIL"}[line.passed]
-        yield line.quantity, value, deviation, unit, lower, upper, verdict

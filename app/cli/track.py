@@ -30,6 +30,7 @@ def track(
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figure: svg, png, pdf, json.")] = None,
 ) -> None:
     """Follow time constant and gain of a first-order loop over a run, by a Kalman filter, and say whether it holds."""
+    from app.cli.tables import show
     from ident.hybrid.tracked_run import chosen
     from ident.hybrid.tracked_run import track as tracked
     from ident.readers import read_matrix
@@ -41,7 +42,7 @@ def track(
     if json is not None:
         write_json(found.to_json(), json)
     if json != STANDARD_OUTPUT:
-        show(found)
+        show(found.listings())
     if out is not None:
         draw(found, read.actuator, out)
 
@@ -50,25 +51,6 @@ def _size(noise: str | None, unit: str) -> float | None:
     from ident.units.quantity import parameter_value
 
     return None if noise is None else parameter_value(noise, unit, "--noise")
-
-
-def show(found: Track) -> None:
-    """Print the last estimates and the verdict."""
-    from app.cli.tables import output, table
-    from ident.words.engineering import quantity
-    from ident.words.number import plain
-
-    clock = "s" if found.run.time_unit == "s" else "samples"
-    rows = [
-        ("τyr", quantity(float(found.tau[-1]), clock), quantity(float(found.std_tau[-1]), clock)),
-        ("kyr", plain(float(found.gain[-1])), plain(float(found.std_gain[-1]), 2)),
-    ]
-    said = found.verdict
-    output().print(table((f"run {found.run.id}, at its end", "value", "std"), rows, numbers=("value", "std")))
-    mean = "unknown" if said.nis_mean is None else plain(said.nis_mean)
-    unit = found.run.units.get(found.run.output, "m")
-    print(f"noise of the sensor {quantity(found.noise.measurement, unit)}; mean normalised innovation squared {mean}")
-    print(f"{'holds' if said.holds else 'does not hold'}: {said.reason}")
 
 
 def draw(found: Track, actuator: Actuator, out: Path) -> None:

@@ -70,6 +70,7 @@ def whatif(
     json: Json = None, out: Out = None,
 ) -> None:  # fmt: skip
     """Change area, stroke, volume, specimen or parameters of an identified machine: response, peaks, root locus."""
+    from app.cli.tables import show
     from ident.hybrid.what_if import what_if
 
     check_target(json)
@@ -82,7 +83,7 @@ def whatif(
     if json is not None:
         write_json(found.to_json(), json)
     if json != STANDARD_OUTPUT:
-        show(found)
+        show(found.listings())
     if out is not None:
         draw(found, out)
 
@@ -147,28 +148,6 @@ def _range(text: str, option: str, form: str) -> tuple[float, float]:
     """`LO:HI` as numbers; one number is both."""
     lower, separator, upper = text.partition(":")
     return number(lower, option, form), number(upper if separator else lower, option, form)
-
-
-def show(found: WhatIf) -> None:
-    """Print what was changed, the poles and peaks, and what is to be said of them."""
-    from app.cli.tables import output, table
-
-    console = output()
-    rows = [
-        (name, f"{entry.before:.5g}", f"{entry.after:.5g}", entry.unit, entry.why)
-        for name, entry in found.parameters.items()
-    ]
-    console.print(table(("parameter", "fitted", "changed", "unit", ""), rows, numbers=("fitted", "changed")))
-    for each in (*found.responses, *found.with_peak):
-        where = "no loop" if each.gain is None else f"Kp = {each.gain:g}"
-        poles = ", ".join(f"{p.real:.4g}{p.imaginary:+.4g}i" if p.imaginary else f"{p.real:.4g}" for p in each.poles)
-        tops = ", ".join(f"{peak.frequency:.4g} Hz (|G| {peak.magnitude:.3g})" for peak in each.peaks) or "none"
-        after = ", with the smallest change that makes the peak" if each in found.with_peak else ""
-        console.print(f"{where}{after}: poles {poles} Hz; peaks: {tops}", markup=False)
-    if found.critical_gain is not None:
-        console.print(f"stability is lost at Kp = {found.critical_gain:.4g}", markup=False)
-    for note in found.notes:
-        console.print(f"note: {note}", markup=False)
 
 
 def draw(found: WhatIf, out: Path) -> None:

@@ -8,14 +8,16 @@ then T, then static values and speeds again; at last every value is moved at onc
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from importlib import import_module
 
 import numpy as np
 
 from ident.bench.frequency import Response, frequency_response
 from ident.bench.least_squares import Solution, solve
+from ident.bench.listings import listings
 from ident.bench.model import CONSTANTS, Model
 from ident.bench.motion import groups
 from ident.bench.observed import Observed, errors, observe
@@ -27,6 +29,7 @@ from ident.bench.static import Static, first_values, ranges, static
 from ident.bench.time_constant import DelayCheck, Dynamics, delay_check, dynamics
 from ident.errors import Unusable
 from ident.parallel import each
+from ident.words.shown import Listing, Shown
 
 FIRST_T = 0.02  # s, where the search for T begins
 SMALL, FINE = 10.0, 1000.0  # dead spaces, within which a record tells of them; Hz of such a record in the last fit
@@ -47,7 +50,7 @@ class Missing:
 
 
 @dataclass(frozen=True)
-class Analysis:
+class Analysis(Shown):
     """What the records say. `steps` is the model put together step by step, `model` the one moved on all records.
 
     A procedure whose records are missing is None, and so are the models then; `missing` says why.
@@ -66,6 +69,11 @@ class Analysis:
     missing: tuple[Missing, ...] = ()
     notes: tuple[str, ...] = ()
     seconds: float = 0.0
+
+    def listings(self) -> Iterator[Listing | str]:
+        """The acceptance sheet without limits, and what is to be known."""
+        acceptance = import_module("ident.bench.acceptance")  # which stands above this file
+        return listings(self, acceptance.sheet(self, {}))
 
     @property
     def model(self) -> Model | None:

@@ -30,11 +30,12 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Simulator = Callable[[Preset, Mapping[str, float], Matrix], dict[str, Array]]
 """A model, its values by the equations' names and a matrix in; the output of every run out, by the run's id."""
+_NUMBERS = ("error", "offset", "RMSE", "MAE")
 _WINDOW = 1.0  # s: the length of a window of the spectral estimate, and with it its resolution of 1 Hz
 
 
 @dataclass(frozen=True)
-class RunComparison:
+class RunComparison(Shown):
     """One run: eq. (17), the offset, the model's output and the frequency responses.
 
     `modelled` (n,) is in the run's own unit, beside ``run.measured``; `linear` is None for a model with effects.
@@ -43,6 +44,16 @@ class RunComparison:
     run: Run
     linear: LinearModel | None
     modelled: Array
+
+    def listings(self) -> Iterable[Listing | str]:
+        """Its errors, a row."""
+        yield Listing("", ("run", "use", *_NUMBERS), [self.row], _NUMBERS)
+
+    @property
+    def row(self) -> tuple[str, ...]:
+        """Id, use, error, offset, RMSE and mean size of the residual."""
+        return (self.run.id, self.run.use, percent(self.error), percent(self.offset), quantity(self.rmse, self.unit),
+                quantity(self.mae, self.unit))  # fmt: skip
 
     @cached_property
     def error(self) -> float:
@@ -129,14 +140,9 @@ class Comparison(Shown):
 
     def listings(self) -> Iterable[Listing | str]:
         """The error of every run, in per cent and in its unit, and the means."""
-        rows = [
-            (one.run.id, one.run.use, percent(one.error), percent(one.offset), quantity(one.rmse, one.unit),
-             quantity(one.mae, one.unit))
-            for one in self.runs
-        ]  # fmt: skip
+        rows = [one.row for one in self.runs]
         rows += [("mean", use, percent(mean), "", "", "") for use, mean in self.error.items() if mean is not None]
-        numbers = ("error", "offset", "RMSE", "MAE")
-        yield Listing("", ("run", "use", *numbers), rows, numbers)
+        yield Listing("", ("run", "use", *_NUMBERS), rows, _NUMBERS)
 
     def records(self) -> list[dict[str, Any]]:
         """A record a run, for a data frame: eq. (17) and the offset as fractions, RMSE and MAE in `unit`."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -13,12 +13,14 @@ from numpy.typing import NDArray
 
 from ident.design.excitation import KINDS, PERIODIC, excitation
 from ident.matrix import Specimen
+from ident.words.percent import percent
+from ident.words.shown import Listing, Shown
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Experiment:
+class Experiment(Shown):
     """One run. `amplitude` is the command's RMS in m, `frequency` that of a sine or saw-tooth, else the upper edge.
 
     `separation` are the standard deviations of the noise by which the rivals are expected to differ after
@@ -68,6 +70,21 @@ class Experiment:
         if self.gain is not None:
             parts.append(f"Kp {self.gain:g}")
         return ", ".join((*parts, f"{self.seconds:g} {'s' if self.time_unit == 's' else 'samples'}"))
+
+    def listings(self) -> Iterator[Listing | str]:
+        """What is to be run, by how much the rivals are expected to differ, and why, in words."""
+        yield Listing("next run", ("condition", ""), [("command", self.conditions), *self._expected()])
+        if self.text:
+            yield self.text
+
+    def _expected(self) -> Iterator[tuple[str, str]]:
+        """What is expected of it, as far as it is known."""
+        differences = {"this run": self.separation, "the runs so far": self.so_far, "a run by chance": self.typical}
+        for name, deviations in differences.items():
+            if deviations is not None:
+                yield f"rivals differ in {name}", f"{deviations:.3g} standard deviations of the noise"
+        for name, share in self.std_errors.items():
+            yield f"standard error of {name}", f"{percent(share)} of today's"
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data (no NaN, no infinity)."""

@@ -67,8 +67,8 @@ class Generation:
     index: int
     best: float
     mean: float
-    population: tuple[tuple[float, ...], ...] = ()
-    errors: tuple[float, ...] = ()
+    population: tuple[tuple[float, ...], ...] = field(default=(), repr=False)
+    errors: tuple[float, ...] = field(default=(), repr=False)
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,13 +21,14 @@ from ident.hybrid.robustness import (
 )
 from ident.hybrid.target import QIAN2014_TARGET, Target
 from ident.matrix import Specimen
+from ident.words.shown import Listing, Shown
 
 LITTLE_MARGIN = 2.5
 """The sensitivity peak from which on a design warns: of gain only 4.4 dB, of phase only 23° are then certain."""
 
 
 @dataclass(frozen=True)
-class ControllerDesign:
+class ControllerDesign(Shown):
     """A design, its margins, its robustness over the fitted covariance (None where that is unknown), and notes."""
 
     design: Design
@@ -54,6 +56,12 @@ class ControllerDesign:
             counts = {name: getattr(self.robustness, name) for name in ("draws", "stable", "within")}
             found["robustness"] = {**counts, "held": list(self.robustness.held)}
         return {**made.controller.to_json(), "design": found}
+
+    def listings(self) -> Iterator[Listing | str]:
+        """What the loop can stand and how it follows, and the notes."""
+        yield Listing("", ("quantity", "value", "unit"), self.rows, ("value",))
+        for note in self.notes:
+            yield f"note: {note}"
 
     @property
     def rows(self) -> list[tuple[str, str, str]]:

@@ -16,6 +16,7 @@ from ident.hybrid.feedforward import Plant, Tracked, plant_of, tracked
 from ident.hybrid.machine import actuator
 from ident.hybrid.substructure import reference
 from ident.words.engineering import quantity
+from ident.words.shown import Shown
 
 Array = NDArray[np.float64]
 _SHOWN = 600  # points of a curve that are kept
@@ -23,7 +24,7 @@ _RATE = 1000.0  # Hz: no structure moves so fast that more samples would show mo
 
 
 @dataclass(frozen=True)
-class Followed:
+class Followed(Shown):
     """Errors (m) of a machine that follows a reference with the feedback alone and with feedforward beside it.
 
     `gain` and `limit`, from which the loop is unstable, in V/m. `feedback_rms` and `both_rms` are of the machine,
@@ -64,6 +65,10 @@ class Followed:
             return [*lines, "the fit states no standard errors: nothing is known of other machines that it allows"]
         drawn = f"median of {self.draws} machines drawn from the fit {quantity(self.drawn_both_rms, 'm')}"
         return [*lines, f"{drawn}, 1/{rounded(self.drawn_ratio)} of the feedback's"]
+
+    def listings(self) -> list[str]:
+        """What the feedforward is worth, a line each."""
+        return [f"feedforward: {line}" for line in self.said]
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data; a limit that there is not is null."""

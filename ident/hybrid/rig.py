@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from time import perf_counter
 from typing import Any, Protocol
@@ -20,6 +20,9 @@ from ident.hybrid.stability import critical_delay, spectral_radius
 from ident.hybrid.substructure import numerical, reference
 from ident.progress import Progress, Report, silent
 from ident.simulation.stepper import Stepper, stepper
+from ident.words.engineering import quantity
+from ident.words.percent import percent
+from ident.words.shown import Listing, Shown
 
 Array = NDArray[np.float64]
 RUNAWAY = 50.0
@@ -51,7 +54,7 @@ def name_of(controller: Controller) -> str:
 
 
 @dataclass(frozen=True, eq=False)
-class HybridResult:
+class HybridResult(Shown):
     """What a hybrid simulation gave, SI; the records are (n,) at `sample_rate` (Hz).
 
     `measured` is what the displacement transducer read, `numerical` what the substructure asked for, `reference` what
@@ -82,6 +85,29 @@ class HybridResult:
     def sample_rate(self) -> float:
         """Samples a second."""
         return self.case.sample_rate
+
+    def listings(self) -> Iterator[Listing | str]:
+        """The scores, the verdict, the notes."""
+        rows: list[tuple[str, str, str]] = []
+        if (of := self.scores) is not None:
+            rows = [
+                ("delay", "measured behind numerical", quantity(of.delay, "s")),
+                ("tracking_rms", "measured against numerical", percent(of.tracking_rms)),
+                ("tracking_peak", "measured against numerical", percent(of.tracking_peak)),
+                ("reference_rms", "measured against reference", percent(of.reference_rms)),
+                ("reference_peak", "measured against reference", percent(of.reference_peak)),
+                ("numerical_rms", "numerical against reference", percent(of.numerical_rms)),
+                ("command_rms", "standard deviation of the command", quantity(self.command_rms or 0.0, "m")),
+            ]
+        critical = "none" if self.critical_delay is None else quantity(self.critical_delay, "s")
+        rows.append(("critical_delay", "of an otherwise perfect machine", critical))
+        yield Listing("", (f"case {self.case.name}", "displacement", "value"), rows, ("value",))
+        said = "stable" if self.stable else "unstable"
+        if self.ended is not None:
+            said += f": ran away after {quantity(self.ended, 's')}"
+        yield f"{said}; controller {self.controller}; {self.case.ground.name}; {self.seconds:.2f} s of computing"
+        for note in self.notes:
+            yield f"note: {note}"
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data: the verdict and the scores, not the records. SI units, scores as fractions."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from threading import Lock
 from typing import Any
@@ -22,6 +22,9 @@ from ident.hybrid.stability import critical_delay, spectral_radius
 from ident.hybrid.substructure import reference
 from ident.parallel import each
 from ident.progress import Progress, Report, silent
+from ident.words.engineering import quantity
+from ident.words.percent import percent
+from ident.words.shown import Listing, Shown
 
 Array = NDArray[np.float64]
 SHARES = 20
@@ -31,7 +34,7 @@ LARGEST = 0.95
 
 
 @dataclass(frozen=True, eq=False)
-class ShareMap:
+class ShareMap(Shown):
     """Of each pair of shares (0 to 1) of mass and stiffness, (masses, stiffnesses).
 
     `stable`; `reference_rms` and `tracking_rms` as in :class:`ident.hybrid.scores.Scores`, NaN where it ran away;
@@ -44,6 +47,24 @@ class ShareMap:
     reference_rms: Array
     tracking_rms: Array
     critical_delay: Array
+
+    def listings(self) -> Iterator[Listing | str]:
+        """A row a share of the mass: how many shares of the stiffness are stable with it, and the best of them."""
+        header = ("physical mass", "stable", "least error (RMS) against the reference", "longest critical delay")
+        yield Listing("", header, self._rows(), header)
+        yield f"{int(self.stable.sum())} of {self.stable.size} pairs of shares are stable"
+
+    def _rows(self) -> Iterator[tuple[str, ...]]:
+        for mass, stable, error, delay in zip(
+            self.masses, self.stable, self.reference_rms, self.critical_delay, strict=True
+        ):
+            best = error[np.isfinite(error)]
+            longest = delay[np.isfinite(delay)]
+            yield (
+                percent(float(mass)), f"{int(stable.sum())} of {stable.size}",
+                percent(float(best.min())) if len(best) else "–",
+                quantity(float(longest.max()), "s") if len(longest) else "no limit",
+            )  # fmt: skip
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data; null where there is no number."""

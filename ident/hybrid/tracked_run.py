@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,7 +13,9 @@ from ident.errors import Unusable
 from ident.hybrid.tracking import GAIN, TAU, Noise, Tracker
 from ident.hybrid.verdict import Verdict
 from ident.matrix import Matrix, Run
-from ident.words.number import trimmed
+from ident.words.engineering import quantity
+from ident.words.number import plain, trimmed
+from ident.words.shown import Listing, Shown
 
 Array = NDArray[np.float64]
 ROWS = 4096
@@ -24,7 +27,7 @@ _GAIN_OF_DIFFERENCES = np.sqrt(70.0)  # of the fourth difference on white noise
 
 
 @dataclass(frozen=True, eq=False)
-class Track:
+class Track(Shown):
     """One run: times t (s, or samples), τ, k and their standard deviations, all (n,); noise assumed, and verdict."""
 
     run: Run
@@ -35,6 +38,20 @@ class Track:
     std_tau: Array
     std_gain: Array
     verdict: Verdict
+
+    def listings(self) -> Iterator[Listing | str]:
+        """The last estimates, the noise, and the verdict."""
+        clock = "s" if self.run.time_unit == "s" else "samples"
+        rows = [
+            ("τyr", quantity(float(self.tau[-1]), clock), quantity(float(self.std_tau[-1]), clock)),
+            ("kyr", plain(float(self.gain[-1])), plain(float(self.std_gain[-1]), 2)),
+        ]
+        yield Listing("", (f"run {self.run.id}, at its end", "value", "std"), rows, ("value", "std"))
+        said, unit = self.verdict, self.run.units.get(self.run.output, "m")
+        mean = "unknown" if said.nis_mean is None else plain(said.nis_mean)
+        noise = quantity(self.noise.measurement, unit)
+        yield f"noise of the sensor {noise}; mean normalised innovation squared {mean}"
+        yield f"{'holds' if said.holds else 'does not hold'}: {said.reason}"
 
     @property
     def shown(self) -> slice:

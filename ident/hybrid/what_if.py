@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from ident.matrix import Actuator, Specimen
 from ident.plain import written
 from ident.progress import Report, silent
 from ident.words.number import trimmed
+from ident.words.shown import Listing, Shown
 
 Array = NDArray[np.float64]
 USUAL_GAINS = (1.0, 10.0)
@@ -50,21 +51,21 @@ class Response:
     stable: bool
     poles: tuple[Pole, ...]
     peaks: tuple[Peak, ...]
-    frequency: tuple[float, ...]
-    magnitude: tuple[float, ...]
-    phase: tuple[float, ...]
+    frequency: tuple[float, ...] = field(repr=False)
+    magnitude: tuple[float, ...] = field(repr=False)
+    phase: tuple[float, ...] = field(repr=False)
 
 
 @dataclass(frozen=True)
 class RootLocus:
     """The poles (Hz) over the gain, those of one gain a row."""
 
-    gain: tuple[float, ...]
-    poles: tuple[tuple[Pole, ...], ...]
+    gain: tuple[float, ...] = field(repr=False)
+    poles: tuple[tuple[Pole, ...], ...] = field(repr=False)
 
 
 @dataclass(frozen=True)
-class WhatIf:
+class WhatIf(Shown):
     """An identified machine after a change. `critical_gain` is the smallest Kp above which it is no longer stable.
 
     It is None where the machine is stable, or unstable, at all gains that were looked at. `peak` is what was found for
@@ -84,10 +85,34 @@ class WhatIf:
     peak: PeakSearch | None = None
     with_peak: tuple[Response, ...] = ()
 
+    def listings(self) -> Iterator[Listing | str]:
+        """What was changed, the poles and peaks, and what is to be said of them."""
+        rows = [
+            (name, f"{entry.before:.5g}", f"{entry.after:.5g}", entry.unit, entry.why)
+            for name, entry in self.parameters.items()
+        ]
+        yield Listing("", ("parameter", "fitted", "changed", "unit", ""), rows, ("fitted", "changed"))
+        for each in self.responses:
+            yield _in_words(each)
+        for each in self.with_peak:
+            yield _in_words(each, ", with the smallest change that makes the peak")
+        if self.critical_gain is not None:
+            yield f"stability is lost at Kp = {self.critical_gain:.4g}"
+        for note in self.notes:
+            yield f"note: {note}"
+
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data."""
         data: dict[str, Any] = written(self)
         return data
+
+
+def _in_words(of: Response, after: str = "") -> str:
+    """The poles and peaks at one gain."""
+    where = "no loop" if of.gain is None else f"Kp = {of.gain:g}"
+    poles = ", ".join(f"{p.real:.4g}{p.imaginary:+.4g}i" if p.imaginary else f"{p.real:.4g}" for p in of.poles)
+    tops = ", ".join(f"{peak.frequency:.4g} Hz (|G| {peak.magnitude:.3g})" for peak in of.peaks) or "none"
+    return f"{where}{after}: poles {poles} Hz; peaks: {tops}"
 
 
 def what_if(

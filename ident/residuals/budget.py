@@ -26,6 +26,8 @@ from ident.matrix import Run
 from ident.noise.floor import noise_floors
 from ident.parallel import each
 from ident.residuals.decimation import averaged, stride
+from ident.words.percent import percent
+from ident.words.shown import Listing, Shown
 
 Array = NDArray[np.float64]
 _REACHES = (3, 8, 24)  # samples of the correction to either side of now; the best is taken
@@ -35,7 +37,7 @@ _LEVELS = (1e-8, 1e-6, 1e-4, 1e-2)  # of the diagonal, against directions that a
 
 
 @dataclass(frozen=True)
-class Budget:
+class Budget(Shown):
     """The parts of eq. (17) as fractions, combining quadratically; `bounds` are (lower, upper) of each.
 
     `noise` is None where nothing tells it: then it is within `nonlinear`, up to its upper bound.
@@ -51,6 +53,16 @@ class Budget:
     def error(self) -> float:
         """Eq. (17) averaged over the runs."""
         return float(np.sqrt((self.noise or 0.0) ** 2 + self.linear**2 + self.nonlinear**2))
+
+    def listings(self) -> Iterator[Listing | str]:
+        """What the error is made of, and what is to be known of it."""
+        sizes = {"noise": self.noise, "linear": self.linear, "nonlinear": self.nonlinear}
+        unknown = (None, None)  # of a budget that an earlier version wrote
+        rows = [(name, percent(size), *map(percent, self.bounds.get(name, unknown))) for name, size in sizes.items()]
+        numbers = ("size", "at least", "at most")
+        yield Listing("", ("error budget", *numbers), rows, numbers)
+        for note in self.notes:
+            yield f"note: {note}"
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -11,16 +12,32 @@ from ident.residuals.breakdown import Breakdown, breakdown
 from ident.residuals.budget import Budget, budget
 from ident.residuals.curves import Curve, curve_fits, curves_of, traced
 from ident.residuals.trends import Trend, trends
+from ident.words.percent import percent
+from ident.words.shown import Listing, Shown
 
 
 @dataclass(frozen=True)
-class Survey:
+class Survey(Shown):
     """Errors by condition, the curves that explain most first, parameters that follow a condition, the budget."""
 
     where: Breakdown
     curves: tuple[Curve, ...]
     trends: tuple[Trend, ...]
     budget: Budget | None
+
+    def listings(self) -> Iterator[Listing | str]:
+        """Errors by condition, the curves, the parameters that follow a condition, the budget."""
+        rows = [(g.by, g.label, str(g.runs), percent(g.error), percent(g.mean)) for g in self.where.groups]
+        yield Listing("", ("by", "", "runs", "error", "mean"), rows, ("runs", "error", "mean"))
+        if self.curves:
+            curves = [(c.name, c.missing, c.against, percent(max(c.explained, 0.0))) for c in self.curves]
+            yield Listing("", ("residual", "shows", "against", "explained"), curves, ("explained",))
+        for trend in self.trends:
+            if trend.clear:
+                values = " → ".join(f"{point.value:.4g}" for point in trend.points)
+                yield f"{trend.parameter} follows the {trend.condition}: {values} {trend.unit} (p = {trend.p:.2g})"
+        if self.budget is not None:
+            yield from self.budget.listings()
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data."""

@@ -1,10 +1,18 @@
-"""Results as tables that a notebook shows by itself: plain HTML, whose colours are those of the notebook's theme."""
+"""Results as tables: one builder, :meth:`Shown.listings`, serves notebooks, ``print`` and the interactive prompt."""
 
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
+from typing import Any
+
+MOST_ROWS = 60
+"""Rows of a table that plain text shows whole; of a longer one the first and the last half of them.
+
+A screen or two: `print` is a look at a result. A notebook, whose tables scroll, shows every row.
+"""
+_GAP = "  "
 
 
 @dataclass(frozen=True)
@@ -24,6 +32,23 @@ class Listing:
         caption = f'<caption style="text-align: left"><b>{escape(self.title)}</b></caption>' if self.title else ""
         return f"<table>{caption}<thead>{head}</thead><tbody>{body}</tbody></table>"
 
+    def text(self) -> str:
+        """As plain text, the columns aligned; of more than :data:`MOST_ROWS` rows those in the middle are counted."""
+        rows = [tuple(row) for row in self.rows]
+        half = MOST_ROWS // 2
+        left_out = len(rows) - 2 * half if len(rows) > MOST_ROWS else 0
+        shown = [tuple(self.header), *(rows[:half] + rows[-half:] if left_out else rows)]
+        widths = [max(map(len, column)) for column in zip(*shown, strict=True)]
+        right = [title in self.numbers for title in self.header]
+        lines = [
+            _GAP.join(cell.rjust(width) if to_right else cell.ljust(width)
+                      for cell, width, to_right in zip(row, widths, right, strict=True)).rstrip()
+            for row in shown
+        ]  # fmt: skip
+        if left_out:
+            lines.insert(1 + half, f"… {left_out} more rows …")
+        return "\n".join(([self.title] if self.title else []) + lines)
+
 
 def _row(tag: str, cells: Sequence[str], sides: Sequence[str]) -> str:
     inner = (
@@ -37,8 +62,26 @@ def html(listings: Iterable[Listing | str]) -> str:
     return "".join(f"<p>{escape(one)}</p>" if isinstance(one, str) else one.html() for one in listings)
 
 
+def text(listings: Iterable[Listing | str]) -> str:
+    """The same as plain text: an empty line around each table."""
+    parts: list[str] = []
+    after_table = False
+    for one in listings:
+        table = not isinstance(one, str)
+        if parts and (table or after_table):
+            parts.append("")
+        parts.append(one if isinstance(one, str) else one.text())
+        after_table = table
+    return "\n".join(parts)
+
+
 class Shown:
-    """A result that shows itself in a notebook."""
+    """A result that shows itself: as HTML in a notebook, as the same tables in plain text to `print` and the prompt."""
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        # Before @dataclass sees the class: where a class has no __repr__ it writes one that holds every array.
+        cls.__repr__ = Shown.__repr__  # type: ignore[method-assign]
 
     def listings(self) -> Iterable[Listing | str]:
         """Its tables and sentences, in the order in which they are read."""
@@ -46,3 +89,9 @@ class Shown:
 
     def _repr_html_(self) -> str:
         return html(self.listings())
+
+    def __str__(self) -> str:
+        return text(self.listings())
+
+    def __repr__(self) -> str:
+        return text(self.listings())

@@ -1,0 +1,38 @@
+"""The analysis of a bench as tables for a reader: on a terminal and in a notebook."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from ident.words.shown import Listing
+
+if TYPE_CHECKING:
+    from ident.bench.acceptance import Line
+    from ident.bench.analysis import Analysis
+
+
+def listings(analysis: Analysis, lines: Iterable[Line]) -> Iterator[Listing | str]:
+    """The sheet, the delay's correlations, and what is to be known."""
+    numbers = ("value", "std error", "min", "max")
+    header = ("quantity", "value", "std error", "unit", "min", "max", "")
+    yield Listing("", header, sheet_rows(lines), numbers)
+    if analysis.delay is not None:
+        related = analysis.delay.correlation
+        yield (f"correlation: T and delay {related['T']['delay']:.2f}, B and delay {related['B']['delay']:.2f}, "
+               f"T and B {related['T']['B']:.2f}")  # fmt: skip
+    for missing in analysis.missing:
+        yield f"not found: {missing.text}"
+    for note in analysis.notes:
+        yield f"note: {note}"
+    yield f"{len(analysis.errors)} records analysed in {analysis.seconds:.2f} s"
+
+
+def sheet_rows(lines: Iterable[Line]) -> Iterator[tuple[str, ...]]:
+    """One row a quantity of an acceptance sheet."""
+    for line in lines:
+        factor, unit = line.printed
+        numbers = [line.value, line.deviation or None, line.lower, line.upper]
+        value, deviation, lower, upper = ("–" if n is None else f"{factor * n:.4g}" for n in numbers)
+        verdict = {None: "", True: "pass", False: "FAIL"}[line.passed]
+        yield line.quantity, value, deviation, unit, lower, upper, verdict

@@ -1,0 +1,104 @@
+"""Every result of the library shows itself: to ``print``, at the prompt and in a notebook, by one builder of tables."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import re
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+import ident
+from ident.bench.analysis import Analysis
+from ident.comparison.profile import Profile
+from ident.comparison.side_by_side import of_fits
+from ident.design.experiment import Experiment
+from ident.diagnosis.result import Diagnosis
+from ident.hybrid.changed_machine import Change
+from ident.hybrid.controller_design import design_controller
+from ident.hybrid.followed import Followed
+from ident.hybrid.rig import simulate_hybrid
+from ident.hybrid.share_map import share_map
+from ident.hybrid.tracked_run import track
+from ident.hybrid.what_if import what_if
+from ident.matrix import Actuator, Specimen
+from ident.residuals.survey import survey
+from ident.words.shown import MOST_ROWS, Listing, Shown, html, text
+from tests.hybrid.cases import fitted, of_qian
+
+LONGEST = 8000
+"""Characters that a result may print, two screens: the fields of a matrix of 27 runs are more than 20,000."""
+LIBRARY = Path(ident.__file__).parent
+STORED = Path(__file__).parent / "stored" / "diagnosis.json"
+
+
+@cache
+def results() -> dict[str, Shown]:
+    """One of each kind, by the name of its class."""
+    matrix = ident.simulate(seconds=0.25, small=True)
+    fit = ident.identify(matrix, fixed={"tau": "3.6 ms"}, seed=1, options={"population": 20, "generations": 4})
+    compared = ident.compare(matrix, fit)
+    found, case, machine = survey(compared), of_qian(0.5), fitted()
+    of_area = fitted_of_an_area()
+    curve = [0.1 * k for k in range(600)]
+    many = (
+        matrix, matrix.runs[0], ident.check(matrix), fit, compared, compared.runs[0], found, found.budget,
+        Diagnosis.from_json(json.loads(STORED.read_text())), of_fits([fit, fit]), track(matrix.runs[0]),
+        Experiment(Specimen(2.0), 7.0, 1e-3, "blwn", 30.0, 4.0, 4096.0, separation=3.0, std_errors={"Z0": 0.5}),
+        Profile("tau", "s", (1e-3, 2e-3), (0.1, 0.2), (0.0, 9.0), 1e-3, None),
+        what_if(of_area, Change(specimen=Specimen(5.0)), (2.0, 3.0)), simulate_hybrid(machine, case),
+        share_map(machine, case, masses=[0.0, 0.5], stiffnesses=[0.0, 0.9]),
+        design_controller(machine, Specimen(8.75, 17.5e3), sample_rate=4096.0, gain=2.0, piston_area=497e-6, delay=1),
+        Followed(20.0, 40.0, 0, 1e-3, 1e-4, None, None, None, curve, curve, curve, curve, curve, curve),
+        Analysis(notes=("a note",)),
+    )  # fmt: skip
+    return {type(one).__name__: one for one in many if one is not None}
+
+
+def fitted_of_an_area():
+    """The same machine with the area that a change of it is measured by."""
+    return replace(fitted(), actuator=Actuator("A", piston_area=497e-6, stroke=0.1))
+
+
+def kinds() -> list[str]:
+    """Every class of the library that shows itself, by its source."""
+    found = [re.findall(r"^class (\w+)\(.*\bShown\)", path.read_text(), re.M) for path in LIBRARY.rglob("*.py")]
+    return sorted(name for names in found for name in names)
+
+
+def test_each_kind_of_result_is_tried_here():
+    assert kinds() == sorted(results())
+
+
+@pytest.mark.parametrize("kind", kinds())
+def test_print_and_prompt_show_the_tables_of_a_notebook_and_no_arrays(kind):
+    result = results()[kind]
+    listed = list(result.listings())
+    assert repr(result) == str(result) == f"{result}" == text(listed)
+    assert result._repr_html_() == html(result.listings())
+    for one in listed:
+        for cell in (one,) if isinstance(one, str) else (*one.header, *(c for row in one.rows for c in row)):
+            assert cell in str(result)
+    assert 10 < len(str(result)) < LONGEST
+    assert "array(" not in str(result)
+    assert f"{kind}(" not in str(result)
+
+
+def test_what_the_functions_of_the_face_give_shows_itself():
+    """Their annotations name it, so that no result of the face is left out; a chart shows itself in another way."""
+    gives = {
+        name: inspect.signature(getattr(ident, name)).return_annotation for name in ident.__all__ if name.islower()
+    }
+    named = {part.strip() for given in gives.values() for part in str(given).split("|")}
+    assert named - {"AltairChart", "None"} <= set(kinds())
+
+
+def test_a_long_table_shows_its_ends_and_counts_what_lies_between():
+    shown = Listing("T", ("run", "error"), [(f"r{k}", f"{k} %") for k in range(MOST_ROWS + 5)], ("error",)).text()
+    lines = shown.splitlines()
+    assert (lines[:3], lines[-1]) == (["T", "run  error", "r0     0 %"], "r64   64 %")
+    assert "… 5 more rows …" in lines
+    assert len(lines) == MOST_ROWS + 3
