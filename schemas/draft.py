@@ -15,6 +15,15 @@ class AnswerRequest(BaseModel):
     unit: str = Field(default="", max_length=_LINE)
 
 
+class FileAnswersRequest(BaseModel):
+    """What a person says of one raw file; what is left out is as said of all of them, or as the file states it."""
+
+    model_config = ConfigDict(extra="forbid")
+    channels: dict[str, AnswerRequest] = Field(default_factory=dict)
+    time: AnswerRequest = Field(default_factory=AnswerRequest)
+    rate: str = Field(default="", max_length=_LINE, description="Sample rate, where no column of it has the time")
+
+
 class AnswersRequest(BaseModel):
     """What a person says of raw files, for all of them; what is left out is as the files state it."""
 
@@ -31,6 +40,10 @@ class AnswersRequest(BaseModel):
     gain: str = Field(default="", max_length=_LINE, description="Gain Kp of the loop in every run")
     hold: str = Field(
         default="", max_length=_LINE, description="The command between samples: linear or zoh; empty: as it looks"
+    )
+    files: dict[str, FileAnswersRequest] = Field(
+        default_factory=dict,
+        description="By the name of a file: its own columns, units and rate, where they differ from those of all",
     )
 
 
@@ -51,18 +64,22 @@ class ColumnView(BaseModel):
 
 
 class RawFileView(BaseModel):
-    """A raw file: a run."""
+    """A raw file: a run. `channels`, `time` and `rate` are what is known of it with the answers."""
 
     name: str
     samples: int
     columns: list[ColumnView]
+    channels: dict[str, AnswerView] = Field(default_factory=dict)
+    time: AnswerView = AnswerView(column="", unit="")
+    rate: str = ""
 
 
 class MissingView(BaseModel):
-    """One thing that the files do not state."""
+    """One thing that `files` do not state; of none of them, where none is named."""
 
     key: str
     question: str
+    files: list[str] = Field(default_factory=list)
 
 
 class DraftView(BaseModel):

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import sys
 from dataclasses import replace
+from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -16,11 +17,14 @@ from ident.errors import Unusable
 from ident.words.number import count
 
 if TYPE_CHECKING:
-    from ident.drafts.draft import Answer, Answers, Draft
+    from ident.drafts.answers import Answer, Answers, FileAnswers
+    from ident.drafts.draft import Draft, Missing
     from ident.drafts.text import Gathered
 
 _SHOWN = 5  # names of files in a remedy
 _FORM = "NAME=COLUMN:UNIT"
+_OF_FILE = "@"
+"""Before the name of a file, or a pattern of names, that an answer is about."""
 _Texts = list[str] | None
 
 
@@ -35,10 +39,19 @@ def init(
     channel: Annotated[
         _Texts,
         typer.Option(metavar=_FORM, help="What a column is, by name or number from 0, and its unit; NAME=:UNIT for the "
-                     "unit alone, NAME=- where it is not there. May be repeated."),
+                     "unit alone, NAME=- where it is not there, NAME@FILE=COLUMN:UNIT in some files only (b.csv, b*). "
+                     "May be repeated."),
     ] = None,
-    time: Annotated[str, typer.Option(metavar="COLUMN:UNIT", help="The column of the time.")] = "",
-    rate: Annotated[str, typer.Option(metavar="HZ", help="Sample rate, as in '4096 Hz', where no column has it.")] = "",
+    time: Annotated[
+        _Texts,
+        typer.Option(metavar="COLUMN:UNIT", help="The column of the time; @FILE=COLUMN:UNIT in some files only. May be "
+                     "repeated."),
+    ] = None,
+    rate: Annotated[
+        _Texts,
+        typer.Option(metavar="HZ", help="Sample rate, as in '4096 Hz', where no column has it; @FILE=HZ of some files "
+                     "only. May be repeated."),
+    ] = None,
     output: Annotated[str, typer.Option(metavar="NAME", help="Channel that a model is to reproduce.")] = "",
     verify: Annotated[_Texts, typer.Option(metavar="FILE", help="A run to verify, with its suffix or without; may be "
                                                       "repeated.")] = None,
@@ -51,7 +64,8 @@ def init(
     What no file states is asked on a terminal; elsewhere it is refused with a list of what is missing. The matrix is
     checked, and every doubt shown.
     """
-    from ident.drafts.draft import NONE, Answers, Draft
+    from ident.drafts.answers import NONE, Answers
+    from ident.drafts.draft import Draft
     from ident.drafts.raw import read_raw
     from ident.drafts.text import gathered
 
@@ -60,9 +74,11 @@ def init(
     contents = [_content(file) for file in files]
     found = [read_raw(content, file.name) for file, content in zip(files, contents, strict=True)]
     given = {"gain": gain, "hold": hold}
+    names = [file.name for file in files]
+    of_all, of_some = _said(names, channel or [], time or [], rate or [])
     answers = Answers(
-        serial=serial, channels=dict(_channel(text) for text in channel or []), time=_answer(time), rate=rate,
-        output=output, verify=tuple(_among(files, name) for name in verify or []),
+        serial=serial, channels=of_all.channels, time=of_all.time, rate=of_all.rate, files=of_some,
+        output=output, verify=tuple(_among(names, name, "--verify") for name in verify or []),
         actuator={"piston_area": area} if area else {}, common={name: text for name, text in given.items() if text},
     )  # fmt: skip
     draft = Draft(found, answers)
@@ -86,13 +102,13 @@ def _of_serial(serial: str) -> Path:
     return Path(serial)
 
 
-def _among(files: list[Path], name: str) -> str:
+def _among(names: list[str], name: str, where: str) -> str:
     """The name of one of the files, given with its suffixes or without. Raises Unusable."""
-    wanted, names = Path(name).name, [file.name for file in files]
+    wanted = Path(name).name
     found = [wanted] if wanted in names else [one for one in names if one.startswith(f"{wanted}.")]
     if len(found) != 1:
         what = f"{name!r} is {'none' if not found else 'more than one'} of the files"
-        raise Unusable("missing-file", what, "--verify", f"name one of {', '.join(names[:_SHOWN])}")
+        raise Unusable("missing-file", what, where, f"name one of {', '.join(names[:_SHOWN])}")
     return found[0]
 
 
@@ -118,10 +134,43 @@ def _content(file: Path) -> bytes:
     return read_regular(file, file.name, LIMITS.file)
 
 
-def _channel(text: str) -> tuple[str, Answer]:
-    """`displacement=CHANNEL0:cm`. Raises Unusable."""
-    name, value = split(text, "--channel", _FORM)
-    return name, _answer(value)
+def _said(
+    names: list[str], channels: list[str], times: list[str], rates: list[str]
+) -> tuple[FileAnswers, dict[str, FileAnswers]]:
+    """What the options say of all files, and of some of them by name. Raises Unusable."""
+    from ident.drafts.answers import FileAnswers
+
+    given: list[tuple[str, FileAnswers]] = []
+    for text in channels:
+        name, value = split(text, "--channel", _FORM)
+        channel, _, pattern = name.partition(_OF_FILE)
+        given.append((pattern, FileAnswers({channel: _answer(value)})))
+    for text in times:
+        pattern, value = _at(text, "--time")
+        given.append((pattern, FileAnswers(time=_answer(value))))
+    for text in rates:
+        pattern, value = _at(text, "--rate")
+        given.append((pattern, FileAnswers(rate=value)))
+    of_all, of_some = FileAnswers(), dict[str, FileAnswers]()
+    for pattern, one in given:
+        if not pattern:
+            of_all = one.over(of_all)
+        for name in _matching(names, pattern) if pattern else ():
+            of_some[name] = one.over(of_some.get(name, FileAnswers()))
+    return of_all, of_some
+
+
+def _at(text: str, option: str) -> tuple[str, str]:
+    """`@FILE=VALUE` or `VALUE`: the file, or nothing, and the value. Raises Unusable."""
+    if not text.startswith(_OF_FILE):
+        return "", text
+    pattern, value = split(text, option, f"{_OF_FILE}FILE=VALUE")
+    return pattern.removeprefix(_OF_FILE), value
+
+
+def _matching(names: list[str], pattern: str) -> list[str]:
+    """The files that a pattern such as `b*` names, or one file with its suffixes or without. Raises Unusable."""
+    return [name for name in names if fnmatchcase(name, pattern)] or [_among(names, pattern, f"{_OF_FILE}{pattern}")]
 
 
 def _answer(text: str) -> Answer:
@@ -138,11 +187,11 @@ def _asked(draft: Draft, none: str) -> Draft:
     """The draft with the next thing that is missing answered on the terminal; as it is where that cannot be."""
     from ident.drafts.draft import Draft
 
-    key, question = draft.missing[0].key, draft.missing[0].question
-    hint = f" (COLUMN or COLUMN:UNIT, {none} for none)" if key.startswith("channel") else ""
-    text = str(typer.prompt(f"{question}{hint}")).strip()
+    missing = draft.missing[0]
+    hint = f" (COLUMN or COLUMN:UNIT, {none} for none)" if missing.key.startswith("channel") else ""
+    text = str(typer.prompt(f"{missing.question}{hint}")).strip()
     try:
-        answered = Draft(draft.files, _with(draft.answers, key, text))
+        answered = Draft(draft.files, _with(draft, missing, text))
         _ = answered.missing  # names the column that is not there
     except Unusable as refused:
         print(str(refused), file=sys.stderr)
@@ -150,22 +199,30 @@ def _asked(draft: Draft, none: str) -> Draft:
     return answered
 
 
-def _with(answers: Answers, key: str, text: str) -> Answers:
-    """The answers with one more."""
-    from ident.drafts.draft import Answer
+def _with(draft: Draft, missing: Missing, text: str) -> Answers:
+    """The answers with one more, about the files that it was asked of."""
+    answers = draft.answers
+    if missing.key == "serial":
+        return replace(answers, serial=text)
+    one = _one(missing.key, text)
+    if draft.of_all(missing):
+        said = one.over(answers.of_all)
+        return replace(answers, channels=said.channels, time=said.time, rate=said.rate)
+    for name in missing.files:
+        answers = answers.with_file(name, one)
+    return answers
+
+
+def _one(key: str, text: str) -> FileAnswers:
+    """What was typed, as an answer about a file."""
+    from ident.drafts.answers import Answer, FileAnswers
 
     kind, _, name = key.partition(" ")
-    if kind == "serial":
-        return replace(answers, serial=text)
     if kind == "rate":
         known = any(sign.isdigit() for sign in text[:1])
-        return replace(answers, rate=text) if known else replace(answers, time=_answer(text))
-    before = answers.time if name == "time" else answers.channels.get(name, Answer())
-    after = replace(before, unit=text) if kind == "unit" else _answer(text)
-    if name == "time":
-        return replace(answers, time=after)
-    channels: dict[str, Any] = {**answers.channels, name: after}
-    return replace(answers, channels=channels)
+        return FileAnswers(rate=text) if known else FileAnswers(time=_answer(text))
+    answer = Answer(unit=text) if kind == "unit" else _answer(text)
+    return FileAnswers(time=answer) if name == "time" else FileAnswers({name: answer})
 
 
 def _write(files: Gathered, out: Path) -> None:

@@ -17,14 +17,23 @@ from app.matrices import service as matrices
 from app.matrices.stored import Blobs, Revised
 from app.storage import Storage
 from ident.checks.check import check
-from ident.drafts.draft import Answer, Answers, Draft
+from ident.drafts.answers import Answer, Answers, FileAnswers
+from ident.drafts.draft import Draft
 from ident.drafts.raw import RawFile, read_raw
 from ident.drafts.text import as_yaml, run_files
 from ident.errors import Unusable
 from ident.readers import read_source
 from ident.readers.limits import LIMITS, check_size
 from ident.readers.source import DESCRIPTION, inside, read_regular
-from schemas.draft import AnswersRequest, AnswerView, ColumnView, DraftView, MissingView, RawFileView
+from schemas.draft import (
+    AnswersRequest,
+    AnswerView,
+    ColumnView,
+    DraftView,
+    FileAnswersRequest,
+    MissingView,
+    RawFileView,
+)
 from schemas.matrix import FindingView, MatrixView
 
 _NAMES = "names.json"
@@ -59,7 +68,7 @@ def look(context: Context, draft: str, asked: AnswersRequest) -> DraftView:
     Raises Unusable for answers that fit no file, and Failure 404.
     """
     of = Draft(raw_files(context, draft), answers(asked))
-    known, lacks = of.known(of.files[0]), of.missing
+    files, lacks = [_file(of, file) for file in of.files], of.missing
     text, findings = "", []
     if not lacks:
         text = as_yaml(of)
@@ -67,9 +76,8 @@ def look(context: Context, draft: str, asked: AnswersRequest) -> DraftView:
         findings = matrices.in_reader(context, _findings, store, run_files(names), text)
     return DraftView(
         id=draft,
-        files=[_file(of, file) for file in of.files],
-        channels={name: AnswerView(**asdict(answer)) for name, answer in known.channels.items()},
-        time=AnswerView(**asdict(known.time)), rate=known.rate,
+        files=files,
+        channels=files[0].channels, time=files[0].time, rate=files[0].rate,
         missing=[MissingView(**asdict(one)) for one in lacks], doubts=list(of.doubts),
         findings=findings, description=text,
     )  # fmt: skip
@@ -91,7 +99,11 @@ def _file(draft: Draft, file: RawFile) -> RawFileView:
     columns = [
         ColumnView(number=c.number, name=c.name, unit=c.unit, role=by_column.get(c.number, "")) for c in file.columns
     ]
-    return RawFileView(name=file.name, samples=len(file.samples(file.columns[0].number)), columns=columns)
+    return RawFileView(
+        name=file.name, samples=len(file.samples(file.columns[0].number)), columns=columns,
+        channels={name: AnswerView(**asdict(answer)) for name, answer in known.channels.items()},
+        time=AnswerView(**asdict(known.time)), rate=known.rate,
+    )  # fmt: skip
 
 
 def make(context: Context, draft: str, asked: AnswersRequest) -> tuple[MatrixView, bool]:
@@ -110,12 +122,19 @@ def make(context: Context, draft: str, asked: AnswersRequest) -> tuple[MatrixVie
 def answers(asked: AnswersRequest) -> Answers:
     """The library's answers. Raises Unusable for a channel that is none."""
     common = {"gain": asked.gain, "hold": asked.hold}
+    of_all = _of_file(asked)
     return Answers(
-        serial=asked.serial.strip(), channels={name: Answer(a.column, a.unit) for name, a in asked.channels.items()},
-        time=Answer(asked.time.column, asked.time.unit), rate=asked.rate, output=asked.output,
+        serial=asked.serial.strip(), channels=of_all.channels, time=of_all.time, rate=of_all.rate, output=asked.output,
         verify=tuple(asked.verify), actuator={"piston_area": asked.area} if asked.area else {},
         common={name: text for name, text in common.items() if text},
+        files={name: _of_file(of_one) for name, of_one in asked.files.items()},
     )  # fmt: skip
+
+
+def _of_file(asked: AnswersRequest | FileAnswersRequest) -> FileAnswers:
+    """What is said of a file, or of all. Raises Unusable for a channel that is none."""
+    channels = {name: Answer(answer.column, answer.unit) for name, answer in asked.channels.items()}
+    return FileAnswers(channels, Answer(asked.time.column, asked.time.unit), asked.rate.strip())
 
 
 def raw_files(context: Context, draft: str) -> tuple[RawFile, ...]:

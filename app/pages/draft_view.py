@@ -1,4 +1,4 @@
-"""What the page shows that describes raw files: a row a column, with what it may be and in which unit."""
+"""What the page shows that describes raw files: a table a layout, a row a column, with what it is and its unit."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from app.errors import missing
 from app.pages.thumbnails import curve
 from ident.drafts.draft import OUTPUTS
 from ident.matrix import CHANNELS
-from schemas.draft import AnswersRequest, ColumnView, DraftView
+from schemas.draft import AnswersRequest, DraftView, RawFileView
 
 PICTURED = 4
-"""Files whose columns are drawn."""
+"""Files of a layout whose columns are drawn."""
 UNITS = (
     ("length", ("mm", "cm", "m", "um", "in", "mil")), ("force", ("N", "kN", "kgf", "tf", "lbf", "kip")),
     ("pressure", ("bar", "MPa", "kPa", "Pa", "psi")),
@@ -28,36 +28,64 @@ UNITS = (
 
 @dataclass(frozen=True)
 class DraftColumn:
-    """A column by its name: the unit that is stated, what it is taken for, its number in each file that is drawn."""
+    """A column: what an answer calls it, the name that is shown, its unit as far as known, what it is taken for."""
 
+    column: str | int
     name: str
+    number: int
     unit: str
     role: str
-    places: tuple[int | None, ...]
 
 
-def draft_page(context: Context, draft: str) -> dict[str, Any]:
-    """What the template of a draft needs. Raises Failure 404."""
+@dataclass(frozen=True)
+class Layout:
+    """Files whose columns are called alike, in the same units, and taken for the same: they are described once.
+
+    `pictured` are the first of them with their places in the draft; `label` names them where there are others.
+    """
+
+    names: tuple[str, ...]
+    label: str
+    rate: str
+    columns: tuple[DraftColumn, ...]
+    pictured: tuple[tuple[int, RawFileView], ...]
+
+
+def draft_page(context: Context, draft: str, apart: bool = False) -> dict[str, Any]:
+    """What the template of a draft needs; with `apart` each file is described by itself. Raises Failure 404."""
     found = service.look(context, draft, AnswersRequest())
+    layouts = tuple(_layouts(found, apart))
     return {
-        "draft": found, "columns": tuple(_columns(found)), "pictured": PICTURED, "units": UNITS,
+        "draft": found, "layouts": layouts, "pictured": PICTURED, "units": UNITS, "apart": apart,
+        "shared": len(layouts) < len(found.files),
         "known_units": {name for _, names in UNITS for name in names},
         "roles": (("time", "time"), *((name, name.replace("_", " ")) for name in CHANNELS)),
         "outputs": tuple((name, name.replace("_", " ")) for name in OUTPUTS),
     }  # fmt: skip
 
 
-def _columns(draft: DraftView) -> Iterator[DraftColumn]:
-    """Every column of any file, in the order of the files."""
-    by_name: dict[str, ColumnView] = {}
-    for file in draft.files:
-        for column in file.columns:
-            by_name.setdefault(column.name, column)
-    numbers = [{column.name: column.number for column in file.columns} for file in draft.files[:PICTURED]]
-    units = {"time": draft.time.unit, **{name: answer.unit for name, answer in draft.channels.items()}}
-    for name, column in by_name.items():
-        unit = column.unit or units.get(column.role, "")
-        yield DraftColumn(name, unit, column.role, tuple(of.get(name) for of in numbers))
+def _layouts(draft: DraftView, apart: bool) -> Iterator[Layout]:
+    """The layouts of the files, in the order in which they come."""
+    found: dict[object, list[int]] = {}
+    for place, file in enumerate(draft.files):
+        columns = tuple(_columns(file))
+        found.setdefault((columns, file.rate, place if apart else 0), []).append(place)
+    for places in found.values():
+        files = [draft.files[place] for place in places]
+        more = f" and {len(files) - 1} more" if len(files) > 1 else ""
+        yield Layout(
+            tuple(file.name for file in files), f"{files[0].name}{more}" if len(found) > 1 else "", files[0].rate,
+            tuple(_columns(files[0])), tuple((place, draft.files[place]) for place in places[:PICTURED]),
+        )  # fmt: skip
+
+
+def _columns(file: RawFileView) -> Iterator[DraftColumn]:
+    """The columns of a file; one whose name another bears, too, is called by its number."""
+    names = [column.name for column in file.columns]
+    units = {"time": file.time.unit, **{name: answer.unit for name, answer in file.channels.items()}}
+    for one in file.columns:
+        column = one.name if names.count(one.name) == 1 else one.number
+        yield DraftColumn(column, one.name, one.number, one.unit or units.get(one.role, ""), one.role)
 
 
 def column_picture(context: Context, draft: str, file: int, column: int) -> str:

@@ -38,9 +38,9 @@ def upload(request: Request) -> HTMLResponse:
 
 
 @router.get("/drafts/{draft}", dependencies=[LAB])
-def draft(request: Request, here: Here, draft: str) -> HTMLResponse:
-    """Raw files: their columns, and the form that makes a matrix of them."""
-    return page(request, "draft.html", **draft_page(here, draft))
+def draft(request: Request, here: Here, draft: str, apart: bool = False) -> HTMLResponse:
+    """Raw files: their columns, and the form that makes a matrix of them; each file by itself where asked for."""
+    return page(request, "draft.html", **draft_page(here, draft, apart))
 
 
 @router.get("/drafts/{draft}/{file}/{column}.svg", dependencies=[LAB])

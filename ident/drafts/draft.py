@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 from typing import Any
 
+from ident.drafts.answers import NONE, Answer, Answers, FileAnswers
 from ident.drafts.names import is_time, suggested, unit_of
 from ident.drafts.raw import Column, RawFile
 from ident.drafts.steps import moves_in_steps
@@ -16,49 +17,23 @@ from ident.readers import PACKED
 from ident.readers.table import MINUS, some_of
 from ident.units.quantity import shown
 
+__all__ = ["NONE", "OUTPUTS", "Answer", "Answers", "Draft", "FileAnswers", "Known", "Missing", "run_ids"]
+
 OUTPUTS = ("displacement", "velocity", "force", "load_pressure")
 """Channels that a model may have to reproduce; the first that there is, unless one is named."""
 _DRIVES = ("command", "current")
+_NAMED = 3  # files that a doubt names
 _HELD = "the command rests and jumps, so it is taken to be held between its changes (hold: zoh)"
 _DRAWN = "the command is taken to run straight from sample to sample (hold: linear); say zoh where it is held"
-NONE = "-"
-"""The answer that a channel is not there, though a column is called after it."""
-
-
-@dataclass(frozen=True)
-class Answer:
-    """Which column a channel or the time is, by name or number, and its unit; what is empty is not answered."""
-
-    column: str | int = ""
-    unit: str = ""
-
-
-@dataclass(frozen=True)
-class Answers:
-    """What a person says of raw files. `common` are further entries of every run, as they stand in matrix.yaml."""
-
-    serial: str = ""
-    channels: Mapping[str, Answer] = field(default_factory=dict)
-    time: Answer = Answer()
-    rate: str = ""
-    output: str = ""
-    verify: tuple[str, ...] = ()
-    actuator: Mapping[str, str] = field(default_factory=dict)
-    common: Mapping[str, Any] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        for channel in self.channels:
-            if channel not in CHANNELS:
-                raise Unusable("unknown-channel", f"no channel {shown(channel)!r}", "channel",
-                               f"choose from {', '.join(CHANNELS)}")  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Missing:
-    """One thing that the files do not state: `key` as an option and a field name it, and the question."""
+    """One thing that `files` do not state: `key` as an option and a field name it, and the question."""
 
     key: str
     question: str
+    files: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -74,43 +49,45 @@ class Known:
 
 @dataclass(frozen=True)
 class Draft:
-    """Raw files under one set of answers."""
+    """Raw files under one set of answers. Raises Unusable ``missing-file`` for an answer about none of them."""
 
     files: Sequence[RawFile]
     answers: Answers
 
+    def __post_init__(self) -> None:
+        names = [file_name(file) for file in self.files]
+        for file in self.answers.files:
+            if file not in names:
+                raise Unusable("missing-file", f"{shown(file)!r} is none of the files", "files",
+                               f"name one of {some_of(names)}")  # fmt: skip
+
     def known(self, file: RawFile) -> Known:
         """What the file states and the answers say of it. Raises Unusable where an answer names no column of it."""
         doubts: list[str] = []
+        said = self.answers.of(file_name(file))
         found = {channel: Answer(column.name, unit_of(column)) for channel, column in suggested(file.columns).items()}
-        for channel, answer in self.answers.channels.items():
+        for channel, answer in said.channels.items():
             if answer.column == NONE:
                 found.pop(channel, None)
                 continue
             columns = _columns(file, answer.column, f"channel {channel}") if answer.column != "" else []
             before = found.get(channel, Answer())
             if columns:
-                found = {name: a for name, a in found.items() if self._stays(file, name, a, columns)}
+                found = {name: a for name, a in found.items() if _stays(file, name, a, columns, said)}
             stated = _unit(columns) if columns else before.unit
             if columns and answer.unit and stated not in ("", answer.unit):
-                taken = f"{shown(MINUS.join(one.name for one in columns))!r} is {channel} in {answer.unit}, as was said"
-                doubts.append(f"{taken}; the file states {stated}")
+                doubts.append(_contradicted(MINUS.join(one.name for one in columns), channel, answer.unit, stated))
             found[channel] = Answer(answer.column if columns else before.column, answer.unit or stated)
         found = {channel: answer for channel, answer in found.items() if answer.column != ""}
         doubts += [f"{shown(a.column)!r} is taken for {channel}, by its name" for channel, a in found.items()
-                   if channel not in self.answers.channels]  # fmt: skip
-        time, rate, said = self._clock(file)
+                   if channel not in said.channels]  # fmt: skip
+        time, rate, assumed = _clock(file, said)
         used = [answer.column for answer in (*found.values(), time) if answer.column != ""]
         if twice := {str(column) for column in used if used.count(column) > 1}:
             raise Unusable("column-twice", f"{', '.join(sorted(twice))} is asked to be two channels", file.name,
                            "give each channel its own column")  # fmt: skip
         hold = str(self.answers.common.get("hold", "")) or self._hold(file, found)
-        return Known(found, time, rate, hold, (*doubts, *said))
-
-    def _stays(self, file: RawFile, channel: str, of: Answer, columns: Sequence[Column]) -> bool:
-        """Whether a column still is the channel that its name looks like, once it was said what `columns` are."""
-        number = file.table.numbers(of.column, file.name)[0]
-        return channel in self.answers.channels or all(number != one.number for one in columns)
+        return Known(found, time, rate, hold, (*doubts, *assumed))
 
     def _hold(self, file: RawFile, channels: Mapping[str, Answer]) -> str:
         """What the command does between samples, by the look of it."""
@@ -118,40 +95,34 @@ class Draft:
         held = drive is not None and moves_in_steps(file.samples(drive))
         return "zoh" if held else "linear"
 
-    def _clock(self, file: RawFile) -> tuple[Answer, str, tuple[str, ...]]:
-        """Column of times or rate, and what was assumed."""
-        answer = self.answers.time
-        if self.answers.rate:
-            return Answer(), self.answers.rate, ()
-        if answer.column != "":
-            (column,) = _columns(file, file.table.number(answer.column, f"{file.name}: time"), "time")
-            return Answer(answer.column, answer.unit or column.unit), "", ()
-        named = [column for column in file.columns if is_time(column.name)]
-        if len(named) == 1:
-            told = f"{shown(named[0].name)!r} is taken for the time, by its name"
-            return Answer(named[0].name, answer.unit or named[0].unit), "", (told,)
-        if (rate := file.rate) is None:
-            return Answer(), "", ()
-        told = f"the sample rate {rate.value:g} Hz is that of the lines above the table"
-        return Answer(), f"{rate.value:g} Hz", (told + ("" if rate.stated else ", which name no unit"),)
-
     @property
     def missing(self) -> tuple[Missing, ...]:
-        """Everything that has still to be said, once for all files."""
-        found: dict[str, Missing] = {}
-        if not self.answers.serial:
-            found["serial"] = Missing("serial", "serial number of the actuator")
+        """Everything that has still to be said: once for all files whose columns are called alike."""
+        found: dict[tuple[object, ...], Missing] = {}
         for file in self.files:
+            columns = tuple(column.name for column in file.columns)
             for one in self._missing_of(file):
-                found.setdefault(one.key, one)
-        return tuple(found.values())
+                before = found.setdefault((one.key, columns), replace(one, files=()))
+                found[one.key, columns] = replace(before, files=(*before.files, file_name(file)))
+        serial = () if self.answers.serial else (Missing("serial", "serial number of the actuator"),)
+        return (*serial, *(self._of_some(one) for one in found.values()))
+
+    def _of_some(self, missing: Missing) -> Missing:
+        """What is missing, its question with the files that it concerns where these are not all."""
+        if self.of_all(missing) or missing.key.startswith("channel"):
+            return missing
+        return replace(missing, question=f"{missing.question}, of {some_of(missing.files)}")
+
+    def of_all(self, missing: Missing) -> bool:
+        """Whether something is missing in every file, so that one answer holds for all of them."""
+        return len(missing.files) in (0, len(self.files))
 
     def _missing_of(self, file: RawFile) -> list[Missing]:
         known, found = self.known(file), []
         output = next((name for name in OUTPUTS if name in known.channels), "")
         wanted = self.answers.output or output
         drives = {*_DRIVES, *({"velocity", "displacement"} if wanted == "force" else ())}
-        if not drives & known.channels.keys() and self._said("command") != NONE:
+        if not drives & known.channels.keys() and self._said(file, "command") != NONE:
             driven = ", or say --output force where the motion drives" if "force" in known.channels else ""
             what = f"which column of {_listed(file)} is the command, or the force that drives{driven}"
             found.append(Missing("channel command", what))
@@ -167,16 +138,21 @@ class Draft:
             found.append(Missing("unit time", f"unit of the time, column {shown(known.time.column)!r}"))
         return found
 
-    def _said(self, channel: str) -> str | int:
-        return self.answers.channels.get(channel, Answer()).column
+    def _said(self, file: RawFile, channel: str) -> str | int:
+        return self.answers.of(file_name(file)).channels.get(channel, Answer()).column
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """What was taken from names and heads, file by file, and what no file states, once each."""
+        """What was taken from names and heads, and what no file states, once each, with the files where not all."""
         known = [self.known(file) for file in self.files]
-        remarks = (remark for file in self.files for remark in file.remarks)
-        taken = (doubt for one in known for doubt in one.doubts)
-        return tuple(dict.fromkeys([*remarks, *taken, *self._on_hold(known)]))
+        remarks = [remark for file in self.files for remark in file.remarks]
+        found: dict[str, list[str]] = {}
+        for file, one in zip(self.files, known, strict=True):
+            for doubt in dict.fromkeys(one.doubts):
+                found.setdefault(doubt, []).append(file.name)
+        told = [doubt if len(names) == len(self.files) else f"{_some(names)}: {doubt}"
+                for doubt, names in found.items()]  # fmt: skip
+        return tuple(dict.fromkeys([*remarks, *told, *self._on_hold(known)]))
 
     def _on_hold(self, known: Sequence[Known]) -> Iterator[str]:
         """What was taken of the command between its samples."""
@@ -186,24 +162,34 @@ class Draft:
         if not held or len(held) == len(known):
             yield _HELD if held else _DRAWN
             return
-        named = ", ".join(held[:3]) + (f" and {len(held) - 3} more" if len(held) > 3 else "")
         yield (
-            f"the command of {named} rests and jumps, so it is taken to be held there between its changes (hold: zoh), "
-            "and in the other files to run straight from sample to sample (hold: linear); say zoh where it is held"
+            f"the command of {_some(held)} rests and jumps, so it is taken to be held there between its changes "
+            "(hold: zoh), and in the other files to run straight from sample to sample (hold: linear); say zoh where "
+            "it is held"
         )
 
     def description(self) -> dict[str, Any]:
         """What matrix.yaml says. Raises Unusable ``not-stated`` with everything that is missing."""
         if missing := self.missing:
             what = "the files do not state: " + "; ".join(one.question for one in missing)
-            raise Unusable("not-stated", what, "init", "say it, as " + ", ".join(_option(one.key) for one in missing))
+            raise Unusable("not-stated", what, "init", "say it, as " + ", ".join(self._option(one) for one in missing))
         runs = [self._run(file, name) for file, name in zip(self.files, run_ids(self.files), strict=True)]
         return {"actuator": {"serial": self.answers.serial, **self.answers.actuator}, "runs": runs}
+
+    def _option(self, missing: Missing) -> str:
+        """How an answer is given on the command line."""
+        kind, _, name = missing.key.partition(" ")
+        at = "" if self.of_all(missing) else f"@{missing.files[0]}"
+        timed = f"--time {at}=" if at else "--time "
+        if kind in ("channel", "unit"):
+            column = "COLUMN:UNIT" if kind == "channel" else ":UNIT"
+            return f"{timed}{column}" if name == "time" else f"--channel {name}{at}={column}"
+        return f"--rate '{f'{at}=' if at else ''}1000 Hz' or {timed}COLUMN:UNIT" if kind == "rate" else f"--{kind} TEXT"
 
     def _run(self, file: RawFile, name: str) -> dict[str, Any]:
         known = self.known(file)
         output = self.answers.output or next(one for one in OUTPUTS if one in known.channels)
-        run: dict[str, Any] = {"id": name, "file": f"runs/{PurePosixPath(file.name).name}"}
+        run: dict[str, Any] = {"id": name, "file": f"runs/{file_name(file)}"}
         if known.time.column != "":
             run["time"] = {"column": known.time.column, "unit": known.time.unit}
         else:
@@ -212,11 +198,56 @@ class Draft:
         run |= {"output": output} if output != OUTPUTS[0] else {}
         run |= {"hold": "zoh"} if known.hold == "zoh" else {}
         run |= {
-            "use": "verify" if PurePosixPath(file.name).name in self.answers.verify else "fit",
+            "use": "verify" if file_name(file) in self.answers.verify else "fit",
             **self.answers.common,
         }
         channels = sorted(known.channels.items(), key=lambda item: CHANNELS.index(item[0]))
         return run | {"channels": {name: {"column": a.column, "unit": a.unit} for name, a in channels}}
+
+
+def file_name(file: RawFile) -> str:
+    """The name of a file without its folder: what answers call it."""
+    return PurePosixPath(file.name).name
+
+
+def _stays(file: RawFile, channel: str, of: Answer, columns: Sequence[Column], said: FileAnswers) -> bool:
+    """Whether a column still is the channel that its name looks like, once it was said what `columns` are."""
+    number = file.table.numbers(of.column, file.name)[0]
+    return channel in said.channels or all(number != one.number for one in columns)
+
+
+def _clock(file: RawFile, said: FileAnswers) -> tuple[Answer, str, tuple[str, ...]]:
+    """Column of times or rate, and what was assumed."""
+    answer = said.time
+    if said.rate:
+        return Answer(), said.rate, ()
+    if answer.column not in ("", NONE):
+        (column,) = _columns(file, file.table.number(answer.column, f"{file.name}: time"), "time")
+        return Answer(answer.column, answer.unit or column.unit), "", tuple(_other_unit(column, answer.unit))
+    named = [] if answer.column == NONE else [column for column in file.columns if is_time(column.name)]
+    if len(named) == 1:
+        told = f"{shown(named[0].name)!r} is taken for the time, by its name"
+        found = Answer(named[0].name, answer.unit or named[0].unit)
+        return found, "", (told, *_other_unit(named[0], answer.unit))
+    if (rate := file.rate) is None:
+        return Answer(), "", ()
+    told = f"the sample rate {rate.value:g} Hz is that of the lines above the table"
+    return Answer(), f"{rate.value:g} Hz", (told + ("" if rate.stated else ", which name no unit"),)
+
+
+def _other_unit(time: Column, said: str) -> Iterator[str]:
+    """That the unit said of a column of times is not the one that its file states."""
+    if said and time.unit not in ("", said):
+        yield _contradicted(time.name, "time", said, time.unit)
+
+
+def _contradicted(column: str, what: str, said: str, stated: str) -> str:
+    return f"{shown(column)!r} is {what} in {said}, as was said; the file states {stated}"
+
+
+def _some(names: Sequence[str]) -> str:
+    """The first names of a list in words."""
+    return ", ".join(names[:_NAMED]) + (f" and {len(names) - _NAMED} more" if len(names) > _NAMED else "")
 
 
 def _columns(file: RawFile, column: str | int, where: str) -> list[Column]:
@@ -240,20 +271,11 @@ def _listed(file: RawFile) -> str:
     return f"{file.name} ({some_of([column.name for column in file.columns])}{left_out})"
 
 
-def _option(key: str) -> str:
-    """How an answer is given on the command line."""
-    kind, _, name = key.partition(" ")
-    if kind in ("channel", "unit"):
-        column = "COLUMN:UNIT" if kind == "channel" else ":UNIT"
-        return f"--time {column}" if name == "time" else f"--channel {name}={column}"
-    return "--rate '1000 Hz' or --time COLUMN:UNIT" if kind == "rate" else f"--{kind} TEXT"
-
-
 def run_ids(files: Sequence[RawFile]) -> list[str]:
     """An id for each file, after its name; a number behind those that are there already."""
     ids: list[str] = []
     for file in files:
-        name = PurePosixPath(file.name).name
+        name = file_name(file)
         stem = name.removesuffix(PACKED).rpartition(".")[0].lstrip(".") or "run"
         plain = "".join(sign if sign.isalnum() or sign in "-_ " else "-" for sign in stem)[:80]
         number = sum(one == plain or one.startswith(f"{plain}-") for one in ids)

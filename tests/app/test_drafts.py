@@ -7,6 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ident.readers import read_matrix
+from tests.app.conftest import unpacked
+from tests.cases import CASES
+
 API = "/api/v1"
 
 
@@ -115,3 +119,45 @@ def test_a_draft_that_is_not_there_is_missing(service):
     for name in ("nothing", "0" * 32, "staged", "%2e%2e"):
         assert service.post(f"{API}/drafts/{name}", json={}).status_code in (404, 405)
         assert service.get(f"{API}/drafts/{name}").status_code in (404, 405)
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_files_that_differ_in_names_and_units_are_one_matrix(service, case, tmp_path):
+    """What is said of each file is of its own columns; the stored matrix has the samples and the clock of each."""
+    sent = [("files", (path.name, path.read_bytes())) for path in case.paths()]
+    draft = service.post(f"{API}/drafts", files=sent).json()
+    said = {}
+    for file in case.files:
+        time, command, displacement = (
+            {"column": column, "unit": unit} for column, unit in zip(file.columns, file.units, strict=True)
+        )
+        said[file.name] = {"channels": {"command": command, "displacement": displacement}, "time": time}
+    answers = {"serial": f"CASE-{case.name}", "files": said}
+    known = service.post(f"{API}/drafts/{draft['id']}", json=answers).json()
+    assert not known["missing"]
+    for file in known["files"]:
+        assert {column["role"] for column in file["columns"]} == {"time", "command", "displacement"}
+        assert file["channels"]["command"]["unit"] == "mm"
+    assert [file["time"]["unit"] for file in known["files"]] == ["ms", "s"]
+    assert {one["code"] for one in known["findings"] if one["severity"] != "note"} == {"sample-rate", "no-verify-runs"}
+    made = service.post(f"{API}/drafts/{draft['id']}/matrix", json=answers).json()
+    described = service.get(f"{API}/matrices/{made['id']}/description").content
+    content = {f"runs/{path.name}": path.read_bytes() for path in case.paths()}
+    case.right(read_matrix(unpacked({"matrix.yaml": described, **content}, tmp_path)).runs)
+    assert {run["sample_rate"] for run in made["runs"]} == {1000.0}
+
+
+def test_an_answer_about_a_file_that_is_not_there_is_refused(service, draft):
+    answer = service.post(f"{API}/drafts/{draft['id']}", json={"files": {"z.csv": {"rate": "1 kHz"}}})
+    assert (answer.status_code, answer.json()["code"]) == (422, "missing-file")
+    assert "a.csv, b.csv, c.csv" in answer.json()["remedy"]
+
+
+def test_what_is_missing_of_some_files_names_them(service):
+    """The page and a script can say to which files a question belongs."""
+    files = [("files", ("a.csv", record(1))), ("files", ("b.csv", record(2, "clock,drive,way")))]
+    draft = service.post(f"{API}/drafts", files=files).json()
+    assert {(one["key"], *one["files"]) for one in draft["missing"]} == {
+        ("serial",), ("channel command", "a.csv"), ("channel displacement", "a.csv"), ("unit time", "a.csv"),
+        ("channel command", "b.csv"), ("channel displacement", "b.csv"), ("rate", "b.csv"),
+    }  # fmt: skip

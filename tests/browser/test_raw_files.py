@@ -5,16 +5,18 @@ from __future__ import annotations
 import csv
 
 import numpy as np
+import pytest
 from playwright.sync_api import expect
 
+from ident.readers import read_matrix
 from ident.synthesis.matrix import simulate_matrix
+from tests.app.conftest import unpacked
 from tests.browser.looks import everywhere
+from tests.cases import CASES
 
 
 def raw_files(folder):
     """Three runs of the simulated actuator as a bench leaves them: a clock, two channels nobody named, in mm."""
-    from ident.readers import read_matrix
-
     simulate_matrix(folder / "matrix", "qian2014", 1.0, 3, 0.005, {}, small=True)
     runs = read_matrix(folder / "matrix").runs[:3]
     for number, run in enumerate(runs):
@@ -51,7 +53,7 @@ def test_three_raw_files_become_a_fit_without_a_description(page, watch, site, t
     page.get_by_label("run2.csv").check()
     page.get_by_label("Piston area").fill("497 mm^2")
     page.get_by_label("Piston area").press("Tab")
-    expect(missing).to_have_count(0)
+    expect(missing).to_have_count(0, timeout=60_000)  # a process of its own reads and checks the files
     expect(page.locator("[data-findings]")).to_contain_text("specimen is not stated")
     everywhere(page, screenshots, "raw-files-described")
 
@@ -68,3 +70,52 @@ def test_three_raw_files_become_a_fit_without_a_description(page, watch, site, t
     else:
         site.client.delete(f"/jobs/{job}")
         site.ended(job)
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_files_that_differ_in_names_and_units_are_described_each_by_its_own(page, watch, site, tmp_path, case):
+    """Each has its columns, units and time on the page, as it states them; the matrix has the clock of each."""
+    page.goto(f"{site.address}/upload")
+    page.get_by_label("A zip, matrix.yaml and files, or raw files").set_input_files(case.paths())
+    page.get_by_role("button", name="Upload").click()
+    page.get_by_label("Serial number").fill(f"CASE-{case.name}")
+    for file in case.files:
+        for column, unit, role in zip(file.columns, file.units, ("time", "command", "displacement"), strict=True):
+            page.get_by_label(f"What {column} is, in {file.name}").select_option(role)
+            if unit:
+                page.get_by_label(f"Unit of {column}, in {file.name}").select_option(unit)
+    first = case.files[0]
+    page.get_by_label(f"What {first.columns[0]} is, in {first.name}").select_option("command")
+    expect(page.locator("#draft [role=alert]")).to_contain_text(f"Two columns of {first.name} are the command.")
+    page.get_by_label(f"What {first.columns[0]} is, in {first.name}").select_option("time")
+    expect(page.locator("[data-missing] li")).to_have_count(0, timeout=60_000)
+    expect(page.locator("#draft [role=alert]")).to_be_empty()
+    page.get_by_role("button", name="Make the matrix").click(timeout=60_000)
+    expect(page.get_by_role("heading", name=f"Test matrix of CASE-{case.name}")).to_be_visible(timeout=60_000)
+    made = page.url.rpartition("/")[2]
+    described = site.client.get(f"/matrices/{made}/description").content
+    content = {f"runs/{path.name}": path.read_bytes() for path in case.paths()}
+    case.right(read_matrix(unpacked({"matrix.yaml": described, **content}, tmp_path)).runs)
+    assert not watch.complaints
+
+
+def test_files_with_the_same_columns_can_be_described_one_by_one(page, site, tmp_path):
+    """Three files of one layout have one table, or, where asked for, one each: a unit is said of one of them alone."""
+    page.goto(f"{site.address}/upload")
+    page.get_by_label("A zip, matrix.yaml and files, or raw files").set_input_files(raw_files(tmp_path))
+    page.get_by_role("button", name="Upload").click()
+    expect(page.locator("table.columns-of-files")).to_have_count(1)
+    page.get_by_role("link", name="Describe each file by itself").click()
+    expect(page.locator("table.columns-of-files")).to_have_count(3)
+    page.get_by_label("Serial number").fill("SW-APART")
+    for number in range(3):
+        of = f", in run{number}.csv"
+        for column, role in (("t", "time"), ("AI0", "command"), ("AI1", "displacement")):
+            page.get_by_label(f"What {column} is{of}").select_option(role)
+            unit = "mm" if role != "time" else "s"
+            page.get_by_label(f"Unit of {column}{of}", exact=True).select_option(
+                "cm" if number == 1 and unit == "mm" else unit
+            )
+    expect(page.locator("[data-missing] li")).to_have_count(0, timeout=60_000)
+    text = page.locator("[data-description] pre").text_content()
+    assert (text.count("unit: mm"), text.count("unit: cm"), text.count("unit: s")) == (4, 2, 3)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from ident.readers import read_matrix
+from tests.cases import CASES
 
 
 @pytest.fixture
@@ -101,3 +102,39 @@ def test_on_a_terminal_what_is_missing_is_asked(record, tmp_path):
     assert "there is no column 'nothing'" in errors
     assert said.count("is the command") == 2
     assert read_matrix(tmp_path / "m").actuator.serial == "SW-2"
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_files_that_differ_in_names_and_units_are_one_matrix(servoident, case, tmp_path):
+    """What is said of all files, and what of some of them by their name or a pattern, with @."""
+    said = []
+    for at, file in enumerate(case.files):
+        pattern = file.name if at else f"{file.name[:-5]}a*"
+        time, *channels = (f"{column}:{unit}" for column, unit in zip(file.columns, file.units, strict=True))
+        said += ["--time", f"@{pattern}={time}"]
+        for channel, value in zip(("command", "displacement"), channels, strict=True):
+            said += ["--channel", f"{channel}@{pattern}={value}"]
+    made = servoident("init", *case.paths(), "--serial", "CASE", *said, "--out", tmp_path / "m")
+    assert made.returncode == 0, made.stderr
+    case.right(read_matrix(tmp_path / "m").runs)
+
+
+def test_a_rate_and_columns_of_some_files_are_said_with_their_name(servoident, record, tmp_path):
+    """One answer for all, another for a file; a file that is not there is refused, as is half an option."""
+    (tmp_path / "b.csv").write_bytes(record.read_bytes().replace(b"time,c0,c1", b"n,first,second"))
+    files = (record, tmp_path / "b.csv")
+    some = ("--channel", "command=c0:mm", "--channel", "displacement=2:mm", "--time", "@a*=time:s",
+            "--channel", "command@b=first:in", "--channel", "displacement@b=second:cm", "--serial", "S")  # fmt: skip
+    missing = servoident("init", *files, *some, "--out", tmp_path / "m")
+    assert "--rate '@b.csv=1000 Hz' or --time @b.csv=COLUMN:UNIT" in missing.stderr
+    made = servoident("init", *files, *some, "--rate", "@b.csv=50 Hz", "--out", tmp_path / "m")
+    assert made.returncode == 0, made.stderr
+    first, second = read_matrix(tmp_path / "m").runs
+    assert (first.sample_rate, second.sample_rate) == (200.0, 50.0)
+    np.testing.assert_allclose(second.command, 25.4 * first.command)
+    np.testing.assert_allclose(second.measured, 10 * first.measured)
+    for option, what in (("command@z=first:in", "'z' is none of the files"), ("command@b", "write --channel NAME=")):
+        refused = servoident("init", *files, *KNOWN, "--channel", option)
+        assert (refused.returncode, what in refused.stderr) == (2, True)
+    refused = servoident("init", *files, *KNOWN, "--rate", "@b.csv")
+    assert (refused.returncode, "write --rate @FILE=VALUE" in refused.stderr) == (2, True)

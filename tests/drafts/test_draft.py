@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ident.drafts.draft import NONE, Answer, Answers, Draft
+from ident.drafts.answers import NONE, Answer, Answers, FileAnswers
+from ident.drafts.draft import Draft
 from ident.drafts.names import channel_of
 from ident.drafts.raw import read_raw
 from ident.drafts.text import drafted, gathered
@@ -264,3 +265,65 @@ def test_a_channel_may_be_the_difference_of_two_columns():
     broken = raw(text.replace("\n0.39,", "\n0.39,?"))
     with pytest.raises(Unusable, match="does not hold numbers throughout"):
         Draft([broken], draft.answers).known(broken)
+
+
+def lagged(rate: float, scale: float, head: str, unit: str) -> str:
+    """A second of a command and its answer: the time in a unit of which a second has `scale`."""
+    rows = [f"{scale * n / rate:.6f},{np.sin(n):.6f},{np.sin(n - 1):.6f}" for n in range(int(rate))]
+    return "\n".join([head, *([unit] if unit else []), *rows, ""])
+
+
+IN_MS = lagged(100, 1000, "time,u,x", "ms,mm,mm")
+IN_S = lagged(100, 1, "time,u,x", "s,mm,mm")
+OTHER_NAMES = lagged(100, 1, "clock,drive,way", "")
+SAID = {"command": Answer("u"), "displacement": Answer("x")}
+
+
+def test_each_file_keeps_the_unit_that_it_states():
+    """One has its time in ms, one in s: both last a second, and nothing is asked or doubted of it."""
+    texts = [IN_MS, IN_S]
+    draft = Draft([raw(IN_MS, "a.csv"), raw(IN_S, "b.csv")], Answers(serial="S", channels=SAID))
+    assert not draft.missing
+    assert [draft.known(file).time.unit for file in draft.files] == ["ms", "s"]
+    made = drafted(gathered(draft, [text.encode() for text in texts]))
+    assert [(run.sample_rate, run.duration) for run in made.runs] == [(100.0, 1.0), (100.0, 1.0)]
+
+
+def test_a_unit_said_of_all_files_against_what_one_of_them_states_is_doubted_with_its_name():
+    files = [raw(IN_MS, "a.csv"), raw(IN_S, "b.csv")]
+    for time in (Answer("time", "ms"), Answer("", "ms")):
+        doubts = Draft(files, Answers(serial="S", channels=SAID, time=time)).doubts
+        assert "b.csv: 'time' is time in ms, as was said; the file states s" in doubts
+        assert not any("the file states ms" in doubt for doubt in doubts)
+
+
+def test_files_with_other_names_have_columns_units_and_clocks_of_their_own():
+    """What is said of a file outweighs what is said of all; each is asked for what it lacks, by its name."""
+    files = [raw(IN_MS, "a.csv"), raw(OTHER_NAMES, "b.csv"), raw(OTHER_NAMES, "c.csv")]
+    draft = Draft(files, Answers(serial="S", files={"a.csv": FileAnswers(SAID)}))
+    assert {(one.key, one.files) for one in draft.missing} == {
+        ("channel command", ("b.csv", "c.csv")), ("channel displacement", ("b.csv", "c.csv")),
+        ("rate", ("b.csv", "c.csv")),
+    }  # fmt: skip
+    assert any(one.question.endswith(", of b.csv, c.csv") for one in draft.missing)
+    with pytest.raises(Unusable, match=r"--channel command@b\.csv=COLUMN:UNIT"):
+        draft.description()
+    of_b = FileAnswers({"command": Answer("drive", "cm"), "displacement": Answer("way", "in")}, Answer("clock", "s"))
+    of_c = FileAnswers({"command": Answer("drive", "mm"), "displacement": Answer("way", "mm")}, rate="200 Hz")
+    said = Answers("S", SAID, Answer("time"), files={"b.csv": of_b, "c.csv": of_c})
+    made = drafted(gathered(Draft(files, said), [text.encode() for text in (IN_MS, OTHER_NAMES, OTHER_NAMES)]))
+    assert [run.sample_rate for run in made.runs] == [100.0, 100.0, 200.0]
+    sizes = [(np.ptp(run.command), np.ptp(run.measured)) for run in made.runs]
+    np.testing.assert_allclose(sizes[0], sizes[2])
+    np.testing.assert_allclose(sizes[1], np.array(sizes[2]) * (10, 25.4))
+
+
+def test_a_column_of_times_that_is_none_leaves_the_rate_to_be_said():
+    """A counter called time; and an answer about a file that is not there is refused."""
+    files = [raw(IN_MS, "a.csv")]
+    not_it = Draft(files, Answers(serial="S", channels=SAID, time=Answer(NONE)))
+    assert [one.key for one in not_it.missing] == ["rate"]
+    with pytest.raises(Unusable, match=r"'d\.csv' is none of the files"):
+        Draft(files, Answers(files={"d.csv": FileAnswers()}))
+    with pytest.raises(Unusable, match="no channel 'motion'"):
+        FileAnswers({"motion": Answer("x")})

@@ -5,27 +5,37 @@ import { guarded, send } from "./api.js";
 const form = document.querySelector("#draft");
 const button = form.querySelector("button[type=submit]");
 const problem = form.querySelector("[role=alert]");
-const rows = [...form.querySelectorAll("[data-column]")];
+const layouts = [...form.querySelectorAll("[data-files]")].map((section) => {
+  const rows = [...section.querySelectorAll("[data-column]")];
+  const roles = rows.map((row) => row.querySelector("[name=role]").value);
+  // A column that a file is read to be something, and that is not chosen, is said not to be it.
+  return { section, rows, names: JSON.parse(section.dataset.files), taken: new Set(roles.filter((role) => role && role !== "time")) };
+});
 const WORST = { fault: "failed", doubt: "doubt", note: "" };
 let asked = 0;
 
-// A column that a file is read to be something, and that is not chosen, is said not to be it.
-const taken = new Set(rows.map((row) => row.querySelector("[name=role]").value).filter((role) => role && role !== "time"));
-
-function answers() {
-  const fields = new FormData(form), channels = {};
-  let time = { column: "", unit: "" };
+// What the page says of the files of a layout: columns, units and the rate belong to them alone.
+function described({ section, rows, names, taken }) {
+  const channels = {}, where = layouts.length > 1 ? ` of ${names[0]}` : "";
   for (const role of taken) channels[role] = { column: "-", unit: "" };
+  let time = { column: "-", unit: "" };
   for (const row of rows) {
     const role = row.querySelector("[name=role]").value, unit = row.querySelector("[name=unit]").value;
-    const answer = { column: row.dataset.column, unit };
+    const before = role === "time" ? time : channels[role], answer = { column: JSON.parse(row.dataset.column), unit };
+    if (role && before && before.column !== "-") throw new Error(`Two columns${where} are the ${role}. Choose one.`);
     if (role === "time") time = answer;
-    else if (role && channels[role] && channels[role].column !== "-") throw new Error(`Two columns are the ${role}. Choose one.`);
     else if (role) channels[role] = answer;
   }
+  const field = section.querySelector("[name=rate]");  // as the files state it, unless it was changed
+  const rate = time.column === "-" && field.value !== field.defaultValue ? field.value.trim() : "";
+  return { channels, time, rate };
+}
+
+function answers() {
+  const fields = new FormData(form), files = {};
+  for (const layout of layouts) for (const name of layout.names) files[name] = described(layout);
   const of = (name) => fields.get(name).trim();
-  const rate = time.column === "" ? of("rate") : "";
-  return { serial: of("serial"), channels, time, rate, output: of("output"), hold: of("hold"), gain: of("gain"), area: of("area"), verify: fields.getAll("verify") };
+  return { serial: of("serial"), files, output: of("output"), hold: of("hold"), gain: of("gain"), area: of("area"), verify: fields.getAll("verify") };
 }
 
 function list(place, items) {

@@ -1,0 +1,91 @@
+"""What a person says of raw files: of all of them, and of one file where that differs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from ident.errors import Unusable
+from ident.matrix import CHANNELS
+from ident.units.quantity import shown
+
+NONE = "-"
+"""The answer that a channel, or a column of times, is not there, though a column is called after it."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Which column a channel or the time is, by name or number, and its unit; what is empty is not answered."""
+
+    column: str | int = ""
+    unit: str = ""
+
+    def over(self, other: Answer) -> Answer:
+        """This answer, completed by a more general one: a unit belongs to the column that it was said of."""
+        return self if self.column != "" else Answer(other.column, self.unit or other.unit)
+
+
+@dataclass(frozen=True)
+class FileAnswers:
+    """What is said of one file: the column and the unit of each channel and of the time, or the sample rate.
+
+    Raises Unusable: ``unknown-channel``.
+    """
+
+    channels: Mapping[str, Answer] = field(default_factory=dict)
+    time: Answer = Answer()
+    rate: str = ""
+
+    def __post_init__(self) -> None:
+        for channel in self.channels:
+            if channel not in CHANNELS:
+                raise Unusable("unknown-channel", f"no channel {shown(channel)!r}", "channel",
+                               f"choose from {', '.join(CHANNELS)}")  # fmt: skip
+
+    def over(self, other: FileAnswers) -> FileAnswers:
+        """These answers, completed by more general ones; a column of times stated here outweighs a rate stated there.
+
+        A rate outweighs a column of times that is stated at the same place.
+        """
+        channels = {
+            name: self.channels.get(name, Answer()).over(other.channels.get(name, Answer()))
+            for name in {**other.channels, **self.channels}
+        }
+        timed = self.time.column not in ("", NONE)
+        return FileAnswers(channels, self.time.over(other.time), self.rate or ("" if timed else other.rate))
+
+
+@dataclass(frozen=True)
+class Answers:
+    """What a person says of raw files. `common` are further entries of every run, as they stand in matrix.yaml.
+
+    `channels`, `time` and `rate` hold for every file, but for what `files` says of one of them, by its name.
+    Raises Unusable: ``unknown-channel``.
+    """
+
+    serial: str = ""
+    channels: Mapping[str, Answer] = field(default_factory=dict)
+    time: Answer = Answer()
+    rate: str = ""
+    output: str = ""
+    verify: tuple[str, ...] = ()
+    actuator: Mapping[str, str] = field(default_factory=dict)
+    common: Mapping[str, Any] = field(default_factory=dict)
+    files: Mapping[str, FileAnswers] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        _ = self.of_all
+
+    @property
+    def of_all(self) -> FileAnswers:
+        """What holds for every file."""
+        return FileAnswers(self.channels, self.time, self.rate)
+
+    def of(self, file: str) -> FileAnswers:
+        """What holds for one file, by its name."""
+        return self.files.get(file, FileAnswers()).over(self.of_all)
+
+    def with_file(self, file: str, said: FileAnswers) -> Answers:
+        """The answers with more said of one file."""
+        return replace(self, files={**self.files, file: said.over(self.files.get(file, FileAnswers()))})
