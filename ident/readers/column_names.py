@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from functools import cache
+from functools import lru_cache
 
 from ident.errors import Unusable
 from ident.readers.channel_description import channel_scale
@@ -90,9 +90,11 @@ _BY_UNIT = ("displacement", "velocity", "force")
 _IN_NAME = re.compile(r"^(.*\S)\s*[\[(<{]\s*([^\[\](){}<>]+?)\s*[\])>}]$")
 _LETTERS = "mstAKlLhgNVWJ"
 """Units of one letter that may as well be an index: x_m is measured, p_s a supply, p_A a side, F_N normal."""
+_KEPT = 4096  # names whose meaning is kept: the files of a matrix have the same columns
 _SPEEDS = ("m/s", "rad/s", "m^3/s")
 
 
+@lru_cache(_KEPT)
 def is_unit(text: str) -> bool:
     """Whether a text is a unit that is known here; the 1 of unknown units is none, which a file may not choose."""
     if not text or text[0].isdigit():
@@ -115,7 +117,7 @@ def bare(name: str) -> str:
     return bracketed(name)[0].rpartition("/")[2].strip()
 
 
-@cache
+@lru_cache(_KEPT)
 def suffix(name: str) -> tuple[str, str]:
     """A name and the unit that ends it behind ``_`` or a space: ``Force_kN``, ``speed_mm_s``; no unit where none does.
 
@@ -194,6 +196,7 @@ def _channel_of(name: str) -> str:
     return ""
 
 
+@lru_cache(_KEPT)
 def channel_of(name: str, unit: str = "") -> str:
     """The channel that a name means, with its unit where that is known; nothing where it could be another thing."""
     stem, ending = suffix(name)
@@ -210,6 +213,7 @@ def _is_time(name: str) -> bool:
     return any(way in TIMES for way in _ways(name))
 
 
+@lru_cache(_KEPT)
 def is_time(name: str) -> bool:
     """Whether a column of this name holds the time."""
     stem, ending = suffix(name)

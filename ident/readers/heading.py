@@ -17,6 +17,9 @@ _PERIOD = re.compile(
 )
 _UNITS = re.compile(r"^(?:units?|einheit(?:en)?|unit[eé]s?|unit[aà]|unidad(?:es)?)\W*$", re.I)
 _MISSING = re.compile(r"^(?:nan|n/?a|null|none|inf|-+|\?+|#.*|overflow|ovl|err\w*)$", re.I)
+_DASHES = ("-", "–", "--", "---")
+_ENTRY = re.compile(r"[:=]$")
+_DATE = re.compile(r"\d{4}-\d{2}-\d{2}.*|\d{1,2}[./]\d{1,2}[./]\d{2,4}.*|\d+(?:\.\d+){2,}")
 _NO_UNIT = ("-", "–", "1", "[-]", "[]", "()", "")
 _REMARK = re.compile(r"^\s*(?:#+|%+|//)\s*")
 _BLANKS = 2
@@ -52,7 +55,7 @@ class _Row:
     @property
     def fields(self) -> tuple[str, ...]:
         """The fields without quotes, spaces and the sign of a remark."""
-        cleaned = [field.strip().strip("\"'").strip() for field in self.raw]
+        cleaned = ["" if field.strip() in _DASHES else field.strip().strip("\"'").strip() for field in self.raw]
         return (_REMARK.sub("", cleaned[0]), *cleaned[1:]) if cleaned else ()
 
     @property
@@ -62,8 +65,22 @@ class _Row:
 
     @property
     def has_numbers(self) -> bool:
-        """Whether any field is a number."""
-        return any(is_numeral(field, comma) for field in self.fields if field for comma in (False, True))
+        """Whether any field is a number, or a date."""
+        filled_in = [field for field in self.fields if field]
+        return any(is_numeral(field, False) or is_numeral(field, True) or _DATE.fullmatch(field) for field in filled_in)
+
+    @property
+    def may_name(self) -> bool:
+        """Whether the line may be one of names: no entry such as ``Date: …``, and numbers only where they count."""
+        if not self.fields or _ENTRY.search(self.fields[0]):
+            return False
+        if not self.has_numbers:
+            return True
+        found = [field for field in self.fields if field.isdigit()]
+        counted = len(found) > 1 and list(map(int, found)) == list(range(int(found[0]), int(found[0]) + len(found)))
+        return (
+            counted and not any(map(_DATE.fullmatch, self.fields)) and (not self.fields[0] or is_label(self.fields[0]))
+        )
 
 
 def is_label(field: str) -> bool:
@@ -82,10 +99,12 @@ def heading(above: Sequence[str], cut: Cut, columns: int, used: frozenset[int], 
     described: list[_Row] = []
     while rows and _describes(rows, columns):
         described.append(rows.pop(0))
-    if not rows or (rows[0].has_numbers and rows[0].fields[0] and not is_label(rows[0].fields[0])):
+    if not rows or not rows[0].may_name:
         return _without_names(columns, described, where)
     names, upper = rows[0], rows[1] if len(rows) > 1 else None
     completed = upper is not None and _completes(upper, names, columns)
+    if names.width < 2 <= columns and not completed:
+        return _without_names(columns, described, where)
     return _named(names, described, upper if completed else None, columns, used, where)
 
 
@@ -106,7 +125,7 @@ def _rows_of(above: Sequence[str], cut: Cut, columns: int) -> list[_Row]:
     rows: list[_Row] = []
     while number >= 0 and above[number].strip() and len(rows) < _ROWS:
         row = _Row(number, tuple(_recut(above[number], cut, columns)))
-        if row.width < 2 <= columns:
+        if len(row.raw) < 2 <= columns:
             break
         rows.append(row)
         number -= 1
@@ -119,7 +138,7 @@ def _recut(line: str, cut: Cut, columns: int) -> list[str]:
     if _Row(0, tuple(fields)).width == columns or columns < 2:
         return fields
     plain = _REMARK.sub("", line)
-    for sign in (None, r"\s*\t\s*", r"\s*;\s*", r"\s*,\s*", r"\s{2,}", r"\s+"):
+    for sign in (None, r"\s*\t\s*", r"\s*;\s*", r"\s*,\s*", r"\s{2,}"):
         other = cut(plain) if sign is None else re.split(sign, plain.strip())
         if _Row(0, tuple(other)).width == columns and not _Row(0, tuple(other)).has_numbers:
             return other
@@ -141,7 +160,7 @@ def _describes(rows: Sequence[_Row], columns: int) -> bool:
         return row.has_numbers and not above.has_numbers and is_label(row.fields[0])
     words = [field for field in row.fields if field]
     pairs = zip(filled(above.fields, row.width), row.fields, strict=False)
-    if any(field and not name and not _is_pure_unit(field) for name, field in pairs):
+    if any(field and not name and (is_known(field) or not _is_pure_unit(field)) for name, field in pairs):
         return False  # a name of its own
     if 2 * sum(map(_is_pure_unit, words)) >= len(words):
         return True

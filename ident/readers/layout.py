@@ -26,6 +26,8 @@ _HEAD_BYTES = 1 << 20
 LONGEST_LINE = 1 << 16
 _JUDGED = 12
 """Rows at the end of the head by which a form is judged: a run has 8 samples at least, so most of them are rows."""
+_BEHIND = re.compile(r"\d+(?:[eE][+-]?\d+)?")  # what stands behind a decimal sign
+_COMPARED = 50  # rows of the head, the last of them, that a last row is compared with
 _ENOUGH = 3
 """Rows in succession that begin a table: two lines of numbers may stand in a preamble."""
 
@@ -226,28 +228,33 @@ def _is_one_column(lines: Sequence[str], rows: Sequence[str]) -> bool:
 
 def _check_commas(form: Form, rows: Sequence[Sequence[str]], found: Heading, where: str) -> None:
     """Refuse a comma that both separates columns and is the decimal sign: what belongs together cannot be told."""
-    if form.delimiter != "," or not rows:
+    if form.delimiter != "," or not rows or form.comma is not None:  # a decimal point was seen, or all is quoted
         return
     widths = {_trimmed(row) for row in rows}
-    behind = [row[n].strip(QUOTES) for row in rows for n in range(1, _trimmed(row), 2)]
-    pairs = all(width % 2 == 0 for width in widths) and all(field.isdigit() for field in behind)
-    padded = any(len(field) > 1 and field.startswith("0") for field in behind)
-    if pairs and (padded or found.width * 2 in widths) and found.width not in widths:
+    behind = [[row[n].strip(QUOTES) for row in rows if n < len(row)] for n in range(1, max(widths))]
+    unsigned = sum(all(_BEHIND.fullmatch(field) for field in column) for column in behind)
+    padded = sum(any(len(one) > 1 and one.startswith("0") and one.isdigit() for one in column) for column in behind)
+    more = max(widths) - found.width
+    if (more > 0 and found.width and (len(widths) > 1 or unsigned >= more)) or (
+        padded and not found.width and (padded > 1 or len(widths) > 1 or 2 * unsigned + 1 >= max(widths))
+    ):
         what = "the comma separates the columns and is the decimal sign, too"
         raise Unusable("comma-twice", what, where, "export it with semicolons or tabs, or with decimal points")
 
 
 def _first_row(lines: Sequence[str], cut: Sequence[Sequence[str]], shape: _Shape, comma: bool) -> int:
     """The number of the first line of the table: the first of some rows in succession, and the flawed ones above it."""
-    full = [bool(line.strip()) and shape.is_full(fields, comma) for line, fields in zip(lines, cut, strict=True)]
-    like = [bool(line.strip()) and shape.is_flawed(fields, comma) for line, fields in zip(lines, cut, strict=True)]
-    first = full.index(True) if True in full else 0
-    for n in (n for n, is_row in enumerate(full) if is_row):
-        following = [m for m in range(n, len(lines)) if lines[m].strip()][:_ENOUGH]
-        if all(full[m] or like[m] for m in following):
-            first = n
+    filled = [n for n, line in enumerate(lines) if line.strip()]
+    begins: list[int] = []
+    for place, n in enumerate(filled):
+        if not shape.is_full(cut[n], comma):
+            continue
+        begins.append(n)
+        following = filled[place + 1 : place + _ENOUGH]
+        if all(shape.is_full(cut[m], comma) or shape.is_flawed(cut[m], comma) for m in following):
             break
-    while first and like[first - 1] and not _numbers_columns(cut[:first]):
+    first = begins[-1] if begins else 0
+    while first and shape.is_flawed(cut[first - 1], comma) and not _numbers_columns(cut[:first]):
         first -= 1
     return first
 
@@ -270,7 +277,7 @@ def _end(
         return len(text), ()
     line = text[begin:last].decode("utf-8", "replace").rstrip("\r")
     fields = form.fields(line)
-    whole = [row for row in head if shape.is_full(row, bool(form.comma))][: -1 or None]
+    whole = [row for row in head[-_COMPARED:] if shape.is_full(row, bool(form.comma))][:-1]
     if not _is_cut(fields, whole, shape, form, closed=last < len(text)):
         return len(text), ()
     number = text.count(b"\n", 0, begin) + 1

@@ -76,13 +76,13 @@ def as_utf8(data: bytes) -> bytes:
             data = data[2:].decode(encoding, "replace").encode()
     data = data.removeprefix(b"\xef\xbb\xbf")
     head = data[:_HEAD]
-    if not head.isascii():
+    if b"\0" in head and (encoding := _of_two_bytes(head)):
+        data = data.decode(encoding, "replace").encode()
+    elif not head.isascii():
         try:
             codecs.getincrementaldecoder("utf-8")().decode(head)
         except UnicodeDecodeError:
             data = data.decode("cp1252", "replace").encode()
-    elif encoding := _of_two_bytes(head):
-        data = data.decode(encoding, "replace").encode()
     return data if b"\n" in data else data.replace(b"\r", b"\n")
 
 
