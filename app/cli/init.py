@@ -19,6 +19,7 @@ from ident.words.number import count
 if TYPE_CHECKING:
     from ident.drafts.answers import Answer, Answers, FileAnswers
     from ident.drafts.draft import Draft, Missing
+    from ident.drafts.raw import RawFile
     from ident.drafts.text import Gathered
 
 _SHOWN = 5  # names of files in a remedy
@@ -66,13 +67,14 @@ def init(
     """
     from ident.drafts.answers import NONE, Answers
     from ident.drafts.draft import Draft
-    from ident.drafts.raw import read_raw
     from ident.drafts.text import gathered
 
     if out is not None:
         _free(out)
     contents = [_content(file) for file in files]
-    found = [read_raw(content, file.name) for file, content in zip(files, contents, strict=True)]
+    of_files = [(one, content) for file, content in zip(files, contents, strict=True)
+                for one in _parts(content, file, files)]  # fmt: skip
+    found, contents = [one for one, _ in of_files], [content for _, content in of_files]
     given = {"gain": gain, "hold": hold}
     names = [file.name for file in files]
     of_all, of_some = _said(names, channel or [], time or [], rate or [])
@@ -124,7 +126,21 @@ def _made(draft: Draft, files: Gathered, out: Path) -> None:
     for finding in findings:
         print(f"{finding.severity}: {f'run {finding.run}: ' if finding.run else ''}{finding.text} [{finding.code}]")
     print(summary([finding.severity for finding in findings]))
-    print(f"wrote {out / 'matrix.yaml'} and {count(len(draft.files), 'file')}; next: servoident fit {out}")
+    print(f"wrote {out / 'matrix.yaml'} and {count(len(files.files) - 1, 'file')}; next: servoident fit {out}")
+
+
+def _parts(content: bytes, file: Path, files: list[Path]) -> tuple[RawFile, ...]:
+    """The runs of a file. Raises Unusable; for one signal alone with the command that joins the files given."""
+    from ident.drafts.raw import read_parts
+
+    try:
+        return read_parts(content, file.name)
+    except Unusable as refused:
+        if refused.code != "one-signal" or len(files) == 1:
+            raise
+        named = " ".join(map(str, files[:_SHOWN])) + (" …" if len(files) > _SHOWN else "")
+        remedy = f"where these are one run, join them: servoident join {named} --out run.csv"
+        raise Unusable(refused.code, refused.what, refused.where, remedy) from None
 
 
 def _content(file: Path) -> bytes:
@@ -175,7 +191,7 @@ def _matching(names: list[str], pattern: str) -> list[str]:
 
 def _answer(text: str) -> Answer:
     """`COLUMN:UNIT`, either of them left out; a column of digits is its number."""
-    from ident.drafts.draft import Answer
+    from ident.drafts.answers import Answer
 
     column, colon, unit = (part.strip() for part in text.rpartition(":"))
     if not colon:

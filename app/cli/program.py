@@ -26,6 +26,7 @@ from app.cli.fit import fit
 from app.cli.hybrid import hybrid
 from app.cli.init import init
 from app.cli.interrupts import heard
+from app.cli.join import join
 from app.cli.keep import keep
 from app.cli.limits import limits
 from app.cli.migrate import migrate
@@ -57,8 +58,8 @@ from app.cli.withdraw import withdraw
 from app.cli.worker import worker
 from app.cli.workers import workers
 
-LOCAL = (simulate, init, check, fit, compare, profile, diagnose, next_, bench, write_report, track, control, hybrid,
-         whatif, export)  # fmt: skip
+LOCAL = (simulate, init, join, check, fit, compare, profile, diagnose, next_, bench, write_report, track, control,
+         hybrid, whatif, export)  # fmt: skip
 SERVICE = (serve, worker, demo, migrate, backup, restore, tidy, retention, regress, audit)
 CLIENT = (upload, approve, withdraw, query, statistics, limits, verdict, revise, workers)
 

@@ -19,7 +19,7 @@ from app.storage import Storage
 from ident.checks.check import check
 from ident.drafts.answers import Answer, Answers, FileAnswers
 from ident.drafts.draft import Draft
-from ident.drafts.raw import RawFile, read_raw
+from ident.drafts.raw import RawFile, read_parts
 from ident.drafts.text import as_yaml, run_files
 from ident.errors import Unusable
 from ident.readers import read_source
@@ -144,7 +144,11 @@ def raw_files(context: Context, draft: str) -> tuple[RawFile, ...]:
     def read() -> tuple[RawFile, ...]:
         sizes = [store.path(sha256).stat().st_size for sha256 in names.values()]
         check_size(sum(sizes), LIMITS.total, "all files together", "upload")
-        return tuple(read_raw(read_regular(store.path(sha), name, LIMITS.file), name) for name, sha in names.items())
+        return tuple(
+            one
+            for name, sha in names.items()
+            for one in read_parts(read_regular(store.path(sha), name, LIMITS.file), name)
+        )
 
     return _read.get((str(context.storage.folder), draft), read)
 

@@ -191,7 +191,7 @@ class Draft:
         output = self.answers.output or next(one for one in OUTPUTS if one in known.channels)
         run: dict[str, Any] = {"id": name, "file": f"runs/{file_name(file)}"}
         if known.time.column != "":
-            run["time"] = {"column": known.time.column, "unit": known.time.unit}
+            run["time"] = {"column": file.stated(known.time.column), "unit": known.time.unit}
         else:
             run["sample_rate"] = known.rate
         run |= {"skip_rows": file.skip_rows} if file.skip_rows else {}
@@ -202,7 +202,7 @@ class Draft:
             **self.answers.common,
         }
         channels = sorted(known.channels.items(), key=lambda item: CHANNELS.index(item[0]))
-        return run | {"channels": {name: {"column": a.column, "unit": a.unit} for name, a in channels}}
+        return run | {"channels": {name: {"column": file.stated(a.column), "unit": a.unit} for name, a in channels}}
 
 
 def file_name(file: RawFile) -> str:
@@ -276,7 +276,7 @@ def run_ids(files: Sequence[RawFile]) -> list[str]:
     ids: list[str] = []
     for file in files:
         name = file_name(file)
-        stem = name.removesuffix(PACKED).rpartition(".")[0].lstrip(".") or "run"
+        stem = file.part or name.removesuffix(PACKED).rpartition(".")[0].lstrip(".") or "run"
         plain = "".join(sign if sign.isalnum() or sign in "-_ " else "-" for sign in stem)[:80]
         number = sum(one == plain or one.startswith(f"{plain}-") for one in ids)
         ids.append(plain if plain not in ids else f"{plain}-{number + 1}")

@@ -19,12 +19,14 @@ from ident.readers.controldesk import is_controldesk
 from ident.readers.gzipped import unpacked
 from ident.readers.layout import Form, line_start, recognise
 from ident.readers.limits import LIMITS, Limits
-from ident.readers.table import NUMERIC, Table
+from ident.readers.table import MINUS, NUMERIC, Table
 from ident.readers.text import as_utf8
 from ident.units.quantity import unit_scale
 
-__all__ = ["Column", "Rate", "RawFile", "bare", "is_unit", "read_raw"]
+__all__ = ["Column", "Rate", "RawFile", "bare", "is_unit", "read_parts", "read_raw"]
 
+_TIME_AND_SIGNAL = 2  # columns of numbers of a file that holds one signal, at most
+_OF_TABLES = (".json",)
 _LETTER_M = "m"  # behind a name it may be metres, or say that it was measured
 _SAMPLING = r"^\W*(?:sampl|abtast|[ée]chantillon|campion)\w*[\s_]*"
 _NUMBER = r"\W*?\s*([0-9][0-9.,eE+-]*)\s*"
@@ -56,6 +58,7 @@ class RawFile:
     """A file by its name, read: `skip_rows` lines stand above the line of names of a text, `preamble` is their text.
 
     `form` is how a text is cut; `period` what a row of the heading such as Interval says: a number and its unit.
+    `part` is the run of a file that holds several; a column is called by its number in it, or as the file calls it.
     """
 
     name: str
@@ -64,6 +67,7 @@ class RawFile:
     preamble: str
     form: Form | None = None
     period: tuple[float, str] | None = None
+    part: str = ""
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:
@@ -77,6 +81,12 @@ class RawFile:
             return [_is_finite(samples) for samples in self.table.load(range(len(self.table.names)))]
         except Unusable:
             return [self._holds_numbers(number) for number in range(len(self.table.names))]
+
+    def stated(self, column: str | int) -> str | int:
+        """A column as matrix.yaml names it: by the name in the whole file where this is a part of it."""
+        if not self.part or column == "":
+            return column
+        return MINUS.join(self.table.names[number] for number in self.table.numbers(column, self.name))
 
     def samples(self, column: str | int) -> Samples:
         """The samples of a column, or of a difference of two, as they stand in the file. Raises Unusable."""
@@ -188,7 +198,18 @@ def _seconds(value: float, unit: str) -> float:
 
 
 def read_raw(data: bytes, name: str, limits: Limits = LIMITS) -> RawFile:
-    """A raw file. Raises Unusable: ``no-columns`` and what the readers raise."""
+    """A raw file that may be a run. Raises Unusable: ``one-signal``, and what :func:`read_whole` raises."""
+    read = read_whole(data, name, limits)
+    signals = [one for one in read.columns if not is_time(one.name) and one.number not in read.table.stamps]
+    if len(signals) == 1 and len(read.table.names) - len(read.left_out) <= _TIME_AND_SIGNAL:
+        why = "; ".join(("it holds one signal, and a run is one file with all of its signals", *read.left_out))
+        remedy = f"join the files of a run: servoident join {name} … --out run.csv"
+        raise Unusable("one-signal", why, name, remedy)
+    return read
+
+
+def read_whole(data: bytes, name: str, limits: Limits = LIMITS) -> RawFile:
+    """A raw file of one signal or more. Raises Unusable: ``no-columns`` and what the readers raise."""
     ending, skip, preamble, form, period = ending_of(name), 0, "", None, None
     if ending.removesuffix(PACKED) in TEXT:
         text = as_utf8(unpacked(data, name, limits) if ending.endswith(PACKED) else data)
@@ -200,3 +221,27 @@ def read_raw(data: bytes, name: str, limits: Limits = LIMITS) -> RawFile:
     if not read.columns:
         raise Unusable("no-columns", "no column holds numbers throughout", name, "look into the file")
     return read
+
+
+def read_parts(data: bytes, name: str, limits: Limits = LIMITS) -> tuple[RawFile, ...]:
+    """The runs of a raw file, one of each table where it holds several of the same columns, as logs of a drive's
+    characterisation in JSON do. Raises Unusable as :func:`read_raw`."""
+    whole = read_raw(data, name, limits)
+    tables: dict[str, list[int]] = {}
+    for number, column in enumerate(whole.table.names):
+        table, apart, place = column.rpartition("/")
+        if not apart or not place.isdigit():
+            return (whole,)
+        tables.setdefault(table, []).append(number)
+    if ending_of(name) not in _OF_TABLES or len(tables) < 2 or len({len(numbers) for numbers in tables.values()}) > 1:
+        return (whole,)
+    return tuple(RawFile(name, _part(whole.table, numbers), 0, "", part=table) for table, numbers in tables.items())
+
+
+def _part(table: Table, numbers: Sequence[int]) -> Table:
+    """The columns of these numbers as a table of their own."""
+    return Table(
+        tuple(table.names[number] for number in numbers),
+        lambda wanted: table.load([numbers[number] for number in wanted]),
+        table.notices,
+    )

@@ -75,7 +75,8 @@ class Gathered:
 def gathered(draft: Draft, contents: Sequence[bytes]) -> Gathered:
     """matrix.yaml and the files as they came, below runs/. Raises Unusable where two have one name."""
     files = run_files({PurePosixPath(file.name).name: data for file, data in zip(draft.files, contents, strict=True)})
-    if len(files) < len(draft.files):
+    whole = [file.name for file in draft.files if not file.part]
+    if len(files) < len(whole) + len({file.name for file in draft.files if file.part}):
         raise Unusable("duplicate-file", "two files have one name", "files", "give each its own name")
     return Gathered({DESCRIPTION: as_yaml(draft).encode(), **files})
 

@@ -1,4 +1,4 @@
-"""JSON: a list of records, a record a line, or an object of columns."""
+"""JSON: a list of records, a record a line, an object of columns, or an object of tables, each a list of rows."""
 
 from __future__ import annotations
 
@@ -15,11 +15,16 @@ def columns(path: str) -> Iterator[tuple[str, str, Any]]:
         held = json.loads(text)
     except json.JSONDecodeError:
         held = [json.loads(line) for line in text.splitlines() if line.strip()]
-    if isinstance(held, dict) and not all(isinstance(values, list) for values in held.values()):
-        tables = [value for value in held.values() if isinstance(value, list)]
-        if len(tables) != 1:
+    if isinstance(held, dict):
+        tables = {name: value for name, value in held.items() if isinstance(value, list)}
+        if tables and all(map(is_table, tables.values())):
+            yield from of_tables(tables)
+            return
+    if isinstance(held, dict) and len(tables) < len(held):
+        lists = list(tables.values())
+        if len(lists) != 1:
             raise ValueError("write a list of records, or an object of columns")
-        (held,) = tables
+        (held,) = lists
     if isinstance(held, dict):
         for name, values in held.items():
             yield name, "", plain(values)
@@ -32,6 +37,22 @@ def columns(path: str) -> Iterator[tuple[str, str, Any]]:
             raise ValueError(f"record {number} has other entries than the first")
     for name in names:
         yield name, "", plain([record[name] for record in held])
+
+
+def is_table(rows: list[Any]) -> bool:
+    """Whether a list holds rows, of as many numbers each."""
+    first = rows[0] if rows else None
+    return isinstance(first, list) and len(first) > 1 and all(
+        isinstance(row, list) and len(row) == len(first) and all(type(value) in (int, float) for value in row)
+        for row in rows
+    )  # fmt: skip
+
+
+def of_tables(tables: dict[str, list[list[Any]]]) -> Iterator[tuple[str, str, Any]]:
+    """The columns of each table as ``table/number``."""
+    for name, rows in tables.items():
+        for number, values in enumerate(zip(*rows, strict=True)):
+            yield f"{name}/{number}", "", plain(list(values))
 
 
 def plain(values: list[Any]) -> list[Any]:

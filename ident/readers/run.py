@@ -10,7 +10,7 @@ from ident.errors import Unusable
 from ident.matrix import Run, Samples
 from ident.readers.clock import evened, read_clock
 from ident.readers.past import with_past
-from ident.readers.run_description import RunDescription
+from ident.readers.run_description import RunDescription, TimeColumn
 from ident.readers.table import Array, Table, numeric
 from ident.units.quantity import Scale, shown
 
@@ -42,6 +42,7 @@ def read_run(described: RunDescription, table: Table) -> Run:
             check_moves(channels[name], places[name])
     if described.time is None:
         return with_past(replace(labels, channels=channels), raw, described, LARGEST)
+    _check_stamps(table, described.time, places["time"])
     scale = Scale(described.time.factor, 0.0, "s")
     time = in_si(part(raw["time"], described, places["time"]), scale, places["time"])
     clock = read_clock(time, places["time"])
@@ -55,6 +56,13 @@ def read_run(described: RunDescription, table: Table) -> Run:
         labels, channels=channels, sample_rate=rate, clock_jitter=clock.jitter, gaps=clock.gaps, evened=not even
     )
     return with_past(run, raw, described, LARGEST)
+
+
+def _check_stamps(table: Table, time: TimeColumn, where: str) -> None:
+    """Raises Unusable ``time-stamps`` for time stamps, which are read in seconds, that are stated in another unit."""
+    if table.stamps.intersection(table.numbers(time.column, where)) and time.factor != 1.0:
+        what = f"{shown(time.column)!r} holds time stamps, which are read in seconds since the first one"
+        raise Unusable("time-stamps", what, where, "give it the unit s")
 
 
 def difference(columns: list[Array], where: str) -> Array:
