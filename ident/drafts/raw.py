@@ -19,13 +19,13 @@ from ident.readers.controldesk import is_controldesk
 from ident.readers.gzipped import unpacked
 from ident.readers.layout import Form, line_start, recognise
 from ident.readers.limits import LIMITS, Limits
+from ident.readers.suggestion import unit_in
 from ident.readers.table import MINUS, NUMERIC, Table
 from ident.readers.text import as_utf8
 from ident.units.quantity import unit_scale
 
 __all__ = ["Column", "Rate", "RawFile", "bare", "is_unit", "read_parts", "read_raw"]
 
-_TIME_AND_SIGNAL = 2  # columns of numbers of a file that holds one signal, at most
 _OF_TABLES = (".json",)
 _LETTER_M = "m"  # behind a name it may be metres, or say that it was measured
 _SAMPLING = r"^\W*(?:sampl|abtast|[ée]chantillon|campion)\w*[\s_]*"
@@ -115,10 +115,8 @@ class RawFile:
 
     def _unit(self, number: int) -> str:
         """The unit in the row of units, else in brackets behind the name, else at its end; nothing that is no unit."""
-        stated = self.table.units[number] if number < len(self.table.units) else ""
-        name = self.table.names[number]
-        found = next((unit for unit in (stated, bracketed(name)[1]) if is_unit(unit)), "")
-        return found or self._suffix(number) or (self._unit_of_period(number) if is_time(name) else "")
+        found = unit_in(self.table, number) if self._has_stated(number) else self._suffix(number)
+        return found or (self._unit_of_period(number) if is_time(self.table.names[number]) else "")
 
     def _suffix(self, number: int) -> str:
         """The unit that ends a name, as in Force_kN; x_m is in metres where another name ends with a unit, too."""
@@ -201,10 +199,10 @@ def read_raw(data: bytes, name: str, limits: Limits = LIMITS) -> RawFile:
     """A raw file that may be a run. Raises Unusable: ``one-signal``, and what :func:`read_whole` raises."""
     read = read_whole(data, name, limits)
     signals = [one for one in read.columns if not is_time(one.name) and one.number not in read.table.stamps]
-    if len(signals) == 1 and len(read.table.names) - len(read.left_out) <= _TIME_AND_SIGNAL:
-        why = "; ".join(("it holds one signal, and a run is one file with all of its signals", *read.left_out))
+    if len(signals) == 1 and not read.left_out:
+        what = "it holds one signal, and a run is one file with all of its signals"
         remedy = f"join the files of a run: servoident join {name} … --out run.csv"
-        raise Unusable("one-signal", why, name, remedy)
+        raise Unusable("one-signal", what, name, remedy)
     return read
 
 

@@ -148,6 +148,8 @@ def _fits(stem: str, unit: str) -> bool:
     """Whether what a name says may be measured in the unit that seems to end it."""
     if _is_time(stem):
         return measures_time(unit)
+    if any(said(stem) in pair for pair in PAIRS):
+        return True
     if channel := _channel_of(stem):
         return channel in MEASURED or may_measure(channel, unit)
     if "/" in unit:

@@ -296,7 +296,8 @@ def _is_cut(fields: Sequence[str], rows: Sequence[Sequence[str]], shape: _Shape,
     last = count - 1
     if last not in shape.numbers or closed:
         return False
-    if not is_numeral(fields[last], bool(form.comma)):
+    signs = (False, True) if form.comma is None and form.delimiter != "," else (bool(form.comma),)
+    if not any(is_numeral(fields[last], comma) for comma in signs):
         return begun
     digits = {decimals(row[last]) for row in rows}
     return len(digits) == 1 and 0 <= decimals(fields[last]) < digits.pop() and not re.search("[eE]", rows[0][last])

@@ -19,6 +19,7 @@ from ident.matrix import Matrix
 from ident.readers.description import describe_actuator
 from ident.readers.run import read_run
 from ident.readers.run_description import RunDescription, describe_run
+from ident.readers.suggestion import suggestion
 from ident.readers.table import Array, Table
 from ident.units.quantity import shown
 from ident.words.stated import Stated
@@ -55,7 +56,9 @@ def of_file(
         some = {"units": {"command": "1", "displacement": "1"}, "skip_rows": stated.get("skip_rows", 0)}
         table = read(described({**some, "sample_rate": "1 Hz"}, path.name, path.stem))
         what = "a file without a matrix.yaml does not state its units"
-        raise Unusable("missing-unit", what, path.name, f"{_EXAMPLE}, and the clock; {table.listed()}")
+        found = suggestion(table)
+        asked = f"state them, as {found}" if found else f"{_EXAMPLE}, and the clock"
+        raise Unusable("missing-unit", what, path.name, f"{asked}; {table.listed()}")
     run = described(stated, path.name, path.stem)
     return _matrix(run, read(run), stated, parts)
 

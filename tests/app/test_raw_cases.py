@@ -114,11 +114,14 @@ def test_a_draft_over_http_reads_it_or_asks_for_exactly_what_the_file_does_not_s
 
 
 def test_read_matrix_reads_it_under_the_names_of_its_columns(case):
-    """Without a word of the units it says what columns there are."""
+    """Without a word of the units it says which columns they seem to be, with the units that the file states."""
     time, command, displacement = case.columns
     with pytest.raises(Unusable, match="does not state its units") as refused:
         read_matrix(FOLDER / case.name)
-    assert all(name in refused.value.remedy for name in case.columns)
+    unit = "UNIT" if case.asked else "mm"
+    assert f"units={dict.fromkeys(('command', 'displacement'), unit)}" in refused.value.remedy
+    assert f"columns={ {'command': command, 'displacement': displacement} }" in refused.value.remedy
+    assert f"'column': {time!r}" in refused.value.remedy
     matrix = read_matrix(
         FOLDER / case.name, units={"command": case.units[1], "displacement": case.units[2]},
         columns={"command": command, "displacement": displacement}, time={"column": time, "unit": case.units[0]},

@@ -1,0 +1,95 @@
+"""What names of columns say: channels in four languages, times, units; one that could be two things says none."""
+
+from __future__ import annotations
+
+import pytest
+
+from ident.drafts.draft import Answers, Draft
+from ident.drafts.raw import read_raw
+from ident.readers.column_names import MEASURED, PAIRS, TIMES, WORDS, channel_of, is_time, said, suffix
+
+CHANNELS = {
+    "x_soll": "command", "Sollwert": "command", "xSoll": "command", "Lagesollwert [mm]": "command",
+    "Führungsgröße": "command", "consigne": "command", "Riferimento": "command", "PositionCommand": "command",
+    "x_ref": "command", "setpoint_mm": "command", "Istwert": "displacement", "x_ist": "displacement",
+    "Weg_mm": "displacement", "Déplacement (mm)": "displacement", "mesure": "displacement", "posizione": "displacement",
+    "Position feedback": "displacement", "ActualPosition": "displacement", "Istwert [kN]": "force",
+    "mesure [mm/s]": "velocity", "Force_kN": "force", "Kraft": "force", "Drehzahl": "velocity", "vitesse": "velocity",
+    "Druckdifferenz": "load_pressure", "p_A": "pressure_a", "yout [m]": "displacement", "y_m": "displacement",
+    "Ventilstrom": "current", "Öltemperatur": "temperature",
+}  # fmt: skip
+NONE = (
+    "u",
+    "y",
+    "x",
+    "r",
+    "output",
+    "yout",
+    "Istwert [bar]",
+    "AI7",
+    "Status",
+    "Weg der Last",
+    "t_command",
+    "p_s",
+    "in",
+)
+UNITS = {
+    "Time_ms": "ms", "t_s": "s", "Force_kN": "kN", "Weg_mm": "mm", "speed_mm_s": "mm/s", "v_mm_per_s": "mm/s",
+    "speed_rpm": "rpm", "Time ms": "ms", "Flow_l_min": "l/min", "temperature_degC": "degC", "force_N": "N",
+    "x_m": "", "u_V": "V", "p_A": "", "pressure_A": "", "p_s": "", "F_N": "", "x_soll": "", "pos_kN": "", "time_mm": "",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "channel"), CHANNELS.items())
+def test_the_words_of_benches_are_channels(name, channel):
+    assert channel_of(name) == channel
+    assert not is_time(name)
+
+
+@pytest.mark.parametrize("name", NONE)
+def test_a_name_that_could_be_another_thing_is_no_channel(name):
+    assert channel_of(name) == ""
+
+
+@pytest.mark.parametrize("name", ["Time_ms", "t_s", "Zeit [s]", "temps", "tempo", "tout", "X_Value", "Elapsed Time"])
+def test_a_time_is_known_in_any_of_these_languages(name):
+    assert is_time(name)
+    assert channel_of(name) == ""
+
+
+@pytest.mark.parametrize(("name", "unit"), UNITS.items())
+def test_a_unit_ends_a_name_where_what_is_named_may_be_measured_in_it(name, unit):
+    assert suffix(name)[1] == unit
+
+
+def test_no_word_means_two_things_and_each_is_written_as_it_is_looked_for():
+    words = [word for of_channel in WORDS.values() for word in of_channel]
+    everything = [*words, *MEASURED, *TIMES, *(name for pair in PAIRS for name in pair[:1])]
+    assert len(set(everything)) == len(everything)
+    assert all(said(word) == word for word in everything)
+
+
+def known(*names: str):
+    rows = [
+        ",".join(str(round(((n + 1) * (k + 3)) % 7 / 1000 * k + n, 6)) for k in range(len(names))) for n in range(20)
+    ]
+    file = read_raw("\n".join([",".join(names), *rows, ""]).encode(), "run.csv")
+    return file, Draft([file], Answers())
+
+
+def test_the_input_of_a_model_is_the_command_where_its_output_is_there():
+    """The names of MATLAB; u alone may be a displacement."""
+    file, draft = known("u_V", "y_mm")
+    assert {name: (a.column, a.unit) for name, a in draft.known(file).channels.items()} == {
+        "command": ("u_V", "V"), "displacement": ("y_mm", "mm")
+    }  # fmt: skip
+    file, draft = known("t", "u", "x")
+    assert not draft.known(file).channels
+
+
+def test_metres_end_a_name_where_another_name_ends_with_a_unit_and_it_is_said():
+    """Alone, pos_m may be the position that was measured."""
+    for names, unit in ((("time_s", "cmd_V", "pos_m"), "m"), (("time", "cmd", "pos_m"), "")):
+        file, draft = known(*names)
+        assert file.columns[2].unit == unit
+        assert any("'pos_m' is taken in m, by its name" in doubt for doubt in draft.doubts) == bool(unit)

@@ -1,0 +1,143 @@
+"""How a text table is laid out is found from its rows; what cannot be told is refused in one line, or asked."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ident.drafts.draft import Answers, Draft
+from ident.drafts.raw import read_raw
+from ident.errors import Unusable
+from ident.readers.layout import recognise
+from ident.readers.limits import LIMITS
+from ident.readers.text import read_text
+from ident.readers.time_stamp import seconds
+
+RNG = np.random.default_rng(5)
+ROWS = RNG.normal(scale=30, size=(40, 2))
+
+
+def lines(form: str = "{:.4f}", delimiter: str = ",", rows: np.ndarray = ROWS) -> list[str]:
+    return [delimiter.join(form.format(value) for value in row) for row in rows]
+
+
+def read(text: str | bytes, skip_rows: int = 0):
+    return read_text(text if isinstance(text, bytes) else text.encode(), "run.csv", LIMITS, skip_rows)
+
+
+def test_a_row_of_numbers_above_and_a_remark_sign_before_the_names_are_no_row_and_no_name():
+    """numpy writes the names behind #; both spellings name the column."""
+    table = read("\n".join(["3,4", "", "# u [V], x [mm]", *lines()]))
+    assert table.names == ("u [V]", "x [mm]")
+    assert table.number("# u [V]", "") == 0
+    np.testing.assert_allclose(table.load([0, 1]), ROWS.T, atol=1e-4)
+
+
+def test_commas_in_quotes_are_decimal_signs_and_those_between_them_separate():
+    text = ["u,x", *(",".join(f'"{value:.4f}"'.replace(".", ",") for value in row) for row in ROWS)]
+    np.testing.assert_allclose(read("\n".join(text)).load([0, 1]), ROWS.T, atol=1e-4)
+
+
+@pytest.mark.parametrize("head", ["", "u,x\n"])
+def test_a_comma_that_separates_and_is_the_decimal_sign_is_refused(head):
+    text = head + "\n".join(",".join(f"{value:.4f}".replace(".", ",") for value in row) for row in ROWS)
+    with pytest.raises(Unusable, match="export it with semicolons") as refused:
+        read(text)
+    assert refused.value.code == "comma-twice"
+
+
+def test_whole_numbers_at_first_do_not_hide_a_decimal_comma_further_down():
+    """Beyond the head, too: the sign is looked for in all rows."""
+    for count in (20, 2000):
+        text = ["u;x", *(f"{n};{n % 7}" for n in range(count)), *(f"{n};{n % 7},25" for n in range(50))]
+        (x,) = read("\n".join(text)).load([1])
+        assert x[-1] == 49 % 7 + 0.25
+        assert len(x) == count + 50
+
+
+def test_thousands_parted_by_points_among_decimal_commas_are_refused_with_their_line():
+    text = ["u;x", *lines("{:.4f}", ";")]
+    text = [line.replace(".", ",") for line in text]
+    text[7] = "1.234;0,5"
+    with pytest.raises(Unusable, match=r"line 8 holds '1\.234'.*thousands"):
+        read("\n".join(text)).load([0])
+
+
+def test_names_that_are_fewer_than_the_columns_go_by_number_and_it_is_said():
+    """A comma in a name, or a column of row numbers without one: which name is which column's cannot be told."""
+    rows = "\n".join(f"{n},{line}" for n, line in enumerate(lines()))
+    table = read("u,x\n" + rows)
+    assert table.names == ("0", "1", "2")
+    assert "2 names for 3 columns" in table.notices[0]
+    with pytest.raises(Unusable, match="no column 'u'"):
+        table.number("u", "")
+    assert read("Force, kN,Travel, mm\n" + "\n".join(lines())).names == ("0", "1")
+
+
+@pytest.mark.parametrize("bad", ["", "#N/A"])
+def test_a_blank_cell_is_named_by_its_line_wherever_the_column_is_asked_about(bad):
+    text = ["time [s],command [V],position [mm]", *(f"{n / 100},{n % 9},{n % 5}" for n in range(40))]
+    text[11] = f"0.1,{bad},0"
+    told = "line 12 has an empty cell" if not bad else "line 12 holds '#N/A'"
+    with pytest.raises(Unusable, match=told):
+        read("\n".join(text)).load([1])
+    draft = Draft([read_raw("\n".join(text).encode(), "run.csv")], Answers("A"))
+    (missing,) = draft.missing
+    assert missing.key == "channel command"
+    assert told in missing.question
+
+
+@pytest.mark.parametrize(
+    ("end", "rows"), [("5.00", 39), ("5.0000,1", 39), ("5.0000,1.", 39), ("5.0000,1.2345", 40), ("5.0000,1.0\n", 40)]
+)
+def test_a_last_row_that_ends_within_a_number_is_left_out_and_told(end, rows):
+    """Where every other row has as many digits and the file does not end with its line."""
+    text = "\n".join(["u,x", *lines()[:39], end])
+    table = read(text)
+    assert len(table.load([0])[0]) == rows
+    assert any("line 41, the last one, is cut off" in notice for notice in table.notices) == (rows == 39)
+
+
+def test_the_line_of_names_that_matrix_yaml_states_is_the_one_that_is_found():
+    """So that what was described is what is read."""
+    above = ["Bench 4;;", "Date;12.03.2026;", ""]
+    text = "\n".join([*above, "time;command;position", "s;V;mm", *(f"{n};{n % 5};{n % 3}" for n in range(30))]).encode()
+    found = recognise(text, "run.csv")
+    assert (found.skip_rows, found.heading.units) == (3, ("s", "V", "mm"))
+    stated = recognise(text, "run.csv", 3)
+    assert (stated.heading.names, stated.heading.units, stated.below) == (
+        found.heading.names, found.heading.units, found.below
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("stamps", "step"),
+    [
+        ([f"2026-03-12T09:30:00.{n:03d}Z" for n in range(30)], 0.001),
+        (["2026-03-12 23:59:59.900", *(f"2026-03-13 00:00:0{n // 10}.{n % 10}00" for n in range(29))], 0.1),
+        ([f"12.03.2026 09:30:{n:02d}" for n in range(30)], 1.0),
+        ([f"09:30:{n:02d},500" for n in range(30)], 1.0),
+        ([f"3/12/2026 09:30:{n:02d} PM" for n in range(30)], 1.0),
+    ],
+)  # fmt: skip
+def test_time_stamps_are_seconds_since_the_first(stamps, step):
+    np.testing.assert_allclose(seconds(stamps, 2, "run.csv"), step * np.arange(30), atol=1e-9)
+    table = read("\n".join(["time;u", *(f"{stamp};{n % 7}" for n, stamp in enumerate(stamps))]))
+    np.testing.assert_allclose(table.load([0])[0], step * np.arange(30), atol=1e-9)
+    assert table.units == ("s", "")
+
+
+def test_days_that_cannot_be_told_from_months_and_zones_that_change_are_refused():
+    for stamps in (
+        ["3/12/2026 23:59:59", "4/12/2026 00:00:00"],
+        ["09:30:00Z", "09:30:01+01:00"],
+        ["09:30:00", "later"],
+    ):
+        with pytest.raises(Unusable):
+            seconds(stamps, 2, "run.csv")
+
+
+def test_windows_1252_and_two_bytes_a_sign_without_a_mark_keep_the_units():
+    text = "\n".join(["Zeit [s];Weg [µm]", *(f"{n};{n % 7}" for n in range(20))])
+    for encoding in ("cp1252", "utf-8", "utf-16", "utf-16-le", "utf-16-be"):
+        assert read(text.encode(encoding)).names == ("Zeit [s]", "Weg [µm]")
