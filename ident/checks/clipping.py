@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.beginning import ROUNDING
 from ident.checks.finding import Finding
 from ident.matrix import Run, Samples
 
@@ -18,6 +19,7 @@ NEAR = 2e-3  # of the range; in noise the fifth highest peak lies ten times deep
 BETWEEN = 0.05  # of the range
 PEAKS = 5
 AT_REST = 0.4  # of the samples: a signal of levels, not a cut one
+FULL = 1.0  # of a command that is a share of full scale: a lever at its stop, a duty of 100 %
 LEVELS = ("static", "speed-levels", "speed-continuous")
 
 
@@ -31,13 +33,18 @@ def clipping(run: Run) -> Iterator[Finding]:
             continue
         for side, flipped in (("highest", signal), ("lowest", -signal)):
             count = peaks_at_the_top(flipped) if run.kind == "blwn" else plateaus_at_the_top(flipped)
-            if count:
-                level = signal.max() if side == "highest" else signal.min()
+            level = float(signal.max() if side == "highest" else signal.min())
+            if count and not (name == "command" and _full_scale(level, run.units.get(name))):
                 text = (
                     f"{name} of run {run.id} seems clipped: {count} peaks end at its {side} value {level:.4g} "
                     f"{run.units.get(name, '')}; look at the range of the sensor or amplifier and repeat the run"
                 )
                 yield Finding(run.id, "doubt", "clipping", text)
+
+
+def _full_scale(level: float, unit: str | None) -> bool:
+    """Whether a command ends where it has to: nobody can ask for more than all, and nothing is cut off."""
+    return unit == "1" and abs(abs(level) - FULL) <= ROUNDING * FULL
 
 
 def peaks_at_the_top(signal: Samples) -> int:

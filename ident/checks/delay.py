@@ -62,7 +62,7 @@ def delays(measured: list[tuple[Run, Response | None]]) -> Iterator[Finding]:
                 "look for a shift between the channels of this run (rows, other recorder) or a wrong label"
             )
             yield Finding(run.id, "doubt", "skew", text)
-        elif estimate.told and len(told) == 1 and abs(estimate.samples) >= LEAST:
+        elif estimate.told and len(told) == 1 and estimate.apart(0.0, LEAST):
             yield alone(run, estimate.samples)
         elif not estimate.told and estimate.longest <= -LEAST:
             yield alone(run, estimate.longest)
