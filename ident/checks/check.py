@@ -22,6 +22,7 @@ from ident.checks.scale import scale
 from ident.checks.statements import statements
 from ident.checks.summary import RunSummary, Summary, describe
 from ident.checks.timing import timing
+from ident.checks.unit_factor import unit_factor
 from ident.matrix import Actuator, Matrix, Run
 
 __all__ = ["Finding", "Findings", "RunSummary", "Summary", "check", "describe"]
@@ -33,7 +34,8 @@ def check(matrix: Matrix) -> Findings:
     """Everything that a person should know about the data: faults first, then doubts, then notes."""
     measured = [(run, respond(run)) for run in matrix.runs]
     found = [finding for run, response in measured for finding in one_run(run, response, matrix.actuator)]
-    found += [*delays(measured), *scale(measured), *repeats(matrix), *statements(matrix)]
+    found += [*delays(measured), *(scaled := list(scale(measured))), *repeats(matrix), *statements(matrix)]
+    found += unit_factor(measured, [one.run for one in scaled])
     return Findings(sorted(_once(found, matrix), key=lambda finding: ORDER.index(finding.severity)))
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.chain.chain import integrates
+from ident.checks.unit_factor import unit_causes
 from ident.fit.ends import SETTLED, parted
 from ident.fit.fitness import UNSTABLE, Fitness
 from ident.fit.multistart import Optimum
@@ -288,6 +289,7 @@ def _hardly_explained(objective: Fitness, error: float) -> Iterator[str]:
         return
     preset, runs = objective.preset, objective.runs
     causes = ["a channel with the wrong sign, or of another run", f"another structure than {preset.name} (--model)"]
+    causes += unit_causes(objective.matrix.runs)
     if integrates(preset.chain, runs, objective.matrix.actuator):
         causes.insert(
             0, "a command that is not zero where the machine stands, which the machine integrates (null_bias)"

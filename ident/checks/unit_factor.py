@@ -1,0 +1,326 @@
+"""A run whose clock or amplitude is off that of its sisters by the factor of a unit: milliseconds called seconds.
+
+A wrong unit leaves every sample as it is. So a run whose time has the wrong unit answers its command, sample by sample,
+as its sisters do, and, second by second, by that factor too fast or too slowly; one that was sampled at another rate
+on purpose does the opposite. A command of another size on purpose is told from a wrong unit by what is stated of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from math import log, pi
+
+import numpy as np
+
+from ident.cached import cached_property
+from ident.checks.finding import Finding
+from ident.checks.gain import RELATED
+from ident.checks.response import Response, respond, response
+from ident.matrix import Run
+
+NEAR = 0.02  # a clock is right to 1e-4 and a repeated RMS to 1 %; by chance one ratio in 40 is so near to a factor
+FACTORS = {25.4: "in for mm", 60.0: "min for s", 180 / pi: "deg for rad", 9.80665: "kgf for N, or g for m/s^2"}
+TENS = {1: "cm for mm", 2: "m for cm", 3: "m for mm, s for ms"}
+"""Powers of ten with a name; the others count, too."""
+BAND = (0.02, 0.98)  # of the input's power: where a response is compared
+FEWEST = 3  # frequencies at which two responses are compared: two can agree by chance
+AGREE = 0.7  # nepers and radians, median: noise of 8 frames, another amplitude or gain come to 0.5
+TIMES_BETTER = 2.0  # the corrected clock has to agree better by; both agree of a machine that answers at once
+VARIED = 0.7  # nepers and radians: a response that changes less over the band tells nothing of the clock
+AS_LONG, AS_SLOW, AS_PEAKED = 2.0, 1.5, 1.5  # times: samples, median frequency and crest factor of sisters
+DRIVERS = ("command", "drive_force", "current", "velocity", "displacement")
+"""What may drive a run: the first of them that it has."""
+MOST_CAUSES = 2  # that a fit names
+ALONE = 0.1  # of its size: a run that has a sister as near was meant so
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A factor that a wrong unit makes, and the units that make it."""
+
+    value: float
+    units: str
+
+    @property
+    def told(self) -> str:
+        """The factor in words."""
+        return f"near {self.value:.4g}" + (f", as of {self.units}" if self.units else "")
+
+
+def factor(ratio: float) -> Factor | None:
+    """The factor, or reciprocal of one, that a ratio is within NEAR of."""
+    size = max(ratio, 1 / ratio)
+    n = round(log(size) / log(10))
+    known = {**FACTORS, **({10.0**n: TENS.get(n, "")} if n else {})}
+    nearest = min(known, key=lambda each: abs(log(size / each)))
+    return Factor(nearest, known[nearest]) if abs(log(size / nearest)) <= log(1 + NEAR) else None
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """A run with what drives it: `answer` is the response from there, None where it cannot be known."""
+
+    run: Run
+    driver: str
+    answer: Response | None
+
+    @property
+    def name(self) -> str:
+        """The id of the run, or of the record that it is one of the outputs of."""
+        return self.run.record or self.run.id
+
+    @property
+    def input(self) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+        """The samples of what drives it."""
+        return self.run.channels[self.driver]
+
+    @cached_property
+    def pace(self) -> float:
+        """The median frequency of the input's power, cycles a sample."""
+        power = np.cumsum(np.abs(np.fft.rfft(self.input - self.input.mean())) ** 2)
+        return max(int(np.searchsorted(power, 0.5 * power[-1])), 1) / len(self.input)
+
+    @cached_property
+    def crest(self) -> float:
+        """The largest deviation of the input in standard deviations."""
+        return float(np.max(np.abs(self.input - self.input.mean())) / self.size(self.driver))
+
+    def size(self, channel: str) -> float:
+        """The standard deviation of a channel."""
+        return max(float(np.std(self.run.channels[channel])), np.finfo(float).tiny)
+
+
+def unit_factor(measured: Sequence[tuple[Run, Response | None]], scaled: Sequence[str | None]) -> Iterator[Finding]:
+    """A doubt for each run whose clock, input or output is off its sisters' by the factor of a unit.
+
+    `measured` are all runs with their responses to a command; `scaled` those whose output is doubted already.
+    """
+    records = list(_records(measured))
+    alone = list({record.name: record for record in reversed(records)}.values())[::-1]  # one output of each
+    yield from _clocks([record for record in alone if record.run.time_unit == "s"])
+    yield from _inputs(alone)
+    yield from _outputs([record for record in records if record.run.id not in scaled])
+
+
+def unit_causes(runs: Sequence[Run]) -> list[str]:
+    """What units may have to do with a fit that explains hardly anything, as likely causes."""
+    found = unit_factor([(run, respond(run)) for run in runs], [])
+    told = [f"a wrong unit: {finding.text.partition('; correct')[0]}" for finding in found]
+    return told[:MOST_CAUSES] or ["a wrong unit of a channel or of the time"]
+
+
+def _records(measured: Sequence[tuple[Run, Response | None]]) -> Iterator[Record]:
+    for run, answer in measured:
+        moved = [name for name in DRIVERS if name in run.channels and np.ptp(run.channels[name]) > 0]
+        driver = next((name for name in moved if name != run.output), "")
+        if driver:
+            told = answer if driver == "command" else response(run.channels[driver], run.measured, run.sample_rate)
+            yield Record(run, driver, told)
+
+
+def _clocks(records: Sequence[Record]) -> Iterator[Finding]:
+    """Runs whose sample rate, or duration, is off: against the runs of the most usual rate, the first of two."""
+    usual = _largest(records, lambda record: record.run.sample_rate)
+    duration = float(np.median([record.run.duration for record in usual])) if usual else 0.0
+    for record in records:
+        run, sisters = record.run, [each for each in usual if each is not record]
+        if not sisters:
+            continue
+        rate = run.sample_rate / sisters[0].run.sample_rate
+        by_rate, by_duration = factor(rate), factor(run.duration / duration)
+        if by_rate and _clock_is_off(record, sisters, 1 / rate):
+            text = (
+                f"run {record.name} is sampled at {run.sample_rate:.6g} Hz and lasts {run.duration:.4g} s: the rate is "
+                f"{rate:.4g} times that of {_named(sisters)} ({by_rate.told}), though sample by sample it is like "
+                "them; correct the unit of its time or its sample rate"
+            )
+            yield Finding(run.id, "doubt", "clock-factor", text)
+        elif by_duration and factor(rate) is None and _answers_as(record, sisters, run.duration / duration) is True:
+            text = (
+                f"run {record.name} lasts {run.duration:.4g} s, {run.duration / duration:.4g} times as long as "
+                f"{_named(sisters)} ({by_duration.told}), and answers its command as much more slowly; correct the "
+                "unit of its time or resample"
+            )
+            yield Finding(run.id, "doubt", "clock-factor", text)
+
+
+def _clock_is_off(record: Record, sisters: Sequence[Record], scale: float) -> bool:
+    """Whether frequencies `scale` times the stated ones make a run like its sisters, by its response if that tells."""
+    told = _answers_as(record, sisters, scale)
+    if told is not None:
+        return told
+    return any(
+        one.driver == record.driver
+        and _within(record.run.length, one.run.length, AS_LONG)
+        and _within(record.pace, one.pace, AS_SLOW)
+        and _within(record.crest, one.crest, AS_PEAKED)
+        for one in sisters
+    )
+
+
+def _answers_as(record: Record, sisters: Sequence[Record], scale: float) -> bool | None:
+    """Whether a run answers as its sisters once its frequencies are taken times `scale`; None where that is not told.
+
+    Those of the same specimen and gain are asked, where there are any.
+    """
+    same = [one for one in sisters if _conditions(one.run) == _conditions(record.run)]
+    told = [_told(record, one, scale) for one in same or sisters]
+    known = [one for one in told if one is not None]
+    return sum(known) > len(known) / 2 if known else None
+
+
+def _told(record: Record, sister: Record, scale: float) -> bool | None:
+    """The same of one sister."""
+    same = record.driver == sister.driver and record.run.output == sister.run.output
+    if not same or record.answer is None or sister.answer is None:
+        return None
+    stated, corrected = _differ(record.answer, sister.answer, 1.0), _differ(record.answer, sister.answer, scale)
+    if stated is not None and corrected is not None:
+        if max(stated[0], corrected[0]) < AGREE / 2:  # both agree
+            return None
+        return corrected[0] < AGREE and corrected[0] * TIMES_BETTER < stated[0]
+    if stated is not None:
+        return False if stated[0] < AGREE and stated[1] > VARIED else None
+    if corrected is None or corrected[1] < VARIED:
+        return None
+    return corrected[0] < AGREE
+
+
+def _differ(one: Response, other: Response, scale: float) -> tuple[float, float] | None:
+    """How far two responses differ where both inputs have power, frequencies of the first times `scale`: the median
+    of |ln H₁/H₂|; and by how much the second varies there. None where that is at too few frequencies.
+    """
+    used, beside = (each.between(*BAND) & (each.coherence > RELATED) for each in (one, other))
+    if not used.any() or not beside.any():
+        return None
+    at, known = one.frequency[used] * scale, other.frequency[beside]
+    inside = (at >= known[0] * (1 - 1e-9)) & (at <= known[-1] * (1 + 1e-9))
+    if inside.sum() < FEWEST:
+        return None
+    expected = np.interp(at[inside], known, other.gain[beside].real) + 1j * np.interp(
+        at[inside], known, other.gain[beside].imag
+    )
+    expected[expected == 0] = np.finfo(float).tiny
+    differ = float(np.median(np.abs(np.log(one.gain[used][inside] / expected))))
+    over = np.log(np.abs(expected)), np.unwrap(np.angle(expected))
+    return differ, float(np.hypot(np.ptp(over[0]), np.ptp(over[1])))
+
+
+def _inputs(records: Sequence[Record]) -> Iterator[Finding]:
+    """Runs whose input is off in size, which neither a stated amplitude nor a stated gain explains."""
+    for number, record in enumerate(records):
+        if record.run.amplitude is not None:  # what is stated of it is checked by itself
+            continue
+        sisters = [one for one in records if one is not record and _alike(record, one)]
+        if len(sisters) == 1 and records.index(sisters[0]) > number:  # of two, the second
+            continue
+        off = _off(record, sisters, record.driver)
+        if off and not _by_gain(record.run, [one.run for one in off.sisters], off.ratio):
+            yield _size(record, record.driver, off, ", or state the amplitude that was meant")
+
+
+def _outputs(records: Sequence[Record]) -> Iterator[Finding]:
+    """Runs whose output is off in size, though input, specimen and gain are those of their sisters."""
+    for number, record in enumerate(records):
+        sisters = [
+            one
+            for one in records
+            if one is not record
+            and _alike(record, one)
+            and _conditions(one.run) == _conditions(record.run)
+            and one.run.units.get(one.run.output) == record.run.units.get(one.run.output)
+            and _within(one.size(one.driver), record.size(record.driver), 1 + NEAR)
+        ]
+        if len(sisters) == 1 and records.index(sisters[0]) > number:
+            continue
+        if off := _off(record, sisters, record.run.output):
+            yield _size(record, record.run.output, off, "")
+
+
+@dataclass(frozen=True)
+class Off:
+    """The ratio of a size to that of some sisters, and the factor that it is near."""
+
+    sisters: Sequence[Record]
+    ratio: float
+    near: Factor
+
+
+def _off(record: Record, sisters: Sequence[Record], channel: str) -> Off | None:
+    """The sisters of one size that a run is off from by a factor; None where that may be meant.
+
+    It is where a sister is as large, where the sisters' own sizes differ by factors, and where no two sisters have
+    one size, though there are more of them: then nobody knows which size is usual.
+    """
+    size = record.size(channel)
+    if any(_within(size, one.size(channel), 1 + ALONE) for one in sisters):
+        return None
+    levels = [level for level in _levels(sisters, channel) if len(level) > 1 or len(sisters) == 1]
+    sizes = [float(np.median([one.size(channel) for one in level])) for level in levels]
+    if any(factor(one / other) for one in sizes for other in sizes if one > other):
+        return None
+    for level, usual in zip(levels, sizes, strict=True):
+        if near := factor(size / usual):
+            return Off(level, size / usual, near)
+    return None
+
+
+def _levels(records: Sequence[Record], channel: str) -> list[list[Record]]:
+    """The records in groups of one size, the largest group first."""
+    left, found = list(records), []
+    while left:
+        found.append(_largest(left, lambda one: one.size(channel)))
+        left = [one for one in left if one not in found[-1]]
+    return found
+
+
+def _size(record: Record, channel: str, off: Off, otherwise: str) -> Finding:
+    text = (
+        f"{channel} of run {record.name} is {off.ratio:.4g} times as large as that of {_named(off.sisters)} "
+        f"({off.near.told}); correct its unit or scale{otherwise}"
+    )
+    return Finding(record.run.id, "doubt", "amplitude-factor", text)
+
+
+def _by_gain(run: Run, sisters: Sequence[Run], ratio: float) -> bool:
+    """Whether another stated gain explains more than half of a ratio, in logarithms."""
+    gains = [sister.gain for sister in sisters if sister.gain]
+    if not run.gain or not gains:
+        return False
+    other, size = abs(log(run.gain / float(np.median(gains)))), abs(log(ratio))
+    return abs(size - other) < size / 2
+
+
+def _alike(one: Record, other: Record) -> bool:
+    """Whether two runs are of one kind: what is stated, and how often and how far the input moves."""
+    first, second = one.run, other.run
+    stated = (first.kind, first.output, first.units.get(one.driver)) == (
+        second.kind, second.output, second.units.get(other.driver)
+    )  # fmt: skip
+    return (
+        stated
+        and one.driver == other.driver
+        and _within(one.pace * first.sample_rate, other.pace * second.sample_rate, AS_SLOW)
+        and _within(one.crest, other.crest, AS_PEAKED)
+    )
+
+
+def _largest(records: Sequence[Record], value: Callable[[Record], float]) -> list[Record]:
+    """The largest group of records whose values agree with that of its first one; the first of several."""
+    groups = [[one for one in records if _within(value(one), value(first), 1 + NEAR)] for first in records]
+    return max(groups, key=len, default=[])
+
+
+def _within(one: float, other: float, times: float) -> bool:
+    return max(one, other) <= times * min(one, other)
+
+
+def _conditions(run: Run) -> tuple[object, ...]:
+    return run.specimen, run.gain
+
+
+def _named(records: Sequence[Record]) -> str:
+    return ", ".join(dict.fromkeys(record.name for record in records[:3])) + (
+        f" and {len(records) - 3} more" if len(records) > 3 else ""
+    )
