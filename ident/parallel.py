@@ -7,12 +7,15 @@ import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
+from contextvars import copy_context
 from functools import lru_cache
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 import scipy.linalg  # noqa: F401  its library is held too, and only what is loaded is found
 from threadpoolctl import ThreadpoolController
+
+from ident.time_budget import check_time
 
 _DEEP = 16  # threads a core: most of them wait for work inside of their work
 Item = TypeVar("Item")
@@ -126,8 +129,9 @@ class _Work(Generic[Item, Outcome]):
             for _ in self._items[i + 1 :]:  # as many as there is work for
                 if not _idle().acquire(blocking=False):
                     break
-                self._helpers.append(_pool().submit(self._help))
+                self._helpers.append(_pool().submit(copy_context().run, self._help))  # within the same time budget
             try:
+                check_time()
                 self._outcomes[i] = self._function(self._items[i])
             except BaseException as failure:
                 self._failures[i] = failure
@@ -137,7 +141,8 @@ def each(function: Callable[[Item], Outcome], items: Iterable[Item]) -> list[Out
     """`function` of every item, in order; the compiled parts run side by side, linear algebra in :func:`one_thread`.
 
     Work inside of work is shared out too, where a core is idle: the last of many items is not waited for by the others.
-    Values that overflow are what a model that runs away gives: they are judged as such, and not warned of.
+    Values that overflow are what a model that runs away gives: they are judged as such, and not warned of. Raises
+    TimeIsUp where the time of the work is over before the last item is begun.
     """
     todo = list(items)
 

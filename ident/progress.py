@@ -20,7 +20,8 @@ class Progress:
 
     `stage` is a phrase for the user ("search", "polish"), `done` of `total` its steps, `error` the best value of
     eq. (17) so far, where there is one. `expected` is a diagnosis's first sight: the effects that promise most, first;
-    `added` are those that it has added so far, each with the held-out error since.
+    `added` are those that it has added so far, each with the held-out error since; `verdict` is what the catalogue
+    gave, once it is through.
     """
 
     stage: str
@@ -29,6 +30,7 @@ class Progress:
     error: float | None = None
     expected: tuple[Expected, ...] = ()
     added: tuple[Expected, ...] = ()
+    verdict: str = ""
 
 
 Report = Callable[[Progress], None]

@@ -25,8 +25,9 @@ from ident.diagnosis.result import Diagnosis
 from ident.diagnosis.rivals import rivals
 from ident.diagnosis.stepwise import MOST, USUAL
 from ident.diagnosis.structures import ChosenFit, Made, chosen
+from ident.diagnosis.unfitted import unfitted
 from ident.effects.effect import Effect
-from ident.errors import Unusable
+from ident.errors import TimeIsUp, Unusable
 from ident.fit.choices import Choices, settings_of
 from ident.fit.identification import Identification, StepwiseFit, check_settings, completed
 from ident.fit.regressed import RegressedIdentification
@@ -37,6 +38,7 @@ from ident.matrix import Matrix
 from ident.presets.preset import Kind
 from ident.progress import Report, silent
 from ident.synthesis.matrix import Simulation, simulated
+from ident.time_budget import TimeBudget
 
 if TYPE_CHECKING:
     from ident.figures import AltairChart, Study
@@ -138,22 +140,29 @@ def figure(
 def diagnose(
     matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None, most: int = USUAL,
     custom: Sequence[Effect | Mapping[str, Any] | str] = (), report: Report = silent, seconds: float | None = None,
-    found: Callable[[Diagnosis], None] | None = None, propose: bool | None = None,
+    found: Callable[[Diagnosis], None] | None = None, propose: bool | None = None, budget: TimeBudget | None = None,
 ) -> Diagnosis:  # fmt: skip
     """Rank what the fitted model lacks, add what helps beyond chance, and say what is left.
 
     Without a `fit` the model of `settings` is fitted first. `most` is the largest number of effects to add, `custom`
     are effects beside the catalogue's, or their definitions. Verify runs only report. After `seconds`, that of a fit
-    included, nothing more is tried; `found` is told of the diagnosis as it stands after each effect. Terms that no list
-    holds are searched for where the catalogue leaves the error unexplained; with `propose` true also where nobody
-    knows the noise, with false never. Raises Unusable where matrix, fit or settings do not go together.
+    included, no simulation is begun any more, and what was found is told with what was not looked at; a time `budget`
+    in their place has begun before. `found` is told of the diagnosis as it stands after each effect, and of the
+    catalogue's verdict before terms are searched for. Terms that no list holds are searched for where the catalogue
+    leaves the error unexplained; with `propose` true also where nobody knows the noise, with false never. Raises
+    Unusable where matrix, fit or settings do not go together.
     """
     if not 0 <= most <= MOST:
         raise Unusable("bad-option", f"{most} effects", "max-effects", f"give 0 to {MOST}")
     if seconds is not None and not seconds > 0:
         raise Unusable("bad-option", f"{seconds:g} s", "time", "give the seconds that it may take")
-    course = Course(most, seconds, report, found, propose=propose)
-    fit = fit or identify(matrix, settings, report)
+    budget = budget or TimeBudget(seconds)
+    course = Course(most, budget, report, found, propose=propose)
+    try:
+        with budget.running():
+            fit = fit or identify(matrix, settings, report)
+    except TimeIsUp:
+        return replace(unfitted(matrix, settings or Settings(), budget.taken), matrix=matrix)
     served = _served(fit.model)
     if propose and not served.proposes:
         raise Unusable("bad-option", f"the model {fit.model} has no signals inside that a term could be of", "propose",

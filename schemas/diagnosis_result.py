@@ -185,7 +185,11 @@ class TermView(BaseModel):
 
 
 class DiagnosisResult(BaseModel):
-    """The contract's diagnose JSON."""
+    """The contract's diagnose JSON.
+
+    Not `complete`, the stages `not_looked_at` are missing: there was no time for them, or they failed. Of the terms
+    that were `looked_at` so many were `left_out`, for no model can hold them or they are not finite.
+    """
 
     model: str
     effects: list[str]
@@ -198,7 +202,9 @@ class DiagnosisResult(BaseModel):
     verdict: VerdictView
     proposals: list[TermView] = Field(default_factory=list)
     looked_at: int | None = None
+    left_out: int | None = None
     complete: bool = True
+    not_looked_at: list[str] = Field(default_factory=list)
     next_experiment: ProposalView | Nothing
     settings: SettingsView
     seed: int

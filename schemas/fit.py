@@ -61,7 +61,8 @@ class ProgressView(BaseModel):
     """Where a job is: `done` of `total` steps of `stage`; `error` is the best eq. (17) so far.
 
     `expected` is what a diagnosis sees at once: the effects that promise most, first, while it confirms them; `added`
-    are those that it has added so far, each with the held-out error since.
+    are those that it has added so far, each with the held-out error since; `verdict` is what the catalogue gave, once
+    it is through.
     """
 
     stage: str = ""
@@ -70,6 +71,7 @@ class ProgressView(BaseModel):
     error: float | None = None
     expected: list[ExpectedView] = Field(default_factory=list)
     added: list[ExpectedView] = Field(default_factory=list)
+    verdict: str = ""
 
 
 class JobSettings(SettingsView):

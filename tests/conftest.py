@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import logging
 import os
 import sys
 from collections.abc import Callable, Iterator
@@ -68,6 +69,27 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
             return "browser" if file.startswith("tests/browser/") and file != OWN_SERVICE else file
 
     return Scheduling(config, log) if config.getvalue("dist") == "loadfile" else None
+
+
+class _Raised(logging.Handler):
+    """Raises what a diagnosis survives by a note: no defect hides behind it in a test."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        if record.exc_info and record.exc_info[1] is not None:
+            raise record.exc_info[1]
+
+
+SURVIVED = _Raised()
+logging.getLogger("servoident.diagnosis").addHandler(SURVIVED)
+
+
+@pytest.fixture
+def survives() -> Iterator[None]:
+    """For a test of what becomes of a diagnosis of which a stage fails."""
+    log = logging.getLogger("servoident.diagnosis")
+    log.removeHandler(SURVIVED)
+    yield
+    log.addHandler(SURVIVED)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from time import monotonic
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -28,7 +27,7 @@ from app.cli.fit_options import (
 from app.cli.given import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
-from ident.errors import Cancelled, Unusable
+from ident.errors import Cancelled, TimeIsUp, Unusable
 
 if TYPE_CHECKING:
     from ident.diagnosis.result import Diagnosis
@@ -37,7 +36,11 @@ if TYPE_CHECKING:
 
 
 Limit = Annotated[
-    float | None, typer.Option(metavar="S", help="Seconds after which nothing more is tried: what was found is told.")
+    float | None,
+    typer.Option(
+        metavar="S",
+        help="Seconds after which nothing more is begun: what was found is told, and what was not looked at.",
+    ),
 ]
 Most = Annotated[int | None, typer.Option(min=0, metavar="N", help="Largest number of effects that may be added.")]
 Own = Annotated[
@@ -81,16 +84,22 @@ def diagnose(
     from app.cli.arguments import definitions
     from app.cli.kept_here import beside
     from ident.custom.definition import read_effect, together
-    from ident.diagnosis.course import left
     from ident.diagnosis.stepwise import USUAL
+    from ident.diagnosis.unfitted import unfitted
     from ident.fit.settings import Settings
     from ident.readers import read_matrix
+    from ident.time_budget import TimeBudget
     from ident.workflows import diagnose as diagnosed
 
     check_target(json)
-    begun = monotonic()
-    with shown() as report:
-        named, choice = modelled(read_matrix(matrix), model if fit is None else model or Settings().model, report)
+    budget = TimeBudget(time)
+    records = read_matrix(matrix)
+    try:
+        with shown() as report, budget.running():
+            named, choice = modelled(records, model if fit is None else model or Settings().model, report)
+    except TimeIsUp:
+        _tell(unfitted(records, replace(Settings(), model="", seed=seed), budget.taken), json)
+        return
     chosen = settings(named, effect, method, bounds, set_, load, seed, option)
     given = choice.made(chosen) if fit is None else given_fit(fit, chosen)
     defined = together((), definitions(custom or []))
@@ -103,7 +112,7 @@ def diagnose(
     with shown() as report, followed(json) as follow:
         found = diagnosed(
             choice.matrix, given, replace(chosen, custom=defined), most=most, custom=effects, report=report,
-            seconds=left(time, begun), found=follow, propose=propose,
+            seconds=time, budget=budget, found=follow, propose=propose,
         )  # fmt: skip
     _tell(found, json)
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import errno
+import logging
 import os
 import sys
 import traceback
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -69,6 +71,26 @@ def kept(error: BaseException) -> str:
     except OSError as failure:
         return f"and its log cannot be written to {log} ({failure.strerror})"
     return f"details are in {log}"
+
+
+class ToErrorLog(logging.Handler):
+    """Keeps the tracebacks of what failed beside a result that stands: its note tells the user."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Append it to the error log."""
+        if record.exc_info and record.exc_info[1] is not None:
+            kept(record.exc_info[1])
+
+
+@contextmanager
+def logged() -> Iterator[None]:
+    """Until the block ends, what fails beside a diagnosis that stands goes to the error log."""
+    log, handler = logging.getLogger("servoident.diagnosis"), ToErrorLog()
+    log.addHandler(handler)
+    try:
+        yield
+    finally:
+        log.removeHandler(handler)
 
 
 def error_log() -> Path:

@@ -21,7 +21,7 @@ from app.cli.diagnose import diagnose
 from app.cli.drop import drop
 from app.cli.effects import effects
 from app.cli.export import export
-from app.cli.failures import INTERRUPTED, UNREAD, report
+from app.cli.failures import INTERRUPTED, UNREAD, logged, report
 from app.cli.fit import fit
 from app.cli.hybrid import hybrid
 from app.cli.init import init
@@ -118,7 +118,7 @@ def main(arguments: list[str] | None = None) -> NoReturn:
     speak()
     try:
         given = sys.argv[1:] if arguments is None else arguments
-        with heard():
+        with heard(), logged():
             status = program(given or ["--help"], prog_name="servoident", standalone_mode=False)
         if status == INTERRUPTED:
             raise KeyboardInterrupt

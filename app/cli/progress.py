@@ -27,7 +27,7 @@ def shown() -> Iterator[Report]:
         def report(progress: Progress) -> None:
             heed()
             show(progress)
-            for line in (first_sight(progress), added(progress)):
+            for line in (first_sight(progress), added(progress), verdict(progress)):
                 if line and line not in told:
                     told.add(line)
                     say(line)
@@ -96,6 +96,11 @@ def added(progress: Progress) -> str:
     if not progress.added:
         return ""
     return f"added so far, with the error on held-out data: {_listed(progress.added)}"
+
+
+def verdict(progress: Progress) -> str:
+    """What the catalogue gave, while terms are searched for that it does not hold; nothing before."""
+    return f"verdict of the catalogue: {progress.verdict}" if progress.verdict else ""
 
 
 def _listed(effects: Iterable[Expected]) -> str:

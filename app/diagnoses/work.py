@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from time import monotonic
 from typing import Any
 
 from sqlalchemy.orm import Session
@@ -12,15 +11,20 @@ from sqlalchemy.orm import Session
 from app.diagnoses import repository
 from app.fits import repository as fits
 from app.fits.history import put_apart
-from app.jobs.work import Kind, State, Task, Work
-from app.own_effects.kept import Kept, suited
+from app.jobs.work import Kept, Kind, State, Task, Work
+from app.own_effects.kept import Kept as KeptEffect
+from app.own_effects.kept import suited
 from app.tables import JobRow
 from ident.custom.definition import read_effect
-from ident.diagnosis.course import left
-from ident.errors import Cancelled, TimeIsUp
+from ident.diagnosis.result import Diagnosis
+from ident.diagnosis.stages import FURTHER
+from ident.errors import Cancelled, TimeIsUp, Unusable
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
+from ident.matrix import Matrix
 from ident.plain import read
+from ident.progress import Report
+from ident.time_budget import TimeBudget
 from ident.workflows import diagnose, identify
 
 OWN = ("max_effects", "time", "reseed", "propose", "own")
@@ -35,32 +39,47 @@ class DiagnosisWork(Work):
 
     def finish(self, state: State) -> State:  # noqa: ARG002  nothing comes before it
         """The diagnosis, and the fit that was made for it."""
-        chosen, matrix, report, begun = self.task.settings, self.task.matrix, self.task.report, monotonic()
+        chosen, matrix, report = self.task.settings, self.task.matrix, self.task.report
+        budget = TimeBudget(chosen.get("time"))
         given = self.task.fit
         if given is None:
             settings = Settings.from_json({name: value for name, value in chosen.items() if name not in OWN})
-            try:
-                fit = identify(matrix, settings, report)
-            except TimeIsUp:  # nothing is found before there is a fit
-                raise Cancelled from None
+            fit = _fitted(matrix, settings, report, budget)
         else:
             given = given.with_custom(chosen.get("custom", ()))
             fit = given if chosen["reseed"] is None else _reseeded(given, chosen["reseed"])
         made, fit = fit, _beside_the_lab_s(fit, chosen.get("own", ()))
         own = tuple(read_effect(definition, model=fit.model) for definition in fit.settings.get("custom", ()))
-        seconds = left(chosen.get("time"), begun)
+        with_fit = None if given else put_apart(self.task.storage, made.to_json())
+
+        def kept(so_far: Diagnosis) -> None:
+            if FURTHER not in so_far.not_looked_at:  # the catalogue is through
+                report(Kept("kept", 1, 1, made={"diagnosis": so_far.to_json(), "fit": with_fit}))
+
         found = diagnose(
-            matrix, fit, most=chosen["max_effects"], custom=own, report=report, seconds=seconds,
+            matrix, fit, most=chosen["max_effects"], custom=own, report=report, budget=budget, found=kept,
             propose=chosen.get("propose", False),
         )  # fmt: skip
-        return {"diagnosis": found.to_json(), "fit": None if given else put_apart(self.task.storage, made.to_json())}
+        return {"diagnosis": found.to_json(), "fit": with_fit}
+
+
+def _fitted(matrix: Matrix, settings: Settings, report: Report, budget: TimeBudget) -> FitResult:
+    """The fit that is made first. Raises Unusable where there is no time for it, Cancelled where it is stopped."""
+    try:
+        with budget.running():
+            return identify(matrix, settings, report)
+    except TimeIsUp:  # nothing is found before there is a fit
+        if not budget.is_over:
+            raise Cancelled from None
+        what = f"{budget.seconds:g} s are over before a model is fitted"
+        raise Unusable("no-time", what, "time", "give more, or a fit") from None
 
 
 def _beside_the_lab_s(fit: FitResult, kept: Sequence[Mapping[str, Any]]) -> FitResult:
     """The fit with the lab's own effects that its model can take beside its own, which come first."""
     known = tuple(fit.settings.get("custom", ()))
     names = {definition["name"] for definition in known}
-    entries = suited((read(Kept, entry) for entry in kept), fit.model)
+    entries = suited((read(KeptEffect, entry) for entry in kept), fit.model)
     more = [entry.definition for entry in entries if entry.name not in names]
     return fit.with_custom((*known, *more)) if more else fit
 
@@ -70,7 +89,10 @@ def _reseeded(fit: FitResult, seed: int) -> FitResult:
 
 
 def _keep(session: Session, job: JobRow, serial: str, made: State) -> None:
-    if repository.diagnosis(session, job.id) is not None:
+    """Store a diagnosis, in the place of what was known of it before, and the fit that was made for it, once."""
+    known = repository.diagnosis(session, job.id)
+    if known is not None:
+        known.result = made["diagnosis"]
         return
     if made["fit"] is not None:
         fits.add_fit(session, job, made["fit"])

@@ -122,7 +122,9 @@ def conclude(context: Context, job_id: str) -> JobView:
 
 def view(row: JobRow, serial: str) -> JobView:
     """A job as it is sent."""
-    made, diagnosis = row.state == "succeeded", row.kind == "diagnosis"
+    diagnosis = row.kind == "diagnosis"
+    # The catalogue's verdict is stored before terms are searched for: whatever becomes of these.
+    made = row.state == "succeeded" or (diagnosis and bool(row.progress.get("verdict")))
     makes_fit = row.kind == "fit" or (diagnosis and row.parent is None)
     return JobView(
         id=row.id, kind=row.kind, state=row.state, matrix=row.matrix, serial=serial,

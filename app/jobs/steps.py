@@ -17,7 +17,7 @@ from app.fits import repository as fits
 from app.jobs import at_work, repository
 from app.jobs.ending import end
 from app.jobs.lease import AWAY, Lease, Superseded, patiently
-from app.jobs.work import Kind, State, Task
+from app.jobs.work import Kept, Kind, State, Task
 from app.processes import Here, Place, Stopped
 from app.storage import Storage, Unreachable
 from app.tables import JobRow
@@ -163,13 +163,25 @@ class Run:
         return Task(row.settings, parent.result if parent else None, matrix, self.runs.storage)
 
     def _report(self, progress: Progress) -> None:
-        """Record it for those who watch the job.
+        """Record it for those who watch the job, and store what it has made so far.
 
         Raises Cancelled when the job is to stop, TimeIsUp when it is to keep what it found.
         """
+        if isinstance(progress, Kept):
+            patiently(lambda: self._keep(progress.made), self.runs.stopping, _PATIENCE)
+            return
         with suppress(*AWAY):  # progress can wait
             if self._note({"progress": asdict(progress)}):
                 raise TimeIsUp
+
+    def _keep(self, made: State) -> None:
+        """Store what the job has made so far. Raises Cancelled, Superseded."""
+        with self.runs.sessions.begin() as session:
+            row = self._held(session)
+            if row is None or row.cancel:
+                raise Cancelled
+            matrix = repository.matrix_of(session, self.lease.job)
+            self.kind.keep(session, row, matrix.serial if matrix else "", made)
 
     def _note(self, values: dict[str, Any]) -> bool:
         """Write progress; whether the job is to keep what it found and end. Raises Cancelled, Superseded."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from sqlalchemy.orm import Session
@@ -14,11 +14,21 @@ from app.storage import Storage
 from app.tables import JobRow, MatrixRow
 from ident.fit.result import FitResult
 from ident.matrix import Matrix
-from ident.progress import Report, silent
+from ident.progress import Progress, Report, silent
 
 State = dict[str, Any]
 Keep = Callable[[Session, JobRow, str, State], None]
 """Stores what a job made: its record, the actuator's serial number, what its work returned at the end."""
+
+
+@dataclass(frozen=True)
+class Kept(Progress):
+    """What a job has made so far, to be stored as if it were its end: whatever becomes of the job later, it is there.
+
+    In `made` as :meth:`Work.finish` returns it; what is stored later takes its place.
+    """
+
+    made: State = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
@@ -17,7 +18,9 @@ from ident.diagnosis.course import Course
 from ident.diagnosis.estimate import Found
 from ident.diagnosis.result import Baseline, Diagnosis, Ranked, Rung, Verdict
 from ident.diagnosis.significance import Improvement, improvement
+from ident.diagnosis.stages import FURTHER, not_looked_at
 from ident.diagnosis.standing import standing
+from ident.diagnosis.unfitted import unranked
 from ident.diagnosis.words import verdict_text, why_of_gain
 from ident.effects.effect import Effect
 from ident.errors import TimeIsUp
@@ -25,6 +28,7 @@ from ident.fit.result import FitResult
 from ident.matrix import Matrix
 from ident.presets import preset
 from ident.progress import Expected, Progress
+from ident.time_budget import in_time
 
 _NEAR_FLOOR = 1.25
 """Times the converter's part of the error, up to which an error is its noise: a reading that rests is off for long."""
@@ -32,7 +36,11 @@ _NEAR_FLOOR = 1.25
 
 def diagnose_bench(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], course: Course) -> Diagnosis:
     """Rank the effects of a bench and the user's own, add what helps beyond chance, and say what is left."""
-    return BenchDiagnoser(matrix, fit, tuple(custom), course).diagnosis()
+    with course.budget.running():
+        try:
+            return BenchDiagnoser(matrix, fit, tuple(custom), course).diagnosis()
+        except TimeIsUp:
+            return unranked(matrix, fit, course.taken)
 
 
 class BenchDiagnoser:
@@ -41,6 +49,7 @@ class BenchDiagnoser:
     def __init__(self, matrix: Matrix, fit: FitResult, custom: tuple[Effect, ...], course: Course) -> None:
         self.matrix, self.fit, self.course = matrix, fit, course
         self.complete = False
+        self._known_errors: dict[int, dict[str, float | None]] = {}
         bench = bench_set(matrix)
         self.records = {use: tuple(r for r in bench.records if r.use == use) for use in ("fit", "verify")}
         self.preset, _, values = fitted(fit, matrix)
@@ -53,10 +62,14 @@ class BenchDiagnoser:
         first: list[Candidate] = []
         steps = [self.refitter.base]
         with suppress(TimeIsUp):
+            self._errors(steps[0])
             self._add(first, steps)
             self.complete = True
-        self.course.conclude()
-        return self._said(first, steps)
+        found = self._said(first, steps)
+        if found.complete:
+            return found
+        text = " ".join((found.verdict.text, *not_looked_at((FURTHER,))))
+        return replace(found, verdict=replace(found.verdict, text=text), not_looked_at=(FURTHER,))
 
     def _said(self, first: list[Candidate], steps: list[Refit]) -> Diagnosis:
         """What was found so far, by the first ranking and the refits from the fitted model on."""
@@ -107,15 +120,19 @@ class BenchDiagnoser:
     # What is said ----------------------------------------------------------------------------------------------
 
     def _mean(self, refit: Refit, records: tuple[Record, ...], what: str) -> float | None:
-        found = [float(getattr(run, what)) for run in errors_of(records, refit.model)]
+        """None where there are none, or no time to simulate them."""
+        found = in_time(lambda: [float(getattr(run, what)) for run in errors_of(records, refit.model)])
         return float(np.mean(found)) if found else None
 
     def _errors(self, refit: Refit) -> dict[str, float | None]:
-        on = {use: self._mean(refit, self.records[use], "error") for use in ("fit", "verify")}
-        return {"fit": on["fit"], "held_out": refit.held_out_error, "verify": on["verify"]}
+        """What is known of them stays known where there is no time left."""
+        known = self._known_errors.get(id(refit), {})
+        on = {use: known.get(use) or self._mean(refit, self.records[use], "error") for use in ("fit", "verify")}
+        found = {"fit": on["fit"], "held_out": refit.held_out_error, "verify": on["verify"]}
+        return self._known_errors.setdefault(id(refit), found) | found
 
-    def _offset(self, refit: Refit) -> float:
-        return self._mean(refit, self.records["fit"], "offset") or 0.0
+    def _offset(self, refit: Refit) -> float | None:
+        return self._mean(refit, self.records["fit"], "offset")
 
     def _parameters(self, refit: Refit) -> dict[str, Found]:
         effects = tuple(self.refitter.effects[name] for name in refit.effects)

@@ -18,6 +18,7 @@ from ident.effects.command_delay import COMMAND_DELAY
 from ident.effects.second_lag import SECOND_LAG
 from ident.effects.spring_load import SPRING_LOAD
 from ident.effects.stiction import STICTION
+from ident.time_budget import check_time
 
 Array = NDArray[np.float64]
 CONSTANTS = ("T", "B", "I0", "kp", "dPfr")
@@ -102,6 +103,7 @@ class Model:
         The play begins where it holds the current nearest to the zero shift. A sample is divided until a step is no
         longer than a tenth of T, and 2.5 ms.
         """
+        check_time()
         if self.chain is not None:
             return Answer(*(by_chain([self], current, rate, hold, start, what)[0] for what in SHOWN))
         longest = min(2.5e-3, max(0.1 * self.T, 5e-4))

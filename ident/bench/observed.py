@@ -19,6 +19,7 @@ from ident.bench.records import Record
 from ident.bench.response import residuals, rest
 from ident.cached import cached_property
 from ident.noise.effective_sample_size import independent_samples
+from ident.time_budget import check_time
 
 Array = NDArray[np.float64]
 IMPERFECT = 2e-3  # of a record's standard deviation
@@ -85,6 +86,7 @@ class Observed:
 
     def residuals(self, models: Models, room: Array | None = None) -> Array:
         """The residuals of several models, (models, samples compared); in `room`, where that is given."""
+        check_time()
         record, positions = self.record, bool(np.isfinite(self.position_scale))
         size = len(models) * self.count
         out = (np.empty(size) if room is None else room[:size]).reshape(len(models), self.count)

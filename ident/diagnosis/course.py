@@ -2,62 +2,69 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from ident.diagnosis.result import Diagnosis
 from ident.errors import TimeIsUp
 from ident.progress import Expected, Progress, Report, silent
-
-_LEAST = 1e-3  # s that are left where what came before took all of the time
-
-
-def left(seconds: float | None, begun: float) -> float | None:
-    """What is left of the seconds that a diagnosis may take, some of them spent since `begun` (monotonic clock, s)."""
-    return None if seconds is None else max(seconds - (time.monotonic() - begun), _LEAST)
+from ident.time_budget import TimeBudget
 
 
 @dataclass
 class Course:
     """The course of one diagnosis.
 
-    At most `most` effects are added; nothing is tried any more `seconds` after it began (None: until nothing helps).
-    `report` hears of every step of the work, `found` of the diagnosis as it stands after each effect: what was found
-    is not lost with what was still to come. Terms that no list holds are searched for where the catalogue leaves the
-    error unexplained; with `propose` true also where nobody knows the noise, with false never.
+    At most `most` effects are added; nothing is begun any more once the time `budget` is over. `report` hears of every
+    step of the work, `found` of the diagnosis as it stands after each effect and once the catalogue is through: what
+    was found is not lost with what was still to come. Terms that no list holds are searched for where the catalogue
+    leaves the error unexplained; with `propose` true also where nobody knows the noise, with false never.
     """
 
     most: int
-    seconds: float | None = None
+    budget: TimeBudget = field(default_factory=TimeBudget)
     report: Report = silent
     found: Callable[[Diagnosis], None] | None = None
     added: tuple[Expected, ...] = ()
     propose: bool | None = None
 
     def __post_init__(self) -> None:
-        self.begun = time.monotonic()
         self._sight: tuple[Expected, ...] = ()
-        self._concluded = False
+        self._verdict = ""
+        self.stopped_by: BaseException | None = None
+        """What the report raised, by which the caller ends the work."""
 
     @property
     def taken(self) -> float:
         """Seconds since it began."""
-        return time.monotonic() - self.begun
+        return self.budget.taken
 
     def tell(self, progress: Progress) -> None:
-        """Report; the first sight of the fitted model and what was added so far stay with all that follows.
+        """Report; the first sight of the fitted model, what was added and the verdict so far stay with what follows.
 
         Raises TimeIsUp once the time is over, or the report has said so.
         """
         self._sight = self._sight or progress.expected
+        known = replace(progress, expected=self._sight, added=self.added, verdict=self._verdict)
         try:
-            self.report(replace(progress, expected=self._sight, added=self.added))
+            self.report(known)
         except TimeIsUp:
-            self.seconds = None if self._concluded else 0.0
-        if self.seconds is not None and self.taken > self.seconds:
-            raise TimeIsUp
+            self.budget.end()
+        except BaseException as error:
+            self.stopped_by = error
+            raise
+        self.budget.check()
 
-    def conclude(self) -> None:
-        """From here on only what was found is told, which is not cut off."""
-        self.seconds, self._concluded = None, True
+    def hear(self, found: Diagnosis) -> None:
+        """Tell of the diagnosis as it stands."""
+        if self.found is None:
+            return
+        try:
+            self.found(replace(found, seconds=self.taken))
+        except TimeIsUp:
+            self.budget.end()
+
+    def conclude(self, found: Diagnosis) -> None:
+        """Tell of the catalogue's verdict, which stands whatever follows."""
+        self._verdict = found.verdict.text
+        self.hear(found)

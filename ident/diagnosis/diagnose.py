@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from importlib.metadata import version
 from typing import Any
 
@@ -21,12 +22,27 @@ from ident.diagnosis.longer import over_longer
 from ident.diagnosis.proposals.outcome import Proposals
 from ident.diagnosis.proposals.search import Search
 from ident.diagnosis.refit import Refit
-from ident.diagnosis.result import Baseline, Diagnosis, Explanation, Ranked, Rung, Suspect, Verdict
+from ident.diagnosis.result import Baseline, Diagnosis, Errors, Explanation, NextRun, Ranked, Rung, Suspect, Verdict
 from ident.diagnosis.significance import improvement
+from ident.diagnosis.stages import (
+    ERROR_BUDGET,
+    FURTHER,
+    LABELS,
+    LAGS,
+    LATER,
+    NEXT_RUN,
+    NOISE,
+    OTHERS,
+    TERMS,
+    VERIFY,
+    Stages,
+    not_looked_at,
+)
 from ident.diagnosis.standing import Contradiction, contradiction, standing
 from ident.diagnosis.stepwise import USUAL, StepwiseSelection
 from ident.diagnosis.suspects import suspects
 from ident.diagnosis.ties import TIE
+from ident.diagnosis.unfitted import unranked
 from ident.diagnosis.words import as_well, told_late, told_longer, told_needless, verdict_text, why
 from ident.effects.effect import Effect
 from ident.errors import TimeIsUp, Unusable
@@ -35,9 +51,12 @@ from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.parallel import each
 from ident.progress import Expected, Progress
+from ident.residuals.budget import Budget
+from ident.time_budget import in_time
 
 _SIMPLER = 1.05  # times the error that terms may leave without what was found, and still come before those beside it
 _RISES = 1.1  # times the least error on verify runs on the way: from there on it is told
+_NONE: Errors = {"fit": None, "held_out": None, "verify": None}
 _LATE = 2  # models, the last one first, of which it is asked how late they answer
 Steps = Sequence[tuple[str | None, Refit]]
 """From the fitted model to the last, what each step added."""
@@ -51,12 +70,13 @@ def diagnose(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], course: C
     """
     given = replace(Settings.from_json(dict(fit.settings)), effects=()) if fit.settings else Settings(model=fit.model)
     over = (fit.window.horizon, fit.window.memory) if fit.window else (None, None)
-    models = ModelFamily.of(matrix, given, custom, *over)
-    found = Diagnoser(models, fit, course, others(matrix, fit, custom)).diagnosis()
-    course.tell(Progress("next run", 0, 1))
-    if found.complete:
-        found = replace(found, next_experiment=next_run(matrix, found, custom))
-    return replace(found, budget=error_budget(matrix, fit), seconds=course.taken)
+    with course.budget.running():
+        try:
+            models = ModelFamily.of(matrix, given, custom, *over)
+            found = Diagnoser(models, fit, course, others(matrix, fit, custom)).diagnosis(matrix, custom)
+        except TimeIsUp:
+            found = unranked(matrix, fit, course.taken)
+    return replace(found, seconds=course.taken)
 
 
 class Diagnoser:
@@ -64,43 +84,101 @@ class Diagnoser:
 
     def __init__(self, models: ModelFamily, fit: FitResult, course: Course, known: Sequence[Other] = ()) -> None:
         self.models, self.fit, self.course, self.known = models, fit, course, known
+        self.stages = Stages(course)
 
-    def diagnosis(self) -> Diagnosis:
-        """The whole of it, or what of it there was time for."""
+    def diagnosis(self, matrix: Matrix, custom: Sequence[Effect]) -> Diagnosis:
+        """The whole of it, or what of it there was time for; `matrix` is the one that was given.
+
+        First all that the catalogue says, which is told before terms are searched for that no list holds.
+        """
+        selection, doubted = self._selected()
+        told = self._elsewhere(selection)
+        late = self.stages.attempt(LAGS, lambda: self._late(selection), ())
+        pairs = self.stages.attempt(LAGS, lambda: self._pairs(selection), ())
+        found = self._said(selection, doubted, pairs)
+        over = () if found.horizon == self.models.horizon else tuple(told_longer(self.models.horizon, found.horizon))
+        after = (*over, *late, *as_well(told))
+        found = replace(found, verdict=replace(found.verdict, elsewhere=told))
+        found = replace(found, budget=self._budget(matrix), next_experiment=self._next_run(matrix, found, custom))
+        proposed = Proposals()
+        if self._may_propose(selection) and self.stages.attempt(TERMS, lambda: self._is_proposing(selection), False):
+            self.course.conclude(self._told(found, found, after, Proposals(complete=False), going_on=True))
+            proposed = self.stages.attempt(TERMS, lambda: self._proposed(selection), Proposals(complete=False))
+            if not proposed.complete:
+                self.stages.miss(TERMS)
+        needless = proposed.needless(selection.added)
+        named = replace(found, verdict=found.verdict.without(needless))
+        if needless:  # what is in question is another now
+            named = replace(named, next_experiment=self._next_run(matrix, named, custom))
+        return self._told(named, found, after, proposed)
+
+    def _told(
+        self, named: Diagnosis, found: Diagnosis, after: Sequence[str], proposed: Proposals, going_on: bool = False
+    ) -> Diagnosis:  # fmt: skip
+        """The diagnosis with all that is said of it; `found` is it before the terms took anything from what is named.
+
+        While the search for terms is `going_on` that is what is missing.
+        """
+        missing = self.stages.not_looked_at
+        if not proposed.complete and TERMS not in missing:
+            missing = (*missing, TERMS)  # they are looked for now
+        needless = told_needless(named.verdict.stood_in)
+        text = " ".join([found.verdict.text, *needless, *after, *not_looked_at(missing)])
+        return replace(
+            named,
+            verdict=replace(named.verdict, text=text),
+            proposals=proposed.found,
+            looked_at=proposed.looked_at,
+            left_out=proposed.left_out,
+            complete=not missing,
+            not_looked_at=missing,
+            notes=(*found.notes, *(() if going_on else _refused(proposed, self.course.propose)), *self.stages.notes),
+        )
+
+    def _selected(self) -> tuple[StepwiseSelection, list[Suspect]]:
+        """What the catalogue gives, without the runs that are doubted, and these. Raises TimeIsUp before it begins."""
         selection = self._added(self.models)
         doubted = self._doubted(selection)
         if doubted:
-            selection = self._added(selection.models.without(suspect.run for suspect in doubted))
-            doubted = self._doubted(selection)
-        told, late, pairs = self._elsewhere(selection), self._late(selection), self._pairs(selection)
-        proposed = self._proposed(selection) if self._is_proposing(selection) else Proposals()
-        self.course.conclude()
-        found = self._said(selection, doubted, pairs)
-        over = () if found.horizon == self.models.horizon else told_longer(self.models.horizon, found.horizon)
-        needless = proposed.needless(selection.added)
-        text = " ".join([found.verdict.text, *told_needless(needless), *over, *late, *as_well(told)])
-        verdict = replace(found.verdict.without(needless), elsewhere=told, text=text)
-        return replace(
-            found, verdict=verdict, proposals=proposed.found, complete=found.complete and proposed.complete,
-            looked_at=proposed.looked_at, notes=(*found.notes, *_refused(proposed, self.course.propose)),
-        )  # fmt: skip
+            sound = selection.models.without(suspect.run for suspect in doubted)
+            again = self.stages.attempt(FURTHER, lambda: self._added(sound), None)
+            if again is not None:
+                selection, doubted = again, self._doubted(again)
+        if not selection.complete:
+            self.stages.miss(FURTHER)
+        return selection, doubted
+
+    def _budget(self, matrix: Matrix) -> Budget | None:
+        """The error budget of the fitted model."""
+
+        def parts() -> Budget | None:
+            self.course.tell(Progress(ERROR_BUDGET, 0, 1))
+            return error_budget(matrix, self.fit)
+
+        return self.stages.attempt(ERROR_BUDGET, parts, None)
+
+    def _next_run(self, matrix: Matrix, found: Diagnosis, custom: Sequence[Effect]) -> NextRun | None:
+        """The run that tells most of what is left in question."""
+
+        def proposed() -> NextRun | None:
+            self.course.tell(Progress(NEXT_RUN, 0, 1))
+            return next_run(matrix, found, custom)
+
+        return self.stages.attempt(NEXT_RUN, proposed, None)
 
     def _elsewhere(self, selection: StepwiseSelection) -> tuple[Explanation, ...]:
-        """What other models explain as well, where there was time for all that comes before."""
-        try:
-            return elsewhere(self.known, selection, self.course.tell) if selection.complete else ()
-        except TimeIsUp:
-            selection.complete = False
+        """What other models explain as well, where there are others."""
+        if not self.known or not selection.added or selection.base.effects:
             return ()
+        return self.stages.attempt(OTHERS, lambda: elsewhere(self.known, selection, self.course.tell), ())
 
     def _late(self, selection: StepwiseSelection) -> tuple[str, ...]:
-        """How late the machine answers, where the data do not tell by which lag or delay, and there was time.
+        """How late the machine answers, where the data do not tell by which lag or delay.
 
         Where with the last effect they do, and something is left, it is told without that: one that makes the valve's
         lag another, as its stiction, holds this lag in its place.
         """
-        if not self._has_time(selection, "lags and delays"):
-            return ()
+        self.course.tell(Progress(LAGS, 0, 1))
         models, steps = selection.models, [refit for _, refit in selection.ladder() if refit.stable][::-1]
         for refit in steps[: _LATE if models.something_left(selection.found) else 1]:
             if late := lateness(models, selection.base, refit):
@@ -108,29 +186,22 @@ class Diagnoser:
                 return (told_late(late, models.spoken, without),)
         return ()
 
-    def _has_time(self, selection: StepwiseSelection, stage: str) -> bool:
-        """Whether a stage may begin after a search that came to its end; where time is up that has not."""
-        try:
-            self.course.tell(Progress(stage, 0, 1))
-        except TimeIsUp:
-            selection.complete = False
-        return selection.complete
-
     def _pairs(self, selection: StepwiseSelection) -> Sequence[tuple[str, ...]]:
-        """Lags and delays of which no two can be told from two others, where there was time."""
-        if not self._has_time(selection, "lags and delays"):
-            return ()
+        """Lags and delays of which no two can be told from two others."""
+        self.course.tell(Progress(LAGS, 0, 1))
         return undecided_pairs(selection.models, selection.found, selection.added)
 
-    def _is_proposing(self, selection: StepwiseSelection) -> bool:
-        """Whether terms that no list holds are to be searched for.
+    def _may_propose(self, selection: StepwiseSelection) -> bool:
+        """Whether terms that no list holds are wanted where something is left.
 
         Unasked they are not where no more effects were wanted than the few that were found.
         """
-        if self.course.propose is not None:
-            return self.course.propose
         exhausted = self.course.most >= USUAL or len(selection.added) < self.course.most
-        return selection.complete and exhausted and selection.models.something_left(selection.found)
+        return exhausted if self.course.propose is None else self.course.propose
+
+    def _is_proposing(self, selection: StepwiseSelection) -> bool:
+        """Whether they are to be searched for, being wanted: where something is left, or they were asked for."""
+        return self.course.propose is True or selection.models.something_left(selection.found)
 
     def _proposed(self, selection: StepwiseSelection) -> Proposals:
         """What no list holds: beside the fitted model as it was and, where that is not all, beside what was found.
@@ -155,15 +226,16 @@ class Diagnoser:
         self, selection: StepwiseSelection, doubted: Sequence[Suspect], pairs: Sequence[tuple[str, ...]] = ()
     ) -> Diagnosis:
         """What a search found so far; `pairs` are lags and delays of which no two can be told from two others."""
-        steps = selection.ladder()
-        ladder, base = self._ladder(steps), selection.base
-        floor = selection.models.floors.of_use(selection.models.matrix)
+        steps, base = in_time(selection.ladder) or selection.known_ladder(), selection.base
+        ladder, models = self._ladder(steps, selection.added), selection.models
+        unknown: Errors = {**_NONE, **self.fit.noise_floor}
+        floor = in_time(lambda: models.floors.of_use(models.matrix)) or unknown
         return Diagnosis(
             model=self.fit.model,
             effects=base.effects,
             baseline=Baseline(dict(ladder[0].error), base.offset),
             noise_floor=floor,
-            horizon=selection.models.horizon,
+            horizon=models.horizon,
             candidates=tuple(self._ranked(selection, floor["fit"])),
             ladder=tuple(ladder),
             verdict=self._verdict(selection, steps, doubted, floor["fit"], pairs),
@@ -181,15 +253,22 @@ class Diagnoser:
     ) -> Verdict:  # fmt: skip
         """What is said of what was added."""
         models, added, errors = selection.models, selection.added, steps[-1][1].errors
-        unexplained = selection.models.something_left(selection.found)
+        left = in_time(lambda: models.something_left(selection.found))
+        unexplained = True if left is None else left  # nobody knows that it is noise
+        if left is None:
+            self.stages.miss(NOISE)
         alone = (tuple(c.effect for c in group) for group in selection.groups.values() if len(group) > 1)
         groups = (*(group for group in alone if not any({*group} <= {*pair} for pair in pairs)), *pairs)
-        against = tuple(self._contradictions(models, steps))
+        against = in_time(lambda: tuple(self._contradictions(models, steps)))
+        if against is None:
+            self.stages.miss(VERIFY)
+            against = ()
         bounded = tuple(name for name in added if models.at_bound(selection.found, name))
-        text = verdict_text(added, groups, doubted, unexplained, errors, selection.base.error, models.floors.measured,
+        repeats, known = in_time(lambda: models.floors.measured), in_time(lambda: models.floor is not None)
+        text = verdict_text(added, groups, doubted, unexplained, errors, selection.base.error, repeats is not False,
                             floor, against, selection.complete, models.spoken, bounded,
                             None if against else _better_with_fewer(steps))  # fmt: skip
-        stands = standing(added, unexplained, against, models.floor is not None or not bounded)
+        stands = standing(added, unexplained, against, bool(known) or not bounded)
         against_by = tuple(one.effect for one in against)
         return Verdict(added, stands, against_by, groups, tuple(doubted), unexplained, text, bounded)
 
@@ -220,49 +299,67 @@ class Diagnoser:
             Expected(name, refit.held_out.error) for name, refit in steps if name and refit.stable
         )
         if self.course.found is not None:
-            self.course.found(replace(self._said(selection, ()), seconds=self.course.taken))
+            found = self._said(selection, ())
+            text = " ".join((found.verdict.text, *not_looked_at(LATER)))
+            self.course.hear(replace(found, verdict=replace(found.verdict, text=text), not_looked_at=LATER))
 
     def _doubted(self, selection: StepwiseSelection) -> list[Suspect]:
-        if not self._has_time(selection, "labels"):
-            return []
-        return suspects(selection.models, selection.found, selection.models.floors.by_run)
+
+        def doubted() -> list[Suspect]:
+            self.course.tell(Progress("labels", 0, 1))
+            return suspects(selection.models, selection.found, selection.models.floors.by_run)
+
+        return self.stages.attempt(LABELS, doubted, [])
 
     # What is said ----------------------------------------------------------------------------------------------
 
     def _ranked(self, selection: StepwiseSelection, floor: float | None) -> list[Ranked]:
         base, models = selection.base, selection.models
-        alike = tuple(candidate.effect for candidate in selection.alike())
+        alike = tuple(candidate.effect for candidate in in_time(selection.alike) or ())
         group = alike if len(alike) > 1 else ()
-        weighed = selection.weighed()
-        each(lambda c: _judged(c, c.effect in weighed), selection.ranking)  # side by side, not one by one below
+        in_question = in_time(selection.weighed) or frozenset()
+        before = in_time(lambda: base.held_out.error) or 0.0  # without it nothing was refitted that it is compared with
+        with suppress(TimeIsUp):  # side by side, not one by one below
+            each(lambda c: _judged(c, c.effect in in_question), selection.ranking)
         listed = []
         for i, candidate in enumerate(selection.ranking):
-            refit = candidate.refit
-            errors: Mapping[str, float | None] = {"fit": None, "held_out": None, "verify": None}
+            refit, effect = candidate.refit, models.effects[candidate.effect]
+            weighed = (
+                candidate.effect in in_question and in_time(partial(getattr, candidate, "carries_over")) is not None
+            )
             listed.append(Ranked(
                 effect=candidate.effect,
-                error=refit.errors if refit else errors,
+                error=refit.errors if refit else dict(_NONE),
                 offset=refit.held_out.offset if refit else None,
                 predicted_error=base.error * candidate.prediction.share,
                 parameters=refit.parameters if refit else {},
                 group=group if candidate.effect in group else (),
-                evidence=_evidence(candidate, models.effects[candidate.effect], candidate.effect in weighed),
-                why=why(candidate, models.effects[candidate.effect], base.held_out.error, floor, i == 0,
-                        candidate.effect in weighed),
+                evidence=_evidence(candidate, effect, weighed),
+                why=why(candidate, effect, before, floor, i == 0, weighed),
             ))  # fmt: skip
         return listed
 
-    def _ladder(self, steps: Steps) -> list[Rung]:
-        rungs: list[Rung] = []
-        before: Refit | None = None
-        for added, refit in steps:
-            rungs.append(Rung(
-                added=added, error=refit.errors, offset=refit.held_out.offset if refit.stable else None,
-                nats=improvement(before.held_out, refit.held_out).nats if before and refit.stable else None,
-                parameters=refit.parameters,
-            ))  # fmt: skip
-            before = refit if refit.stable else None
+    def _ladder(self, steps: Steps, added: Sequence[str] | None = None) -> list[Rung]:
+        """The rungs, and without figures those of what was `added` that there was no time to refit."""
+        added = [name for name, _ in steps if name] if added is None else added
+        known, rungs = dict(steps), [self._rung(None, None, steps[0][1])]
+        before: Refit | None = steps[0][1]
+        for name in added:
+            refit = known.get(name)
+            rungs.append(Rung(added=name, error=dict(_NONE)) if refit is None else self._rung(name, before, refit))
+            before = refit
         return rungs
+
+    def _rung(self, added: str | None, before: Refit | None, refit: Refit) -> Rung:
+        """One rung, on top of the one `before` where that is known."""
+        compared = before is not None and before.stable and refit.stable
+        return Rung(
+            added=added,
+            error=refit.errors,
+            offset=in_time(lambda: refit.held_out.offset) if refit.stable else None,
+            nats=in_time(lambda: improvement(before.held_out, refit.held_out).nats) if before and compared else None,
+            parameters=refit.parameters,
+        )
 
     def _contradictions(self, models: ModelFamily, steps: Steps) -> Iterator[Contradiction]:
         """The effects of the ladder with which the error rises on verify runs."""
@@ -299,6 +396,11 @@ def _refused(proposed: Proposals, asked: bool | None) -> Iterator[str]:
     """What is said of a search for terms that was stopped, or ended below its bar."""
     if not proposed.complete:
         yield "The search for terms that no list holds was stopped before its end."
+    if proposed.left_out:
+        yield (
+            f"Of {proposed.looked_at} terms that were looked at {proposed.left_out} were left out: no model can hold "
+            "them, or what they add is not finite."
+        )
     if proposed.refused is not None:
         yield proposed.refused.told(proposed.looked_at)
     elif asked and not proposed.looked_at:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.refit import Refit
+from ident.time_budget import in_time
 
 Rungs = list[tuple[str | None, Refit]]
 """What each step added, and the refit; the fitted model first."""
@@ -37,6 +38,14 @@ class Ladder:
                 step = self.between[frozenset(effects)] = self.models.refit(effects, values)
             rungs.append((name, step))
         return rungs
+
+    def known(self, steps: Sequence[Refit], base: Refit) -> Rungs:
+        """The same without a refit: of those that were met."""
+        met = in_time(lambda: self._met(steps))
+        known = met or {frozenset(step.effects): step for step in steps}
+        added = [name for name in steps[-1].effects if name not in base.effects]
+        sets = [frozenset((*base.effects, *added[: i + 1])) for i in range(len(added))]
+        return [(None, base), *((name, known[of]) for name, of in zip(added, sets, strict=True) if of in known)]
 
     def _met(self, steps: Sequence[Refit]) -> dict[frozenset[str], Refit]:
         """Of the refits that were steps, or stand in the ladder, the best with the same effects."""

@@ -38,20 +38,29 @@ Base = tuple[Refit, Sequence[str]]
 """A model, and the effects that could be added to it."""
 
 
+Heard = Callable[[list[Candidate]], None]
+"""Told of the candidates of one model as far as each has come, while the ranking goes on."""
+
+
+def _unheard(_candidates: list[Candidate]) -> None:
+    """Keep nothing."""
+
+
 def rank(
-    models: ModelFamily, base: Refit, names: Sequence[str], report: Report, thorough: bool = True, strong: bool = False
-) -> list[Candidate]:
+    models: ModelFamily, base: Refit, names: Sequence[str], report: Report, thorough: bool = True, strong: bool = False,
+    heard: Heard = _unheard,
+) -> list[Candidate]:  # fmt: skip
     """The candidates, best first.
 
     `thorough`: more are refitted, and also where nothing promises to help. `strong`: from strong effects, too, which a
     promise made with the fitted parameters does not see where these have gone far astray for want of the effect.
     """
-    return rank_each(models, [(base, names)], report, thorough, strong)[0]
+    return rank_each(models, [(base, names)], report, thorough, strong, heard=heard)[0]
 
 
 def rank_each(
     models: ModelFamily, bases: Sequence[Base], report: Report, thorough: bool = True, strong: bool = False,
-    beside: Refit | None = None,
+    beside: Refit | None = None, heard: Heard = _unheard,
 ) -> list[list[Candidate]]:  # fmt: skip
     """The same for several models, with what is refitted for all of them side by side.
 
@@ -59,6 +68,7 @@ def rank_each(
     itself stands among the candidates as it is, or as a refit from a base finds it, where that is better.
     """
     promised = [_promised(models, base, names, report) for base, names in bases]
+    heard(_so_far(promised[0]))
     models_of = [base for base, _ in bases]
     contenders = [
         of[:_CONTENDERS] if thorough else _near(models, base, of) for base, of in zip(models_of, promised, strict=True)
@@ -79,6 +89,7 @@ def rank_each(
         ranked(models, [one for one in ones if not _is(base, one.prediction, beside) or _comes_below(one, anew)])
         for base, ones in zip(models_of, _in_turn(models, models_of, promised, contenders, trial), strict=True)
     ]
+    heard(_so_far(promised[0], tried[0]))
     finalists = [_finalists(models, base, ones, sure) for base, ones in zip(models_of, tried, strict=True)]
 
     def final(base: Refit, candidate: Candidate) -> Candidate:
@@ -89,6 +100,7 @@ def rank_each(
         return confirmed
 
     found = [ranked(models, ones) for ones in _side_by_side(final, models_of, finalists)]
+    heard(_so_far(promised[0], tried[0], found[0]))
     report(Progress("confirming", done, done + 1))
     deeper = _DEEPER if thorough else 1
     elsewhere = partial(_elsewhere, models, asked if beside else {})
@@ -97,6 +109,13 @@ def rank_each(
         _joined(models, base, of, stages, beside)
         for base, of, *stages in zip(models_of, promised, tried, found, farther, strict=True)
     ]
+
+
+def _so_far(promised: Sequence[Prediction], *stages: Sequence[Candidate]) -> list[Candidate]:
+    """The candidates by how far they came, those that came as far by their score."""
+    came = {one.effect: one for one in chain(*stages)}
+    listed = [came.get(one.effect, Candidate(one)) for one in promised]
+    return sorted(listed, key=lambda one: (one.stage, one.score))
 
 
 def _in_turn(

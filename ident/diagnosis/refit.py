@@ -22,6 +22,7 @@ from ident.fit.uncertainty import DETERMINED, Covariance, covariance
 from ident.matrix import Run, over_runs
 from ident.noise.autoregression import prediction_errors
 from ident.noise.effective_sample_size import independent_samples
+from ident.time_budget import in_time
 
 Array = NDArray[np.float64]
 _FOLLOWED = 1.03  # times the promised error that a simulation may leave
@@ -127,10 +128,14 @@ class Refit:
 
     @property
     def errors(self) -> dict[str, float | None]:
-        """Its errors by what they are measured on; None where it is unstable on a run that it is fitted to."""
+        """Its errors by what they are measured on; None where it is unstable on a run that it is fitted to.
+
+        And where there is no time to simulate it there.
+        """
         if not self.stable:
             return {"fit": None, "held_out": None, "verify": None}
-        return {"fit": self.error, "held_out": self.held_out.error, "verify": self.on_verify}
+        held_out, verify = in_time(lambda: self.held_out.error), in_time(lambda: self.on_verify)
+        return {"fit": self.error, "held_out": held_out, "verify": verify}
 
     def left(self, runs: Sequence[Run]) -> list[Array]:
         """What it leaves of any runs of the matrix, (n,) each, less its mean or over windows."""

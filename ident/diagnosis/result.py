@@ -172,9 +172,10 @@ class Diagnosis(Shown):
 
     `budget` is None where the model is unstable at every run, `next_experiment` where no run can be proposed. With a
     `horizon` (s) every error is that over windows of this length, as `window` of the fit says it. Not `complete`, it is
-    what had been found when the search was stopped, or goes on. `proposals` are terms that no list holds, of as many
-    that were `looked_at`: they are no part of the verdict. None is what an earlier version did not tell. `matrix` holds
-    the data, where the diagnosis was made here.
+    what had been found when the search was stopped, or goes on; `not_looked_at` are the stages that are missing.
+    `proposals` are terms that no list holds, of as many that were `looked_at`, of which so many were `left_out`, for no
+    model can hold them or they are not finite: they are no part of the verdict. None is what an earlier version did
+    not tell. `matrix` holds the data, where the diagnosis was made here.
     """
 
     model: str = "qian2014"
@@ -188,7 +189,9 @@ class Diagnosis(Shown):
     verdict: Verdict
     proposals: tuple[Proposal, ...] | None = None
     looked_at: int | None = None
+    left_out: int | None = None
     complete: bool = True
+    not_looked_at: tuple[str, ...] = ()
     next_experiment: NextRun | None = None
     settings: Mapping[str, Any] = field(default_factory=dict)
     seed: int = 0
@@ -222,8 +225,8 @@ class Diagnosis(Shown):
             del data["horizon"]
         if self.looked_at is None:
             del data["looked_at"]
-        if self.complete:
-            del data["complete"]
+        if self.left_out is None:
+            del data["left_out"]
         if not self.verdict.stood_in:
             del data["verdict"]["stood_in"]
         if self.verdict.standing is None:

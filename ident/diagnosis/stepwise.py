@@ -38,7 +38,8 @@ class StepwiseSelection:
 
     `steps` are the refits, the fitted model first; `ranking` the first ranking; `groups` for each added effect the
     effects that the data cannot tell from it, itself included, best first. `report` may end the search with TimeIsUp:
-    then not `complete`, it has what was found until there. `heard` hears of each step; `known` is a refit with effects
+    then not `complete`, it has what was found until there, and of a first ranking that was cut off how far it came.
+    `heard` hears of each step; `known` is a refit with effects
     that was met before; `less` are refits of steps without one of their effects.
     """
 
@@ -66,21 +67,28 @@ class StepwiseSelection:
 
     def __post_init__(self) -> None:
         self.steps, self.rungs = [self.base], Ladder(self.models)
+        self._glimpse: list[Candidate] = []
 
     def run(self) -> StepwiseSelection:
         """Add, take out, replace, until nothing helps; where the noise is not reached, look farther and go on."""
         with suppress(TimeIsUp):
             self._search()
+            self._shortened()
             self.complete = True
-        self._shortened()
-        self._learned()
+        self.ranking = self.ranking or self._glimpse
+        with suppress(TimeIsUp):
+            self._learned()
         return self
 
     def look(self) -> list[Candidate]:
         """The first ranking. Raises TimeIsUp."""
         if not self.ranking:
-            self.ranking = self._rank(self.base, thorough=True)
+            self.ranking = rank(self.models, self.base, self._others(self.base), self.report, heard=self._glimpsed)
         return self.ranking
+
+    def _glimpsed(self, candidates: list[Candidate]) -> None:
+        """Keep how far the first ranking has come."""
+        self._glimpse = candidates
 
     def _search(self) -> None:
         self._rounds()
@@ -132,6 +140,10 @@ class StepwiseSelection:
     def ladder(self) -> Rungs:
         """From the fitted model to the last, one effect a step, without the detours: what was added, and the refit."""
         return self.rungs.rungs(self.steps, self.base)
+
+    def known_ladder(self) -> Rungs:
+        """The same of what is known, where there is no time for a refit."""
+        return self.rungs.known(self.steps, self.base)
 
     def _shortened(self) -> bool:
         """End the ladder at the first of its rungs on which the last step does not improve; True where one was found.

@@ -21,6 +21,7 @@ from scipy.linalg import expm
 
 from ident.linear import LinearModel
 from ident.simulation.compiled import function
+from ident.time_budget import check_time
 
 Array = NDArray[np.float64]
 LANES = 16
@@ -128,6 +129,7 @@ def responses(recursion: Recursion, u: Array, spare: int = 0) -> Iterator[tuple[
     for first in range(0, len(u), length):
         last = min(first + length, len(u))
         for packed, out in groups:
+            check_time()
             kernel(packed, u, first, last, out, lanes)
         yield buffer[: (last - first) * lanes].reshape(-1, lanes), first, last
 

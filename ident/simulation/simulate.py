@@ -19,6 +19,7 @@ from ident.simulation.filters import pack_filter
 from ident.simulation.inputs import fine, jump_share
 from ident.simulation.kernel import HELD, LANES, SHARE, WIDE, Kernel, constant, kernel
 from ident.simulation.machine_call import advance_groups
+from ident.time_budget import LONGEST_BATCH, check_time
 
 Array = NDArray[np.float64]
 _CHUNK = 1 << 18  # outputs that are simulated in one go: they stay near the core
@@ -70,6 +71,7 @@ class Simulation:
 
     def outputs(self, length: int = 4096) -> Iterator[tuple[Array, int, int]]:
         """The outputs in blocks of at most `length` samples: ((samples, runs, vectors), first, last)."""
+        check_time()
         (count, vectors), samples = self.shape, self.runs[0].length
         lanes = -(-count * vectors // LANES) * LANES
         built = self._kernel()
@@ -90,12 +92,16 @@ class Simulation:
             out = np.empty((end - begin) * lanes)
 
             def advance(share: NDArray[np.intp], begin: int = begin, end: int = end, out: Array = out) -> None:
-                groups, ends = (int(share[0]), int(share[-1]) + 1), (begin * self.steps, (end - 1) * self.steps + 1)
                 at = command.begin, force_at
-                advance_groups(code, groups, buffers, command.record, forces, *at, *ends, self.steps, out, lanes)
-                if end < samples:  # on to the first step of the next chunk
-                    rest, spare = (ends[1], end * self.steps), np.empty(lanes)
-                    advance_groups(code, groups, buffers, command.record, forces, *at, *rest, 1 << 40, spare, lanes)
+                for some, first, last in _batches(share, begin, end, self.steps):
+                    check_time()
+                    rows = out[(first - begin) * lanes :]
+                    ends = first * self.steps, (last - 1) * self.steps + 1
+                    advance_groups(code, some, buffers, command.record, forces, *at, *ends, self.steps, rows, lanes)
+                    if last < samples:  # on to the first step of what follows
+                        check_time()
+                        rest, spare = (ends[1], last * self.steps), np.empty(lanes)
+                        advance_groups(code, some, buffers, command.record, forces, *at, *rest, 1 << 40, spare, lanes)
 
             each(advance, np.array_split(np.arange(groups), min(groups, cores())))
             rows = out.reshape(-1, lanes)[:, : count * vectors].reshape(-1, count, vectors)
@@ -175,6 +181,22 @@ class Simulation:
         for known_filter in built.filters:
             if known_filter.first not in built.states.values():  # else it begins in its state
                 rows[known_filter.first] = constant(known_filter.input, found)
+
+
+def _batches(
+    groups: NDArray[np.intp], begin: int, end: int, steps: int
+) -> Iterator[tuple[tuple[int, int], int, int]]:  # fmt: skip
+    """Groups of lanes and samples to be advanced in one go, from one to before another: between them time may be up.
+
+    Mostly all of them at once; of long records, or many lanes, some groups after the other, each from the first sample
+    to the last. However they are cut, a lane takes the same steps.
+    """
+    first, last = int(groups[0]), int(groups[-1]) + 1
+    samples = max(1, LONGEST_BATCH // (WIDE * steps))  # of one group
+    together = max(1, samples // max(end - begin, 1))
+    for group in range(first, last, together):
+        for sample in range(begin, end, samples):
+            yield (group, min(group + together, last)), sample, min(sample + samples, end)
 
 
 def _at_rest(chain: Chain, known: Mapping[str, Any]) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from ident.effects import EFFECTS
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
+from ident.time_budget import TimeBudget
 from ident.workflows import diagnose, identify
 from tests.blind.machines import Machine, matrix_of
 from tests.blind.noises import with_noise
@@ -59,21 +60,21 @@ def test_each_step_is_told_as_it_is_found(dead_zone):
     assert first.verdict.text.startswith("The search was not over")
     assert Diagnosis.from_json(first.to_json()) == first
     assert dead_zone.complete
-    assert "complete" not in dead_zone.to_json()
+    assert dead_zone.to_json()["complete"] is True
+    assert dead_zone.not_looked_at == ()
     assert dead_zone.looked_at == 0  # at the floor no term is searched for that no list holds
 
 
 @pytest.mark.usefixtures("few_effects")
-def test_what_was_found_when_the_time_is_over_is_the_diagnosis(monkeypatch):
+def test_what_was_found_when_the_time_is_over_is_the_diagnosis():
     """The clock stands still until something was added."""
     matrix, clock, steps = measured(dead_zone=2.5e-4), [0.0], []
-    monkeypatch.setattr("ident.diagnosis.course.time.monotonic", lambda: clock[0])
 
     def heard(found: Diagnosis) -> None:
         steps.append(found)
         clock[0] = 61.0
 
-    found = diagnose(matrix, seconds=60.0, found=heard)
+    found = diagnose(matrix, found=heard, budget=TimeBudget(60.0, lambda: clock[0]))
     assert len(steps) == 1
     assert found.verdict.effects == ("dead_zone",)
     assert found.ladder == steps[0].ladder

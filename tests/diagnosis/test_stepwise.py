@@ -102,7 +102,7 @@ class Judged:
         """An effect has one parameter of its own name."""
         return effect
 
-    def rank(self, _models, base, names, _report, _thorough, strong):
+    def rank(self, _models, base, names, _report, _thorough=True, strong=False, **_heard):
         """An effect helps where the score falls."""
 
         def judged(name):

@@ -60,8 +60,8 @@ class Proposals:
             return self
         refused = (one.refused for one in (self, other) if one.refused is not None)
         best = min(refused, key=lambda one: one.error["fit"] or 0.0)
-        counted = {"looked_at": self.looked_at + other.looked_at, "left_out": self.left_out + other.left_out}
-        return replace(self, refused=best, **counted)
+        looked_at, left_out = self.looked_at + other.looked_at, self.left_out + other.left_out
+        return replace(self, refused=best, looked_at=looked_at, left_out=left_out)
 
     def left(self, before: float, what: str = "fit") -> float:
         """The error with all of it on the fitted runs, or "held_out" from the fit in turn; `before` without."""

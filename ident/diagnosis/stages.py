@@ -1,0 +1,80 @@
+"""What follows the search for effects, stage by stage: one that runs out of time, or fails, takes nothing away.
+
+What was not looked at is listed, what failed is told in a note and logged with its traceback for the developers.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+from ident.diagnosis.course import Course
+from ident.errors import TimeIsUp, Unusable
+
+EFFECTS, FURTHER = "effects of the catalogue", "further effects"
+LABELS, OTHERS, LAGS = "labels of the runs", "other models", "lags and delays"
+VERIFY, NOISE = "runs to verify", "whether what is left is noise"
+TERMS, NEXT_RUN, ERROR_BUDGET = "search for unknown terms", "next run", "error budget"
+_GIVEN = (NEXT_RUN, ERROR_BUDGET)
+"""Stages that give a figure of their own, null where there was no time for them."""
+LATER = (FURTHER, LABELS, OTHERS, LAGS, ERROR_BUDGET, NEXT_RUN, TERMS)
+"""What is still to come while effects are added."""
+_IN_ORDER = (EFFECTS, FURTHER, NOISE, VERIFY, *LATER[1:])
+
+Made = TypeVar("Made")
+_log = logging.getLogger("servoident.diagnosis")
+_log.addHandler(logging.NullHandler())  # a user reads the note
+
+
+@dataclass
+class Stages:
+    """The stages of one diagnosis, and `notes` for the reader on those that there was no time for, or that failed."""
+
+    course: Course
+    notes: list[str] = field(default_factory=list)
+    _missed: set[str] = field(default_factory=set)
+
+    @property
+    def not_looked_at(self) -> tuple[str, ...]:
+        """Those, as they follow each other."""
+        return tuple(stage for stage in _IN_ORDER if stage in self._missed)
+
+    def attempt(self, stage: str, make: Callable[[], Made], instead: Made) -> Made:
+        """What a stage makes; where it runs out of time, or fails, `instead`. What the caller stops it by is raised."""
+        try:
+            self.course.budget.check()
+            return make()
+        except TimeIsUp:
+            self.miss(stage)
+        except Exception as error:
+            if error is self.course.stopped_by:
+                raise
+            self._failed(stage, error)
+        return instead
+
+    def miss(self, stage: str) -> None:
+        """There was no time for a stage."""
+        if stage in _GIVEN and stage not in self._missed:
+            self.notes.append(f"There was no time for the {stage}.")
+        self._missed.add(stage)
+
+    def _failed(self, stage: str, error: Exception) -> None:
+        self._missed.add(stage)
+        self.notes.append(f"The {stage} failed: {_why(error)}. What was found before it stands.")
+        if not isinstance(error, Unusable | MemoryError):
+            _log.error("the %s of a diagnosis failed", stage, exc_info=error)
+
+
+def _why(error: Exception) -> str:
+    if isinstance(error, Unusable):
+        return str(error)
+    if isinstance(error, MemoryError):
+        return "it needs more memory than there is; use fewer or shorter runs"
+    return f"a defect of the program ({type(error).__name__}), which its log tells of"
+
+
+def not_looked_at(stages: Sequence[str]) -> tuple[str, ...]:
+    """The sentence that lists these stages; none where everything was looked at."""
+    return (f"Not looked at: {', '.join(stages)}.",) if stages else ()

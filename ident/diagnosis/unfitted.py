@@ -1,0 +1,50 @@
+"""What is told where the time was over before anything was ranked."""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+
+from ident.diagnosis.result import Baseline, Diagnosis, Verdict
+from ident.diagnosis.stages import EFFECTS, LATER, not_looked_at
+from ident.fit.result import FitResult
+from ident.fit.settings import Settings
+from ident.matrix import Matrix
+
+_STAGES = (EFFECTS, *LATER[1:])
+_NONE = {"fit": None, "held_out": None, "verify": None}
+
+
+def unfitted(matrix: Matrix, settings: Settings, seconds: float) -> Diagnosis:
+    """The diagnosis of no fit: there was no time to make one; `seconds` is what it took."""
+    text = "The search was not over: there was no time to fit a model first; give more, or a fit."
+    return _told(matrix, settings, Baseline(dict(_NONE)), dict(_NONE), text, seconds)
+
+
+def unranked(matrix: Matrix, fit: FitResult, seconds: float) -> Diagnosis:
+    """That of a fit beside which no effect could be looked at: its own errors stand."""
+    error, floor = ({**_NONE, **of} for of in (fit.error, fit.noise_floor))
+    settings = Settings.from_json(dict(fit.settings)) if fit.settings else Settings(model=fit.model)
+    baseline = Baseline(error, fit.offset.get("fit"))
+    text = "The search was not over: there was no time to look at any effect."
+    return _told(matrix, settings, baseline, floor, text, seconds)
+
+
+def _told(
+    matrix: Matrix, settings: Settings, baseline: Baseline, floor: dict[str, float | None], text: str, seconds: float
+) -> Diagnosis:  # fmt: skip
+    return Diagnosis(
+        model=settings.model,
+        effects=tuple(settings.effects),
+        baseline=baseline,
+        noise_floor=floor,
+        candidates=(),
+        verdict=Verdict(unexplained=True, text=" ".join((text, *not_looked_at(_STAGES)))),
+        proposals=(),
+        complete=False,
+        not_looked_at=_STAGES,
+        seed=settings.seed,
+        seconds=seconds,
+        version=version("servoident"),
+        data_hash=matrix.data_hash,
+        settings=settings.to_json(),
+    )

@@ -1,0 +1,116 @@
+"""Whatever fails after the catalogue is through, its verdict stands, with a note that says what failed."""
+
+from __future__ import annotations
+
+import logging
+from functools import cache
+
+import pytest
+
+from ident.diagnosis import diagnose as diagnosing
+from ident.diagnosis.course import Course
+from ident.diagnosis.result import Diagnosis
+from ident.diagnosis.stages import ERROR_BUDGET, LAGS, NEXT_RUN, TERMS, Stages
+from ident.errors import Cancelled, TimeIsUp, Unusable
+from ident.matrix import Matrix
+from ident.progress import Progress
+from ident.workflows import diagnose
+from tests.blind.machines import Machine
+from tests.reference import qian_reference as linear
+
+DEFECT = "a defect of the program (ZeroDivisionError), which its log tells of"
+
+
+@cache
+def matrix() -> Matrix:
+    """Five runs of a quarter of a second."""
+    return Machine(linear.Plant(), {"dead_zone": 2.5e-4}, 0.01, small=True, seed=20).measured(seconds=0.25, every=6)
+
+
+def failing(*_given, **_named):
+    raise ZeroDivisionError("somewhere inside")
+
+
+@pytest.mark.usefixtures("few_effects", "survives")
+def test_the_catalogues_verdict_stands_whatever_fails_later(monkeypatch, caplog):
+    """Lags, error budget, next run and terms at once: each has its note, and its traceback in the log."""
+    for name in ("lateness", "error_budget", "next_run"):
+        monkeypatch.setattr(diagnosing, name, failing)
+    monkeypatch.setattr(diagnosing.Search, "run", failing)
+    heard: list[Diagnosis] = []
+    found = diagnose(matrix(), most=1, propose=True, found=heard.append)
+    assert found.verdict.effects == ("dead_zone",)
+    assert not found.complete
+    assert found.not_looked_at == (LAGS, ERROR_BUDGET, NEXT_RUN, TERMS)
+    for stage in found.not_looked_at:
+        assert f"The {stage} failed: {DEFECT}. What was found before it stands." in found.notes
+    assert (found.budget, found.next_experiment, found.proposals) == (None, None, ())
+    assert found.verdict.text.endswith(f"Not looked at: {LAGS}, {ERROR_BUDGET}, {NEXT_RUN}, {TERMS}.")
+    raised = [record.exc_info[0] for record in caplog.records if record.name == "servoident.diagnosis"]
+    assert raised == [ZeroDivisionError] * 4
+    before = heard[-1]  # told before the terms were searched for, and with all that was known by then
+    assert TERMS in before.not_looked_at
+    assert (before.verdict.effects, before.candidates, before.ladder) == (
+        found.verdict.effects, found.candidates, found.ladder,
+    )  # fmt: skip
+
+
+def test_a_test_sees_what_a_user_is_spared():
+    """Where nobody asks for it to survive, a stage that fails fails the test."""
+    with pytest.raises(ZeroDivisionError):
+        Stages(Course(most=1)).attempt(TERMS, failing, None)
+
+
+@pytest.mark.usefixtures("survives")
+@pytest.mark.parametrize(
+    ("error", "told"),
+    [
+        (Unusable("no-model", "two states are one", "chain", "part them"), "chain: two states are one; part them"),
+        (MemoryError(), "it needs more memory than there is; use fewer or shorter runs"),
+        (ValueError("array must not contain infs or NaNs"), "a defect of the program (ValueError)"),
+    ],
+)
+def test_a_note_says_what_failed_in_plain_words(error, told, caplog):
+    """Only a defect is for the developers' log."""
+    stages = Stages(Course(most=1))
+
+    def fails() -> int:
+        raise error
+
+    assert stages.attempt(NEXT_RUN, fails, 7) == 7
+    assert stages.not_looked_at == (NEXT_RUN,)
+    assert told in stages.notes[0]
+    assert bool(caplog.records) != isinstance(error, Unusable | MemoryError)
+
+
+def test_what_the_caller_stops_the_work_by_is_no_failure():
+    """Cancelled, or whatever a report raises, ends the diagnosis; TimeIsUp of a report ends what is still to come."""
+
+    def report(progress: Progress) -> None:
+        raise Cancelled if progress.stage == "labels" else TimeIsUp
+
+    course = Course(most=1, report=report)
+    stages = Stages(course)
+    with pytest.raises(Cancelled):
+        stages.attempt(NEXT_RUN, lambda: course.tell(Progress("labels", 0, 1)), None)
+    assert stages.attempt(NEXT_RUN, lambda: course.tell(Progress("next run", 0, 1)), None) is None
+    assert course.budget.is_over
+    assert stages.notes == ["There was no time for the next run."]
+
+
+def test_a_defect_is_kept_in_the_error_log_of_the_command_line(tmp_path, monkeypatch):
+    """The note says that the log tells of it."""
+    from app.cli.failures import error_log, logged
+
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    log = logging.getLogger("servoident.diagnosis")
+    handlers = [handler for handler in log.handlers if not isinstance(handler, logging.NullHandler)]
+    for handler in handlers:
+        log.removeHandler(handler)
+    try:
+        with logged():
+            Stages(Course(most=1)).attempt(TERMS, failing, None)
+    finally:
+        for handler in handlers:
+            log.addHandler(handler)
+    assert "ZeroDivisionError: somewhere inside" in error_log().read_text(encoding="utf-8")

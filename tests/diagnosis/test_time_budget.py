@@ -1,0 +1,186 @@
+"""After the time limit no simulation begins, in any stage; told by events: a clock that jumps at the n-th batch."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cache
+from itertools import islice
+
+import numpy as np
+import pytest
+
+from ident.diagnosis import family
+from ident.diagnosis.proposals import candidate
+from ident.diagnosis.proposals.search import Search
+from ident.diagnosis.proposals.terms import Library
+from ident.diagnosis.result import Diagnosis
+from ident.errors import TimeIsUp
+from ident.fit.simulated_runs import every_run
+from ident.matrix import Matrix
+from ident.parallel import each
+from ident.presets import preset
+from ident.progress import Progress
+from ident.simulation import recursion, simulate
+from ident.time_budget import TimeBudget
+from ident.workflows import diagnose
+from tests.blind.machines import Machine
+from tests.reference import qian_reference as linear
+
+FEW = ("dead_zone", "command_delay")
+LIMIT = 60.0
+MODEL = preset("qian2014", ("dead_zone",))
+
+
+@cache
+def matrix() -> Matrix:
+    """Five runs of half a second, with a dead zone, and something that the few effects do not hold."""
+    hidden = {"dead_zone": 2.5e-4, "coulomb_friction": 60.0}
+    return Machine(linear.Plant(), hidden, 0.01, small=True, seed=20).measured(seconds=0.25, every=6)
+
+
+@dataclass
+class Events:
+    """The batches of simulations that were begun, each by its stage; at the `last` of them the time is over."""
+
+    last: int | None = None
+    now: float = 0.0
+    stage: str = "fit"
+    stages: list[str] = field(default_factory=list)
+    late: int = 0
+
+    def begun(self) -> None:
+        self.late += self.now > LIMIT
+        self.stages.append(self.stage)
+        if len(self.stages) == self.last:
+            self.now = 2 * LIMIT
+
+    def report(self, progress: Progress) -> None:
+        self.stage = progress.stage
+
+    @property
+    def budget(self) -> TimeBudget:
+        return TimeBudget(LIMIT, lambda: self.now)
+
+
+@pytest.fixture
+def counted(monkeypatch) -> Callable[..., tuple[Diagnosis, Events]]:
+    """A diagnosis on one core, whose batches are counted where the compiled code is called."""
+    here: list[Events] = []
+    monkeypatch.setattr("ident.parallel._idle", lambda: threading.Semaphore(0))
+    monkeypatch.setattr(family, "CATALOGUE", tuple(one for one in family.CATALOGUE if one.name in FEW))
+
+    # Of the search for terms a few steps: it is the same loop for many.
+    every = Library.terms
+    monkeypatch.setattr(Library, "terms", lambda of: islice(every(of), 60))
+    monkeypatch.setattr(candidate, "_TRIED", 1)
+    monkeypatch.setattr(candidate, "_PAIRS", 0)
+    monkeypatch.setattr(Search, "_drawn", lambda *_: None)
+
+    def telling(function):
+        def called(*given):
+            here[-1].begun()
+            return function(*given)
+
+        return called
+
+    kernels = recursion.advance
+    monkeypatch.setattr(simulate, "advance_groups", telling(simulate.advance_groups))
+    monkeypatch.setattr(recursion, "advance", lambda *of: telling(kernels(*of)))
+
+    def diagnosed(last: int | None = None, propose: bool = True) -> tuple[Diagnosis, Events]:
+        here.append(events := Events(last))
+        found = diagnose(matrix(), most=1, propose=propose, report=events.report, budget=events.budget)
+        return found, events
+
+    return diagnosed
+
+
+def ends(stages: list[str], each_stage: int) -> list[int]:
+    """Numbers of batches at which the time may be over: some of each stage, and the very last."""
+    found = set()
+    for stage in dict.fromkeys(stages):
+        of = [number for number, one in enumerate(stages, 1) if one == stage]
+        found |= {of[i] for i in np.linspace(0, len(of) - 1, each_stage).round().astype(int)}
+    return sorted(found)
+
+
+def test_after_the_limit_no_simulation_begins_in_any_stage(counted, full):
+    """The fit, the ranking, the labels, lags and delays, the error budget, the next run and the terms.
+
+    In the short form the time is over once in each, in the full one twelve times.
+    """
+    whole, events = counted(propose=full)
+    assert whole.complete
+    assert whole.not_looked_at == ()
+    assert events.late == 0
+    stages = {*events.stages}
+    assert {"prepare", "polish", "predicting", "trying", "confirming", "labels", "error budget", "next run"} <= stages
+    cuts = ends(events.stages, 12 if full else 1)
+    if not full:  # the way to the terms is the same
+        cuts.append(len(events.stages) + 20)
+    for last in cuts:
+        found, cut = counted(last)
+        assert cut.late == 0, (last, cut.stage)
+        assert len(cut.stages) == last
+        assert not found.complete
+        assert found.not_looked_at
+        assert f"Not looked at: {', '.join(found.not_looked_at)}." in found.verdict.text
+        assert Diagnosis.from_json(found.to_json()).to_json() == found.to_json()
+        assert found.to_json()["complete"] is False
+        _holds_what_was_found(found, whole, cut.stages[-1])
+
+
+def _holds_what_was_found(found: Diagnosis, whole: Diagnosis, stage: str) -> None:
+    """By the stage in which the time was over: what came before it is there, and as it is without a limit."""
+    if stage in ("error budget", "next run", "proposing"):
+        assert found.candidates == whole.candidates
+        assert found.ladder == whole.ladder
+        assert found.verdict.effects == whole.verdict.effects == ("dead_zone",)
+    if stage == "polish":
+        assert found.candidates == ()
+        assert found.baseline.error == {"fit": None, "held_out": None, "verify": None}
+    if stage == "trying" and not found.verdict.effects:
+        assert {one.effect for one in found.candidates} == {*FEW}
+        assert found.verdict.unexplained
+    if stage == "error budget":
+        assert found.budget is None
+        assert "There was no time for the error budget." in found.notes
+    if stage in ("error budget", "next run"):
+        assert found.next_experiment is None
+        assert "There was no time for the next run." in found.notes
+    if stage == "proposing":
+        assert (found.budget, found.next_experiment) == (whole.budget, whole.next_experiment)
+        assert found.not_looked_at == ("search for unknown terms",)
+
+
+def test_work_outside_of_a_budget_is_not_limited():
+    """A budget holds for what is begun within it, on every thread that helps, and for nothing else."""
+    over = TimeBudget(1.0, iter([0.0, *[2.0] * 100]).__next__)
+    with over.running(), pytest.raises(TimeIsUp):
+        each(lambda item: item, range(3))
+    assert each(lambda item: item, range(3)) == [0, 1, 2]
+
+
+def test_a_long_batch_is_cut_into_short_ones_and_gives_the_same(monkeypatch):
+    """So that it can be stopped: whatever its length and however many lanes, to the last bit."""
+    values = {p.in_equations: p.value for p in MODEL.parameters}
+    values["dead_zone__half_width"] = 1e-4
+    together = _outputs(values)
+    batches: list[tuple[tuple[int, int], int, int]] = []
+    advance = simulate.advance_groups
+
+    def told(code, groups, *given):
+        batches.append((groups, *given[5:7]))
+        return advance(code, groups, *given)
+
+    monkeypatch.setattr(simulate, "advance_groups", told)
+    monkeypatch.setattr(simulate, "LONGEST_BATCH", 4_000)
+    cut = _outputs(values)
+    assert max((groups[1] - groups[0]) * (last - first) * simulate.WIDE for groups, first, last in batches) <= 4_000
+    assert all(np.array_equal(cut[run], together[run]) for run in together)
+
+
+def _outputs(values):
+    return every_run(MODEL, matrix()).outputs_at(values)
