@@ -93,8 +93,8 @@ class Diagnoser:
         """
         selection, doubted = self._selected()
         told = self._elsewhere(selection)
-        late = self.stages.attempt(LAGS, lambda: self._late(selection), ())
-        pairs = self.stages.attempt(LAGS, lambda: self._pairs(selection), ())
+        late: Sequence[str] = self.stages.attempt(LAGS, partial(self._late, selection), [])
+        pairs: Sequence[tuple[str, ...]] = self.stages.attempt(LAGS, partial(self._pairs, selection), [])
         found = self._said(selection, doubted, pairs)
         over = () if found.horizon == self.models.horizon else tuple(told_longer(self.models.horizon, found.horizon))
         after = (*over, *late, *as_well(told))
@@ -172,7 +172,7 @@ class Diagnoser:
             return ()
         return self.stages.attempt(OTHERS, lambda: elsewhere(self.known, selection, self.course.tell), ())
 
-    def _late(self, selection: StepwiseSelection) -> tuple[str, ...]:
+    def _late(self, selection: StepwiseSelection) -> Sequence[str]:
         """How late the machine answers, where the data do not tell by which lag or delay.
 
         Where with the last effect they do, and something is left, it is told without that: one that makes the valve's
