@@ -229,10 +229,11 @@ class ProfileView(BaseModel):
 
 
 class FitColumn(BaseModel):
-    """One of several fits, under the letter that the runs name it by."""
+    """One of several fits, under the letter that the runs name it by, and the serial number of its actuator."""
 
     fit: str
     name: str
+    serial: str = ""
     model: str
     effects: list[str]
     error: Errors

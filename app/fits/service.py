@@ -165,14 +165,15 @@ def comparison(context: Context, fit_id: str) -> ComparisonView:
 
 def beside(context: Context, fit_id: str, others: Sequence[str]) -> SideBySide:
     """A fit and others, with the errors that they were stored with. Raises Failure 404, Unusable."""
-    return of_fits([FitResult.from_json(find(context, one).result) for one in (fit_id, *others)])
+    rows = [find(context, one) for one in (fit_id, *others)]
+    return of_fits([FitResult.from_json(row.result) for row in rows], [row.serial for row in rows])
 
 
 def side_by_side(context: Context, fit_id: str, others: Sequence[str]) -> SideBySideView:
     """The same as it is sent."""
     found = beside(context, fit_id, others)
     fits = [
-        FitColumn(fit=name, name=one.name, model=one.fit.model, effects=list(one.fit.effects), error=dict(one.error),
+        FitColumn(fit=name, name=one.name, serial=one.serial, model=one.fit.model, effects=list(one.fit.effects), error=dict(one.error),
                   parameters={key: EstimateView(**entry) for key, entry in written(one.fit.parameters).items()})
         for name, one in zip((fit_id, *others), found.columns, strict=True)
     ]  # fmt: skip

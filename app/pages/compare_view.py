@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from app.fits.service import Stored
 from app.pages.figure_forms import FigureForm, forms
 from ident.fit.result import Estimate, FitResult
 from ident.presets import preset
+from ident.words.error_change import error_change
 from ident.words.number import plain
 from ident.words.percent import change, percent_in_print
 from ident.words.plus_minus import plus_minus
 from ident.words.symbols import symbol
 from ident.words.titles import of_parameter, title, with_effects
 from schemas.matrix import MatrixView
+
+_TIMES = 2.0  # from here on a number is so many times what it was, not some hundred per cent more
 
 
 @dataclass(frozen=True)
@@ -46,13 +49,14 @@ class Compared:
 
 @dataclass(frozen=True)
 class ComparedRun:
-    """A run's error in both fits, fractions; None where a fit has not seen it."""
+    """A run's error in both fits, and their difference, fractions; None where a fit has not seen it."""
 
     id: str
     use: str
     first: float | None
     second: float | None
-    change: float | None
+    difference: float | None
+    change: str
 
 
 @dataclass(frozen=True)
@@ -73,15 +77,26 @@ class CompareView:
 
     @property
     def serial(self) -> str:
-        """Its actuator, for the names of downloads."""
-        return self.first.serial
+        """The actuators, for the names of downloads."""
+        return "-".join(self.serials)
+
+    @property
+    def serials(self) -> tuple[str, ...]:
+        """The serial numbers of the actuators, each once."""
+        return tuple(dict.fromkeys((self.first.serial, self.second.serial)))
+
+
+def in_order(stored: Sequence[Stored]) -> list[Stored]:
+    """Fits as they were made, the oldest first, a fit before those that come from it: changes are from old to new."""
+    ids = {one.id for one in stored}
+    return sorted(stored, key=lambda one: (one.created_at, one.parent in ids, one.id))
 
 
 def compare_view(first: Stored, second: Stored, matrix: MatrixView) -> CompareView:
     """The page of two fits; `matrix` is that of the first."""
     a, b = first.found, second.found
     known = {run.id for run in matrix.runs}
-    same = first.matrix == second.matrix or {run.id for run in b.runs} == known
+    same = first.matrix == second.matrix or (first.serial == second.serial and {run.id for run in b.runs} == known)
     figures = tuple(form for form in forms(matrix.runs, a) if form.name == "bode") if same else ()
     return CompareView(
         first=_side(first, a), second=_side(second, b), errors=tuple(_errors(a, b)),
@@ -101,14 +116,15 @@ def _errors(a: FitResult, b: FitResult) -> Iterator[Compared]:
             if one is None and other is None:
                 continue
             meaning = f"{title(use)} runs, {name}"
-            yield Compared("", meaning, percent_in_print(one), percent_in_print(other), _change(one, other))
+            yield Compared("", meaning, percent_in_print(one), percent_in_print(other), error_change(one, other))
 
 
 def _change(one: float | None, other: float | None) -> str:
-    """By how much of itself a number changed."""
+    """By how much of itself a number changed, or to how many times that."""
     if not one or other is None or one * other < 0:
         return "–"
-    return change(other / one - 1)
+    ratio = other / one
+    return change(ratio - 1) if ratio < _TIMES else f"× {plain(ratio, 3)}"
 
 
 def _parameters(a: FitResult, b: FitResult) -> Iterator[Compared]:
@@ -141,5 +157,6 @@ def _runs(a: FitResult, b: FitResult) -> Iterator[ComparedRun]:
     for name in dict.fromkeys((*first, *second)):
         one, other = first.get(name), second.get(name)
         use = (one or other).use  # type: ignore[union-attr]  # it is in one of the two
-        change = other.error / one.error - 1 if one and other and one.error else None
-        yield ComparedRun(name, use, one.error if one else None, other.error if other else None, change)
+        before, after = one.error if one else None, other.error if other else None
+        difference = None if before is None or after is None else after - before
+        yield ComparedRun(name, use, before, after, difference, error_change(before, after))

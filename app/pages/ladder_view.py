@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.pages.effect_view import strength
-from ident.words.percent import change
+from ident.words.error_change import error_change
 from ident.words.titles import title
 from schemas.fit import LadderRung, LadderView
 
@@ -53,5 +53,5 @@ def _change(rung: LadderRung, before: LadderRung | None) -> str:
     for use in ("verify", "fit"):
         now, then = rung.error[use], before.error[use] if before else None
         if now is not None and then:
-            return change(now / then - 1)
+            return error_change(then, now)
     return "–"

@@ -37,12 +37,14 @@ def next_step(
     actuator: ActuatorView, newest: ParameterSetView | None, job: JobView | None,
     yardstick: Yardstick | None = None, search: Search | None = None,
 ) -> Next:  # fmt: skip
-    """The line of an actuator: of a `job` that is to make a fit of it, else of its `newest` fit."""
+    """The line of an actuator: of a `job` that is to make a fit of it, else of its set in force, or its `newest` fit."""
     if job is not None:
         words = "It is being identified." if job.state == "running" else "It waits to be identified."
         return Next(words, "Watch it", f"/fits/{job.id}", waits=job.id, main=False)
     if newest is None:
         return Next("Its runs are here, but no fit is.", "Start a fit", f"/actuators/{quote(actuator.serial)}")
+    if actuator.current is not None and not newest.current:
+        return _approved(actuator.current, newest, search or Search())
     return fit_step(newest, yardstick, search)
 
 
@@ -56,6 +58,33 @@ def fit_step(fit: ParameterSetView, yardstick: Yardstick | None = None, search: 
         words = "It is being searched for what its model lacks."
         return Next(words, "Watch it", f"{at}#missing", waits=search.job, main=False)
     return _fitted(fit, yardstick or Yardstick(), search.verdict, at)
+
+
+def _approved(current: ParameterSetView, newest: ParameterSetView, search: Search) -> Next:
+    """Of an actuator with a set in force, which a fit that came after it does not change: that is only told.
+
+    A fit that was there before the approval has been decided on.
+    """
+    approved, at = "Its parameters are in force", f"/fits/{newest.id}"
+    if search.job is not None:
+        words = f"{approved}. A newer fit is being searched for what its model lacks."
+        return Next(words, "Watch it", f"{at}#missing", waits=search.job, main=False)
+    if current.approved_at and current.approved_at >= newest.created_at:
+        return Next(f"{approved}: nothing to do.", "Look at them", f"/fits/{current.id}", main=False)
+    before, after = _errors(current, newest)
+    if before is None or after is None:
+        words = f"{approved}. There is a newer fit, not approved."
+    else:
+        words = f"{approved}, with an error of {percent_in_print(before)}. A newer fit has {percent_in_print(after)}."
+    better = before is not None and after is not None and after * NEAR < before
+    return Next(words, "Compare them", f"/compare?fits={current.id},{newest.id}", main=better)
+
+
+def _errors(one: ParameterSetView, other: ParameterSetView) -> tuple[float | None, float | None]:
+    """The errors of two sets on runs that no fit saw; on those that were fitted where one has no such runs."""
+    if one.error_verify is None or other.error_verify is None:
+        return one.error_fit, other.error_fit
+    return one.error_verify, other.error_verify
 
 
 def _fitted(newest: ParameterSetView, yardstick: Yardstick, verdict: Verdict | None, at: str) -> Next:

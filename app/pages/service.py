@@ -17,7 +17,7 @@ from app.limits.judging import judge
 from app.matrices import service as matrices
 from app.own_effects import service as own_effects
 from app.pages.actuator_view import actuator_row, drifts, fit_rows, followed
-from app.pages.compare_view import compare_view
+from app.pages.compare_view import compare_view, in_order
 from app.pages.diagnosis_view import missing
 from app.pages.evidence_view import telling_run
 from app.pages.fit_page import FitPageView, fit_page
@@ -145,7 +145,8 @@ def compared(context: Context, wanted: str) -> tuple[str, Shown]:
     if not 2 <= len(names) <= MOST:
         what, remedy = f"{count(len(names), 'fit')} to compare", f"give 2 to {MOST}: /compare?fits=A,B"
         raise Failure(422, "bad-request", what, "fits", remedy)
-    stored = [fits.stored(context, name) for name in names]
+    stored = in_order([fits.stored(context, name) for name in names])
+    names = [one.id for one in stored]
     known = parameters.page(context, Wanted(serial=stored[0].serial), None, _ROWS).items if len(names) < MOST else []
     others = further(known, names)
     if len(names) > 2:

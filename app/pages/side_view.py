@@ -19,6 +19,7 @@ class Head:
     """One of the fits, and the address of this page without it."""
 
     id: str
+    serial: str
     title: str
     method: str
     seed: int
@@ -32,7 +33,7 @@ class SideView:
     """The fits and their tables; `fixed` are the others in the query of the figure, which is the first one's."""
 
     id: str
-    serial: str
+    serials: tuple[str, ...]
     heads: tuple[Head, ...]
     letters: tuple[str, ...]
     errors: tuple[Row, ...]
@@ -41,19 +42,24 @@ class SideView:
     fits: str
     fixed: str
 
+    @property
+    def serial(self) -> str:
+        """The actuators, for the names of downloads."""
+        return "-".join(self.serials)
+
 
 def side_view(stored: Sequence[Stored], found: SideBySide) -> SideView:
     """The page of these fits."""
     ids = [one.id for one in stored]
     heads = tuple(
-        Head(one.id, column.title, one.found.method, one.found.seed, one.created_at, one.current,
+        Head(one.id, one.serial, column.title, one.found.method, one.found.seed, one.created_at, one.current,
              "/compare?fits=" + ",".join(other for other in ids if other != one.id))
         for one, column in zip(stored, found.columns, strict=True)
     )  # fmt: skip
     columns = found.columns
     runs = ((run, use, *(percent_in_print(one.runs.get(run)) for one in columns)) for run, use in found.uses.items())
     return SideView(
-        ids[0], stored[0].serial, heads, tuple(column.name for column in found.columns), tuple(found.error_rows()),
+        ids[0], found.serials, heads, tuple(column.name for column in found.columns), tuple(found.error_rows()),
         tuple(found.parameter_rows()), tuple(runs), ",".join(ids), "&".join(f"other={one}" for one in ids[1:]),
     )  # fmt: skip
 

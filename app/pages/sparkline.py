@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ident.words.engineering import quantity
+from ident.words.error_change import error_change
 from ident.words.percent import change, percent_in_print
 from schemas.parameters import ParameterSetView
 
@@ -31,7 +32,7 @@ def drift(sets: Sequence[ParameterSetView], name: str, symbol: str) -> Drift | N
         return None
     first, last = found[0], found[-1]
     share = (last - first) / abs(first) if first else 0.0
-    moved = change(share, "+")
+    moved = error_change(first, last) if name == ERROR else change(share, "+")
     places = _places(found)
     ends = f"from {_words(sets, name, first)} to {_words(sets, name, last)}"
     said = f"{symbol} over {len(found)} approved sets, {ends}, {moved}"

@@ -21,12 +21,13 @@ _USES = {"fit": "fit", "held_out": "held out", "verify": "verify"}
 
 @dataclass(frozen=True)
 class Column:
-    """One fit: its letter, and eq. (17) by use and by run."""
+    """One fit: its letter, eq. (17) by use and by run, and the serial number of its actuator, "" where not known."""
 
     name: str
     fit: FitResult
     error: Mapping[str, float | None]
     runs: Mapping[str, float]
+    serial: str = ""
 
     @property
     def title(self) -> str:
@@ -34,6 +35,11 @@ class Column:
         held = ", ".join(name for name, estimate in self.fit.parameters.items() if estimate.fixed)
         model = " + ".join((self.fit.model, *self.fit.effects))
         return f"{self.name}: {model}{f', {held} held' if held else ''}"
+
+    @property
+    def title_with_serial(self) -> str:
+        """The same with the actuator that it is of."""
+        return self.title.replace(": ", f": {self.serial}, ", 1) if self.serial else self.title
 
 
 @dataclass(frozen=True)
@@ -43,10 +49,21 @@ class SideBySide(Shown):
     columns: tuple[Column, ...]
     uses: Mapping[str, str]
 
+    @property
+    def serials(self) -> tuple[str, ...]:
+        """The serial numbers of the actuators, each once."""
+        return tuple(dict.fromkeys(column.serial for column in self.columns if column.serial))
+
+    @property
+    def titles(self) -> tuple[str, ...]:
+        """What each column is called: with its serial number where the fits are of several actuators."""
+        several = len(self.serials) > 1
+        return tuple(column.title_with_serial if several else column.title for column in self.columns)
+
     def listings(self) -> Iterable[Listing | str]:
         """What the letters stand for, errors, parameters, runs."""
         names = [column.name for column in self.columns]
-        yield from (column.title for column in self.columns)
+        yield from self.titles
         yield Listing("", ("error (eq. 17)", *names), self.error_rows(), names)
         yield Listing("", ("parameter", *names), self.parameter_rows(), names)
         yield Listing("", ("run", "use", *names), self.run_rows(), names)
@@ -80,11 +97,15 @@ def _value(entry: Estimate | None) -> str:
     return "–" if entry is None else plus_minus(entry.value, entry.std_error, entry.unit)
 
 
-def of_fits(fits: Sequence[FitResult]) -> SideBySide:
-    """Fits with the errors that they were stored with. Raises Unusable for fewer than two, or more than eight."""
+def of_fits(fits: Sequence[FitResult], serials: Sequence[str] = ()) -> SideBySide:
+    """Fits with the errors that they were stored with; `serials` are those of their actuators, where others know them.
+
+    Raises Unusable for fewer than two, or more than eight.
+    """
     _check(len(fits))
     runs = [{run.id: run.error for run in fit.runs} for fit in fits]
-    columns = tuple(map(Column, ascii_uppercase, fits, [fit.error for fit in fits], runs))
+    of = serials or [_serial(fit) for fit in fits]
+    columns = tuple(map(Column, ascii_uppercase, fits, [fit.error for fit in fits], runs, of))
     return SideBySide(columns, {run.id: run.use for fit in fits for run in fit.runs})
 
 
@@ -93,8 +114,14 @@ def of_comparisons(comparisons: Sequence[Comparison]) -> SideBySide:
     _check(len(comparisons))
     runs = [{one.run.id: one.error for one in comparison.runs} for comparison in comparisons]
     fits = [comparison.fit for comparison in comparisons]
-    columns = tuple(map(Column, ascii_uppercase, fits, [comparison.error for comparison in comparisons], runs))
+    errors, serials = [comparison.error for comparison in comparisons], [_serial(fit) for fit in fits]
+    columns = tuple(map(Column, ascii_uppercase, fits, errors, runs, serials))
     return SideBySide(columns, {one.run.id: one.run.use for comparison in comparisons for one in comparison.runs})
+
+
+def _serial(fit: FitResult) -> str:
+    """The serial number of the actuator that a fit is of; "" where an earlier version did not keep it."""
+    return fit.actuator.serial if fit.actuator else ""
 
 
 def _check(number: int) -> None:

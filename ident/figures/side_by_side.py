@@ -16,13 +16,16 @@ _STEP = 15  # pixels a run
 
 
 def side_by_side(of: SideBySide, actuator: Actuator, look: Look) -> Chart:
-    """Runs from top to bottom, the worst of the first fit first; errors (%) on a logarithmic axis."""
-    titles = [column.title for column in of.columns]
+    """Runs from top to bottom, the worst of the first fit first; errors (%) on a logarithmic axis.
+
+    `actuator` is the one whose runs they are, where the fits do not say whose they are.
+    """
+    titles = list(of.titles)
     first = of.columns[0].runs
     order = sorted(of.uses, key=lambda run: -first.get(run, 0.0))
     rows: list[dict[str, Any]] = [
-        {"r": run, "u": of.uses[run], "e": float(f"{100 * error:.4g}"), "f": column.title}
-        for column in of.columns
+        {"r": run, "u": of.uses[run], "e": float(f"{100 * error:.4g}"), "f": title}
+        for column, title in zip(of.columns, titles, strict=True)
         for run, error in column.runs.items()
     ]
     x = alt.X("e:Q", axis=alt.Axis(title="Error, eq. 17 (%)", format="~r", tickCount=6),
@@ -37,10 +40,16 @@ def side_by_side(of: SideBySide, actuator: Actuator, look: Look) -> Chart:
     tip = [alt.Tooltip("r:N", title="Run"), alt.Tooltip("f:N", title="Fit"), alt.Tooltip("e:Q", title="Error (%)")]
     dots = alt.Chart(alt.NamedData("errors")).mark_point(size=42, opacity=1, filled=True)
     errors = ", ".join(f"{column.name} {words.percent(column.error.get('fit'))} fit" for column in of.columns)
-    title = alt.TitleParams(words.headline(actuator, f"{len(titles)} fits, run by run"), subtitle=[errors])
+    title = alt.TitleParams(_headline(of, actuator), subtitle=[errors])
     chart: Chart = alt.layer(
         dots.encode(x=x, y=y, color=colour, shape=shape, tooltip=tip),
         width=look.across(480), height=_STEP * len(order), datasets=datasets({"errors": rows}),
         title=title,
     ).configure(**look.config())  # fmt: skip
     return chart
+
+
+def _headline(of: SideBySide, actuator: Actuator) -> str:
+    """The actuators that the fits are of, and what is drawn."""
+    what = f"{len(of.columns)} fits, run by run"
+    return f"{' and '.join(of.serials)} · {what}" if of.serials else words.headline(actuator, what)

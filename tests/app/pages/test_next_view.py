@@ -38,6 +38,7 @@ def verdict(*effects: str, suspects: int = 0) -> Search:
 
 
 MISSING = "/fits/f#missing"
+COMPARED = "/compare?fits=c,f"
 FAR = Yardstick(floor=NOISE)
 FELL = Yardstick(parent="p", before=0.12, floor=NOISE)
 
@@ -70,3 +71,38 @@ def test_a_line_that_a_job_will_change_names_it():
     """So that the page can be drawn anew when that job ends."""
     waiting = [step(state="queued"), step(0.1, search=Search(job="d")), step(0.1, yardstick=FAR)]
     assert [each.waits for each in waiting] == ["j", "d", ""]
+
+
+def approved(newer: float, *, verify: float | None = None, before: bool = False, **known: Any) -> Next:
+    """The line of an actuator whose approved set is at the noise, and which was fitted `before` that or since."""
+    made = ParameterSetView(
+        id="c", serial="S", batch="", model="qian2014", created_at="2026-01-01", approved_at="2026-01-03", current=True,
+        error_fit=NOISE, error_verify=None if verify is None else NOISE, parameters={},
+    )  # fmt: skip
+    fit = made.model_copy(update={
+        "id": "f", "created_at": "2026-01-02" if before else "2026-01-04", "approved_at": None, "current": False,
+        "error_fit": newer, "error_verify": verify,
+    })  # fmt: skip
+    actuator = ActuatorView(
+        serial="S", name="", batch="", piston_area=None, created_at="", matrices=1, fits=2, current=made
+    )
+    return next_step(actuator, fit, None, **known)
+
+
+@pytest.mark.parametrize(
+    ("found", "words", "deed", "at", "main"),
+    [
+        (approved(0.044, yardstick=FAR), "error of 0.500 %. A newer fit has 4.40 %", "Compare them", COMPARED, False),
+        (approved(0.044, yardstick=FAR, search=verdict("lead")), "A newer fit has 4.40 %", "Compare them", COMPARED, False),
+        (approved(0.003, yardstick=FAR), "A newer fit has 0.300 %.", "Compare them", COMPARED, True),
+        (approved(0.003, verify=0.02), "A newer fit has 2.00 %.", "Compare them", COMPARED, False),
+        (approved(0.044, before=True, yardstick=FAR), "nothing to do", "Look at them", "/fits/c", False),
+        (approved(0.044, search=Search(job="d")), "A newer fit is being searched", "Watch it", MISSING, False),
+    ],
+)  # fmt: skip
+def test_an_approved_actuator_is_judged_by_its_approved_set(found, words, deed, at, main):
+    """A fit that came after it, better or worse, is told as one; another one that was there already is not."""
+    assert found.words.startswith("Its parameters are in force")
+    assert words in found.words
+    assert "times the noise" not in found.words
+    assert (found.deed, found.at, found.main) == (deed, at, main)
