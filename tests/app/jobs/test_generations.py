@@ -28,7 +28,7 @@ def searched(method: str) -> list[State]:
     while not state["done"]:
         for _ in range(2):
             if not state["done"]:
-                state = STEPS[method](state, errors, {**OPTIONS, "keep": 0.8, "survivors": 2.0})
+                state = STEPS[method](state, errors, {**genetic.PAPER, **OPTIONS, "keep": 0.8, "survivors": 2.0})
         found.append({"outcome": None, "state": state})
     return found
 
