@@ -15,6 +15,8 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_
 T = TypeVar("T")
 UNWRITTEN: Mapping[str, bool] = {"written": False}
 """Metadata of a field that belongs to this process alone, such as the data that a result was made of."""
+WHERE_KNOWN: Mapping[str, bool] = {"where_known": True}
+"""Metadata of a field that stands in the data only where it holds something: earlier versions did not write it."""
 _HUGE = 10**300  # no float reaches whole numbers much beyond
 Reader = Callable[[Any], Any]
 
@@ -44,12 +46,18 @@ def written(value: Any) -> Any:
         return value
     if is_dataclass(value):
         kind: Any = type(value)
-        return {field.name: written(getattr(value, field.name)) for field in _written(kind)}
+        entries = ((field, getattr(value, field.name)) for field in _written(kind))
+        return {field.name: written(entry) for field, entry in entries if not _left_out(field, entry)}
     if isinstance(value, Mapping):
         return {name: written(entry) for name, entry in value.items()}
     if isinstance(value, list | tuple):
         return [written(entry) for entry in value]
     return value
+
+
+def _left_out(field: Field[Any], entry: Any) -> bool:
+    """Whether a field that is written where it is known holds nothing."""
+    return bool(field.metadata.get("where_known")) and (entry is None or entry in ("", (), {}))
 
 
 @cache

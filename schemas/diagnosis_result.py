@@ -17,10 +17,15 @@ class RefittedView(BaseModel):
 
 
 class BaselineView(BaseModel):
-    """Errors and offset of the model that was given."""
+    """Errors and offset of the model that was given; `unstable` has by use the runs on which it is unstable.
+
+    `error_with_mean` is RMS(x − x_m)/std(x_m). Where they are not known these two are absent.
+    """
 
     error: Errors
     offset: float | None
+    error_with_mean: Errors = Field(default_factory=dict)
+    unstable: dict[str, list[str]] = Field(default_factory=dict)
 
 
 class CandidateView(BaseModel):
@@ -37,6 +42,8 @@ class CandidateView(BaseModel):
     group: list[str]
     evidence: dict[str, float | bool | str | None]
     why: str
+    error_with_mean: Errors = Field(default_factory=dict)
+    unstable: dict[str, list[str]] = Field(default_factory=dict)
 
 
 class RungView(BaseModel):
@@ -50,6 +57,8 @@ class RungView(BaseModel):
     offset: float | None
     nats: float | None
     parameters: dict[str, RefittedView]
+    error_with_mean: Errors = Field(default_factory=dict)
+    unstable: dict[str, list[str]] = Field(default_factory=dict)
 
 
 class LabelErrorsView(BaseModel):
@@ -143,13 +152,14 @@ class ProposalView(BaseModel):
 class RiseView(BaseModel):
     """The error on runs to verify without an effect and with it, and by how many standard errors it rises.
 
-    The last two are null where a run to verify cannot be followed with the effect.
+    The last two are null where the model is unstable on runs to verify with the effect: on those in `unstable`.
     """
 
     effect: str
     before: float
     after: float | None
     deviations: float | None
+    unstable: list[str] = Field(default_factory=list)
 
 
 class TermView(BaseModel):
@@ -182,6 +192,7 @@ class TermView(BaseModel):
     hypothesis: bool
     free_curve: bool = False
     contradicted: RiseView | None = None
+    unstable: dict[str, list[str]] = Field(default_factory=dict)
 
 
 class DiagnosisResult(BaseModel):

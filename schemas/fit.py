@@ -146,13 +146,18 @@ class FitView(BaseModel):
 
 
 class LadderRung(BaseModel):
-    """A fit on the way to another: the effects that it added to its parent, and what they made of the error."""
+    """A fit on the way to another: the effects that it added to its parent, and what they made of the error.
+
+    `unstable` has by use the runs on which the model is unstable.
+    """
 
     fit: str
     parent: str | None
     matrix: str
     added: list[str]
     error: Errors
+    error_with_mean: Errors = Field(default_factory=dict)
+    unstable: dict[str, list[str]] = Field(default_factory=dict)
     parameters: dict[str, EstimateView]
     seed: int
     version: str
@@ -177,14 +182,18 @@ class FitPage(BaseModel):
 
 
 class ComparedRun(BaseModel):
-    """Eq. (17) and offset of a run; root mean square and mean size of its residual in `unit`."""
+    """Eq. (17) and offset of a run; root mean square and mean size of its residual in `unit`, and the first over std.
+
+    Where the model is unstable on the run, root mean square and mean size are null.
+    """
 
     id: str
     use: str
     error: float
     offset: float
-    rmse: float
-    mae: float
+    error_with_mean: float | None = None
+    rmse: float | None
+    mae: float | None
     unit: str
 
 
@@ -323,6 +332,8 @@ class ComparisonView(BaseModel):
     fit: str
     error: dict[str, float | None]
     offset: dict[str, float | None]
+    error_with_mean: dict[str, float | None] = Field(default_factory=dict)
+    rmse: dict[str, float | None] = Field(default_factory=dict)
     runs: list[ComparedRun]
     bands: Bands
     groups: dict[str, list[GroupError]]

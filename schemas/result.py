@@ -89,12 +89,15 @@ class UndeterminedView(BaseModel):
 
 
 class RunErrorView(BaseModel):
-    """Eq. (17) of one run, and its offset."""
+    """Eq. (17) of one run, and its offset; RMS(x − x_m) over std(x_m), and in `unit`. Unknown is absent."""
 
     id: str
     use: str
     error: float
     offset: float
+    error_with_mean: float | None = None
+    rmse: float | None = None
+    unit: str = ""
 
 
 class GenerationView(BaseModel):
@@ -173,6 +176,8 @@ class ActuatorStated(BaseModel):
 class FitResultView(BaseModel):
     """The contract's fit JSON; `evolution` belongs to the parameters `searched`, in that order.
 
+    `error_with_mean` is RMS(x − x_m)/std(x_m), `rmse` RMS(x − x_m) in `rmse_unit`, averaged as the error is.
+
     What an earlier version did not know is absent.
     """
 
@@ -197,6 +202,9 @@ class FitResultView(BaseModel):
     searched: list[str] = Field(default_factory=list)
     evolution: list[GenerationView] = Field(default_factory=list)
     anchored_error: Errors = Field(default_factory=dict)
+    error_with_mean: Errors = Field(default_factory=dict)
+    rmse: Errors = Field(default_factory=dict)
+    rmse_unit: str = ""
     window: WindowView | None = None
     starts: StartsView | None = None
     machine: MachineView | None = None

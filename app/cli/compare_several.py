@@ -24,8 +24,8 @@ def compare_several(matrix: Matrix, fits: Sequence[FitResult], json: Path | None
     found = of_comparisons([compare(matrix, fit) for fit in fits])
     if json is not None:
         columns = [
-            {"name": one.name, "serial": one.serial, "model": one.fit.model, "effects": list(one.fit.effects), "error": dict(one.error),
-             "parameters": one.fit.records()}
+            {"name": one.name, "serial": one.serial, "model": one.fit.model, "effects": list(one.fit.effects),
+             "error": dict(one.error), "parameters": one.fit.records()}
             for one in found.columns
         ]  # fmt: skip
         write_json({"fits": columns, "runs": found.records()}, json)

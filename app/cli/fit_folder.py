@@ -63,7 +63,7 @@ def show_each(found: dict[str, FitResult | Unusable]) -> None:
             rows.append((name, "–", "–", "–", "–", "–", str(one)))
             continue
         values = ", ".join(f"{symbol} {entry.value:.4g} {entry.unit}" for symbol, entry in one.parameters.items())
-        errors = (one.error.get("fit"), one.error.get("verify"), one.noise_floor.get("fit"))
+        errors = (*(one.error_of(use).said() for use in ("fit", "verify")), percent(one.noise_floor.get("fit")))
         serial = one.actuator.serial if one.actuator else "–"
-        rows.append((name, serial, " + ".join((one.model, *one.effects)), *map(percent, errors), values))
+        rows.append((name, serial, " + ".join((one.model, *one.effects)), *errors, values))
     output().print(table(header, rows, numbers=header[3:6]))

@@ -10,7 +10,7 @@ from functools import partial
 
 from app.cli.interrupts import heed
 from ident.progress import Expected, Progress, Report
-from ident.words.percent import percent
+from ident.words.error import error_said
 
 SILENCE = 5.0  # s between two plain lines of one stage
 COMPILING = Progress("compiling the simulation (once)", 0, 1)
@@ -104,9 +104,9 @@ def verdict(progress: Progress) -> str:
 
 
 def _listed(effects: Iterable[Expected]) -> str:
-    return ", ".join(f"{one.effect} {percent(one.error)}" for one in effects)
+    return ", ".join(f"{one.effect} {error_said(one.error)}" for one in effects)
 
 
 def error_text(progress: Progress) -> str:
     """The error so far, in per cent."""
-    return "" if progress.error is None else f"error {percent(progress.error)}"
+    return "" if progress.error is None else f"error {error_said(progress.error)}"

@@ -58,14 +58,14 @@ def limits(texts: list[str]) -> dict[str, str]:
 def show(sets: list[dict[str, Any]]) -> None:
     """Print the sets as a table."""
     from app.cli.tables import output, table
-    from ident.words.percent import percent
+    from ident.words.error import error_said
 
     header = ("serial", "fit", "model", "approved", "current", "error fit", "verify", "parameters")
     rows = []
     for one in sets:
         parameters = ", ".join(f"{name} {entry['value']:.4g}" for name, entry in one["parameters"].items())
         approved = (one["approved_at"] or "–")[:10]
-        errors = (percent(one["error_fit"]), percent(one["error_verify"]))
+        errors = (error_said(one["error_fit"]), error_said(one["error_verify"]))
         rows.append(
             (one["serial"], one["id"], one["model"], approved, "yes" if one["current"] else "", *errors, parameters)
         )

@@ -14,6 +14,7 @@ from ident.custom.definition import definition_of
 from ident.diagnosis.named import with_named
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
+from ident.matrix import USES
 from schemas.fit import EffectsRequest, JobView, LadderRung, LadderView
 from schemas.result import EstimateView
 
@@ -53,6 +54,8 @@ def _rung(row: FitRow, found: FitResult, before: tuple[str, ...]) -> LadderRung:
         fit=row.id, parent=row.parent, matrix=row.matrix,
         added=[name for name in found.effects if name not in before],
         error={"fit": row.set.error_fit, "verify": row.set.error_verify},
+        error_with_mean={use: found.error_of(use).with_mean for use in USES},
+        unstable={use: list(ids) for use in USES if (ids := found.error_of(use).unstable)},
         parameters={name: EstimateView(**vars(entry)) for name, entry in found.parameters.items()},
         seed=found.seed, version=found.version, data_hash=found.data_hash,
         created_at=row.created_at, approved_at=row.set.approved_at, current=row.set.current,

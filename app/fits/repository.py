@@ -39,6 +39,13 @@ def floors(session: Session, fits: Sequence[str]) -> Sequence[tuple[str, str | N
     return [(fit, parent, before, floor) for fit, parent, before, floor in session.execute(query)]
 
 
+def errors(session: Session, fits: Sequence[str]) -> Sequence[Sequence[Any]]:
+    """Of each of these fits: its id, its errors, those with the mean counted by both names, those of its runs."""
+    names = ("error", "error_with_mean", "anchored_error", "runs")
+    query = select(FitRow.id, *(FitRow.result[name] for name in names)).where(FitRow.id.in_(fits))
+    return session.execute(query).all()
+
+
 def add_fit(session: Session, job: JobRow, result: dict[str, Any]) -> FitRow:
     """The fit that a job made, with its parameter set, and the history of its search."""
     result, blob, content = taken_apart(result)

@@ -11,6 +11,7 @@ from ident.equations.mathml import mathml
 from ident.errors import Unusable
 from ident.fit.result import Estimate, FitResult
 from ident.words.engineering import power_of, quantity, scaled_unit
+from ident.words.error import ErrorOf
 from ident.words.number import fixed, trimmed
 from ident.words.percent import percent_in_print
 from ident.words.plus_minus import decimals
@@ -40,7 +41,10 @@ class ParameterRow:
 
 @dataclass(frozen=True)
 class ErrorRow:
-    """Errors of one use of runs; `sized` is the use under which their sizes in the output's unit are told."""
+    """Errors of one use of runs; `sized` is the use under which their sizes in the output's unit are told.
+
+    `error` has the mean beside it where it counts, and the runs on which the model is unstable; `size` is the RMSE.
+    """
 
     use: str
     runs: int
@@ -49,6 +53,7 @@ class ErrorRow:
     ratio: str
     offset: str
     sized: str = ""
+    size: str = "–"
 
 
 @dataclass(frozen=True)
@@ -109,14 +114,18 @@ def _errors(
         error, floor = errors.get(use), fit.noise_floor.get(use)
         if error is None:
             continue
+        whole = fit.error_of(use)
+        said = ErrorOf(error, unstable=whole.unstable) if over else whole
+        unstable = said.is_unstable
         yield ErrorRow(
             use=title(use) + over,
             runs=sum(run.use == use for run in fit.runs),
-            error=percent_in_print(error),
+            error=said.in_print(),
             floor="unknown" if floor is None else percent_in_print(floor),
-            ratio=f"{error / floor:.2f} ×" if floor else "–",
-            offset=percent_in_print(offset.get(use), 2) if offset else "–",
+            ratio=f"{error / floor:.2f} ×" if floor and not unstable else "–",
+            offset=percent_in_print(offset.get(use), 2) if offset and not unstable else "–",
             sized="" if over else use,
+            size="–" if over else whole.rmse or "–",
         )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -20,10 +20,12 @@ from ident.fit.choices import settings_of as chosen_settings
 from ident.fit.identification import check_settings
 from ident.fit.result import FitResult
 from ident.fit.settings import GENERAL, Settings
+from ident.matrix import USES
 from ident.plain import written
 from ident.presets.suited import in_question
 from ident.residuals.budget import budget
 from ident.residuals.survey import survey
+from ident.words.error import UNSTABLE, ErrorOf
 from ident.workflows import compare
 from schemas.fit import (
     Chosen,
@@ -108,6 +110,18 @@ def yardsticks(context: Context, fits: Sequence[str]) -> dict[str, Yardstick]:
     return {fit: Yardstick(parent, before, (floor or {}).get("fit")) for fit, parent, before, floor in found}
 
 
+def errors_of(context: Context, fits: Sequence[str]) -> dict[str, dict[str, ErrorOf]]:
+    """The errors of these fits as they are read, by id and use: with the mean counted, and the unstable runs."""
+    with context.sessions() as session:
+        found = repository.errors(session, fits)
+    return {fit: _errors(error, new or old or {}, runs) for fit, error, new, old, runs in found}
+
+
+def _errors(error: Mapping[str, Any], with_mean: Mapping[str, Any], runs: Sequence[Any]) -> dict[str, ErrorOf]:
+    unstable = {use: [run["id"] for run in runs if run["use"] == use and run["error"] >= UNSTABLE] for use in USES}
+    return {use: ErrorOf(error.get(use), with_mean.get(use), unstable[use]) for use in USES}
+
+
 def find(context: Context, fit_id: str) -> FitRow:
     """The record of a fit; raises Failure 404."""
     with context.sessions() as session:
@@ -160,7 +174,10 @@ def comparison(context: Context, fit_id: str) -> ComparisonView:
     row = find(context, fit_id)
     found = compare(matrices.load(context, row.matrix), FitResult.from_json(row.result))
     runs = [ComparedRun(**record) for record in found.records()]
-    return ComparisonView(fit=fit_id, error=found.error, offset=found.offset, runs=runs, **survey(found).to_json())
+    return ComparisonView(
+        fit=fit_id, error=found.error, offset=found.offset, error_with_mean=found.error_with_mean, rmse=found.rmse,
+        runs=runs, **survey(found).to_json(),
+    )  # fmt: skip
 
 
 def beside(context: Context, fit_id: str, others: Sequence[str]) -> SideBySide:
@@ -173,7 +190,8 @@ def side_by_side(context: Context, fit_id: str, others: Sequence[str]) -> SideBy
     """The same as it is sent."""
     found = beside(context, fit_id, others)
     fits = [
-        FitColumn(fit=name, name=one.name, serial=one.serial, model=one.fit.model, effects=list(one.fit.effects), error=dict(one.error),
+        FitColumn(fit=name, name=one.name, serial=one.serial, model=one.fit.model, effects=list(one.fit.effects),
+                  error=dict(one.error),
                   parameters={key: EstimateView(**entry) for key, entry in written(one.fit.parameters).items()})
         for name, one in zip((fit_id, *others), found.columns, strict=True)
     ]  # fmt: skip

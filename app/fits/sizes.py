@@ -19,15 +19,18 @@ def sizes(context: Context, fit_id: str) -> ErrorSizesView:
     compared = found.compared(found.matrix.runs).runs
     uses = {use: [one for one in compared if one.run.use == use] for use in ("fit", "verify")}
     means = {use: _mean(runs) for use, runs in uses.items() if len({one.unit for one in runs}) == 1}
-    return ErrorSizesView(uses=means, runs={one.run.id: _mean([one]) for one in compared})
-
-
-def _mean(runs: Sequence[RunComparison]) -> ErrorSize:
-    rmse, mae, unit = (
-        float(np.mean([one.rmse for one in runs])),
-        float(np.mean([one.mae for one in runs])),
-        runs[0].unit,
+    each = {one.run.id: _mean([one]) for one in compared}
+    return ErrorSizesView(
+        uses={use: size for use, size in means.items() if size}, runs={run: size for run, size in each.items() if size}
     )
+
+
+def _mean(runs: Sequence[RunComparison]) -> ErrorSize | None:
+    """Averaged over runs; None where the model is unstable on one, so that there is no such number."""
+    sizes = [(one.rmse, one.mae) for one in runs if one.rmse is not None and one.mae is not None]
+    if len(sizes) < len(runs):
+        return None
+    (rmse, mae), unit = (float(mean) for mean in np.mean(sizes, axis=0)), runs[0].unit
     return ErrorSize(
         rmse=rmse, mae=mae, unit=unit, rmse_in_print=quantity(rmse, unit), mae_in_print=quantity(mae, unit)
     )

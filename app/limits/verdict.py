@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ident.words.engineering import quantity
-from ident.words.percent import percent
+from ident.words.error import error_said
 from ident.words.plus_minus import plus_minus
 
 SURE = 2.0  # standard errors from a limit
@@ -67,7 +67,7 @@ class Judged:
     @property
     def _with_error(self) -> str:
         assert self.value is not None
-        return percent(self.value) if self.exact else plus_minus(self.value, self.std_error, self.unit)
+        return error_said(self.value) if self.exact else plus_minus(self.value, self.std_error, self.unit)
 
     @property
     def _limits(self) -> str:
@@ -77,7 +77,7 @@ class Judged:
         return f"{lower} to {upper}"
 
     def _shown(self, value: float) -> str:
-        return percent(value) if self.exact else quantity(value, self.unit)
+        return error_said(value) if self.exact else quantity(value, self.unit)
 
 
 def verdict(judged: list[Judged]) -> Verdict:

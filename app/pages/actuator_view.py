@@ -9,10 +9,14 @@ from app.pages.sparkline import ERROR, Drift, drift
 from ident.errors import Unusable
 from ident.presets import preset
 from ident.words.engineering import quantity
+from ident.words.error import ErrorOf
 from ident.words.symbols import symbol
 from ident.words.titles import title
 from schemas.fit import JobView
 from schemas.parameters import ActuatorView, ParameterSetView
+
+Errors = Mapping[str, Mapping[str, ErrorOf]]
+"""Errors of fits as they are read, by the fit's id and the use of runs."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +31,8 @@ class ActuatorRow:
     model: str
     error_fit: float | None
     error_verify: float | None
+    said_fit: ErrorOf
+    said_verify: ErrorOf
     parameters: tuple[tuple[str, str], ...]
     drift: Drift | None
     made: str | None
@@ -44,14 +50,19 @@ class FitRow:
     seed: str
     error_fit: float | None
     error_verify: float | None
+    said_fit: ErrorOf
+    said_verify: ErrorOf
     made: str
 
 
 def actuator_row(
     actuator: ActuatorView, newest: ParameterSetView | None, job: JobView | None,
-    approved: Sequence[ParameterSetView] = (), drifting: str = ERROR,
+    approved: Sequence[ParameterSetView] = (), drifting: str = ERROR, errors: Errors | None = None,
 ) -> ActuatorRow:  # fmt: skip
-    """The row of an actuator; `job` is one that waits or runs for it, `drifting` what is followed over `approved`."""
+    """The row of an actuator; `job` is one that waits or runs for it, `drifting` what is followed over `approved`.
+
+    `errors` has those of fits as they are read, by id and use.
+    """
     shown = actuator.current or newest
     state, text = _state(actuator, newest, job)
     return ActuatorRow(
@@ -63,6 +74,8 @@ def actuator_row(
         model=shown.model if shown else "",
         error_fit=shown.error_fit if shown else None,
         error_verify=shown.error_verify if shown else None,
+        said_fit=said(shown, "fit", errors or {}),
+        said_verify=said(shown, "verify", errors or {}),
         parameters=_parameters(shown) if shown else (),
         drift=drift(approved, drifting, drifting if shown is None else _symbol(shown.model, drifting)),
         made=newest.created_at if newest else None,
@@ -110,13 +123,22 @@ def _symbol(model: str, name: str) -> str:
         return name
 
 
-def fit_rows(jobs: Iterable[JobView], sets: Iterable[ParameterSetView]) -> tuple[FitRow, ...]:
+def said(made: ParameterSetView | None, use: str, errors: Errors) -> ErrorOf:
+    """The error of a set on the runs of a use as it is read, with the mean and the unstable runs where known."""
+    if made is None:
+        return ErrorOf(None)
+    return errors.get(made.id, {}).get(use) or ErrorOf(made.error_fit if use == "fit" else made.error_verify)
+
+
+def fit_rows(
+    jobs: Iterable[JobView], sets: Iterable[ParameterSetView], errors: Errors | None = None
+) -> tuple[FitRow, ...]:  # fmt: skip
     """A row a job, with the errors of the set that it made."""
     made = {entry.id: entry for entry in sets}
-    return tuple(_fit_row(job, made.get(job.id)) for job in jobs)
+    return tuple(_fit_row(job, made.get(job.id), errors or {}) for job in jobs)
 
 
-def _fit_row(job: JobView, made: ParameterSetView | None) -> FitRow:
+def _fit_row(job: JobView, made: ParameterSetView | None, errors: Errors) -> FitRow:
     state, text = _fit_state(job.state, made)
     return FitRow(
         id=job.id,
@@ -127,6 +149,8 @@ def _fit_row(job: JobView, made: ParameterSetView | None) -> FitRow:
         seed=str(job.settings.seed),
         error_fit=made.error_fit if made else None,
         error_verify=made.error_verify if made else None,
+        said_fit=said(made, "fit", errors),
+        said_verify=said(made, "verify", errors),
         made=job.created_at,
     )
 

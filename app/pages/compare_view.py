@@ -10,6 +10,7 @@ from app.fits.service import Stored
 from app.pages.figure_forms import FigureForm, forms
 from ident.fit.result import Estimate, FitResult
 from ident.presets import preset
+from ident.words.error import ErrorOf
 from ident.words.error_change import error_change
 from ident.words.number import plain
 from ident.words.percent import change, percent_in_print
@@ -49,13 +50,15 @@ class Compared:
 
 @dataclass(frozen=True)
 class ComparedRun:
-    """A run's error in both fits, and their difference, fractions; None where a fit has not seen it."""
+    """A run's error in both fits and their difference, fractions, and as they are read; None where there is none."""
 
     id: str
     use: str
     first: float | None
     second: float | None
     difference: float | None
+    said_first: ErrorOf | None
+    said_second: ErrorOf | None
     change: str
 
 
@@ -111,12 +114,16 @@ def _side(stored: Stored, fit: FitResult) -> Side:
 
 def _errors(a: FitResult, b: FitResult) -> Iterator[Compared]:
     for use in ("fit", "held_out", "verify"):
-        for name, first, second in (("error", a.error, b.error), ("offset", a.offset, b.offset)):
-            one, other = first.get(use), second.get(use)
-            if one is None and other is None:
-                continue
-            meaning = f"{title(use)} runs, {name}"
-            yield Compared("", meaning, percent_in_print(one), percent_in_print(other), error_change(one, other))
+        before, after = a.error_of(use), b.error_of(use)
+        if before.error is None and after.error is None:
+            continue
+        known = not (before.is_unstable or after.is_unstable)
+        change = error_change(before.error, after.error) if known else "–"
+        yield Compared("", f"{title(use)} runs, error", before.in_print(), after.in_print(), change)
+        one, other = (None if said.is_unstable else fit.offset.get(use) for said, fit in ((before, a), (after, b)))
+        if one is not None or other is not None:
+            offsets = percent_in_print(one), percent_in_print(other)
+            yield Compared("", f"{title(use)} runs, offset", *offsets, error_change(one, other))
 
 
 def _change(one: float | None, other: float | None) -> str:
@@ -158,5 +165,9 @@ def _runs(a: FitResult, b: FitResult) -> Iterator[ComparedRun]:
         one, other = first.get(name), second.get(name)
         use = (one or other).use  # type: ignore[union-attr]  # it is in one of the two
         before, after = one.error if one else None, other.error if other else None
-        difference = None if before is None or after is None else after - before
-        yield ComparedRun(name, use, before, after, difference, error_change(before, after))
+        known = one is not None and other is not None and not one.unstable and not other.unstable
+        difference = after - before if known and before is not None and after is not None else None
+        yield ComparedRun(
+            name, use, before, after, difference, one.words if one else None, other.words if other else None,
+            error_change(before, after) if known else "–",
+        )  # fmt: skip

@@ -15,6 +15,7 @@ from app.pages.proposed_view import ProposedCard, proposed
 from ident.diagnosis.proposals.choice import Choice, choices
 from ident.diagnosis.result import Diagnosis, Ranked, Suspect
 from ident.words.engineering import quantity
+from ident.words.error import ErrorOf
 from ident.words.number import plain
 from ident.words.percent import percent_in_print
 from ident.words.titles import title
@@ -38,7 +39,7 @@ class Card:
     title: str
     members: tuple[Member, ...]
     predicted: float | None
-    error: Mapping[str, float | None]
+    error: Mapping[str, ErrorOf]
     words: str
     looks: str
     confirmed: bool
@@ -74,7 +75,7 @@ class Rung:
     """A step that the diagnosis would take; `nats` by which it made the held-out data more likely."""
 
     added: str
-    error: Mapping[str, float | None]
+    error: Mapping[str, ErrorOf]
     nats: str
 
 
@@ -156,7 +157,7 @@ def _card(rank: int, together: list[Ranked], stored: Stored, run: RunView | None
         title=" or ".join(title(candidate.effect) for candidate in together),
         members=tuple(_member(candidate, own.get(candidate.effect)) for candidate in together),
         predicted=best.predicted_error,
-        error={use: best.error.get(use) for use in _USES},
+        error={use: best.error_of(use) for use in _USES},
         words=best.why,
         looks="" if looks in best.why else looks,
         confirmed=bool(best.evidence.get("beyond_chance")),
@@ -205,14 +206,14 @@ def _mend(entry: Suspect) -> str:
 def _ladder(found: Diagnosis) -> Iterator[Rung]:
     for rung in found.ladder:
         said = "–" if rung.nats is None else plain(rung.nats, 3)
-        errors = {use: rung.error.get(use) for use in _USES}
+        errors = {use: rung.error_of(use) for use in _USES}
         yield Rung(title(rung.added) if rung.added else "the fit as it is", errors, said)
 
 
 def _left(found: Diagnosis) -> str:
     """What stays unexplained, in a sentence."""
-    error, floor = found.ladder[-1].error.get("fit"), found.noise_floor.get("fit")
+    error, floor = found.ladder[-1].error_of("fit").in_print(), found.noise_floor.get("fit")
     after = " with all that helps" if len(found.ladder) > 1 else ""
     if floor is None:
-        return f"The error is {percent_in_print(error)}{after}, and what is left has a memory that noise has not."
-    return f"The error is {percent_in_print(error)}{after}, above the noise floor of {percent_in_print(floor)}."
+        return f"The error is {error}{after}, and what is left has a memory that noise has not."
+    return f"The error is {error}{after}, above the noise floor of {percent_in_print(floor)}."

@@ -25,8 +25,10 @@ from ident.custom.definition import HANDED_ON, preset_with
 from ident.equations.equation import Equation
 from ident.equations.mathml import mathml
 from ident.fit.result import FitResult, Undetermined
+from ident.matrix import USES
 from ident.presets import Preset, preset
 from ident.words.engineering import quantity
+from ident.words.error import ErrorOf, error_in_print, errors_line
 from ident.words.percent import percent_in_print
 from ident.words.titles import with_effects
 from schemas.fit import LadderView
@@ -36,11 +38,12 @@ from schemas.parameters import ParameterSetView
 
 @dataclass(frozen=True)
 class FittedRun:
-    """A run with its error and offset, fractions."""
+    """A run with its error and offset, fractions; the error also as it is read."""
 
     run: Conditions
     error: float
     offset: float
+    said: ErrorOf
 
 
 @dataclass(frozen=True)
@@ -75,6 +78,7 @@ class FitPageView:
     ended_early: bool
     next: Next
     objections: tuple[str, ...]
+    headline: str
     equations: tuple[tuple[str, str, Markup], ...]
     facts: tuple[tuple[str, str], ...]
     missing: MissingView
@@ -121,7 +125,11 @@ def fit_page(
         combinations=combination_rows(fit),
         undetermined=fit.undetermined,
         notes=fit.notes,
-        runs=tuple(FittedRun(conditions(known[run.id]), run.error, run.offset) for run in fit.runs if run.id in known),
+        runs=tuple(
+            FittedRun(conditions(known[run.id]), run.error, run.offset, run.words)
+            for run in fit.runs
+            if run.id in known
+        ),
         chain=drawing(fit),
         map=next((figure for figure in figures if figure.name == MAP), None),
         figures=tuple(figure for figure in figures if figure.name != MAP),
@@ -129,6 +137,7 @@ def fit_page(
         ended_early=fit.ended_early,
         next=step,
         objections=objections,
+        headline=_headline(fit),
         equations=tuple((line.place, line.meaning, Markup(mathml(line.text))) for line in _equations(model)),
         facts=_facts(fit),
         missing=lacks,
@@ -145,11 +154,16 @@ def fit_page(
     )
 
 
+def _headline(fit: FitResult) -> str:
+    """The error on each use of runs in a line, with what a reader must know of it."""
+    return f"Error {errors_line({use: fit.error_of(use) for use in USES}, percent_in_print)}"
+
+
 def _free_run(fit: FitResult) -> str:
     """Of a fit over windows: how far the free run's errors hang on the parameters."""
     if fit.window is None or not fit.window.free_run:
         return ""
-    ends = [f"{' to '.join(map(percent_in_print, e))} on {use} runs" for use, e in fit.window.free_run.items()]
+    ends = [f"{' to '.join(map(error_in_print, e))} on {use} runs" for use, e in fit.window.free_run.items()]
     return (
         "A free run sums up whatever disturbed the machine: within the standard errors of the parameters its error is "
         f"{', '.join(ends)}. Over windows the model begins anew where it was measured."
@@ -167,7 +181,7 @@ def other_fit(fit: ParameterSetView) -> str:
     """Another fit in a line: when, which model, how good."""
     effects = dict.fromkeys(name.partition(".")[0] for name in fit.parameters if "." in name)
     made = fit.created_at[:16].replace("T", " ")
-    return f"{made} · {with_effects(fit.model, effects)} · {percent_in_print(fit.error_fit)}"
+    return f"{made} · {with_effects(fit.model, effects)} · {error_in_print(fit.error_fit)}"
 
 
 def fit_request(fit: FitResult, parent: str) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.pages.effect_view import strength
+from ident.words.error import ErrorOf
 from ident.words.error_change import error_change
 from ident.words.titles import title
 from schemas.fit import LadderRung, LadderView
@@ -18,8 +19,8 @@ class Step:
     before: str
     here: bool
     added: tuple[tuple[str, str], ...]
-    error_fit: float | None
-    error_verify: float | None
+    said_fit: ErrorOf
+    said_verify: ErrorOf
     change: str
     seed: int
     version: str
@@ -42,15 +43,22 @@ def _step(rung: LadderRung, before: LadderRung | None, here: str) -> Step:
     return Step(
         fit=rung.fit, before=before.fit if before else "", here=rung.fit == here,
         added=tuple((title(name), strength(name, rung.parameters)) for name in rung.added),
-        error_fit=rung.error["fit"], error_verify=rung.error["verify"], change=_change(rung, before),
+        said_fit=_said(rung, "fit"), said_verify=_said(rung, "verify"), change=_change(rung, before),
         seed=rung.seed, version=rung.version, data=rung.data_hash[:12], made=rung.created_at,
         state=state[0], state_text=state[1],
     )  # fmt: skip
 
 
+def _said(rung: LadderRung, use: str) -> ErrorOf:
+    """The error of a step on the runs of a use."""
+    return ErrorOf(rung.error[use], rung.error_with_mean.get(use), rung.unstable.get(use, ()))
+
+
 def _change(rung: LadderRung, before: LadderRung | None) -> str:
     """By how much the error fell on runs that no fit saw, else on those that were fitted."""
     for use in ("verify", "fit"):
+        if before is not None and (use in rung.unstable or use in before.unstable):
+            return "–"
         now, then = rung.error[use], before.error[use] if before else None
         if now is not None and then:
             return error_change(then, now)

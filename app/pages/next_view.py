@@ -9,6 +9,7 @@ from urllib.parse import quote
 from app.diagnoses.service import Search
 from app.fits.service import Yardstick
 from ident.diagnosis.result import Verdict
+from ident.words.error import ErrorOf, error_in_print
 from ident.words.number import plain
 from ident.words.percent import percent_in_print
 from ident.words.titles import title
@@ -35,9 +36,12 @@ class Next:
 
 def next_step(
     actuator: ActuatorView, newest: ParameterSetView | None, job: JobView | None,
-    yardstick: Yardstick | None = None, search: Search | None = None,
+    yardstick: Yardstick | None = None, search: Search | None = None, said: ErrorOf | None = None,
 ) -> Next:  # fmt: skip
-    """The line of an actuator: of a `job` that is to make a fit of it, else of its set in force, or its `newest` fit."""
+    """The line of an actuator: of a `job` that is to make a fit of it, else of its set in force, or its `newest` fit.
+
+    `said` is the error of that on the runs to fit as it is read.
+    """
     if job is not None:
         words = "It is being identified." if job.state == "running" else "It waits to be identified."
         return Next(words, "Watch it", f"/fits/{job.id}", waits=job.id, main=False)
@@ -45,11 +49,16 @@ def next_step(
         return Next("Its runs are here, but no fit is.", "Start a fit", f"/actuators/{quote(actuator.serial)}")
     if actuator.current is not None and not newest.current:
         return _approved(actuator.current, newest, search or Search())
-    return fit_step(newest, yardstick, search)
+    return fit_step(newest, yardstick, search, said)
 
 
-def fit_step(fit: ParameterSetView, yardstick: Yardstick | None = None, search: Search | None = None) -> Next:
-    """The next step with a fit; the first page and the page of the fit name the same one."""
+def fit_step(
+    fit: ParameterSetView, yardstick: Yardstick | None = None, search: Search | None = None, said: ErrorOf | None = None
+) -> Next:
+    """The next step with a fit; the first page and the page of the fit name the same one.
+
+    `said` is the error on the runs to fit as it is read.
+    """
     at = f"/fits/{fit.id}"
     if fit.current:
         return Next("Its parameters are in force: nothing to do.", "Look at them", at, main=False)
@@ -57,6 +66,9 @@ def fit_step(fit: ParameterSetView, yardstick: Yardstick | None = None, search: 
     if search.job is not None:
         words = "It is being searched for what its model lacks."
         return Next(words, "Watch it", f"{at}#missing", waits=search.job, main=False)
+    said = said or ErrorOf(fit.error_fit)
+    if said.is_unstable:
+        return Next(f"The model is {said.in_print()}.", "See where it fails", f"{at}#fails")
     return _fitted(fit, yardstick or Yardstick(), search.verdict, at)
 
 
@@ -75,7 +87,7 @@ def _approved(current: ParameterSetView, newest: ParameterSetView, search: Searc
     if before is None or after is None:
         words = f"{approved}. There is a newer fit, not approved."
     else:
-        words = f"{approved}, with an error of {percent_in_print(before)}. A newer fit has {percent_in_print(after)}."
+        words = f"{approved}, with an error of {error_in_print(before)}. A newer fit has {error_in_print(after)}."
     better = before is not None and after is not None and after * NEAR < before
     return Next(words, "Compare them", f"/compare?fits={current.id},{newest.id}", main=better)
 

@@ -15,8 +15,8 @@ from ident.diagnosis.proposals.own import curves
 from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.result import Rung
 from ident.equations.mathml import mathml
+from ident.words.error import ErrorOf
 from ident.words.number import plain
-from ident.words.percent import percent_in_print
 from ident.words.plus_minus import plus_minus
 from ident.words.titles import title
 from schemas.matrix import RunView
@@ -31,7 +31,7 @@ class ProposedCard:
     equations: tuple[Markup, ...]
     strength: str
     against: str
-    error: Mapping[str, float | None]
+    error: Mapping[str, ErrorOf]
     evidence: str
     alike: tuple[str, ...]
     beside: str
@@ -59,7 +59,7 @@ def proposed(stored: Stored, run: RunView | None) -> Iterator[ProposedCard]:
             equations=tuple(Markup(mathml(line, curves(one.effect))) for line in one.effect["equation"]),
             strength=plus_minus(one.strength, one.std_error, one.unit),
             against=one.contradicted.told("it") if one.contradicted else "",
-            error=one.error,
+            error={use: one.error_of(use) for use in ("held_out", "fit", "verify")},
             evidence=f"{plain(one.nats, 3)} nats, {plain(one.bar, 3)} asked for",
             alike=one.alike,
             beside=", ".join(map(title, one.beside)),
@@ -75,7 +75,9 @@ def proposed(stored: Stored, run: RunView | None) -> Iterator[ProposedCard]:
 def _instead_of(one: Proposal, ladder: Sequence[Rung]) -> str:
     """What the catalogue named in its place, and what that leaves on runs to verify."""
     names = ", ".join(map(title, one.instead_of))
-    left = ladder[-1].error.get("verify") if ladder else None
-    if not names or left is None:
+    left = ladder[-1].error_of("verify") if ladder else ErrorOf(None)
+    if left.is_unstable:
+        return f"{names}, with which the model is {left.in_print()}"
+    if not names or left.error is None:
         return names
-    return f"{names}, which {'leave' if len(one.instead_of) > 1 else 'leaves'} {percent_in_print(left)} on verify runs"
+    return f"{names}, which {'leave' if len(one.instead_of) > 1 else 'leaves'} {left.in_print()} on verify runs"

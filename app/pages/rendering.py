@@ -11,6 +11,7 @@ from fastapi.responses import HTMLResponse
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from app.pages.manual import is_there
+from ident.words.error import ErrorOf
 from ident.words.percent import percent_in_print
 from ident.words.titles import title
 
@@ -43,10 +44,16 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     environment.filters["percent"] = percent_in_print
+    environment.filters["error"] = _error
     environment.filters["in_words"] = title
     environment.globals["static"] = static
     environment.globals["has_manual"] = is_there
     return environment
+
+
+def _error(of: ErrorOf | float | None) -> str:
+    """An error in words: of a number alone, or with the mean and the runs on which the model is unstable."""
+    return (of if isinstance(of, ErrorOf) else ErrorOf(of)).in_print()
 
 
 _TEMPLATES = _environment()

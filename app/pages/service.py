@@ -49,13 +49,17 @@ def actuator_list(context: Context, query: str, drifting: str, cursor: str | Non
     serials = [actuator.serial for actuator in found.items]
     newest, waiting = parameters.newest(context, serials), jobs.open_of_actuators(context, serials)
     approved = parameters.approved(context, serials)
+    sets = (*newest.values(), *(each.current for each in found.items if each.current))
+    errors = fits.errors_of(context, [one.id for one in sets])
     rows = [
-        actuator_row(each, newest.get(each.serial), waiting.get(each.serial), approved.get(each.serial, ()), drifting)
+        actuator_row(
+            each, newest.get(each.serial), waiting.get(each.serial), approved.get(each.serial, ()), drifting, errors
+        )
         for each in found.items
     ]
     return {
         "rows": rows, "query": query, "drifting": drifting, "followed": followed(approved), "more": found.next,
-        "next": next_steps(context, found.items, newest, waiting),
+        "next": next_steps(context, found.items, newest, waiting, errors),
         "only_simulated": not (query or cursor) and _simulated(found),
     }  # fmt: skip
 
@@ -74,6 +78,7 @@ def actuator(context: Context, serial: str, cursor: str | None) -> Shown:
         "actuator": found,
         "facts": _facts(found),
         "approved": _approved(context, found),
+        "said": fits.errors_of(context, [found.current.id])[found.current.id] if found.current else {},
         "drifts": _drifts(context, found),
         "verdict": judge(context, serial),
         "approvals": approvals.of_actuator(context, serial),
@@ -86,7 +91,8 @@ def _fits(context: Context, cursor: str | None, serial: str | None = None, matri
     """Fits and the jobs that are to make them, newest first, with the number of the next page."""
     made_by = jobs.listed(context, cursor, _ROWS, serial=serial, matrix=matrix, of_fits=True)
     made = parameters.page(context, Wanted(ids=[job.id for job in made_by.items]), None, _ROWS).items
-    return {"fits": fit_rows(made_by.items, made), "more": made_by.next}
+    errors = fits.errors_of(context, [entry.id for entry in made])
+    return {"fits": fit_rows(made_by.items, made, errors), "more": made_by.next}
 
 
 def _facts(found: ActuatorView) -> list[tuple[str, str]]:
@@ -168,5 +174,6 @@ def fit(context: Context, fit_id: str) -> FitPageView | JobPageView:
     way = lineage.ladder(context, fit_id)
     others = parameters.page(context, Wanted(serial=stored.serial), None, _ROWS).items
     newer = matrices.newer(context, stored.matrix)
-    step, against = of_fit(context, fit_id), approvals.against(context, fit_id)
+    step = of_fit(context, fit_id, stored.found.error_of("fit"))
+    against = approvals.against(context, fit_id)
     return fit_page(stored, matrix, lacks, way, step, against, others, newer, own_effects.every(context))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from app.fits.service import Stored
 from app.pages.fit_page import other_fit
 from ident.comparison.side_by_side import SideBySide
-from ident.words.percent import percent_in_print
+from ident.words.error import ErrorOf
 from schemas.parameters import ParameterSetView
 
 Row = tuple[str, ...]
@@ -57,7 +57,10 @@ def side_view(stored: Sequence[Stored], found: SideBySide) -> SideView:
         for one, column in zip(stored, found.columns, strict=True)
     )  # fmt: skip
     columns = found.columns
-    runs = ((run, use, *(percent_in_print(one.runs.get(run)) for one in columns)) for run, use in found.uses.items())
+    absent = ErrorOf(None)
+    runs = (
+        (run, use, *(one.run_words.get(run, absent).in_print() for one in columns)) for run, use in found.uses.items()
+    )
     return SideView(
         ids[0], found.serials, heads, tuple(column.name for column in found.columns), tuple(found.error_rows()),
         tuple(found.parameter_rows()), tuple(runs), ",".join(ids), "&".join(f"other={one}" for one in ids[1:]),

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ident.words.engineering import quantity
+from ident.words.error import error_in_print
 from ident.words.error_change import error_change
-from ident.words.percent import change, percent_in_print
+from ident.words.percent import change
 from schemas.parameters import ParameterSetView
 
 WIDTH, HEIGHT = 96, 22  # px
@@ -47,7 +48,7 @@ def _value(entry: ParameterSetView, name: str) -> float | None:
 
 def _words(sets: Sequence[ParameterSetView], name: str, value: float) -> str:
     if name == ERROR:
-        return percent_in_print(value)
+        return error_in_print(value)
     unit = next(entry.parameters[name].unit for entry in sets if name in entry.parameters)
     return quantity(value, unit)
 

@@ -14,10 +14,11 @@ from ident.diagnosis.words import not_told
 from ident.errors import Unusable
 from ident.figures import figure, ladder, look
 from ident.fit.result import FitResult
-from ident.matrix import Matrix
+from ident.matrix import USES, Matrix
 from ident.residuals.budget import Budget
 from ident.residuals.survey import Survey, survey
 from ident.words.engineering import printed_unit, quantity
+from ident.words.error import error_in_print, errors_line
 from ident.words.percent import percent_in_print
 from ident.words.titles import with_effects
 from ident.workflows import compare, study
@@ -49,14 +50,16 @@ def content(matrix: Matrix, fit: FitResult, diagnosis: Diagnosis | None = None) 
         Facts(_provenance(fit, model.citation)),
     ]
     lead = f"{fit.method}, seed {fit.seed} · {len(fit.runs)} runs · servoident {fit.version}"
-    return Report(f"{matrix.actuator.serial}: {title}", lead, blocks)
+    errors = errors_line({use: fit.error_of(use) for use in USES}, percent_in_print)
+    return Report(f"{matrix.actuator.serial}: {title}", f"Error {errors} · {lead}", blocks)
 
 
 def _error(fit: FitResult, budget: Budget | None) -> Iterator[Block]:
     yield Heading("Error")
     yield Text("Mean over runs of std(measured − model) / std(measured), eq. (17).")
-    rows = tuple((f"{row.runs} {row.use}", row.error, row.floor, row.ratio, row.offset) for row in error_rows(fit))
-    yield Table(("Runs", "Error", "Noise floor", "Ratio", "Offset"), rows, (1, 2, 3, 4))
+    listed = error_rows(fit)
+    rows = tuple((f"{row.runs} {row.use}", row.error, row.floor, row.ratio, row.offset, row.size) for row in listed)
+    yield Table(("Runs", "Error", "Noise floor", "Ratio", "Offset", "RMSE"), rows, (1, 2, 3, 4, 5))
     if budget:
         yield Heading("What it is made of", 3)
         yield Table(("Part", "Meaning", "Size", "At least", "At most"), budget_rows(budget), (2, 3, 4))
@@ -98,7 +101,7 @@ def _failing(matrix: Matrix, fit: FitResult, found: Survey) -> Iterator[Block]:
         tuple(
             Table(
                 (by.capitalize(), "Runs", "Error", "Mean"),
-                tuple((g.label, str(g.runs), percent_in_print(g.error), percent_in_print(g.mean)) for g in groups),
+                tuple((g.label, str(g.runs), error_in_print(g.error), percent_in_print(g.mean)) for g in groups),
                 (1, 2, 3),
             )
             for by, groups in group_tables(found.where).items()

@@ -11,6 +11,7 @@ from ident.residuals.budget import Budget
 from ident.residuals.curves import Curve
 from ident.residuals.trends import Trend
 from ident.words.engineering import quantity
+from ident.words.error import error_in_print
 from ident.words.percent import percent_in_print
 from ident.words.titles import title
 
@@ -72,7 +73,7 @@ def ladder_steps(diagnosis: Diagnosis) -> list[Step]:
 def candidate_rows(diagnosis: Diagnosis) -> tuple[Row, ...]:
     """Effect, predicted error, errors, why."""
     return tuple(
-        (title(c.effect), percent_in_print(c.predicted_error),
-         *(percent_in_print(c.error.get(use)) for use in ("fit", "held_out", "verify")), c.why)
+        (title(c.effect), error_in_print(c.predicted_error),
+         *(c.error_of(use).in_print() for use in ("fit", "held_out", "verify")), c.why)
         for c in diagnosis.candidates
     )  # fmt: skip

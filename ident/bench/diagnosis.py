@@ -84,7 +84,8 @@ class BenchDiagnoser:
             complete=self.complete,
         )  # fmt: skip
         return Diagnosis(
-            model=self.fit.model, effects=base.effects, baseline=Baseline(before, self._offset(base)),
+            model=self.fit.model, effects=base.effects,
+            baseline=Baseline(before, self._offset(base), unstable=self._unstable(base)),
             noise_floor={"fit": self.floor["fit"], "held_out": None, "verify": self.floor["verify"]},
             candidates=tuple(self._ranked(c, group, base, i == 0) for i, c in enumerate(first)),
             ladder=tuple(self._rung(step, steps[i - 1] if i else None) for i, step in enumerate(steps)),
@@ -131,6 +132,13 @@ class BenchDiagnoser:
         found = {"fit": on["fit"], "held_out": refit.held_out_error, "verify": on["verify"]}
         return self._known_errors.setdefault(id(refit), found) | found
 
+    def _unstable(self, refit: Refit) -> dict[str, tuple[str, ...]]:
+        """By the use of records the ids of those on which the model is unstable, where there is time to simulate."""
+        runs = {use: in_time(lambda records=records: errors_of(records, refit.model)) or ()  # type: ignore[misc]
+                for use, records in self.records.items()}  # fmt: skip
+        found = {use: tuple(one.id for one in of if one.unstable) for use, of in runs.items()}
+        return {use: ids for use, ids in found.items() if ids}
+
     def _offset(self, refit: Refit) -> float | None:
         return self._mean(refit, self.records["fit"], "offset")
 
@@ -148,7 +156,7 @@ class BenchDiagnoser:
         refit, effect = candidate.refit, self.refitter.effects[candidate.effect]
         return Ranked(
             effect=candidate.effect, error=self._errors(refit), offset=self._offset(refit),
-            predicted_error=candidate.predicted, parameters=self._parameters(refit),
+            predicted_error=candidate.predicted, parameters=self._parameters(refit), unstable=self._unstable(refit),
             group=group if candidate.effect in group and len(group) > 1 else (),
             evidence=_evidence(candidate.gain, effect),
             why=why_of_gain(candidate.gain, effect, (base.held_out_error, refit.held_out_error), None, best),
@@ -159,7 +167,7 @@ class BenchDiagnoser:
         added = None if before is None else step.effects[-1]
         return Rung(
             added=added, error=self._errors(step), offset=self._offset(step), nats=nats,
-            parameters=self._parameters(step),
+            parameters=self._parameters(step), unstable=self._unstable(step),
         )  # fmt: skip
 
 

@@ -26,6 +26,7 @@ from ident.custom.definition import preset_with
 from ident.effects.effect import off_values
 from ident.fit.ends import distinct
 from ident.fit.result import Estimate, FitResult, RunError, Undetermined
+from ident.fit.run_errors import rmse_of
 from ident.fit.search import Search, State, evolution, options_of
 from ident.fit.settings import Settings
 from ident.fit.space import Axis, Space
@@ -181,6 +182,8 @@ class BenchIdentification:
             undetermined=tuple(Undetermined(called[n], "these records hardly depend on it") for n in undetermined),
             error={"fit": _mean(runs, "fit", "error"), "held_out": None, "verify": _mean(runs, "verify", "error")},
             offset={"fit": _mean(runs, "fit", "offset"), "verify": _mean(runs, "verify", "offset")},
+            error_with_mean={use: _mean(runs, use, "error_with_mean") for use in ("fit", "verify")},
+            **rmse_of(runs, {use: [1.0] * sum(run.use == use for run in runs) for use in ("fit", "verify")}),
             noise_floor={use: noise_floor(self.matrix, use) for use in ("fit", "verify")}, runs=runs,
             method=self.settings.method, seed=self.settings.seed,
             evaluations=int(state["evaluations"]) + solution.evaluations, seconds=time.monotonic() - self._started,

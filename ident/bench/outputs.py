@@ -11,6 +11,7 @@ from ident.bench.model import Model, beyond_fast
 from ident.bench.records import Record, bench_set
 from ident.bench.speed_table import SpeedTable
 from ident.fit.result import RunError
+from ident.fit.run_errors import run_error
 from ident.matrix import Matrix
 from ident.presets import Preset
 
@@ -50,7 +51,7 @@ def errors_of(records: Sequence[Record], model: Model) -> tuple[RunError, ...]:
         found = model.answer(record.current, record.rate, record.hold, float(record.position[0])).position
         difference, size = record.position - found, float(np.std(record.position))
         error, offset = float(np.std(difference)) / size, float(np.mean(difference)) / size
-        out.append(RunError(record.id, record.use, min(error, 1e3), float(np.clip(offset, -1e3, 1e3))))
+        out.append(run_error(record, error, offset, size, "m"))
     return tuple(out)
 
 

@@ -15,8 +15,7 @@ import numpy as np
 
 from ident.cached import cached_property
 from ident.checks.finding import Finding
-from ident.checks.gain import RELATED
-from ident.checks.response import Response, respond, response
+from ident.checks.response import RELATED, Response, respond, response
 from ident.matrix import Run
 
 NEAR = 0.02  # a clock is right to 1e-4 and a repeated RMS to 1 %; by chance one ratio in 40 is so near to a factor

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -19,10 +20,11 @@ from ident.fit.normal_matrices import output
 from ident.fit.result import FitResult
 from ident.fit.simulated_runs import every_run, is_simulated
 from ident.linear import LinearModel
-from ident.matrix import Actuator, Matrix, Run, over_runs
+from ident.matrix import USES, Actuator, Matrix, Run, over_runs
 from ident.parallel import each
 from ident.presets import Preset
 from ident.words.engineering import quantity
+from ident.words.error import UNSTABLE, ErrorOf, bounded, first_line
 from ident.words.percent import percent
 from ident.words.shown import Listing, Shown
 
@@ -30,6 +32,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Simulator = Callable[[Preset, Mapping[str, float], Matrix], dict[str, Array]]
 """A model, its values by the equations' names and a matrix in; the output of every run out, by the run's id."""
+_HUGE = 1e100  # of a signal: its square is still a number
 _NUMBERS = ("error", "offset", "RMSE", "MAE")
 _WINDOW = 1.0  # s: the length of a window of the spectral estimate, and with it its resolution of 1 Hz
 
@@ -52,18 +55,43 @@ class RunComparison(Shown):
     @property
     def row(self) -> tuple[str, ...]:
         """Id, use, error, offset, RMSE and mean size of the residual."""
-        return (self.run.id, self.run.use, percent(self.error), percent(self.offset), quantity(self.rmse, self.unit),
-                quantity(self.mae, self.unit))  # fmt: skip
+        offset = "–" if self.unstable else percent(self.offset)
+        sizes = ("–" if size is None else quantity(size, self.unit) for size in (self.rmse, self.mae))
+        return (self.run.id, self.run.use, self.words.said(), offset, *sizes)
 
     @cached_property
     def error(self) -> float:
-        """Eq. (17): std(x_m − x) / std(x_m)."""
-        return float(np.std(self.run.measured - self.modelled) / np.std(self.run.measured))
+        """Eq. (17): std(x_m − x) / std(x_m), at most :data:`ident.words.error.UNSTABLE`."""
+        return bounded(float(np.std(self._residual) / np.std(self.run.measured)))
 
     @cached_property
     def offset(self) -> float:
         """Difference of the means over the standard deviation."""
-        return float(np.mean(self.run.measured - self.modelled) / np.std(self.run.measured))
+        offset = float(np.mean(self._residual) / np.std(self.run.measured))
+        return math.copysign(bounded(abs(offset)), offset)
+
+    @property
+    def error_with_mean(self) -> float:
+        """RMS(x − x_m) / std(x_m): it sees the means that eq. (17) does not."""
+        return bounded(math.hypot(self.error, self.offset))
+
+    @property
+    def unstable(self) -> bool:
+        """Whether the model is unstable on the run."""
+        return not self.error < UNSTABLE
+
+    @property
+    def words(self) -> ErrorOf:
+        """Its error as a reader reads it."""
+        size = "" if self.rmse is None else quantity(self.rmse, self.unit)
+        return ErrorOf(self.error, self.error_with_mean, (self.run.id,) if self.unstable else (), size)
+
+    @cached_property
+    def _residual(self) -> Array:
+        """Measured − modelled, (n,); where the model ran away, the largest finite number."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            left = np.nan_to_num(self.run.measured - self.modelled, nan=_HUGE)
+        return np.clip(left, -_HUGE, _HUGE)
 
     @property
     def unit(self) -> str:
@@ -71,14 +99,17 @@ class RunComparison(Shown):
         return self.run.units.get(self.run.output, "1")
 
     @cached_property
-    def rmse(self) -> float:
-        """The residual's root mean square √(mean (x_m − x)²) in `unit`: it sees the offset, which eq. (17) does not."""
-        return float(np.sqrt(np.mean((self.run.measured - self.modelled) ** 2)))
+    def rmse(self) -> float | None:
+        """The residual's root mean square √(mean (x_m − x)²) in `unit`: it sees the offset, which eq. (17) does not.
+
+        None where the model is unstable on the run.
+        """
+        return None if self.unstable else float(np.sqrt(np.mean(self._residual**2)))
 
     @cached_property
-    def mae(self) -> float:
-        """The residual's mean size, mean |x_m − x|, in `unit`."""
-        return float(np.mean(np.abs(self.run.measured - self.modelled)))
+    def mae(self) -> float | None:
+        """The residual's mean size, mean |x_m − x|, in `unit`; None where the model is unstable on the run."""
+        return None if self.unstable else float(np.mean(np.abs(self._residual)))
 
     @cached_property
     def frequency(self) -> Array:
@@ -131,24 +162,53 @@ class Comparison(Shown):
     @property
     def error(self) -> dict[str, float | None]:
         """Eq. (17) averaged over the runs of each use."""
-        return {use: self._mean(use, "error") for use in ("fit", "verify")}
+        return {use: self._mean(use, "error") for use in USES}
 
     @property
     def offset(self) -> dict[str, float | None]:
         """The offset averaged over the runs of each use."""
-        return {use: self._mean(use, "offset") for use in ("fit", "verify")}
+        return {use: self._mean(use, "offset") for use in USES}
+
+    @property
+    def error_with_mean(self) -> dict[str, float | None]:
+        """RMS(x − x_m)/std(x_m) averaged over the runs of each use."""
+        return {use: self._mean(use, "error_with_mean") for use in USES}
+
+    @property
+    def rmse(self) -> dict[str, float | None]:
+        """The RMSE averaged over the runs of each use; None where a run has none, or the outputs have several units."""
+        units = {one.unit for one in self.runs}
+        known = {use: all(one.rmse is not None for one in self.runs if one.run.use == use) for use in USES}
+        return {use: self._mean(use, "rmse") if told and len(units) == 1 else None for use, told in known.items()}
+
+    def error_of(self, use: str) -> ErrorOf:
+        """The error on the runs of a use as a reader reads it."""
+        unstable = tuple(one.run.id for one in self.runs if one.run.use == use and one.unstable)
+        size = self.rmse[use]
+        said = "" if size is None else quantity(size, self.runs[0].unit)
+        return ErrorOf(self.error[use], self.error_with_mean[use], unstable, said)
+
+    @property
+    def headline(self) -> str:
+        """The first line: the error on each use of runs with what a reader must know beside it."""
+        return first_line(" + ".join((self.fit.model, *self.fit.effects)), {use: self.error_of(use) for use in USES})
 
     def listings(self) -> Iterable[Listing | str]:
         """The error of every run, in per cent and in its unit, and the means."""
+        yield self.headline
         rows = [one.row for one in self.runs]
-        rows += [("mean", use, percent(mean), "", "", "") for use, mean in self.error.items() if mean is not None]
+        means = {use: self.error_of(use) for use in USES}
+        rows += [("mean", use, of.said(), "", "", "") for use, of in means.items() if of.error is not None]
         yield Listing("", ("run", "use", *_NUMBERS), rows, _NUMBERS)
 
     def records(self) -> list[dict[str, Any]]:
-        """A record a run, for a data frame: eq. (17) and the offset as fractions, RMSE and MAE in `unit`."""
+        """A record a run, for a data frame: eq. (17) and the offset as fractions, RMSE and MAE in `unit`.
+
+        `error_with_mean` is RMS(x − x_m)/std(x_m). Where the model is unstable on a run there is no RMSE and no MAE.
+        """
         return [
             {"id": one.run.id, "use": one.run.use, "error": one.error, "offset": one.offset,
-             "rmse": one.rmse, "mae": one.mae, "unit": one.unit}
+             "error_with_mean": one.error_with_mean, "rmse": one.rmse, "mae": one.mae, "unit": one.unit}
             for one in self.runs
         ]  # fmt: skip
 

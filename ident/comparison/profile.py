@@ -29,7 +29,7 @@ from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.noise.effective_sample_size import independent_samples
 from ident.progress import Progress, Report, silent
-from ident.words.percent import percent
+from ident.words.error import error_said
 from ident.words.shown import Listing, Shown
 
 Array = NDArray[np.float64]
@@ -71,7 +71,7 @@ class Profile(Shown):
     def listings(self) -> Iterable[Listing | str]:
         """The interval, and a row a value."""
         rows = [
-            (f"{value:.5g}", percent(error), f"{deviance:.3g}")
+            (f"{value:.5g}", error_said(error), f"{deviance:.3g}")
             for value, error, deviance in zip(self.values, self.errors, self.deviance, strict=True)
         ]
         header = (f"{self.parameter} ({self.unit})", "error (eq. 17)", "D")

@@ -10,8 +10,8 @@ from typing import Any
 from ident.comparison.compare import Comparison
 from ident.errors import Unusable
 from ident.fit.result import Estimate, FitResult
+from ident.words.error import ErrorOf
 from ident.words.number import count
-from ident.words.percent import percent
 from ident.words.plus_minus import plus_minus
 from ident.words.shown import Listing, Shown
 
@@ -21,12 +21,14 @@ _USES = {"fit": "fit", "held_out": "held out", "verify": "verify"}
 
 @dataclass(frozen=True)
 class Column:
-    """One fit: its letter, eq. (17) by use and by run, and the serial number of its actuator, "" where not known."""
+    """One fit: its letter, eq. (17) by use and by run, also as a reader reads it, and its actuator's serial number."""
 
     name: str
     fit: FitResult
     error: Mapping[str, float | None]
     runs: Mapping[str, float]
+    words: Mapping[str, ErrorOf]
+    run_words: Mapping[str, ErrorOf]
     serial: str = ""
 
     @property
@@ -71,9 +73,8 @@ class SideBySide(Shown):
     def error_rows(self) -> Iterator[tuple[str, ...]]:
         """One row a use of which there are runs."""
         for use, title in _USES.items():
-            errors = [column.error.get(use) for column in self.columns]
-            if any(error is not None for error in errors):
-                yield title, *map(percent, errors)
+            if any(column.error.get(use) is not None for column in self.columns):
+                yield title, *(column.words[use].said() if use in column.words else "–" for column in self.columns)
 
     def parameter_rows(self) -> Iterator[tuple[str, ...]]:
         """One row a parameter that one of the fits has, with its standard error."""
@@ -83,7 +84,8 @@ class SideBySide(Shown):
     def run_rows(self) -> Iterator[tuple[str, ...]]:
         """One row a run."""
         for run, use in self.uses.items():
-            yield run, use, *(percent(column.runs.get(run)) for column in self.columns)
+            known = (column.run_words.get(run) for column in self.columns)
+            yield run, use, *("–" if of is None else of.said() for of in known)
 
     def records(self) -> list[dict[str, Any]]:
         """A record a run, for a data frame: its error in each fit, by letter."""
@@ -103,19 +105,37 @@ def of_fits(fits: Sequence[FitResult], serials: Sequence[str] = ()) -> SideBySid
     Raises Unusable for fewer than two, or more than eight.
     """
     _check(len(fits))
-    runs = [{run.id: run.error for run in fit.runs} for fit in fits]
     of = serials or [_serial(fit) for fit in fits]
-    columns = tuple(map(Column, ascii_uppercase, fits, [fit.error for fit in fits], runs, of))
+    columns = tuple(
+        Column(
+            name,
+            fit,
+            fit.error,
+            {run.id: run.error for run in fit.runs},
+            {use: fit.error_of(use) for use in _USES},
+            {run.id: run.words for run in fit.runs},
+            serial,
+        )
+        for name, fit, serial in zip(ascii_uppercase, fits, of, strict=False)
+    )
     return SideBySide(columns, {run.id: run.use for fit in fits for run in fit.runs})
 
 
 def of_comparisons(comparisons: Sequence[Comparison]) -> SideBySide:
     """Fits against the same runs, whatever each was fitted to. Raises Unusable as :func:`of_fits`."""
     _check(len(comparisons))
-    runs = [{one.run.id: one.error for one in comparison.runs} for comparison in comparisons]
-    fits = [comparison.fit for comparison in comparisons]
-    errors, serials = [comparison.error for comparison in comparisons], [_serial(fit) for fit in fits]
-    columns = tuple(map(Column, ascii_uppercase, fits, errors, runs, serials))
+    columns = tuple(
+        Column(
+            name,
+            comparison.fit,
+            comparison.error,
+            {one.run.id: one.error for one in comparison.runs},
+            {use: comparison.error_of(use) for use in comparison.error},
+            {one.run.id: one.words for one in comparison.runs},
+            _serial(comparison.fit),
+        )
+        for name, comparison in zip(ascii_uppercase, comparisons, strict=False)
+    )
     return SideBySide(columns, {one.run.id: one.run.use for comparison in comparisons for one in comparison.runs})
 
 

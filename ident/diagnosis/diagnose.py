@@ -233,7 +233,7 @@ class Diagnoser:
         return Diagnosis(
             model=self.fit.model,
             effects=base.effects,
-            baseline=Baseline(dict(ladder[0].error), base.offset),
+            baseline=Baseline(dict(ladder[0].error), base.offset, base.errors_with_mean, base.unstable),
             noise_floor=floor,
             horizon=models.horizon,
             candidates=tuple(self._ranked(selection, floor["fit"])),
@@ -267,7 +267,8 @@ class Diagnoser:
         repeats, known = in_time(lambda: models.floors.measured), in_time(lambda: models.floor is not None)
         text = verdict_text(added, groups, doubted, unexplained, errors, selection.base.error, repeats is not False,
                             floor, against, selection.complete, models.spoken, bounded,
-                            None if against else _better_with_fewer(steps))  # fmt: skip
+                            None if against else _better_with_fewer(steps),
+                            steps[-1][1].unstable.get("verify", ()))  # fmt: skip
         stands = standing(added, unexplained, against, bool(known) or not bounded)
         against_by = tuple(one.effect for one in against)
         return Verdict(added, stands, against_by, groups, tuple(doubted), unexplained, text, bounded)
@@ -334,6 +335,8 @@ class Diagnoser:
                 predicted_error=base.error * candidate.prediction.share,
                 parameters=refit.parameters if refit else {},
                 group=group if candidate.effect in group else (),
+                error_with_mean=refit.errors_with_mean if refit else {},
+                unstable=refit.unstable if refit else {},
                 evidence=_evidence(candidate, effect, weighed),
                 why=why(candidate, effect, before, floor, i == 0, weighed),
             ))  # fmt: skip
@@ -359,6 +362,8 @@ class Diagnoser:
             offset=in_time(lambda: refit.held_out.offset) if refit.stable else None,
             nats=in_time(lambda: improvement(before.held_out, refit.held_out).nats) if before and compared else None,
             parameters=refit.parameters,
+            error_with_mean=refit.errors_with_mean,
+            unstable=refit.unstable,
         )
 
     def _contradictions(self, models: ModelFamily, steps: Steps) -> Iterator[Contradiction]:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ident.diagnosis.proposals.choice import choices
+from ident.words.error import error_said
 from ident.words.percent import percent
 from ident.words.plus_minus import plus_minus_si
 from ident.words.shown import Listing
@@ -20,6 +21,7 @@ Row = tuple[str, ...]
 def listings(found: Diagnosis) -> Iterator[Listing | str]:
     """Errors, ranking, ladder, suspects, proposals; sentences between and below them."""
     uses = tuple(USES.values())
+    yield found.headline
     yield Listing("", (_measure(found), *uses), error_rows(found), uses)
     header = ("effect", "predicted", "held out", "verify", "strength", "group")
     yield Listing("", header, ranking_rows(found), header[1:4])
@@ -50,10 +52,10 @@ def proposals_listing(found: Diagnosis) -> Listing:
 def proposal_rows(found: Diagnosis) -> Iterator[Row]:
     """The error against the number of terms: none, then one row a term, each on top of the ones before."""
     without, *rest = choices(found.proposals or (), found.ladder)
-    errors = [percent(without.error.get(use)) for use in USES]
+    errors = [error_said(without.error.get(use)) for use in USES]
     yield "0", f"(with {without.latest})" if without.latest else "(the fitted model)", "–", "–", *errors, "–", ""
     for choice, one in zip(rest, found.proposals or (), strict=True):
-        errors = [percent(choice.error.get(use)) for use in USES]
+        errors = [one.error_of(use).said() for use in USES]
         meant = one.meaning + (" (a hypothesis: too few runs to confirm it)" if one.hypothesis else "")
         evidence = f"{one.nats:.3g} ({one.bar:.3g})"
         strength_is = plus_minus_si(one.strength, one.std_error, one.unit, digits=4)
@@ -66,7 +68,7 @@ def _measure(found: Diagnosis) -> str:
 
 def error_rows(found: Diagnosis) -> Iterator[Row]:
     """The model's error and the noise floor by use, in per cent."""
-    yield "model", *(percent(found.baseline.error.get(use)) for use in USES)
+    yield "model", *(found.baseline.error_of(use).said() for use in USES)
     yield "noise floor", *(percent(found.noise_floor.get(use)) for use in USES)
 
 
@@ -75,9 +77,9 @@ def ranking_rows(found: Diagnosis) -> Iterator[Row]:
     for ranked in found.candidates:
         if not ranked.parameters:
             continue
-        errors = (ranked.predicted_error, ranked.error.get("held_out"), ranked.error.get("verify"))
+        errors = (error_said(ranked.predicted_error), *(ranked.error_of(use).said() for use in ("held_out", "verify")))
         others = ", ".join(name for name in ranked.group if name != ranked.effect)
-        yield ranked.effect, *map(percent, errors), strength(ranked), f"or {others}" if others else ""
+        yield ranked.effect, *errors, strength(ranked), f"or {others}" if others else ""
 
 
 def unconfirmed(found: Diagnosis) -> str:
@@ -86,7 +88,7 @@ def unconfirmed(found: Diagnosis) -> str:
     if not rest:
         return ""
     best = min((ranked.predicted_error for ranked in rest if ranked.predicted_error is not None), default=None)
-    return f"not refitted, predicted {percent(best)} at best: {', '.join(ranked.effect for ranked in rest)}"
+    return f"not refitted, predicted {error_said(best)} at best: {', '.join(ranked.effect for ranked in rest)}"
 
 
 def strength(ranked: Ranked) -> str:
@@ -100,4 +102,4 @@ def ladder_rows(found: Diagnosis) -> Iterator[Row]:
     floor = percent(found.noise_floor.get("fit"))
     for rung in found.ladder:
         evidence = "–" if rung.nats is None else f"{rung.nats:.3g}"
-        yield rung.added or "(the fitted model)", *(percent(rung.error.get(use)) for use in USES), floor, evidence
+        yield rung.added or "(the fitted model)", *(rung.error_of(use).said() for use in USES), floor, evidence

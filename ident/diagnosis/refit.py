@@ -23,6 +23,7 @@ from ident.matrix import Run, over_runs
 from ident.noise.autoregression import prediction_errors
 from ident.noise.effective_sample_size import independent_samples
 from ident.time_budget import in_time
+from ident.words.error import UNSTABLE
 
 Array = NDArray[np.float64]
 _FOLLOWED = 1.03  # times the promised error that a simulation may leave
@@ -120,11 +121,33 @@ class Refit:
         Of what it leaves there once their first states are found, as a comparison shows it: what is linear in these
         would flatter a model that is not.
         """
+        found = self._verified
+        return None if found is None or found.unstable else found.error
+
+    @cached_property
+    def _verified(self) -> _Simulated | None:
+        """What a simulation of the runs to verify leaves; None where there are none."""
         runs = self.fitness.matrix.of_use("verify")
-        if not runs:
-            return None
-        found = _Simulated.of(self.fitness.fresh(runs), self.point).error
-        return found if np.isfinite(found) else None
+        return _Simulated.of(self.fitness.fresh(runs), self.point) if runs else None
+
+    @property
+    def unstable(self) -> dict[str, tuple[str, ...]]:
+        """By the use of runs the ids of those on which it is unstable; a use without such runs is left out."""
+        pairs = zip(self.fitness.runs, self.here.runs, strict=True)
+        fitted = tuple(run.id for run, found in pairs if not found.error < UNSTABLE)
+        known = None if fitted else in_time(lambda: self._verified)
+        verified = known.unstable if known is not None else ()
+        return {use: runs for use, runs in (("fit", fitted), ("verify", verified)) if runs}
+
+    @property
+    def errors_with_mean(self) -> dict[str, float | None]:
+        """RMS(x − x_m)/std(x_m) by what it is measured on; nothing over windows, whose errors count the mean."""
+        if self.fitness.horizon is not None or not self.stable:
+            return {}
+        fitted = [float(np.hypot(run.error, run.offset)) for run in self.here.runs]
+        found: dict[str, float | None] = {"fit": float(over_runs(fitted, self.here.runs))}
+        known = in_time(lambda: self._verified)
+        return found | ({} if known is None or known.unstable else {"verify": known.with_mean})
 
     @property
     def errors(self) -> dict[str, float | None]:
@@ -231,22 +254,34 @@ def told_apart(worse: Refit, better: Refit) -> bool:
 class _Simulated:
     """What a simulation leaves of runs: eq. (17) averaged over them, and how many of its samples tell something new.
 
-    `whole` (n,) is what it leaves of each from its first sample to its last.
+    `whole` (n,) is what it leaves of each from its first sample to its last, `with_mean` RMS(x − x_m)/std(x_m) of it,
+    averaged as the error is; `unstable` are the ids of the runs on which the model is.
     """
 
     error: float
     independent: float
     whole: list[Array]
+    with_mean: float
+    unstable: tuple[str, ...]
 
     @classmethod
     def of(cls, fitness: SimulatedFitness, point: Array) -> _Simulated:
         """Simulate the model at a point."""
         outputs, runs = fitness.outputs(point), fitness.runs
         left = [fitness.left(run, outputs[run.id]) for run in runs]
-        errors = [np.sqrt(np.mean(r**2)) / np.std(run.measured) for r, run in zip(left, runs, strict=True)]
+        errors = [_rms(r) / np.std(run.measured) for r, run in zip(left, runs, strict=True)]
         whole = [run.measured - outputs[run.id] for run in runs]
-        return cls(float(over_runs(errors, runs)), sum(map(independent_samples, left)), whole)
+        with_mean = over_runs([_rms(r) / np.std(run.measured) for r, run in zip(whole, runs, strict=True)], runs)
+        unstable = tuple(run.id for run, error in zip(runs, errors, strict=True) if not error < UNSTABLE)
+        independent = sum(map(independent_samples, left))
+        return cls(float(over_runs(errors, runs)), independent, whole, float(with_mean), unstable)
 
     def unforetold(self, chunks: int) -> Array:
         """Σ of squares of what the past of each residual does not foretell, by chunk, (runs, chunks)."""
         return by_chunk([prediction_errors(residual) for residual in self.whole], chunks)
+
+
+def _rms(residual: Array) -> float:
+    """The root mean square, infinite of what overflows: a model that ran away is no warning."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return float(np.sqrt(np.mean(residual**2)))

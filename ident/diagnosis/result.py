@@ -11,28 +11,45 @@ from ident.diagnosis.listings import listings
 from ident.diagnosis.proposals.proposal import Proposal, from_json
 from ident.diagnosis.standing import Standing
 from ident.errors import Unusable
-from ident.matrix import Matrix, Specimen
-from ident.plain import UNWRITTEN, Misfit, read, written
+from ident.matrix import USES, Matrix, Specimen
+from ident.plain import UNWRITTEN, WHERE_KNOWN, Misfit, read, written
 from ident.residuals.budget import Budget
+from ident.words.error import ErrorOf, first_line
 from ident.words.shown import Listing, Shown
 
 Errors = Mapping[str, float | None]
 """Eq. (17) averaged over the runs of a kind: fit, held_out, verify; None where there are none."""
 
 
+class Judged:
+    """What has errors by use: with the mean counted, and the runs on which it is unstable, where these are known."""
+
+    error: Errors
+    error_with_mean: Errors
+    unstable: Mapping[str, tuple[str, ...]]
+
+    def error_of(self, use: str) -> ErrorOf:
+        """The error on the runs of a use as a reader reads it: a model that is unstable where it is fitted has none."""
+        unstable = self.unstable.get("fit", ()) or self.unstable.get(use, ())
+        return ErrorOf(self.error.get(use), self.error_with_mean.get(use), unstable)
+
+
 @dataclass(frozen=True)
-class Baseline:
-    """Errors and offset of the model that was given."""
+class Baseline(Judged):
+    """Errors and offset of the model that was given; by use also RMS(x − x_m)/std(x_m), and where it is unstable."""
 
     error: Errors = field(default_factory=dict)
     offset: float | None = None
+    error_with_mean: Errors = field(default_factory=dict, metadata=WHERE_KNOWN)
+    unstable: Mapping[str, tuple[str, ...]] = field(default_factory=dict, metadata=WHERE_KNOWN)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Ranked:
+class Ranked(Judged):
     """An effect that the model lacks: what it was predicted to gain, what its refit gained, and why.
 
     `group` are the effects that the data cannot tell from it. Without `parameters` only the prediction was made.
+    `unstable` has by use the runs on which the model is unstable with it.
     """
 
     effect: str
@@ -43,6 +60,8 @@ class Ranked:
     group: tuple[str, ...] = ()
     evidence: Mapping[str, float | str | bool | None] = field(default_factory=dict)
     why: str = ""
+    error_with_mean: Errors = field(default_factory=dict, metadata=WHERE_KNOWN)
+    unstable: Mapping[str, tuple[str, ...]] = field(default_factory=dict, metadata=WHERE_KNOWN)
 
     @property
     def strength(self) -> Found | None:
@@ -51,10 +70,11 @@ class Ranked:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rung:
+class Rung(Judged):
     """A step of the ladder: what was added (None: the fitted model), the errors after it, the parameters.
 
-    `nats` tell by how much the step made the held-out data more likely.
+    `nats` tell by how much the step made the held-out data more likely, `unstable` has by use the runs on which the
+    model is unstable after it.
     """
 
     added: str | None = None
@@ -62,6 +82,8 @@ class Rung:
     offset: float | None = None
     nats: float | None = None
     parameters: Mapping[str, Found] = field(default_factory=dict)
+    error_with_mean: Errors = field(default_factory=dict, metadata=WHERE_KNOWN)
+    unstable: Mapping[str, tuple[str, ...]] = field(default_factory=dict, metadata=WHERE_KNOWN)
 
 
 @dataclass(frozen=True)
@@ -200,6 +222,12 @@ class Diagnosis(Shown):
     data_hash: str = ""
     notes: tuple[str, ...] = ()
     matrix: Matrix | None = field(default=None, compare=False, repr=False, metadata=UNWRITTEN)
+
+    @property
+    def headline(self) -> str:
+        """Its first line: the model that was fitted, and its error on each use of runs."""
+        of = {use: self.baseline.error_of(use) for use in USES}
+        return first_line(" + ".join((self.model, *self.effects)), of)
 
     def listings(self) -> Iterable[Listing | str]:
         """Errors, ranking, ladder, suspects, proposals, verdict."""

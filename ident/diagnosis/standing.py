@@ -7,7 +7,7 @@ that behaves otherwise there.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from ident.matrix import Run, over_runs
 from ident.noise.effective_sample_size import independent_samples
-from ident.words.percent import percent
+from ident.plain import WHERE_KNOWN
+from ident.words.error import UNSTABLE, error_said, unstable_on
 from ident.words.titles import title
 
 Array = NDArray[np.float64]
@@ -32,7 +33,7 @@ _RESAMPLED = 400
 class Contradiction:
     """An effect with which the verify error rises, from and to which, and by how many of its standard errors.
 
-    `after` and `deviations` are None where the model is unstable on a verify run with it, and was not without.
+    `after` and `deviations` are None where the model is `unstable` on these verify runs with it, and was not without.
     `instead_of` are the effects that the model has which it rises from, where that has others.
     """
 
@@ -41,6 +42,7 @@ class Contradiction:
     after: float | None
     deviations: float | None
     instead_of: tuple[str, ...] = ()
+    unstable: tuple[str, ...] = field(default=(), metadata=WHERE_KNOWN)
 
     def told(self, named: str) -> str:
         """In a sentence on what is `named`."""
@@ -52,8 +54,8 @@ class Contradiction:
     def rise(self) -> str:
         """What becomes of the verify runs, in words."""
         if self.after is None:
-            return f"a verify run cannot be followed, the error there was {percent(self.before)}"
-        return f"the error on verify runs rises from {percent(self.before)} to {percent(self.after)}"
+            return f"the model is {unstable_on(self.unstable)}, the error on verify runs was {error_said(self.before)}"
+        return f"the error on verify runs rises from {error_said(self.before)} to {error_said(self.after)}"
 
 
 def contradiction(
@@ -65,11 +67,11 @@ def contradiction(
     over windows. The standard error
     is that of the difference, by a bootstrap over chunks of ten correlation times (Künsch 1989), at least four a run.
     """
-    if not all(np.isfinite(r).all() for r in before):
+    if _unstable(runs, before):
         return None
-    if not all(np.isfinite(r).all() for r in after):
+    if unstable := _unstable(runs, after):
         sizes = [float(np.std(r) / np.std(run.measured)) for run, r in zip(runs, before, strict=True)]
-        return Contradiction(effect, float(over_runs(sizes, runs)), None, None)
+        return Contradiction(effect, float(over_runs(sizes, runs)), None, None, unstable=unstable)
     random = np.random.default_rng(0)
     drawn = {"before": np.empty((len(runs), _RESAMPLED)), "after": np.empty((len(runs), _RESAMPLED))}
     whole = {"before": np.empty(len(runs)), "after": np.empty(len(runs))}
@@ -88,6 +90,13 @@ def contradiction(
     if not last - first > _SURE * error:
         return None
     return Contradiction(effect, first, last, (last - first) / max(error, 1e-300))
+
+
+def _unstable(runs: Sequence[Run], left: Sequence[Array]) -> tuple[str, ...]:
+    """The ids of the runs on which a model is unstable, by what it leaves of each."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        errors = [float(np.sqrt(np.mean(r**2)) / np.std(run.measured)) for run, r in zip(runs, left, strict=True)]
+    return tuple(run.id for run, error in zip(runs, errors, strict=True) if not error < UNSTABLE)
 
 
 def _chunks(residual: Array) -> list[slice]:

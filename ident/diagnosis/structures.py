@@ -25,7 +25,7 @@ from ident.matrix import Matrix
 from ident.presets import Preset, preset
 from ident.presets.suited import in_question, told_by_following, unusual
 from ident.progress import Progress, Report, silent
-from ident.words.percent import percent
+from ident.words.error import error_said
 from ident.words.titles import title
 
 _WORSE = 1.02  # times the least error on held-out data: less is no reason for another parameter
@@ -287,9 +287,9 @@ class _Judged:
     def structure(self, over: str, more: str) -> Structure:
         """What is told of it, and `more` why it was taken."""
         alone = _held_out(self.refit)
-        what = f"leaves {percent(alone)} of held-out data{over} with {self.parameters} parameters"
+        what = f"leaves {error_said(alone)} of held-out data{over} with {self.parameters} parameters"
         if self.with_effect is not None:
-            what += f", {percent(self.error)} with {title(self.with_effect.effects[-1])}"
+            what += f", {error_said(self.error)} with {title(self.with_effect.effects[-1])}"
         why = f"{what}: {more}" if more else what
         held_out = alone if self.refit.finite else None
         return Structure(self.machine, {"held_out": held_out}, self.parameters, why, self.values)

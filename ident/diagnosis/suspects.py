@@ -19,6 +19,7 @@ from ident.diagnosis.result import LabelErrors, Suspect
 from ident.matrix import Run
 from ident.parallel import each
 from ident.simulation.simulate import Simulation
+from ident.words.error import error_said
 
 Array = NDArray[np.float64]
 _OUTLIER = 5.0  # robust standard deviations of the runs' errors
@@ -82,8 +83,8 @@ def _evidence(what: str, stated: float, found: float, unit: str, error: float, u
         "delay": f"shifted by {1e3 * found:.3g} ms",
     }
     return (
-        f"the run's error is {100 * error:.3g} %, where {100 * usual:.3g} % would be usual; "
-        f"{of_channel.get(what, label)} it is {100 * mended:.3g} %"
+        f"the run's error is {error_said(error)}, where {error_said(usual)} would be usual; "
+        f"{of_channel.get(what, label)} it is {error_said(mended)}"
     )
 
 

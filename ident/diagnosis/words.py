@@ -12,6 +12,7 @@ from ident.diagnosis.significance import Improvement
 from ident.diagnosis.standing import Contradiction
 from ident.effects.effect import Effect
 from ident.fit.result import Combination
+from ident.words.error import error_said, unstable_on
 from ident.words.percent import percent
 from ident.words.titles import title
 
@@ -42,7 +43,7 @@ def why(
         share = 100 * candidate.prediction.fall
         return f"Predicted to take {share:.2g} % off the error, less than others; it was not refitted."
     if weighed and candidate.gain.beyond_chance and not candidate.carries_over:
-        return _TELLS_APART.format(*map(percent, candidate.between_runs))
+        return _TELLS_APART.format(*map(error_said, candidate.between_runs))
     return why_of_gain(candidate.gain, effect, (before, candidate.refit.held_out.error), floor, best)
 
 
@@ -50,7 +51,7 @@ def why_of_gain(
     gain: Improvement, effect: Effect, errors: tuple[float, float], floor: float | None, best: bool
 ) -> str:  # fmt: skip
     """The same of an effect that was refitted; `errors` are those on held-out data without it and with it."""
-    change = "On data held out from the fit the error goes from {} to {}".format(*map(percent, errors))
+    change = "On data held out from the fit the error goes from {} to {}".format(*map(error_said, errors))
     if gain.follows_drift and not gain.beyond_chance:
         return f"{change}, but {_DRIFT}"
     if not gain.beyond_chance:
@@ -71,14 +72,14 @@ def verdict_text(
     added: Sequence[str], groups: Sequence[tuple[str, ...]], suspects: Sequence[Suspect], unexplained: bool,
     errors: Mapping[str, float | None], before: float, repeats: bool = True, floor: float | None = None,
     against: Sequence[Contradiction] = (), complete: bool = True, spoken: Callable[[str], str] = title,
-    bounded: Sequence[str] = (), fewer: tuple[float, Sequence[str]] | None = None,
+    bounded: Sequence[str] = (), fewer: tuple[float, Sequence[str]] | None = None, unstable: Sequence[str] = (),
 ) -> str:  # fmt: skip
     """The verdict in a few sentences, what speaks against it first.
 
     Without `repeats` nobody knows how much noise lies in the command's band. Not `complete`, the search was stopped.
     `spoken` tells what an effect is the first time that it is named; `bounded` are those whose strength ended at the
     bound of its search. `fewer` is the error on verify runs without the last of what was added, where it is
-    smaller there.
+    smaller there; `unstable` are the verify runs on which the model is unstable with it.
     """
     named = _told_once(spoken)
     parts = [one.told(named(one.effect)) for one in against]
@@ -86,16 +87,17 @@ def verdict_text(
         parts.append("The search was not over: what else is missing, and what could stand in the place of what was "
                      "found, was not looked at.")  # fmt: skip
     if added:
-        parts.append(_helps([*map(named, added)], bool(against) or unexplained, before, errors, fewer))
+        parts.append(_helps([*map(named, added)], bool(against) or unexplained, before, errors, fewer,
+                            unstable))  # fmt: skip
     elif not complete:
-        parts.append(f"No effect was confirmed that lowers the error of {percent(before)}.")
+        parts.append(f"No effect was confirmed that lowers the error of {error_said(before)}.")
     elif not unexplained and floor is None:
-        parts.append(f"Nothing is seen to be missing: what is left, {percent(before)}, has no memory from sample to "
+        parts.append(f"Nothing is seen to be missing: what is left, {error_said(before)}, has no memory from sample to "
                      "sample. How much of it is noise is not known.")  # fmt: skip
     elif not unexplained:
-        parts.append(f"Nothing is missing: the error of {percent(before)} is the noise's.")
+        parts.append(f"Nothing is missing: the error of {error_said(before)} is the noise's.")
     else:
-        parts.append(f"No effect of the catalogue lowers the error of {percent(before)} beyond chance.")
+        parts.append(f"No effect of the catalogue lowers the error of {error_said(before)} beyond chance.")
     parts += [_BOUNDED.format(named(name)) for name in bounded]
     chance = "chance, or than what is left could have made" if unexplained else "chance"
     parts += [
@@ -121,14 +123,16 @@ def not_told(group: Sequence[str], added: Sequence[str], spoken: Callable[[str],
 
 def _helps(
     named: Sequence[str], doubted: bool, before: float, errors: Mapping[str, float | None],
-    fewer: tuple[float, Sequence[str]] | None,
+    fewer: tuple[float, Sequence[str]] | None, unstable: Sequence[str],
 ) -> str:  # fmt: skip
     names = _listed(named)
     them = "it" if len(named) == 1 else "them"
     lacks = "What helps on the fitted runs is" if doubted else "The model lacks"
     verify = errors.get("verify")
-    told = "" if verify is None else f" ({percent(verify)} on verify runs{_fewer(fewer)})"
-    return f"{lacks} {names}: with {them} the error falls from {percent(before)} to {percent(errors['fit'])}{told}."
+    told = "" if verify is None else f" ({error_said(verify)} on verify runs{_fewer(fewer)})"
+    told = f" ({unstable_on(unstable)})" if unstable else told
+    fell = f"from {error_said(before)} to {error_said(errors['fit'])}"
+    return f"{lacks} {names}: with {them} the error falls {fell}{told}."
 
 
 def _listed(names: Sequence[str]) -> str:
@@ -137,7 +141,7 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def _fewer(of: tuple[float, Sequence[str]] | None) -> str:
-    return "" if of is None else f", {percent(of[0])} without {', '.join(map(title, of[1]))}"
+    return "" if of is None else f", {error_said(of[0])} without {', '.join(map(title, of[1]))}"
 
 
 def as_well(elsewhere: Sequence[Explanation]) -> Iterator[str]:
@@ -183,14 +187,16 @@ def _seconds(of: Combination) -> str:
 
 def _told(one: Explanation) -> str:
     name = f"{one.machine} with {title(one.effects[-1])}" if one.effects else one.machine
-    return f"{name}, {percent(one.error['fit'])}" if one.better else name
+    return f"{name}, {error_said(one.error['fit'])}" if one.better else name
 
 
 def proposed_text(terms: Sequence[Proposal]) -> str:
     """What a search beyond the catalogue proposes, in a sentence: no part of the verdict."""
     told = "; ".join(one.equation + (f" ({one.meaning})" if one.meaning else "") for one in terms)
     last = terms[-1]
-    verify = f" ({percent(last.error['verify'])} on verify runs)" if last.error.get("verify") is not None else ""
+    on_verify = last.error_of("verify")
+    verify = f" ({on_verify.said()} on verify runs)" if on_verify.error is not None else ""
+    verify = f" ({on_verify.said()})" if on_verify.is_unstable else verify
     doubt = ", a hypothesis" if any(one.hypothesis for one in terms) else ""
     doubt += ", at last a free curve" if any(one.free_curve for one in terms) else ""
     instead = f" in place of {', '.join(map(title, last.instead_of))}" if last.instead_of else ""
@@ -199,7 +205,7 @@ def proposed_text(terms: Sequence[Proposal]) -> str:
     return " ".join([
         *against,
         f"Beyond the catalogue a search proposes{doubt}{instead}: {told}.",
-        f"With {it} the error is {percent(last.error['fit'])}{verify}.",
+        f"With {it} the error is {error_said(last.error['fit'])}{verify}.",
         *(_alone(one) for one in terms if _mended(one, last)),
     ])  # fmt: skip
 

@@ -121,7 +121,7 @@ def _told(responses: Responses, fit: FitResult, candidates: int | None, other_na
     """The lines under the title."""
     compared = responses.compared
     if len(compared) == 1:
-        shown = f"{words.describe(compared[0].run)}: error {words.percent(compared[0].error)}"
+        shown = f"{words.describe(compared[0].run)}: {words.left(compared[0])}"
     elif candidates is not None and candidates > len(compared):
         shown = f"{len(compared)} of {candidates} runs, chosen to differ"
     else:

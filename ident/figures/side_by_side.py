@@ -39,7 +39,7 @@ def side_by_side(of: SideBySide, actuator: Actuator, look: Look) -> Chart:
     shape = alt.Shape("u:N", title="Run", scale=shapes, legend=marks)
     tip = [alt.Tooltip("r:N", title="Run"), alt.Tooltip("f:N", title="Fit"), alt.Tooltip("e:Q", title="Error (%)")]
     dots = alt.Chart(alt.NamedData("errors")).mark_point(size=42, opacity=1, filled=True)
-    errors = ", ".join(f"{column.name} {words.percent(column.error.get('fit'))} fit" for column in of.columns)
+    errors = ", ".join(f"{column.name} fit {words.error(column.words['fit'])}" for column in of.columns)
     title = alt.TitleParams(_headline(of, actuator), subtitle=[errors])
     chart: Chart = alt.layer(
         dots.encode(x=x, y=y, color=colour, shape=shape, tooltip=tip),

@@ -68,7 +68,7 @@ def time(
     signals = {"measured": measured, "model": modelled}
     if "command" in run.channels and run.units.get("command", "m") == unit:
         signals = {"command": command} | signals
-    left = f"error {words.percent(compared.error)}, offset {words.percent(compared.offset)}"
+    left = words.left(compared)
     values = {
         "headline": words.headline(actuator, "time record, measured and model"),
         "told": [words.verdict(fit), f"{words.describe(run)}: {left}", *([f"filtered: {band.words}"] if band else [])],

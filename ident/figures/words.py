@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from ident.comparison.compare import RunComparison
 from ident.fit.result import FitResult
-from ident.matrix import Actuator, Run, Specimen
+from ident.matrix import USES, Actuator, Run, Specimen
 from ident.words import conditions
 from ident.words.engineering import power_of, printed_unit, scaled_unit
+from ident.words.error import ErrorOf
 from ident.words.percent import percent as in_percent
 
 _SIGNS = "²³"  # raised: a 4 or a minus is missing from too many fonts
@@ -61,10 +63,22 @@ def headline(actuator: Actuator, what: str) -> str:
 def verdict(fit: FitResult) -> str:
     """Model and errors in one line."""
     model = " + ".join((fit.model, *fit.effects))
-    errors = ", ".join(
-        f"{percent(fit.error[use])} {use}" for use in ("fit", "verify") if fit.error.get(use) is not None
-    )
-    return f"Model {model}, error {errors or 'unknown'}"
+    known = [(use, of) for use in USES if (of := fit.error_of(use)).error is not None]
+    errors = ", ".join(f"{error(of)} {use}" for use, of in known if not of.is_unstable)
+    unstable = [f"{error(of)} ({use})" for use, of in known if of.is_unstable]
+    said = ([f"error {errors}"] if errors else []) + unstable
+    return f"Model {model}, {', '.join(said) or 'error unknown'}"
+
+
+def left(of: RunComparison) -> str:
+    """Error and offset of a run in a caption."""
+    said = error(of.words)
+    return said if of.unstable else f"error {said}, offset {percent(of.offset)}"
+
+
+def error(of: ErrorOf) -> str:
+    """An error in a caption: with the mean where it counts, "unstable on run k24" where the model is."""
+    return of.said(percent)
 
 
 def describe(run: Run) -> str:

@@ -23,7 +23,6 @@ from ident.matrix import Matrix, Run, over_runs
 from ident.presets import Preset
 
 Array = NDArray[np.float64]
-UNSTABLE = 1e3  # the error of a model that is unstable at some run: a cost, not a failure
 STEP = 1e-5  # of an axis, for sensitivities by differences
 Steps = Callable[[int, float], None]
 """Hears of the number of steps, and the error."""
@@ -53,7 +52,7 @@ class Fitness(Protocol):
         ...
 
     def errors(self, points: Array) -> Array:
-        """The error at points, (v, p) → (v,), as fast as may be; at most :data:`UNSTABLE`."""
+        """The error at points, (v, p) → (v,), as fast as may be; at most :data:`ident.words.error.UNSTABLE`."""
         ...
 
     def exact(self, point: Array, sensitivities: bool = True) -> Local:

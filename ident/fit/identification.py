@@ -17,7 +17,7 @@ from ident.errors import Unusable
 from ident.fit import genetic
 from ident.fit.bulk_modulus import with_bulk_modulus
 from ident.fit.ends import distinct
-from ident.fit.fitness import UNSTABLE, Fitness
+from ident.fit.fitness import Fitness
 from ident.fit.linear_fitness import LinearFitness
 from ident.fit.multistart import Optimum, multistart
 from ident.fit.reduction import Basis, excited_band
@@ -33,6 +33,7 @@ from ident.matrix import Matrix, Run
 from ident.noise.floor import noise_floors
 from ident.presets import PRESETS, Preset
 from ident.progress import Progress, Report, silent
+from ident.words.error import UNSTABLE
 
 Array = NDArray[np.float64]
 _SEARCHED = 65_536  # samples of a search with effects; the polish takes every sample

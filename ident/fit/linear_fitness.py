@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.chain.conditions import conditions, zeros
-from ident.fit.fitness import STEP, UNSTABLE, Local, Steps, local
+from ident.fit.fitness import STEP, Local, Steps, local
 from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
 from ident.fit.modes import FOLLOWED, extreme, fastest
 from ident.fit.normal_matrices import NormalMatrices, errors_of, escaped, normal_matrices
@@ -27,6 +27,7 @@ from ident.linear import LinearModel
 from ident.matrix import Matrix, Run, over_runs
 from ident.parallel import cores, each
 from ident.presets import Preset
+from ident.words.error import UNSTABLE
 
 Array = NDArray[np.float64]
 Outcome = TypeVar("Outcome")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
+from ident.words.error import error_said
 from ident.words.percent import percent
 from ident.words.plus_minus import plus_minus_si
 from ident.words.shown import Listing
@@ -19,6 +20,7 @@ def listings(result: FitResult) -> Iterator[Listing | str]:
     """Parameters, errors, what the data determine and what they do not, notes."""
     header = ("parameter", "value", "std error", "unit", "")
     title = " + ".join((result.model, *result.effects))
+    yield result.headline
     yield Listing(title, header, parameter_rows(result.parameters), header[1:3])
     yield Listing("", ("error (eq. 17)", *USES), error_rows(result), USES)
     yield from remarks(result)
@@ -44,14 +46,18 @@ def parameter_rows(parameters: Mapping[str, Estimate]) -> Iterator[tuple[str, ..
 
 
 def error_rows(result: FitResult) -> Iterator[tuple[str, ...]]:
-    """Error, offset and noise floor by use, in per cent."""
+    """Error, its size where the mean counts, offset and noise floor by use."""
     uses = ("fit", "held_out", "verify")
-    yield "model", *(percent(result.error.get(use)) for use in uses)
+    errors = [result.error_of(use) for use in uses]
+    yield "model", *(of.said() for of in errors)
+    if any(of.mean_counts for of in errors):
+        yield "RMSE", *(of.rmse or "–" for of in errors)
     if result.window:
         over = result.window.error
-        between = {use: " to ".join(map(percent, ends)) for use, ends in result.window.free_run.items()}
+        between = {use: " to ".join(map(error_said, ends)) for use, ends in result.window.free_run.items()}
         if between:
             yield "95 % interval", *(between.get(use, "–") for use in uses)
-        yield f"over {result.window.horizon:.3g} s", *(percent(over.get(use)) for use in uses)
+        yield f"over {result.window.horizon:.3g} s", *(error_said(over.get(use)) for use in uses)
     yield "noise floor", *(percent(result.noise_floor.get(use)) for use in uses)
-    yield "offset", *(percent(result.offset.get(use)) for use in uses)
+    offsets = zip((result.offset.get(use) for use in uses), errors, strict=True)
+    yield "offset", *("–" if of.is_unstable else percent(offset) for offset, of in offsets)

@@ -19,6 +19,7 @@ from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.progress import Report, silent
+from ident.words.error import error_said
 
 NAME = "inverse-dynamics"
 EFFECTS = ("coulomb_friction", "static_load")
@@ -45,7 +46,7 @@ class RegressedIdentification(Identification):
             parameters[name] = replace(parameters[name], std_error=error, fixed=False)
         with_, without = self.regression.residual, self.regression.residual_without_friction
         said = tuple(
-            f"run {run}: force residual {100 * with_[run]:.3g} %, without dry friction {100 * without[run]:.3g} %"
+            f"run {run}: force residual {error_said(with_[run])}, without dry friction {error_said(without[run])}"
             for run in with_
         )
         return replace(found, method=NAME, parameters=parameters, notes=(*found.notes, *said),

@@ -9,9 +9,11 @@ from typing import Any
 
 from ident.errors import Unusable
 from ident.fit.listings import listings
-from ident.matrix import Actuator, Matrix
-from ident.plain import UNWRITTEN, Misfit, read, written
+from ident.matrix import USES, Actuator, Matrix
+from ident.plain import UNWRITTEN, WHERE_KNOWN, Misfit, read, written
 from ident.presets.description import description
+from ident.words.engineering import quantity
+from ident.words.error import UNSTABLE, ErrorOf, first_line
 from ident.words.shown import Listing, Shown
 
 _WHERE_KNOWN = ("structures", "window", "anchored_error", "starts", "machine", "actuator", "ended_early")
@@ -52,12 +54,30 @@ class Undetermined:
 
 @dataclass(frozen=True)
 class RunError:
-    """Eq. (17) of one run, and its offset (difference of means over the standard deviation)."""
+    """Eq. (17) of one run, and its offset (difference of means over the standard deviation).
+
+    `error_with_mean` is RMS(x − x_m)/std(x_m), `rmse` RMS(x − x_m) in `unit`, that of the output. Earlier versions did
+    not write these; of a run on which the model is unstable `rmse` is not known.
+    """
 
     id: str
     use: str
     error: float
     offset: float
+    error_with_mean: float | None = field(default=None, metadata=WHERE_KNOWN)
+    rmse: float | None = field(default=None, metadata=WHERE_KNOWN)
+    unit: str = field(default="", metadata=WHERE_KNOWN)
+
+    @property
+    def unstable(self) -> bool:
+        """Whether the model is unstable on it."""
+        return not self.error < UNSTABLE
+
+    @property
+    def words(self) -> ErrorOf:
+        """Its error as a reader reads it."""
+        with_mean = math.hypot(self.error, self.offset) if self.error_with_mean is None else self.error_with_mean
+        return ErrorOf(self.error, with_mean, (self.id,) if self.unstable else ())
 
 
 @dataclass(frozen=True)
@@ -122,10 +142,12 @@ class Starts:
 class FitResult(Shown):
     """A finished fit. Errors are eq. (17) averaged over the runs of a use, from the time domain; fractions, not %.
 
-    `anchored_error` is RMS(x − x_m)/std(x_m), which sees the means that eq. (17) does not; `window` is there where the
-    fit was made over windows. `evolution` belongs to the parameters `searched`, in that order. `actuator` is what was
-    stated of the machine; earlier versions did not keep it. The search of one that `ended_early` ran out of its time.
-    `matrix` holds the data, where the fit was made here.
+    `error_with_mean` is RMS(x − x_m)/std(x_m), which sees the means that eq. (17) does not, `rmse` RMS(x − x_m) in
+    `rmse_unit`, None where the outputs have several units; both are averaged as the error is. Earlier versions wrote
+    the first as `anchored_error` alone, which is the same. `window` is there where the fit was made over windows.
+    `evolution` belongs to the parameters `searched`, in that order. `actuator` is what was stated of the machine;
+    earlier versions did not keep it. The search of one that `ended_early` ran out of its time. `matrix` holds the data,
+    where the fit was made here.
     """
 
     model: str
@@ -147,6 +169,9 @@ class FitResult(Shown):
     notes: tuple[str, ...] = ()
     settings: Mapping[str, Any] = field(default_factory=dict)
     anchored_error: Mapping[str, float | None] = field(default_factory=dict)
+    error_with_mean: Mapping[str, float | None] = field(default_factory=dict, metadata=WHERE_KNOWN)
+    rmse: Mapping[str, float | None] = field(default_factory=dict, metadata=WHERE_KNOWN)
+    rmse_unit: str = field(default="", metadata=WHERE_KNOWN)
     window: Window | None = None
     starts: Starts | None = None
     structures: tuple[Structure, ...] = ()
@@ -163,6 +188,17 @@ class FitResult(Shown):
     def records(self) -> list[dict[str, Any]]:
         """A record a parameter, SI, for a data frame."""
         return [{"parameter": name, **written(estimate)} for name, estimate in self.parameters.items()]
+
+    @property
+    def headline(self) -> str:
+        """Its first line: the model, and the error on each use of runs with what a reader must know of it."""
+        return first_line(" + ".join((self.model, *self.effects)), {use: self.error_of(use) for use in USES})
+
+    def error_of(self, use: str) -> ErrorOf:
+        """The error on the runs of a use as a reader reads it: with the mean where it counts, and the unstable runs."""
+        with_mean, size = (self.error_with_mean or self.anchored_error).get(use), self.rmse.get(use)
+        unstable = tuple(run.id for run in self.runs if run.use == use and run.unstable)
+        return ErrorOf(self.error.get(use), with_mean, unstable, quantity(size, self.rmse_unit) if size else "")
 
     @property
     def values(self) -> dict[str, float]:

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from ident.errors import Unusable
 from ident.fit import genetic
 from ident.fit.evolution import GENERATIONS, cma_es, differential_evolution
-from ident.fit.fitness import UNSTABLE
 from ident.fit.result import Generation
 from ident.fit.settings import Settings
 from ident.fit.space import Space
 from ident.presets import Preset
 from ident.progress import Progress, Report
+from ident.words.error import UNSTABLE
 
 Array = NDArray[np.float64]
 Errors = Callable[[Array], Array]

@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.effects.effect import Effect
-from ident.fit.fitness import STEP, UNSTABLE, Local, Steps, Worth, local
+from ident.fit.fitness import STEP, Local, Steps, Worth, local
 from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.fit.space import Space
 from ident.matrix import Run, over_runs
 from ident.parallel import each
+from ident.words.error import UNSTABLE
 
 Array = NDArray[np.float64]
 

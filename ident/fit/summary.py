@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from ident.chain.chain import integrates
 from ident.checks.unit_factor import unit_causes
 from ident.fit.ends import SETTLED, parted
-from ident.fit.fitness import UNSTABLE, Fitness
+from ident.fit.fitness import Fitness
 from ident.fit.multistart import Optimum
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.result import Combination, Estimate, FitResult, RunError, Starts, Undetermined, Window
+from ident.fit.run_errors import rmse_of, run_error
 from ident.fit.search import evolution
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
@@ -26,7 +27,7 @@ from ident.matrix import Run, over_runs
 from ident.noise.floor import Floors
 from ident.presets.preset import Combined
 from ident.simulation.steps import FASTEST, MOST
-from ident.words.percent import percent
+from ident.words.error import UNSTABLE, error_said
 
 _DRAWN = 100  # parameter vectors within their standard errors
 _AT_BOUND = "ended at its bound: the data ask for a value beyond it"
@@ -55,6 +56,10 @@ def summarise(
         else objective.fresh(fit_runs).exact(point, sensitivities=False).runs
     )
     fit_errors, verify_errors = _run_errors(fit_runs, own), _run_errors(verify_runs, verify)
+    with_mean = {
+        "fit": _mean(fit_runs, fit_errors, "error_with_mean"),
+        "verify": _mean(verify_runs, verify_errors, "error_with_mean"),
+    }
     strengths = {p.in_equations for p in preset.parameters if p.of}
     strengths |= {axis.name for axis in space.axes if axis.lower == 0}  # what may be nothing has no relative error
     strengths |= {*preset.crossing} & {*space.names}
@@ -98,7 +103,12 @@ def summarise(
             "fit": _mean(fit_runs, fit_errors, "offset"),
             "verify": _mean(verify_runs, verify_errors, "offset"),
         },
-        anchored_error={"fit": _anchored(fit_runs, fit_errors), "verify": _anchored(verify_runs, verify_errors)},
+        anchored_error=with_mean,
+        error_with_mean=with_mean,
+        **rmse_of(
+            (*fit_errors, *verify_errors),
+            {"fit": [run.share for run in fit_runs], "verify": [run.share for run in verify_runs]},
+        ),
         window=window,
         starts=_labelled(optimum.starts, label),
         noise_floor=floors.of_use(matrix),
@@ -125,19 +135,13 @@ def summarise(
 
 def _run_errors(runs: Sequence[Run], found: Sequence[NormalMatrices]) -> tuple[RunError, ...]:
     return tuple(
-        RunError(run.id, run.use, min(m.error, UNSTABLE), float(np.clip(m.offset, -UNSTABLE, UNSTABLE)))
+        run_error(run, m.error, m.offset, float(np.sqrt(run.power / run.length)), run.units.get(run.output, "1"))
         for run, m in zip(runs, found, strict=True)
     )
 
 
 def _mean(runs: Sequence[Run], found: Sequence[RunError], what: str) -> float | None:
     return float(over_runs([getattr(of_run, what) for of_run in found], runs)) if runs else None
-
-
-def _anchored(runs: Sequence[Run], found: Sequence[RunError]) -> float | None:
-    """RMS(x − x_m)/std(x_m), averaged over runs."""
-    both = [float(np.hypot(run.error, run.offset)) for run in found]
-    return float(over_runs(both, runs)) if runs else None
 
 
 def _window(fitness: Fitness, point: Array, known: Covariance) -> Window | None:
@@ -294,7 +298,7 @@ def _hardly_explained(objective: Fitness, error: float) -> Iterator[str]:
         causes.insert(
             0, "a command that is not zero where the machine stands, which the machine integrates (null_bias)"
         )
-    yield f"{_HARDLY_SAID} {percent(error)} of the output: hardly better than none. Likely causes: " + (
+    yield f"{_HARDLY_SAID} {error_said(error)} of the output: hardly better than none. Likely causes: " + (
         "; ".join(causes) + "."
     )
 
@@ -327,6 +331,6 @@ def _bad_runs(errors: Sequence[RunError], left_out: tuple[str, ...]) -> Iterator
     for run in errors:
         if run.id in left_out:
             yield (
-                f"Run {run.id} was left out of the fit: its error is {100 * run.error:.3g} %, that of the others "
-                f"typically {100 * typical:.3g} %. Look at its labels and its record."
+                f"Run {run.id} was left out of the fit: its error is {error_said(run.error)}, that of the others "
+                f"typically {error_said(typical)}. Look at its labels and its record."
             )

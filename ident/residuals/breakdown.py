@@ -54,7 +54,7 @@ class Breakdown:
 
 def breakdown(comparison: Comparison) -> Breakdown:
     """Where the model fails, run by run and group by group; runs at which the model is unstable are left out."""
-    runs = [run for run in comparison.runs if np.all(np.isfinite(run.modelled))]
+    runs = [run for run in comparison.runs if not run.unstable]
     edges = band_edges([run.run for run in runs]) if runs else ()
     by_band = tuple(BandErrors(r.run.id, r.run.use, r.error, in_bands(r, edges)) for r in runs)
     return Breakdown(edges, by_band, tuple(_groups(runs)))

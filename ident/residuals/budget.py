@@ -74,7 +74,7 @@ def budget(comparison: Comparison, use: str = "fit") -> Budget:
 
     Raises Unusable where the model is unstable at every run.
     """
-    runs = [run for run in comparison.runs if np.all(np.isfinite(run.modelled)) and run.error > 0]
+    runs = [run for run in comparison.runs if not run.unstable and run.error > 0]
     runs = [run for run in runs if run.run.use == use] or runs
     if not runs:
         raise Unusable("unstable-model", "the model is unstable at every run", "fit", "fit it to these data first")

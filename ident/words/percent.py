@@ -1,18 +1,25 @@
-"""Fractions in per cent, as every table, sentence and figure says them."""
+"""Fractions in per cent, as every table, sentence and figure says them; large ones as so many times."""
 
 from __future__ import annotations
 
 import math
 
-from ident.words.number import fixed, places
+from ident.words.number import fixed, places, plain
 
 _DECIMALS = 3  # in print, where a column of numbers stays narrow
+TIMES = 9.995
+"""The fraction, 1, from which on it is said as so many times: no per cent of four digits is ever printed.
+
+It is 10 less what rounds up to it in three digits. "2317 %" has to be converted by its reader, "23.2 times" is read.
+"""
 
 
 def percent(fraction: float | None, unknown: str = "–", minus: str = "-") -> str:
-    """Three significant digits, 0.005 → "0.500 %"; `unknown` where there is no number."""
+    """Three significant digits, 0.005 → "0.500 %", 12.3 → "12.3 times"; `unknown` where there is no number."""
     if fraction is None or not math.isfinite(fraction):
         return unknown
+    if abs(fraction) >= TIMES:
+        return _times(fraction, minus)
     return f"{100 * fraction:#.3g}".rstrip(".").replace("-", minus) + " %"
 
 
@@ -20,11 +27,23 @@ def percent_in_print(fraction: float | None, digits: int = 3) -> str:
     """As pages and reports set it: a true minus, and never more than three decimals, 2.8e-7 → "0.000 %"."""
     if fraction is None or not math.isfinite(fraction):
         return "–"
+    if abs(fraction) >= TIMES:
+        return _times(fraction)
     decimals = min(_DECIMALS, places(100 * fraction, digits)) if fraction else _DECIMALS
     return f"{fixed(100 * fraction, decimals)} %"
 
 
 def change(share: float, sign: str = "-") -> str:
-    """A relative change to a tenth of a per cent, −0.0663 → "−6.6 %"; with "+" as `sign` a rise has its sign too."""
+    """A relative change to a tenth of a per cent, −0.0663 → "−6.6 %"; with "+" as `sign` a rise has its sign too.
+
+    What grew to ten times and more is said so: 23.18 → "24.2 times".
+    """
+    if abs(share) >= TIMES:
+        return _times(share + 1.0)
     rounded = round(100 * share, 1) or 0.0  # never a minus before nothing
     return f"{rounded:{sign}.1f} %".replace("-", "−")
+
+
+def _times(fraction: float, minus: str = "−") -> str:
+    """ "12.3 times"."""
+    return f"{plain(fraction, 3).replace('−', minus)} times"

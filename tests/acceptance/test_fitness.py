@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ident.fit.fitness import UNSTABLE
 from ident.fit.identification import Identification
 from ident.fit.settings import Settings
+from ident.words.error import UNSTABLE
 from ident.workflows import identify
 from tests.acceptance.matrices import as_matrix, records_of
 from tests.reference import qian_reference as reference

@@ -25,7 +25,7 @@ def lab(service) -> Client:
 
 @pytest.fixture(scope="module")
 def fits(service, lab) -> dict[str, list[str]]:
-    """By serial number: two fits of one actuator, the second one better by far, and one of another with the same runs."""
+    """By serial number: two fits of one actuator, the second far better, and one of another with the same runs."""
     found: dict[str, list[str]] = {}
     for serial, chosen in ((ONE, ({"set": {"tau": "9 ms"}}, {})), (OTHER, ({},))):
         matrix = service.post(f"{API}/matrices", files={"files": ("m.zip", zipped(serial))}).json()["id"]

@@ -48,7 +48,7 @@ def test_a_run_that_cannot_be_followed_with_an_effect_is_a_contradiction_and_one
     assert (found.after, found.deviations) == (None, None)
     assert found.before == pytest.approx(0.1, rel=0.05)
     assert found.told("lead") == (
-        f"With lead a verify run cannot be followed, the error there was {percent(found.before)}: "
+        f"With lead the model is unstable on run {runs[1].id}, the error on verify runs was {percent(found.before)}: "
         "it may stand for something else."
     )
     assert contradiction("lead", runs, lost, before) is None

@@ -9,6 +9,7 @@ import pytest
 
 from ident.fit.result import Estimate, FitResult, Generation, RunError, Starts
 from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.words.error import ErrorOf
 
 SPECIMENS = ((0.0, 0.0), (0.87, 36.3e3), (2.1, 17.5e3), (4.25, 17.5e3), (4.25, 67.6e3), (8.5, 36.3e3), (10.2, 67.6e3))
 RATE = 512.0
@@ -53,6 +54,12 @@ class HandMade:
     coherence: np.ndarray
     model: np.ndarray
     modelled: np.ndarray
+    unstable: bool = False
+
+    @property
+    def words(self) -> ErrorOf:
+        """Its error as a caption has it."""
+        return ErrorOf(self.error, unstable=(self.run.id,) if self.unstable else ())
 
 
 def make_comparison(run: Run) -> HandMade:

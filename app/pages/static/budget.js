@@ -1,6 +1,7 @@
 // What the error of a fit is made of, as one bar: computed by the service from the samples.
 
 import { send } from "./api.js";
+import { percent } from "./words.js";
 
 const figure = document.querySelector("[data-budget]");
 const PARTS = {
@@ -41,8 +42,4 @@ function entry(name, text) {
   if (name) made.className = name;
   made.textContent = text;
   return made;
-}
-
-function percent(fraction) {
-  return `${Number((100 * fraction).toPrecision(3))} %`;
 }

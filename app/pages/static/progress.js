@@ -1,6 +1,7 @@
 // A running job, live: stage, generation and best error as the service sends them, and a way to stop it.
 
 import { guarded, send } from "./api.js";
+import { errorWords } from "./words.js";
 
 const ENDED = ["succeeded", "failed", "cancelled"];
 
@@ -24,7 +25,7 @@ function follow(live) {
       step.closest("span").hidden = progress.total < 2;
     }
     if (typeof progress.error === "number" && progress.error > 0) {
-      error.textContent = `${(100 * progress.error).toPrecision(3)} %`;
+      error.textContent = errorWords(progress.error);
       error.closest("span").hidden = false;
       seen.push(progress.error);
       trace?.setAttribute("points", line(seen));
@@ -69,7 +70,7 @@ function list(paragraph, effects) {
 // An effect that helps or promises to, and the error with it.
 function expectation({ effect, error }) {
   const shown = document.createElement("span"), value = document.createElement("b");
-  value.textContent = `${(100 * error).toPrecision(3)} %`;
+  value.textContent = errorWords(error);
   shown.append(`${effect.replaceAll("_", " ")} `, value);
   return shown;
 }

@@ -9,7 +9,7 @@ from ident.diagnosis.proposals.proposal import Errors, Proposal
 from ident.diagnosis.refit import Refit
 from ident.diagnosis.standing import contradiction
 from ident.matrix import Run
-from ident.words.percent import percent
+from ident.words.error import error_said
 from ident.words.titles import title
 
 
@@ -27,12 +27,12 @@ class Refused:
         """In sentences."""
         beside = f" beside {', '.join(map(title, self.beside))}" if self.beside else ""
         verify = self.error["verify"]
-        of_verify = "" if verify is None else f" ({percent(verify)} on verify runs)"
+        of_verify = "" if verify is None else f" ({error_said(verify)} on verify runs)"
         but = ", but not from run to run: some lose by it" if self.nats > self.bar else ""
         return (
             f"Of {looked_at} terms that were looked at the best that was refused is {self.equation}{beside}: "
             f"{self.nats:.3g} nats on data that it was not fitted to, {self.bar:.3g} are asked for{but}. "
-            f"It would leave {percent(self.error['fit'])}{of_verify}."
+            f"It would leave {error_said(self.error['fit'])}{of_verify}."
         )
 
 

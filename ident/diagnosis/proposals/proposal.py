@@ -8,7 +8,8 @@ from typing import Any
 
 from ident.diagnosis.estimate import Found
 from ident.diagnosis.standing import Contradiction
-from ident.plain import written
+from ident.plain import WHERE_KNOWN, written
+from ident.words.error import ErrorOf
 
 Errors = Mapping[str, float | None]
 
@@ -27,7 +28,8 @@ class Proposal:
     A `free_curve` is one: h in its equation is drawn through knots of its effect's curve, and no formula is known.
 
     Of a `hypothesis` there were too few runs to confirm it on others. `contradicted`: the error on runs to verify rises
-    with it, or is above that of what it stands instead of.
+    with it, or is above that of what it stands instead of. `unstable` has by use the runs on which the model is
+    unstable with it.
     """
 
     place: tuple[str, ...]
@@ -51,6 +53,11 @@ class Proposal:
     hypothesis: bool = False
     free_curve: bool = False
     contradicted: Contradiction | None = None
+    unstable: Mapping[str, tuple[str, ...]] = field(default_factory=dict, metadata=WHERE_KNOWN)
+
+    def error_of(self, use: str) -> ErrorOf:
+        """The error on the runs of a use as a reader reads it."""
+        return ErrorOf(self.error.get(use), unstable=self.unstable.get(use, ()))
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data, in the contract's words."""

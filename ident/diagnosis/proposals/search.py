@@ -214,6 +214,7 @@ class Search:
             terms=len(self.found) + 1,
             shapes=sum(term.fitted for term in candidate.terms),
             error=self.base.errors,
+            unstable=self.base.unstable,
             nats=gained,
             bar=bar,
             alike=tuple("; ".join(f"{t.at}: {t.text}" for t in terms) for terms in candidate.alike),

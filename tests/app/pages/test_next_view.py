@@ -93,7 +93,7 @@ def approved(newer: float, *, verify: float | None = None, before: bool = False,
     ("found", "words", "deed", "at", "main"),
     [
         (approved(0.044, yardstick=FAR), "error of 0.500 %. A newer fit has 4.40 %", "Compare them", COMPARED, False),
-        (approved(0.044, yardstick=FAR, search=verdict("lead")), "A newer fit has 4.40 %", "Compare them", COMPARED, False),
+        (approved(0.044, yardstick=FAR, search=verdict("lead")), "fit has 4.40 %", "Compare them", COMPARED, False),
         (approved(0.003, yardstick=FAR), "A newer fit has 0.300 %.", "Compare them", COMPARED, True),
         (approved(0.003, verify=0.02), "A newer fit has 2.00 %.", "Compare them", COMPARED, False),
         (approved(0.044, before=True, yardstick=FAR), "nothing to do", "Look at them", "/fits/c", False),

@@ -1,0 +1,58 @@
+"""The errors of one run as a result keeps them, bounded, and the size of what is left in the unit of the output."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Protocol, TypedDict
+
+import numpy as np
+
+from ident.fit.result import RunError
+from ident.words.error import UNSTABLE, bounded
+
+
+class Rmse(TypedDict):
+    """Two fields of a fit: the RMSE by use, and its unit."""
+
+    rmse: dict[str, float | None]
+    rmse_unit: str
+
+
+class Measured(Protocol):
+    """A run, or the record of a bench."""
+
+    @property
+    def id(self) -> str:
+        """Its name in the matrix."""
+        ...
+
+    @property
+    def use(self) -> str:
+        """Whether it is fitted or verifies."""
+        ...
+
+
+def run_error(run: Measured, error: float, offset: float, deviation: float, unit: str) -> RunError:
+    """Eq. (17), the offset, the error with the mean counted and the RMSE of a run whose output has this deviation.
+
+    RMS(x − x_m)² = std(x − x_m)² + mean(x − x_m)², so that RMS(x − x_m)/std(x_m) = √(error² + offset²).
+    """
+    error, offset = bounded(error), float(np.clip(np.nan_to_num(offset, nan=UNSTABLE), -UNSTABLE, UNSTABLE))
+    with_mean = bounded(float(np.hypot(error, offset)))
+    rmse = with_mean * deviation if error < UNSTABLE else None
+    return RunError(run.id, run.use, error, offset, with_mean, rmse, unit)
+
+
+def rmse_of(errors: Sequence[RunError], shares: Mapping[str, Sequence[float]]) -> Rmse:
+    """The RMSE averaged over the runs of each use, that count these shares in the mean.
+
+    None where there are none, the model is unstable on one, or the outputs have several units.
+    """
+    units = {one.unit for one in errors}
+    found: dict[str, float | None] = {}
+    for use, of in shares.items():
+        sizes = [one.rmse for one in errors if one.use == use]
+        known = [size for size in sizes if size is not None]
+        told = bool(known) and len(known) == len(sizes) and len(units) == 1
+        found[use] = float(np.average(known, weights=of)) if told else None
+    return Rmse(rmse=found, rmse_unit=units.pop() if len(units) == 1 else "")
