@@ -68,12 +68,12 @@ class RunComparison(Shown):
     def offset(self) -> float:
         """Difference of the means over the standard deviation."""
         offset = float(np.mean(self._residual) / np.std(self.run.measured))
-        return math.copysign(bounded(abs(offset)), offset)
+        return math.copysign(bounded(abs(offset)), offset) if self.unstable else offset
 
     @property
     def error_with_mean(self) -> float:
         """RMS(x − x_m) / std(x_m): it sees the means that eq. (17) does not."""
-        return bounded(math.hypot(self.error, self.offset))
+        return UNSTABLE if self.unstable else math.hypot(self.error, self.offset)
 
     @property
     def unstable(self) -> bool:

@@ -9,6 +9,7 @@ from typing import Any
 import altair as alt
 
 from ident.comparison.compare import Comparison
+from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.choose import CONDITIONS, RUNS, asked, chosen
 from ident.figures.drawing import Drawing, Options
@@ -31,9 +32,11 @@ def residual_map(
     """Runs by amplitude, gain and specimen, over frequency; colour is the error in the band, on a logarithmic scale.
 
     The squares of a row add up to the square of its error, on the right. Of more than a hundred runs the worst are
-    shown. `run` and `band` are marked.
+    shown. `run` and `band` are marked. Raises Unusable where the model is unstable at every run.
     """
     found = breakdown(compared)
+    if not found.runs:
+        raise Unusable("unstable-model", "the model is unstable at every run", "figure residual-map", "fit it first")
     worst = {each.id for each in sorted(found.runs, key=lambda each: -each.error)[:MOST]}
     runs = {each.run.id: each.run for each in compared.runs if each.run.id in worst}
     order = sorted(runs, key=lambda name: _place(runs[name]))

@@ -35,12 +35,15 @@ class Measured(Protocol):
 def run_error(run: Measured, error: float, offset: float, deviation: float, unit: str) -> RunError:
     """Eq. (17), the offset, the error with the mean counted and the RMSE of a run whose output has this deviation.
 
-    RMS(x − x_m)² = std(x − x_m)² + mean(x − x_m)², so that RMS(x − x_m)/std(x_m) = √(error² + offset²).
+    RMS(x − x_m)² = std(x − x_m)² + mean(x − x_m)², so that RMS(x − x_m)/std(x_m) = √(error² + offset²). Of a run on
+    which the model is unstable each is bounded by :data:`ident.words.error.UNSTABLE`, and there is no RMSE.
     """
-    error, offset = bounded(error), float(np.clip(np.nan_to_num(offset, nan=UNSTABLE), -UNSTABLE, UNSTABLE))
-    with_mean = bounded(float(np.hypot(error, offset)))
-    rmse = with_mean * deviation if error < UNSTABLE else None
-    return RunError(run.id, run.use, error, offset, with_mean, rmse, unit)
+    error = bounded(error)
+    if error < UNSTABLE:
+        with_mean = float(np.hypot(error, offset))
+        return RunError(run.id, run.use, error, float(offset), with_mean, with_mean * deviation, unit)
+    offset = float(np.clip(np.nan_to_num(offset, nan=UNSTABLE), -UNSTABLE, UNSTABLE))
+    return RunError(run.id, run.use, error, offset, UNSTABLE, None, unit)
 
 
 def rmse_of(errors: Sequence[RunError], shares: Mapping[str, Sequence[float]]) -> Rmse:
