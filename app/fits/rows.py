@@ -14,7 +14,7 @@ from ident.words.engineering import power_of, quantity, scaled_unit
 from ident.words.error import ErrorOf
 from ident.words.number import fixed, trimmed
 from ident.words.percent import percent_in_print
-from ident.words.plus_minus import decimals
+from ident.words.plus_minus import UNDETERMINED, decimals, determined
 from ident.words.symbols import symbol
 from ident.words.titles import of_parameter, title
 
@@ -76,15 +76,15 @@ def _parameter(name: str, entry: Estimate, undetermined: bool) -> ParameterRow:
     power = power_of(entry.value)
     value = entry.value / 10.0**power
     error = None if entry.std_error is None else entry.std_error / 10.0**power
-    places = decimals(value, error)
+    places, known = decimals(value, error), determined(entry.value, entry.std_error)
     return ParameterRow(
         name=name,
         symbol=symbol(name, entry.symbol),
         meaning=of_parameter(name, entry.meaning),
         unit=scaled_unit(entry.unit, power),
-        value=fixed(value, places),
+        value=fixed(value, places) if known else UNDETERMINED,
         std_error=fixed(error, places),
-        relative=percent_in_print(error / abs(value), 2) if error is not None and value else "–",
+        relative=percent_in_print(error / abs(value), 2) if error is not None and value and known else "–",
         lower=trimmed(entry.lower / 10.0**power),
         upper=trimmed(entry.upper / 10.0**power),
         remark="; ".join(_remarks(entry, undetermined)),

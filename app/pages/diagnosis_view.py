@@ -53,6 +53,11 @@ class Card:
         return len(self.members) > 1
 
     @property
+    def determined(self) -> bool:
+        """Whether the data determine the strength of what the card would add."""
+        return all(member.determined for member in self.addable)
+
+    @property
     def addable(self) -> tuple[Member, ...]:
         """The members that can be added."""
         return tuple(member for member in self.members if member.known)

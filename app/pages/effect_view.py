@@ -13,7 +13,7 @@ from ident.diagnosis.estimate import Found
 from ident.effects.effect import Effect
 from ident.equations.mathml import mathml
 from ident.fit.result import Estimate
-from ident.words.plus_minus import plus_minus
+from ident.words.plus_minus import UNDETERMINED, plus_minus
 from ident.words.titles import title
 from schemas.result import EstimateView
 
@@ -39,6 +39,7 @@ class Member:
     strength_is: str
     definition: str = ""
     origin: str = ""
+    determined: bool = True
 
 
 def member(name: str, effect: Effect | None, parameters: Mapping[str, Valued], own: Mapping[str, Any] | None) -> Member:
@@ -51,6 +52,7 @@ def member(name: str, effect: Effect | None, parameters: Mapping[str, Valued], o
         meaning=effect.meaning if effect else "",
         equations=tuple(Markup(mathml(line.text)) for line in effect.equations) if effect else (),
         strength=strength(name, parameters) or "–",
+        determined=not strength(name, parameters).startswith(UNDETERMINED),
         strength_is=f"{effect.strength.symbol}, {effect.strength.meaning}" if effect else "strength",
         definition=json.dumps(own) if own is not None else "",
         origin=effect.source if own is not None and effect is not None and effect.source != effect.meaning else "",
@@ -58,9 +60,15 @@ def member(name: str, effect: Effect | None, parameters: Mapping[str, Valued], o
 
 
 def strength(effect: str, parameters: Mapping[str, Valued]) -> str:
-    """The first parameter of the effect, with standard error and unit; "" where it is not among the parameters."""
+    """The first parameter of the effect, with standard error and unit; "" where it is not among the parameters.
+
+    Without a standard error one that is neither held nor at a bound is not determined by the data.
+    """
     own = (entry for name, entry in parameters.items() if name.startswith(f"{effect}."))
     entry = next(own, None)
     if entry is None:
         return ""
+    held = isinstance(entry, Estimate | EstimateView) and (entry.fixed or entry.at_bound)
+    if entry.std_error is None and not held:
+        return UNDETERMINED
     return plus_minus(entry.value, entry.std_error, entry.unit)

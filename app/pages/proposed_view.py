@@ -17,7 +17,7 @@ from ident.diagnosis.result import Rung
 from ident.equations.mathml import mathml
 from ident.words.error import ErrorOf
 from ident.words.number import plain
-from ident.words.plus_minus import plus_minus
+from ident.words.plus_minus import UNDETERMINED, determined, plus_minus
 from ident.words.titles import title
 from schemas.matrix import RunView
 
@@ -30,6 +30,7 @@ class ProposedCard:
     title: str
     equations: tuple[Markup, ...]
     strength: str
+    determined: bool
     against: str
     error: Mapping[str, ErrorOf]
     evidence: str
@@ -57,7 +58,8 @@ def proposed(stored: Stored, run: RunView | None) -> Iterator[ProposedCard]:
             if one.meaning
             else f"A term at the {' and '.join(one.place)}",
             equations=tuple(Markup(mathml(line, curves(one.effect))) for line in one.effect["equation"]),
-            strength=plus_minus(one.strength, one.std_error, one.unit),
+            strength=UNDETERMINED if one.std_error is None else plus_minus(one.strength, one.std_error, one.unit),
+            determined=one.std_error is not None and determined(one.strength, one.std_error),
             against=one.contradicted.told("it") if one.contradicted else "",
             error={use: one.error_of(use) for use in ("held_out", "fit", "verify")},
             evidence=f"{plain(one.nats, 3)} nats, {plain(one.bar, 3)} asked for",

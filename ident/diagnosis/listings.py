@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from ident.diagnosis.proposals.choice import choices
 from ident.words.error import error_said
 from ident.words.percent import percent
-from ident.words.plus_minus import plus_minus_si
+from ident.words.plus_minus import UNDETERMINED, plus_minus_si
 from ident.words.shown import Listing
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def proposal_rows(found: Diagnosis) -> Iterator[Row]:
         errors = [one.error_of(use).said() for use in USES]
         meant = one.meaning + (" (a hypothesis: too few runs to confirm it)" if one.hypothesis else "")
         evidence = f"{one.nats:.3g} ({one.bar:.3g})"
-        strength_is = plus_minus_si(one.strength, one.std_error, one.unit, digits=4)
+        strength_is = _searched(one.strength, one.std_error, one.unit)
         yield str(choice.terms), one.equation, meant or "–", strength_is, *errors, evidence, ", ".join(one.alike[:3])
 
 
@@ -94,7 +94,12 @@ def unconfirmed(found: Diagnosis) -> str:
 def strength(ranked: Ranked) -> str:
     """The strength that the refit found with its standard error and unit; a dash where there was no refit."""
     found = ranked.strength
-    return "–" if found is None else plus_minus_si(found.value, found.std_error, found.unit, digits=4)
+    return "–" if found is None else _searched(found.value, found.std_error, found.unit)
+
+
+def _searched(value: float, std_error: float | None, unit: str) -> str:
+    """A strength, which is always searched for: without a standard error the data do not determine it."""
+    return UNDETERMINED if std_error is None else plus_minus_si(value, std_error, unit, digits=4)
 
 
 def ladder_rows(found: Diagnosis) -> Iterator[Row]:

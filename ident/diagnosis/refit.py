@@ -24,13 +24,13 @@ from ident.noise.autoregression import prediction_errors
 from ident.noise.effective_sample_size import independent_samples
 from ident.time_budget import in_time
 from ident.words.error import UNSTABLE
+from ident.words.plus_minus import NOT_DETERMINED
 
 Array = NDArray[np.float64]
 _FOLLOWED = 1.03  # times the promised error that a simulation may leave
 _JUMPS = 1.1  # times the held-out error: so far apart end refits with an effect that acts in jumps
 _MOST = 0.5  # of what one effect explains
 _OUTDONE = 0.1  # of the error on whole runs: less tells no two effects apart
-_KNOWN = 1e3  # times its value: the standard error beyond which nothing is known of a parameter
 
 
 @dataclass(frozen=True)
@@ -179,7 +179,7 @@ class Refit:
         if parameter not in self.space.names:
             return None
         error = self._known.deviation(lambda points: self.space.values(points)[parameter])
-        return error if np.isfinite(error) and error < _KNOWN * max(abs(self.values[parameter]), 1e-300) else None
+        return error if np.isfinite(error) and error <= NOT_DETERMINED * abs(self.values[parameter]) else None
 
     @property
     def at_bounds(self) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ident.words.error import error_said
 from ident.words.percent import percent
-from ident.words.plus_minus import plus_minus_si
+from ident.words.plus_minus import UNDETERMINED, determined, plus_minus_si
 from ident.words.shown import Listing
 
 if TYPE_CHECKING:
@@ -42,7 +42,8 @@ def parameter_rows(parameters: Mapping[str, Estimate]) -> Iterator[tuple[str, ..
     for name, estimate in parameters.items():
         remark = "held" if estimate.fixed else "at its bound" if estimate.at_bound else ""
         std_error = "–" if estimate.std_error is None else f"{estimate.std_error:.2g}"
-        yield name, f"{estimate.value:.5g}", std_error, estimate.unit, remark
+        value = f"{estimate.value:.5g}" if determined(estimate.value, estimate.std_error) else UNDETERMINED
+        yield name, value, std_error, estimate.unit, remark
 
 
 def error_rows(result: FitResult) -> Iterator[tuple[str, ...]]:

@@ -28,9 +28,11 @@ from ident.noise.floor import Floors
 from ident.presets.preset import Combined
 from ident.simulation.steps import FASTEST, MOST
 from ident.words.error import UNSTABLE, error_said
+from ident.words.plus_minus import determined
 
 _DRAWN = 100  # parameter vectors within their standard errors
 _AT_BOUND = "ended at its bound: the data ask for a value beyond it"
+_VAGUE = "its standard error is {:.3g} times its value"
 _FELT = 1.001  # times the error: a strength that is not off by chance
 _HARDLY = 0.8  # of the output left: no fit to be trusted
 _HARDLY_SAID = "The model leaves"
@@ -69,6 +71,12 @@ def summarise(
     ranges = {name: upper - lower for name, (lower, upper) in space.bounds(values).items()}
     weak = [name for name in relative if relative[name] > DETERMINED]
     weak += [name for name in deviation if name in strengths and deviation[name] > DETERMINED * ranges[name]]
+    vague = {
+        name: deviation[name] / abs(values[name])
+        for name in deviation
+        if name not in (*weak, *preset.crossing) and not determined(values[name], deviation[name])
+    }
+    weak += vague
     if space.convention:
         weak = [
             *weak,
@@ -92,6 +100,8 @@ def summarise(
         determined=tuple(_determined(objective, found, relative, values, bounded)) if weak else (),
         undetermined=tuple(
             Undetermined(label[name][0], _AT_BOUND if name in bounded else _reason(over_windows, name, relative, point))
+            if name not in vague
+            else Undetermined(label[name][0], _VAGUE.format(vague[name]))
             for name in weak
         ),
         error={

@@ -6,6 +6,18 @@ from ident.words.engineering import power_of, quantity, scaled_unit, with_unit
 from ident.words.number import fixed, places
 
 _MOST = 8  # decimals
+NOT_DETERMINED = 10.0
+"""The standard error over the value, 1, beyond which the value is not determined.
+
+The data then allow the value ten times over, in either sign: not even its power of ten is known, and its digits are
+those of the noise.
+"""
+UNDETERMINED = "not determined"
+
+
+def determined(value: float, std_error: float | None) -> bool:
+    """Whether a value is known well enough to be printed: nothing, exactly, is as good a value as its error."""
+    return std_error is None or value == 0 or std_error <= NOT_DETERMINED * abs(value)
 
 
 def decimals(value: float, std_error: float | None) -> int:
@@ -16,9 +28,11 @@ def decimals(value: float, std_error: float | None) -> int:
 
 
 def plus_minus(value: float, std_error: float | None, unit: str) -> str:
-    """ "80.27 ± 0.18 µm": in print, in a readable multiple of the unit."""
+    """ "80.27 ± 0.18 µm": in print, in a readable multiple of the unit; "not determined (± 15.02·10⁻⁹ m)"."""
     if std_error is None:
         return quantity(value, unit)
+    if not determined(value, std_error):
+        return f"{UNDETERMINED} (± {quantity(std_error, unit)})"
     power = power_of(value)
     scaled, error = value / 10.0**power, std_error / 10.0**power
     digits = decimals(scaled, error)
@@ -29,5 +43,7 @@ def plus_minus(value: float, std_error: float | None, unit: str) -> str:
 
 def plus_minus_si(value: float, std_error: float | None, unit: str, digits: int = 5) -> str:
     """ "8.027e-05 ± 1.8e-07 m": on a terminal, in SI with its unit as a command takes them."""
+    if not determined(value, std_error):
+        return f"{UNDETERMINED} (± {std_error:.2g} {unit})"
     error = "" if std_error is None else f" ± {std_error:.2g}"
     return f"{value:.{digits}g}{error} {unit}"

@@ -26,9 +26,10 @@ def refit(begins: str, left: float, promised: float = 0.1) -> Refit:
         matrix=SimpleNamespace(of_use=lambda _use: (run,)),
         outputs=lambda _point: {"a": MEASURED * (1.0 - left)},
         left=lambda run, output: (run.measured - output) - (run.measured - output).mean(),
+        horizon=None,
     )
     fitness.fresh = lambda _runs: fitness
-    here = SimpleNamespace(error=promised, runs=(SimpleNamespace(error=promised, share=1.0),))
+    here = SimpleNamespace(error=promised, runs=(SimpleNamespace(error=promised, offset=0.0, share=1.0),))
     return Refit((), {}, None, np.zeros(1), here, fitness)
 
 
@@ -53,6 +54,16 @@ def test_first_states_that_lead_nowhere_are_guessed_anew():
 
 def test_the_error_on_runs_to_verify_is_what_a_simulation_leaves_there():
     assert refit("moving", 0.3).on_verify == pytest.approx(0.3, rel=1e-6)
+    assert refit("moving", 0.3).unstable == {}
+
+
+def test_a_run_to_verify_on_which_the_model_is_unstable_is_named_and_has_no_error():
+    """Also where its error is a number, of a hundred digits."""
+    for left in (4.52e104, np.inf):
+        found = refit("at rest", left)
+        with np.errstate(invalid="ignore"):
+            assert found.on_verify is None
+        assert found.unstable == {"verify": ("a",)}
 
 
 def test_of_first_steps_the_eight_that_leave_least_go_on():

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import pytest
+
 from ident.words.number import fixed
-from ident.words.plus_minus import decimals, plus_minus, plus_minus_si
+from ident.words.plus_minus import NOT_DETERMINED, decimals, determined, plus_minus, plus_minus_si
 
 
 def test_decimals_follow_the_standard_error():
@@ -22,3 +24,13 @@ def test_in_print_the_unit_is_a_readable_multiple():
 def test_on_a_terminal_it_is_what_a_command_takes():
     assert plus_minus_si(8.0271e-5, 1.84e-7, "m") == "8.0271e-05 ± 1.8e-07 m"
     assert plus_minus_si(-3201.49, None, "N*s/m", digits=4) == "-3201 N*s/m"
+
+
+@pytest.mark.parametrize(("error", "known"), [(9.9, True), (10.0, True), (10.1, False), (429.0, False)])
+def test_a_standard_error_of_more_than_ten_values_leaves_a_value_undetermined(error, known):
+    """The rule stands in one place; the error alone says how little is known. Nothing, exactly, is a value."""
+    assert NOT_DETERMINED == 10
+    assert determined(-2.0, 2.0 * error) is known
+    said, si = plus_minus(35e-12, 35e-12 * error, "m"), plus_minus_si(35e-12, 35e-12 * error, "m")
+    assert (said.startswith("not determined (± ") and si.startswith("not determined (± ")) is not known
+    assert plus_minus(0.0, 1e-6, "m").startswith("0.0")

@@ -58,3 +58,10 @@ def test_errors_over_windows_stand_below_those_of_the_free_run():
     assert [row.use for row in rows] == ["fit", "verify", f"fit over {length}", f"verify over {length}"]
     assert [row.error for row in rows[2:]] == ["7.80 %", "5.40 %"]
     assert (rows[2].ratio, rows[2].offset) == ("3.90 ×", "–")
+
+
+def test_a_value_with_an_error_of_more_than_ten_times_itself_is_not_determined_on_page_and_terminal():
+    lost = Estimate(35e-12, "m", 15023e-12, -1e-6, 1e-6, False, "s", "strength")
+    (row,) = parameter_rows(replace(fit(), parameters={"own.s": lost}))
+    assert (row.value, row.std_error, row.relative) == ("not determined", "15023", "–")
+    assert "not determined" in str(replace(fit(), parameters={"own.s": lost}))

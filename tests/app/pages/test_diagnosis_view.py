@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -74,3 +75,23 @@ def test_the_section_is_markup_with_everything_escaped():
     assert "{&#34;runs&#34;: {&#34;r &lt;1&gt;&#34;: {&#34;specimen&#34;: {&#34;mass&#34;: &#34;0.9 kg&#34;}}}}" in text
     assert text.count('data-add="/api/v1/fits/f/effects"') == 2  # the group and the one by chance
     assert "In data: flat tops." in text
+
+
+def vague() -> Stored:
+    """The strength of what the search would add is (35 ± 15023)·10⁻¹²."""
+    stored = found()
+    first, *others = stored.found.candidates
+    lost = {name: replace(entry, value=35e-12, std_error=15023e-12) for name, entry in first.parameters.items()}
+    ranked = (replace(first, parameters=lost, group=()), *(replace(one, group=()) for one in others))
+    return replace(stored, found=replace(stored.found, candidates=ranked))
+
+
+def test_a_strength_that_is_not_determined_is_called_so_and_not_offered_by_a_main_button():
+    page = {"id": "f", "serial": "S", "matrix": "m", "again": "{}", "on_bench": False, "kept": ()}
+    shown = [
+        _TEMPLATES.get_template("missing.html").render(fit=page | {"missing": missing(of, None)}, vega="", who=ANYBODY)
+        for of in (found(), vague())
+    ]
+    assert ["not determined (±" in text for text in shown] == [False, True]
+    assert ['class="main">Add it' in text for text in shown] == [True, False]
+    assert "not determined" in str(vague().found)

@@ -43,3 +43,10 @@ def test_runs_to_verify_that_speak_against_it_are_said_first():
     told = card(0.0158, instead_of=("dead_zone",), contradicted=against).against
     assert told.startswith("With it in place of dead zone the error on verify runs rises from 1.58 % to 2.6")
     assert card(0.0158).against == ""
+
+
+@pytest.mark.parametrize(("std_error", "determined"), [(1e-12, True), (15023e-12, False), (None, False)])
+def test_a_term_whose_strength_is_not_determined_says_so_and_is_no_main_offer(std_error, determined):
+    made = card(0.0158, strength=35e-12, std_error=std_error)
+    assert made.determined is determined
+    assert made.strength.startswith("not determined") is not determined
