@@ -25,6 +25,7 @@ from ident.diagnosis.refit import Refit
 from ident.diagnosis.result import Baseline, Diagnosis, Errors, Explanation, NextRun, Ranked, Rung, Suspect, Verdict
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.stages import (
+    EFFECTS,
     ERROR_BUDGET,
     FURTHER,
     LABELS,
@@ -145,7 +146,7 @@ class Diagnoser:
             if again is not None:
                 selection, doubted = again, self._doubted(again)
         if not selection.complete:
-            self.stages.miss(FURTHER)
+            self.stages.miss(FURTHER if selection.ranking else EFFECTS)
         return selection, doubted
 
     def _budget(self, matrix: Matrix) -> Budget | None:

@@ -14,6 +14,8 @@ from fastapi.testclient import TestClient
 from app.diagnoses.work import DIAGNOSIS
 from app.jobs import repository
 from app.jobs.steps import Runs
+from app.jobs.work import Kept, Kind, State, Task, Work
+from ident.progress import Progress
 from tests.app.conftest import reached
 from tests.hidden_dead_zone import HALF_WIDTH, zipped
 
@@ -199,6 +201,50 @@ def test_a_result_is_stored_once_and_one_that_cannot_be_ends_its_job(service, di
     assert service.get(f"{API}/jobs/broken").json()["problem"]["code"] == "not-stored"
 
 
+@pytest.mark.parametrize("fails", [True, False])
+def test_the_catalogues_verdict_is_kept_whatever_becomes_of_the_job(service, diagnosis, linear, matrix, fails):
+    """It is stored before terms are searched for, seen with the job, and gives way to the whole where that comes."""
+    so_far = {**diagnosis, "complete": False, "not_looked_at": ["search for unknown terms"]}
+    seen: list[dict[str, Any]] = []
+    name = f"kept-{fails}"
+
+    class Cut(Work):
+        def __init__(self, task: Task) -> None:
+            self.task = task
+
+        def finish(self, state: State) -> State:  # noqa: ARG002  nothing comes before it
+            self.task.report(Kept("kept", 1, 1, made={"diagnosis": so_far, "fit": None}))
+            self.task.report(Progress("proposing", 3, 3, verdict=so_far["verdict"]["text"]))
+            seen.append(service.get(f"{API}/jobs/{name}").json())
+            seen.append(service.get(f"{API}/diagnoses/{name}").json())
+            if fails:
+                raise RuntimeError("somewhere inside")
+            return {"diagnosis": diagnosis, "fit": None}
+
+    context = service.app.state.context
+    with context.sessions.begin() as session:
+        repository.add(session, name, matrix, {}, linear, "diagnosis")
+    run = Runs(context.sessions, context.storage, "here", Kind("diagnosis", Cut, DIAGNOSIS.keep)).take(name)
+    run.store(run.finish(run.begin()["state"]))
+    job, kept = seen
+    assert (job["state"], job["diagnosis"], job["progress"]["verdict"]) == (
+        "running",
+        name,
+        diagnosis["verdict"]["text"],
+    )
+    assert (kept["complete"], kept["verdict"]) == (False, diagnosis["verdict"])
+    assert service.get(f"{API}/jobs/{name}").json()["state"] == ("failed" if fails else "succeeded")
+    found = service.get(f"{API}/diagnoses/{name}").json()
+    assert (found["complete"], found["not_looked_at"]) == ((False, so_far["not_looked_at"]) if fails else (True, []))
+
+
+def test_a_diagnosis_without_the_time_for_a_fit_says_so(service, matrix):
+    """There is nothing that could be kept."""
+    job = ended(service, service.post(f"{API}/diagnoses", json={"matrix": matrix, "time": 0.001}))
+    assert (job["state"], job["problem"]["code"], job["diagnosis"]) == ("failed", "no-time", None)
+    assert job["problem"]["detail"] == "0.001 s are over before a model is fitted"
+
+
 def test_a_diagnosis_is_no_fit_of_the_actuators_page(service, diagnosis, linear):
     page = service.get("/actuators/DZ-1").text
     assert f"/fits/{linear}" in page
@@ -227,6 +273,8 @@ def test_a_diagnosis_whose_time_is_over_is_what_was_found(service, linear):
     assert job["settings"]["time"] == 0.001
     found = service.get(f"{API}/diagnoses/{job['diagnosis']}").json()
     assert (found["complete"], found["verdict"]["effects"], found["next_experiment"]) == (False, [], {})
+    assert (found["budget"], found["candidates"]) == ({}, [])
+    assert {"error budget", "next run", "search for unknown terms"} <= {*found["not_looked_at"]}
     assert service.post(f"{API}/diagnoses", json={"fit": linear, "time": 0}).status_code == 422
 
 
