@@ -20,6 +20,7 @@ from ident.diagnosis.proposals.sight import signals_of
 from ident.errors import Unusable
 from ident.fit.anchoring import Anchoring
 from ident.fit.settings import Settings
+from ident.fit.simulated_runs import every_run
 from ident.matrix import Actuator, Matrix, Run, Specimen
 from ident.presets import PRESETS, preset
 from ident.presets.description import described
@@ -94,6 +95,38 @@ def records(models: ModelFamily, kind: str) -> tuple[Record, ...]:
         record = Record(run, RATE, sensitivities, np.ones((run.length, 1)), residual, Anchoring(0), signals)
         found.append(replace(record, signals={**beside, "t": time, **signals}))
     return tuple(found)
+
+
+def simulated(model: str, kind: str) -> tuple[ModelFamily, Mapping[str, float]]:
+    """The models of a machine for records that its own answers are made of, and the values that they have there.
+
+    Finite ones have noise and a cube of the answer, saturated ones end where it is large, unstable ones grow twentyfold
+    on their way, and noise-free ones are the answer to the last digit.
+    """
+    models, values = models_of(model)
+    commands = {run.id: replace(run, channels=_smooth(run)) for run in models.matrix.runs}
+    matrix = replace(models.matrix, runs=tuple(commands.values()))
+    rng, runs = np.random.default_rng(KINDS.index(kind)), []
+    shown = every_run(models.preset, matrix).outputs_at(values)
+    for run in matrix.runs:
+        y = shown[run.id]
+        if not np.isfinite(y).all() or not np.std(y) > 0:
+            y = _signal("finite", rng, np.arange(run.length) / RATE)
+        size = float(np.std(y))
+        measured = {
+            "finite": y + 0.05 * size * (y / size) ** 3 + 0.01 * size * rng.standard_normal(len(y)),
+            "saturated": np.clip(y, -0.7 * size, 0.7 * size),
+            "unstable": y * np.exp(np.linspace(0.0, 3.0, len(y))),
+            "noise-free": y,
+        }[kind]
+        runs.append(replace(run, channels={**run.channels, run.output: measured}))
+    return ModelFamily.of(replace(matrix, runs=tuple(runs)), Settings(model=model)), values
+
+
+def _smooth(run: Run) -> dict[str, Array]:
+    """The channels of a run within a tenth of its sample rate."""
+    kernel = np.hanning(21) / np.hanning(21).sum()
+    return {name: np.convolve(samples, kernel, "same") for name, samples in run.channels.items()}
 
 
 def _signal(kind: str, rng: np.random.Generator, time: Array) -> Array:

@@ -8,10 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ident.diagnosis.proposals.search import _built
+from ident.diagnosis.proposals.search import Search, _built
 from ident.diagnosis.proposals.sight import places_of, seen
 from ident.presets import PRESETS
-from tests.diagnosis.proposals.any_machine import KINDS, MACHINES, models_of, records
+from ident.progress import silent
+from tests.diagnosis.proposals.any_machine import KINDS, MACHINES, models_of, records, simulated
 
 
 class Fitted:
@@ -79,3 +80,21 @@ def test_a_residual_of_rounding_alone_is_not_explained():
     models, values = models_of("specimen")
     told = tuple(replace(record, residual=1e-300 * record.residual) for record in records(models, "finite"))
     assert all(candidate.share < 1e-9 for candidate in seen(models, values, told).candidates)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("model", MACHINES)
+def test_a_whole_search_comes_to_its_end_whatever_the_data_are(model, kind, full):
+    """From the values that the records were made with: it proposes a term, or says what it refused, or nothing."""
+    if not full:  # 112 searches
+        pytest.skip("half an hour: run with --full")
+    models, values = simulated(model, kind)
+    base = models.refit((), values)
+    if not base.stable:
+        pytest.skip("the machine is unstable in the middle of its search space")
+    found = Search(models, base, silent, given=(), asked=False, most=1).run()
+    assert found.complete
+    assert 0 <= found.left_out <= found.looked_at
+    for one in found.found:
+        assert np.isfinite([one.strength, one.nats, one.bar, one.error["fit"]]).all()
+        assert one.nats > one.bar
