@@ -122,7 +122,9 @@ def _made(draft: Draft, files: Gathered, out: Path) -> None:
     matrix = drafted(files)
     _write(files, out)
     findings = check(matrix)
-    print("\n".join([*(f"taken: {doubt}" for doubt in draft.doubts), *description(matrix)]))
+    noticed = {notice.replace("runs/", "", 1) for notice in matrix.notices}  # which the description shows
+    taken = [f"taken: {doubt}" for doubt in draft.doubts if doubt not in noticed]
+    print("\n".join([*taken, *description(matrix)]))
     for finding in findings:
         print(f"{finding.severity}: {f'run {finding.run}: ' if finding.run else ''}{finding.text} [{finding.code}]")
     print(summary([finding.severity for finding in findings]))

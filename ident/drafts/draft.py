@@ -25,6 +25,7 @@ _DRIVES = ("command", "current")
 _NAMED = 3  # files that a doubt names
 _HELD = "the command rests and jumps, so it is taken to be held between its changes (hold: zoh)"
 _DRAWN = "the command is taken to run straight from sample to sample (hold: linear); say zoh where it is held"
+_LEFT_OUT = 3  # columns with an empty cell that a question names
 
 
 @dataclass(frozen=True)
@@ -255,7 +256,9 @@ def _columns(file: RawFile, column: str | int, where: str) -> list[Column]:
     numbers = file.table.numbers(column, f"{file.name}: {where}")
     found = [one for number in numbers for one in file.columns if one.number == number]
     if len(found) < len(numbers):
-        raise Unusable("not-numeric", f"column {shown(column)!r} does not hold numbers throughout", file.name,
+        why = "; ".join(filter(None, (file.flaw(number) for number in numbers)))
+        what = f"column {shown(column)!r} does not hold numbers throughout"
+        raise Unusable("not-numeric", f"{what}: {why}" if why else what, file.name,
                        "name another column")  # fmt: skip
     return found
 
@@ -267,7 +270,8 @@ def _unit(columns: Sequence[Column]) -> str:
 
 
 def _listed(file: RawFile) -> str:
-    left_out = "".join(f"; {why}" for why in file.left_out)
+    more = len(file.left_out) - _LEFT_OUT
+    left_out = "".join(f"; {why}" for why in file.left_out[:_LEFT_OUT]) + (f"; so are {more} more" if more > 0 else "")
     return f"{file.name} ({some_of([column.name for column in file.columns])}{left_out})"
 
 

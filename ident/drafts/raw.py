@@ -154,19 +154,20 @@ class RawFile:
     @cached_property
     def left_out(self) -> tuple[str, ...]:
         """The columns that hold numbers, but not throughout, each with the row that breaks it, in words."""
-        return tuple(why for number, fine in enumerate(self._fine) if not fine and (why := self._flaw(number)))
+        flaws = ((name, self.flaw(n)) for n, name in enumerate(self.table.names) if not self._fine[n])
+        return tuple(f"{name!r} is left out: {why}" for name, why in flaws if why)
 
-    def _flaw(self, number: int) -> str:
+    def flaw(self, number: int) -> str:
         """What breaks a column of numbers; nothing where it holds none."""
         try:
             samples = self.samples(number)
         except Unusable as refused:
             words = refused.code != "not-numeric" or number not in self.table.mostly
-            return "" if words else f"{self.table.names[number]!r} is left out: {refused.what}"
+            return "" if words else refused.what
         bad = np.flatnonzero(~np.isfinite(samples))
         if not len(bad) or len(bad) > len(samples) // 2:
             return ""
-        return f"{self.table.names[number]!r} is left out: sample {bad[0]} is {samples[bad[0]]}"
+        return f"sample {bad[0]} is {samples[bad[0]]}"
 
     def _holds_numbers(self, number: int) -> bool:
         try:

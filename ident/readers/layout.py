@@ -115,7 +115,7 @@ def recognise(text: bytes, where: str, skip_rows: int = 0) -> Layout:
     below = line_start(text, first, start)
     end, notices = _end(text, below, form, shape, cut[first:], where)
     return Layout(form, skip_rows + above, found, below, end, skip_rows + first + 1, shape.stamps,
-                  shape.numbers, (*found.notices, *notices))  # fmt: skip
+                  shape.numbers | _seldom(cut[first:], shape, form), (*found.notices, *notices))  # fmt: skip
 
 
 def head_lines(text: bytes, start: int, where: str) -> list[str]:
@@ -240,6 +240,16 @@ def _check_commas(form: Form, rows: Sequence[Sequence[str]], found: Heading, whe
     ):
         what = "the comma separates the columns and is the decimal sign, too"
         raise Unusable("comma-twice", what, where, "export it with semicolons or tabs, or with decimal points")
+
+
+def _seldom(rows: Sequence[Sequence[str]], shape: _Shape, form: Form) -> frozenset[int]:
+    """The columns that hold numbers in some rows of the head and nothing in the others."""
+    found = set()
+    for column in set(range(shape.columns)) - shape.numbers - shape.stamps:
+        filled = [row[column] for row in rows if column < len(row) and row[column].strip(QUOTES)]
+        if filled and all(is_numeral(field, bool(form.comma)) for field in filled):
+            found.add(column)
+    return frozenset(found)
 
 
 def _first_row(lines: Sequence[str], cut: Sequence[Sequence[str]], shape: _Shape, comma: bool) -> int:

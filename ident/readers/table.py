@@ -26,8 +26,8 @@ class Table:
     `notices` says in words what reading assumed; `units`, where there are any, what the file says of each column, as it
     is written there and for a suggestion alone: what counts is the unit that matrix.yaml states. Loading checks
     declared sizes before it allocates. `aliases` are further names of the columns, each a row of them, for a heading of
-    several lines; `stamps` are the columns that were time stamps and are loaded in seconds, `mostly` those of a text in
-    which most rows hold numbers.
+    several lines; `stamps` are the columns that were time stamps and are loaded in seconds, `mostly` those of a
+    text that hold numbers, in some rows at least.
     """
 
     names: tuple[str, ...]
