@@ -28,12 +28,14 @@ __all__ = ["Column", "Rate", "RawFile", "bare", "is_unit", "read_parts", "read_r
 
 _OF_TABLES = (".json",)
 _LETTER_M = "m"  # behind a name it may be metres, or say that it was measured
-_SAMPLING = r"^\W*(?:sampl|abtast|[ée]chantillon|campion)\w*[\s_]*"
-_NUMBER = r"\W*?\s*([0-9][0-9.,eE+-]*)\s*"
+_SAMPLING = r"^\W{0,9}(?:sampl|abtast|[ée]chantillon|campion)\w*[ _]?"
+_NUMBER = r"[^0-9A-Za-z]{0,9}([0-9][0-9.,eE+-]*) ?"
 _RATE = re.compile(
-    _SAMPLING + r"(?:rate|frequency|frequen[zc]\w*|fr[ée]quence)?" + _NUMBER + r"([A-Za-z/]*)\W*$", re.I | re.M
+    _SAMPLING + r"(?:rate|frequency|frequen[zc]\w*|fr[ée]quence)?" + _NUMBER + r"([A-Za-z/]*)\W{0,9}$", re.I
 )
-_STEP = re.compile(_SAMPLING + r"(?:time|interval\w*|period\w*|zeit)?" + _NUMBER + r"([A-Za-zµ]*)\W*$", re.I | re.M)
+_STEP = re.compile(_SAMPLING + r"(?:time|interval\w*|period\w*|zeit)?" + _NUMBER + r"([A-Za-zµ]*)\W{0,9}$", re.I)
+_KIND = re.compile(r"rate|frequen|fr[ée]quen|time|interval|period|zeit", re.I)
+_LONGEST_ENTRY = 200  # characters of a line that states a rate
 
 
 @dataclass(frozen=True)
@@ -183,12 +185,15 @@ def _is_finite(samples: NDArray[Any]) -> bool:
 def _stated(pattern: re.Pattern[str], text: str) -> Sequence[tuple[float, str]]:
     """The numbers with their units that lines of a preamble state."""
     found = []
-    for match in pattern.finditer(text):
+    lines = (" ".join(line.split()) for line in text.splitlines() if len(line) < _LONGEST_ENTRY)
+    for match in filter(None, map(pattern.match, lines)):
         try:
-            found.append((float(match[1].rstrip(",").replace(",", ".")), match[2]))
+            value = float(match[1].rstrip(",").replace(",", "."))
         except ValueError:
             continue
-    return [(value, unit) for value, unit in found if value > 0]
+        if value > 0 and (match[2] or _KIND.search(match[0])):  # "Sample 1" is neither a rate nor an interval
+            found.append((value, match[2]))
+    return found
 
 
 def _seconds(value: float, unit: str) -> float:

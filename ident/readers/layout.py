@@ -281,7 +281,9 @@ def _end(
     text: bytes, below: int, form: Form, shape: _Shape, head: Sequence[Sequence[str]], where: str
 ) -> tuple[int, tuple[str, ...]]:  # fmt: skip
     """Where the rows end: before a last row that was cut off, which is told with its number."""
-    last = len(text.rstrip())
+    last = len(text)
+    while last > below and text[last - 1] in b" \t\r\n":
+        last -= 1
     begin = text.rfind(b"\n", below, last) + 1
     if begin <= below or last - begin > LONGEST_LINE:
         return len(text), ()

@@ -178,16 +178,18 @@ def _unquoted(line: bytes, delimiter: str) -> list[bytes]:
 
 def as_float(field: bytes, comma: bool, line: int, where: str) -> float:
     """One field as a number. Raises Unusable ``not-numeric`` with its line."""
+    parted = comma and b"." in field and mixes_thousands(field.decode("utf-8", "replace"))
+    if not parted:
+        try:
+            return float((field.replace(b",", b".") if comma else field).strip(b" \"'"))
+        except ValueError:
+            pass
     text = field.decode("utf-8", "replace").strip()
-    if comma and mixes_thousands(text):
+    if parted:
         what = f"line {line} holds {shown(text)!r} among decimal commas, where the point may part thousands"
         raise Unusable("not-numeric", what, where, "export it without signs between thousands")
-    try:
-        return float((field.replace(b",", b".") if comma else field).strip(b" \"'"))
-    except ValueError:
-        pass
     if not text.strip("\"' "):
         what = f"line {line} has an empty cell where a number belongs"
         raise Unusable("not-numeric", what, where, f"fill it, or cut the record before line {line} with rows")
     remedy = "give the column of numbers, or skip_rows for more lines above"
-    raise Unusable("not-numeric", f"line {line} holds {shown(text)!r} where a number belongs", where, remedy) from None
+    raise Unusable("not-numeric", f"line {line} holds {shown(text)!r} where a number belongs", where, remedy)

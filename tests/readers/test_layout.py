@@ -141,3 +141,15 @@ def test_windows_1252_and_two_bytes_a_sign_without_a_mark_keep_the_units():
     text = "\n".join(["Zeit [s];Weg [µm]", *(f"{n};{n % 7}" for n in range(20))])
     for encoding in ("cp1252", "utf-8", "utf-16", "utf-16-le", "utf-16-be"):
         assert read(text.encode(encoding)).names == ("Zeit [s]", "Weg [µm]")
+
+
+@pytest.mark.parametrize(
+    ("above", "rate"),
+    [("Abtastrate;1000 Hz", 1000.0), ("Sampling period,1.0 ms,", 1000.0), ("Abtastintervall: 0,5 ms", 2000.0),
+     ("sampling frequency = 4.096 kHz", 4096.0), ("Sample 1", None), ("Samples: 30", None), ("Sample rate: 100", None),
+     ("sample" + " " * 60_000 + "x", None)],
+)  # fmt: skip
+def test_a_rate_or_an_interval_above_the_table_is_found_where_it_carries_a_unit(above, rate):
+    text = "\n".join([above, "", "n,command [V],position [mm]", *(f"{n},{n % 7},{n % 3}" for n in range(30))])
+    found = read_raw(text.encode(), "run.csv").rate
+    assert (found and found.value) == (None if rate is None else pytest.approx(rate))
