@@ -26,7 +26,8 @@ BAND = (0.02, 0.98)  # of the input's power: where a response is compared
 FEWEST = 3  # frequencies at which two responses are compared: two can agree by chance
 AGREE = 0.7  # nepers and radians, median: noise of 8 frames, another amplitude or gain come to 0.5
 TIMES_BETTER = 2.0  # the corrected clock has to agree better by; both agree of a machine that answers at once
-VARIED = 0.7  # nepers and radians: a response that changes less over the band tells nothing of the clock
+VARIED = 0.25  # nepers and radians: a response that changes less over the band tells nothing of the clock
+CLOSE = 0.5  # of that change: what two responses differ by at most where they are taken as one
 AS_LONG, AS_SLOW, AS_PEAKED = 2.0, 1.5, 1.5  # times: samples, median frequency and crest factor of sisters
 DRIVERS = ("command", "drive_force", "current", "velocity", "displacement")
 """What may drive a run: the first of them that it has."""
@@ -166,7 +167,7 @@ def _answers_as(record: Record, sisters: Sequence[Record], scale: float) -> bool
     same = [one for one in sisters if _conditions(one.run) == _conditions(record.run)]
     told = [_told(record, one, scale) for one in same or sisters]
     known = [one for one in told if one is not None]
-    return sum(known) > len(known) / 2 if known else None
+    return 2 * sum(known) >= len(known) if known else None
 
 
 def _told(record: Record, sister: Record, scale: float) -> bool | None:
@@ -183,7 +184,7 @@ def _told(record: Record, sister: Record, scale: float) -> bool | None:
         return False if stated[0] < AGREE and stated[1] > VARIED else None
     if corrected is None or corrected[1] < VARIED:
         return None
-    return corrected[0] < AGREE
+    return corrected[0] < min(AGREE, CLOSE * corrected[1])
 
 
 def _differ(one: Response, other: Response, scale: float) -> tuple[float, float] | None:

@@ -109,7 +109,7 @@ def test_files_that_differ_in_names_and_units_are_one_matrix(servoident, case, t
     """What is said of all files, and what of some of them by their name or a pattern, with @."""
     said = []
     for at, file in enumerate(case.files):
-        pattern = file.name if at else f"{file.name[:-5]}a*"
+        pattern = file.name if at else f"{file.name[:4]}*{file.name[5:]}"
         time, *channels = (f"{column}:{unit}" for column, unit in zip(file.columns, file.units, strict=True))
         said += ["--time", f"@{pattern}={time}"]
         for channel, value in zip(("command", "displacement"), channels, strict=True):
