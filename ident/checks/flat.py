@@ -22,7 +22,8 @@ def flat(run: Run) -> Iterator[Finding]:
     least = max(SAMPLES, int(SECONDS * run.sample_rate) if run.time_unit == "s" else SAMPLES)
     for name, other in ((run.output, "command"), ("command", run.output)):
         first, end = longest_rest(run.channels[name])
-        moved = run.channels[other][first:end]
+        # What moves only at the end of a rest, a step that ends it, is answered as soon as a machine can.
+        moved = run.channels[other][first : end - min(least, (end - first) // 2)]
         if name == "command" and (run.kind != "blwn" or first == 0 or end == run.length):
             continue  # a command may rest, before and after a run in any case
         if end - first < least or np.ptp(moved) < MOVED * run.channels[other].std():

@@ -16,9 +16,11 @@ FRAMES = 8  # at least: with fewer, chance alone makes a coherence of 0.4
 SHORTEST_FRAME = 16
 RELATED = 0.3  # mean coherence of two signals that have to do with each other; chance makes 0.12 of 8 frames
 RESTS = 0.05  # scatter of a command that rests, over its level or the deviation of an output of the same unit
-WHITE = (
-    0.7  # of its power, at least, that a recorder's noise changes by from sample to sample; 0.06 of 10 samples a cycle
-)
+WHITE = 0.4
+"""Half the mean square change of a recorder's noise from sample to sample, over its power, at least.
+
+1 on an even clock, 0.5 where an uneven one was made even; a command of ten samples a cycle has 0.06.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +67,19 @@ def respond(run: Run) -> Response | None:
     if "command" not in run.channels or run.stepped:
         return None
     found = response(run.command, run.measured, run.sample_rate)
-    return None if found is None or (_may_rest(run) and found.coherence.mean() < RELATED) else found
+    return None if found is None or _rests(run, found) else found
+
+
+def rests(run: Run) -> bool:
+    """Whether the command is held from the first sample to the last, but for its rounding and its recorder's noise."""
+    if "command" not in run.channels or run.stepped:
+        return "command" in run.channels
+    found = response(run.command, run.measured, run.sample_rate) if _may_rest(run) else None
+    return found is not None and _rests(run, found)
+
+
+def _rests(run: Run, found: Response) -> bool:
+    return _may_rest(run) and bool(found.coherence.mean() < RELATED)
 
 
 def _may_rest(run: Run) -> bool:

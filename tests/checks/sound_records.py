@@ -15,7 +15,8 @@ from ident.matrix import Matrix
 Array = np.ndarray
 Rng = np.random.Generator
 Columns = dict[str, Array]
-Draw = Callable[[Rng], tuple[Columns, dict[str, object]]]
+Draw = Callable[[Rng, Rng], tuple[Columns, dict[str, object]]]
+"""Makes a record: what is drawn first is of the machine, then what is of the record alone."""
 
 
 def swing(u: Array, rate: float, natural: float, damping: float) -> Array:
@@ -55,95 +56,95 @@ def speed(u: Array, y: Array, rate: float, hold: str = "zoh", unit: str = "V") -
     return {"command": u, "velocity": y}, stated | {"sample_rate": f"{rate} Hz"}
 
 
-def ringing(rng: Rng) -> tuple[Columns, dict[str, object]]:
+def ringing(machine: Rng, rng: Rng) -> tuple[Columns, dict[str, object]]:
     """Held levels answered by a swing of any damping, 8 samples a cycle or more (the more damped, the more of them)."""
-    rate, damping = 100.0, rng.choice([0.02, 0.05, 0.1, 0.2, 0.35, 0.6, 1.0])
-    cycle = rng.uniform(8, 40) * (1 + 2 * damping)
+    rate, damping = 100.0, machine.choice([0.02, 0.05, 0.1, 0.2, 0.35, 0.6, 1.0])
+    cycle = machine.uniform(8, 40) * (1 + 2 * damping)
     u = levels(rng, 1500, int(rng.integers(11, 60)))
     return speed(u, noisy(rng, swing(u, rate, rate / cycle, damping), rng.choice([0.0, 0.01, 0.03])), rate)
 
 
-def rectified(rng: Rng) -> tuple[Columns, dict[str, object]]:
+def rectified(machine: Rng, rng: Rng) -> tuple[Columns, dict[str, object]]:
     """The same seen by a counter that does not know the direction."""
-    columns, stated = ringing(rng)
+    columns, stated = ringing(machine, rng)
     return columns | {"velocity": np.abs(columns["velocity"])}, stated
 
 
-def resting(rng: Rng) -> tuple[Columns, dict[str, object]]:
+def resting(machine: Rng, rng: Rng) -> tuple[Columns, dict[str, object]]:
     """A machine that settles under a command held throughout, whose clock strays or whose recorder has noise."""
-    rate, count = rng.choice([20.0, 100.0, 500.0]), 1200
+    rate, count = machine.choice([20.0, 100.0, 500.0]), 1200
     step = (1 + rng.choice([0.0, 0.08, 0.2, 0.4]) * rng.uniform(-1, 1, count)) / rate
-    time, level = np.cumsum(step), rng.choice([1e-6, 0.1, -3.7, 230.0])
-    y = level + (1 + abs(level)) * np.exp(-time / rng.uniform(0.5, 5)) * np.cos(time * rng.uniform(0, 6))
+    time, level = np.cumsum(step), machine.choice([1e-6, 0.1, -3.7, 230.0])
+    y = level + (1 + abs(level)) * np.exp(-time / machine.uniform(0.1, 0.5) / time[-1]) * np.cos(
+        time * machine.uniform(0, 6)
+    )
     u = level + rng.choice([0.0, 1e-12, 1e-5, 1e-3, 1e-2]) * max(abs(level), 0.01) * rng.standard_normal(count)
-    unit, name = rng.choice([("m", "displacement"), ("V", "velocity")])
+    unit, name = machine.choice([("m", "displacement"), ("V", "velocity")])
     units = {"command": str(unit), str(name): "m" if name == "displacement" else "rad/s"}
-    stated = {"units": units, "output": str(name), "hold": str(rng.choice(["zoh", "linear"]))}
+    stated = {"units": units, "output": str(name), "hold": str(machine.choice(["zoh", "linear"]))}
     columns = {"t": time, "command": u, str(name): noisy(rng, y, 0.005)}
     return columns, stated | {"time": {"column": "t", "unit": "s"}}
 
 
-def slow_sine(rng: Rng) -> tuple[Columns, dict[str, object]]:
+def slow_sine(machine: Rng, rng: Rng) -> tuple[Columns, dict[str, object]]:
     """A position that follows a sine of 0.1 to 1 Hz, recorded command included."""
     rate, t = 200.0, np.arange(4000) / 200.0
     u = 0.01 * np.sin(2 * np.pi * (rng.uniform(0.1, 1.0) * t + rng.uniform()))
-    x = noisy(rng, lag(u, rate, 0.02), 0.003)
+    x = noisy(rng, lag(u, rate, machine.uniform(0.01, 0.05)), 0.003)
     stated = {"units": {"command": "m", "displacement": "m"}, "kind": "sine", "sample_rate": "200 Hz"}
     return {"command": noisy(rng, u, rng.choice([0.0, 0.003])), "displacement": x}, stated
 
 
-def one_step(rng: Rng) -> tuple[Columns, dict[str, object]]:
+def one_step(machine: Rng, rng: Rng) -> tuple[Columns, dict[str, object]]:
     """One step up, or up and back, answered by a lag or a swing."""
     rate, count = 200.0, 2000
     u = np.zeros(count)
     u[100 : rng.choice([1000, count])] = rng.uniform(0.5, 8)
-    clean = lag(u, rate, rng.uniform(0.05, 0.5)) if rng.random() < 0.5 else swing(u, rate, rng.uniform(1, 8), 0.2)
-    return speed(u, noisy(rng, clean, 0.005), rate, str(rng.choice(["zoh", "linear"])))
+    tau, natural = machine.uniform(0.05, 0.5), machine.uniform(1, 8)
+    clean = lag(u, rate, tau) if machine.random() < 0.5 else swing(u, rate, natural, 0.2)
+    return speed(u, noisy(rng, clean, 0.005), rate, str(machine.choice(["zoh", "linear"])))
 
 
-def staircase(rng: Rng) -> tuple[Columns, dict[str, object]]:
+def staircase(machine: Rng, rng: Rng) -> tuple[Columns, dict[str, object]]:
     """Levels up and down again, answered by a lag."""
     up = np.arange(0, 8) * rng.choice([-0.5, 1.0, 3.0])
     u = np.repeat(np.concatenate([up, up[::-1]]), int(rng.integers(40, 160)))
-    return speed(u, noisy(rng, lag(u, 50.0, rng.uniform(0.1, 0.6)), 0.005), 50.0)
+    return speed(u, noisy(rng, lag(u, 50.0, machine.uniform(0.1, 0.6)), 0.005), 50.0)
 
 
-def random_noise(rng: Rng) -> tuple[Columns, dict[str, object]]:
+def random_noise(machine: Rng, rng: Rng) -> tuple[Columns, dict[str, object]]:
     """Noise of a band with twelve samples a cycle or more, answered by a lag or a swing."""
-    rate = rng.choice([200.0, 1000.0, 4096.0])
+    rate = machine.choice([200.0, 1000.0, 4096.0])
     u = band(rng, 8000, rate, rate / rng.uniform(12, 60))
-    y = (
-        swing(u, rate, rate / rng.uniform(20, 80), rng.uniform(0.1, 1))
-        if rng.random() < 0.5
-        else lag(u, rate, 20 / rate)
-    )
+    natural, damping = rate / machine.uniform(20, 80), machine.uniform(0.1, 1)
+    y = swing(u, rate, natural, damping) if machine.random() < 0.5 else lag(u, rate, 20 / rate)
     return speed(noisy(rng, u, rng.choice([0.0, 0.005])), noisy(rng, y, 0.01), rate, "linear")
 
 
-def damper(rng: Rng) -> tuple[Columns, dict[str, object]]:
+def damper(machine: Rng, rng: Rng) -> tuple[Columns, dict[str, object]]:
     """A damper moved by an actuator: viscous, with dry friction or a spring; motion in, force out."""
     rate, t = 200.0, np.arange(4000) / 200.0
     v = 0.1 * (band(rng, 4000, rate, 8.0) if rng.random() < 0.5 else np.sin(2 * np.pi * rng.uniform(0.5, 3) * t))
     x = np.cumsum(v) / rate
-    force = rng.uniform(100, 900) * v + rng.choice([0.0, 900.0]) * (x - x.mean())
-    force = noisy(rng, force + rng.choice([0.0, 20.0]) * np.tanh(v / 0.003), 0.01)
+    force = machine.uniform(100, 900) * v + machine.choice([0.0, 900.0]) * (x - x.mean())
+    force = noisy(rng, force + machine.choice([0.0, 20.0]) * np.tanh(v / 0.003), 0.01)
     stated = {"units": {"velocity": "m/s", "force": "N"}, "output": "force", "sample_rate": "200 Hz"}
     return {"velocity": noisy(rng, v, rng.choice([0.0, 0.01])), "force": force}, stated
 
 
-def quantised(rng: Rng) -> tuple[Columns, dict[str, object]]:
+def quantised(machine: Rng, rng: Rng) -> tuple[Columns, dict[str, object]]:
     """Any of the others in 20 to 200 steps of a converter."""
-    columns, stated = (ringing, one_step, staircase, random_noise, damper)[rng.integers(5)](rng)
+    columns, stated = (ringing, one_step, staircase, random_noise, damper)[machine.integers(5)](machine, rng)
     name = "force" if "force" in columns else "velocity"
-    step = np.ptp(columns[name]) / rng.integers(20, 200)
+    step = np.ptp(columns[name]) / machine.integers(20, 200)
     return columns | {name: np.round(columns[name] / step) * step}, stated
 
 
-def sweep(rng: Rng) -> tuple[Columns, dict[str, object]]:
+def sweep(machine: Rng, rng: Rng) -> tuple[Columns, dict[str, object]]:
     """A swept sine to a twelfth of the sample rate or less."""
     rate, t = 500.0, np.arange(6000) / 500.0
     u = np.sin(2 * np.pi * (0.5 * t + rng.uniform(0.3, 1.5) * t**2))
-    return speed(u, noisy(rng, swing(u, rate, rng.uniform(5, 20), rng.uniform(0.1, 1)), 0.01), rate, "linear")
+    return speed(u, noisy(rng, swing(u, rate, machine.uniform(5, 20), machine.uniform(0.1, 1)), 0.01), rate, "linear")
 
 
 KINDS: dict[Draw, int] = {
@@ -164,6 +165,6 @@ def measured(draw: Draw, seed: list[int]) -> Matrix:
     """Two measurements of one machine: what is drawn of it is the same, what is recorded is not."""
     parts = []
     for use in ("fit", "verify"):
-        columns, stated = draw(np.random.default_rng([*seed, use == "verify"]))
+        columns, stated = draw(np.random.default_rng(seed), np.random.default_rng([*seed, 1 + (use == "verify")]))
         parts.append(Matrix.from_arrays(columns, **stated, id=use, use=use, actuator={"serial": "SOUND"}))
     return parts[0] + parts[1]
