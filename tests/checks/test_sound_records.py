@@ -125,9 +125,9 @@ def test_a_response_is_told_only_where_the_command_has_power() -> None:
 
 @pytest.mark.parametrize("seen", [lambda y: y, np.abs], ids=["", "rectified"])
 def test_an_answer_that_swings_back_is_not_taken_for_one_that_has_ended(seen) -> None:
-    """A cycle of 14 samples is after 3 where it is after 11: past 80 % of that, and on its way."""
+    """A cycle of 12 samples is after 2 where it is after 10: more than 80 % of that, and on its way."""
     u = np.repeat(np.random.default_rng(2).permutation(np.arange(1.0, 16.0)), 200)
-    y = seen(swing(u, 100.0, 100.0 / 14, 0.05))
+    y = seen(swing(u, 100.0, 100.0 / 12, 0.03))
     steps = np.flatnonzero(np.diff(u))
     whole, early = (y[steps + later] - y[steps] for later in (11, 3))
     assert np.median(early / whole) > 0.8
