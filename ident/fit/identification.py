@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ident.chain.chain import integrates
 from ident.checks.feedback import closed_loop
 from ident.custom.definition import preset_with
+from ident.effects.effect import off_values
 from ident.errors import Unusable
 from ident.fit import genetic
 from ident.fit.bulk_modulus import with_bulk_modulus
@@ -131,7 +132,8 @@ class Identification:
             if isinstance(fitness, SimulatedFitness):
                 fitness.horizon, fitness.memory = state.get("horizon"), state.get("memory")
         if isinstance(self.searched, SimulatedFitness):
-            self.searched.begin(state["linear"])
+            # Shapes are what they are by default: an equation whose strength and shape are both zero may have no value.
+            self.searched.begin({**state["linear"], **off_values(self.preset.effects)})
 
     def finished(self, state: State) -> bool:
         """True when the search is over and only :meth:`finish` remains."""
