@@ -1,0 +1,224 @@
+"""Numbers in the documents that decide something in code are the code's.
+
+Each row has the document, a phrase of it with {} for each number, and the numbers as the code has them. A number that
+is changed in code, or a phrase that is rewritten, fails here until both agree. Line breaks of the text do not count.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app.pages import next_view
+from ident.bench import acceptance, time_constant
+from ident.diagnosis import (
+    candidate,
+    cross_validation,
+    family,
+    ranking,
+    refit,
+    screening,
+    significance,
+    standing,
+    stepwise,
+    structures,
+    ties,
+)
+from ident.diagnosis.proposals import candidate as proposed
+from ident.diagnosis.proposals import free_curves, regression, search
+from ident.effects import EFFECTS
+from ident.fit import genetic, windows
+from ident.fit.search import Search
+from ident.hybrid import (
+    compensation,
+    draws,
+    ground,
+    inverse,
+    kalman,
+    loop_shaping,
+    oil_column,
+    peaks,
+    prefilter,
+    reduction,
+    rig,
+    robustness,
+    share_map,
+    tracked_run,
+    tracking,
+    verdict,
+    what_if,
+)
+from ident.noise import autoregression
+from ident.readers import run, still
+from ident.statistics import FEWEST_SETS
+from ident.statistics.control_chart import D2
+from ident.statistics.outliers import FAR
+from ident.units.quantity import PRINTED_Z0_FACTOR
+
+ROOT = Path(__file__).resolve().parents[1] / "docs"
+WORDS = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"]
+PARTS = {0.5: "half", 0.1: "a tenth", 0.2: "a fifth", 0.9: "nine tenths", 0.05: "a twentieth", 0.02: "two hundredths"}
+
+
+def word(number: float) -> str:
+    """A small whole number in words."""
+    return WORDS[int(number)] if number == int(number) else str(number)
+
+
+def per_cent(share: float) -> str:
+    """1 for 0.01."""
+    return f"{100 * share:.6g}"
+
+
+def beyond(factor: float) -> str:
+    """2 for 1.02: by how many per cent a factor is beyond one."""
+    return f"{100 * (factor - 1):.6g}"
+
+
+def plain(number: float) -> str:
+    """1.03 for 1.03, 2 for 2.0."""
+    return f"{number:.6g}"
+
+
+def _paper_generations() -> int:
+    """Of the paper's search as it is set."""
+    alone = Search(1, "paper-ga", genetic.PAPER, 0, lambda points: points[:, 0], lambda _: None)
+    state = alone.start()
+    while not state["done"]:
+        state = alone.advance(state, 1)
+    return len(state["history"])
+
+
+Tie = tuple[str, str, tuple[object, ...]]
+"""Document, phrase, numbers."""
+
+
+def of_diagnosis() -> Iterator[Tie]:
+    """What decides in a diagnosis."""
+    D = "diagnosis.md"
+    yield D, "all {} effects in about a second", (len(EFFECTS),)
+    yield D, "The first {} are told at once", (word(ranking._SIGHT),)
+    yield D, "at {} strengths over its range", (word(len(screening._LADDER)),)
+    yield D, "leaves more than {} times what that promises is no result", (plain(refit._FOLLOWED),)
+    yield D, "takes at least {} per cent off the error of the fitted records", (word(100 * significance.WORTHWHILE),)
+    yield D, "{} of it on held-out chunks, too", (PARTS[significance._HELD],)
+    yield D, "the {} that promised most are begun anew from {} points", (word(stepwise._SCATTERED), family._SCATTERED)
+    yield D, "The {} best points of each take three steps", (word(family._LEADING),)
+    yield D, "differ by less than {} standard errors, and whose outputs", (word(significance.ALIKE),)
+    yield D, "white noise could not tell apart by {}, are its group", (word(significance.ALIKE),)
+    yield D, "beside the best stands what takes {} of what it takes", (PARTS[candidate._AS_MUCH],)
+    yield D, "no more than {} of the unexplained rest", (PARTS[candidate._OF_REST],)
+    yield D, "Then {} others of the first ranking, two at a time", (word(stepwise._PAIRED),)
+    yield D, "If the error stays more than {} % above the noise floor", (per_cent(family._AT_FLOOR),)
+    yield D, "rises with an effect by more than {} of its standard errors", (word(standing._SURE),)
+    yield D, "a bootstrap over chunks of {} correlation times", (word(standing._MEMORY),)
+    yield D, "What differs by less than {} % of an error is a tie", (per_cent(ties.TIE),)
+    yield D, "whose errors differ by less than {} %, since one in a flat valley", (beyond(ties.AS_GOOD),)
+    yield D, "But one that leaves {} more than another, beyond chance, of whole", (PARTS[refit._OUTDONE],)
+    yield D, "Terms that explain the same (cosine above {})", (plain(regression.ALIKE),)
+    yield D, "the best {} classes and {} pairs", (word(proposed._TRIED), word(proposed._PAIRS))
+    yield D, "the leading {}, with {} that have no shapes", (word(search._MOST_CLOSE), word(search._PLAIN))
+    yield D, "place, form and shape that were looked at) + {} nats", (plain(search._EVIDENCE),)
+    yield D, "Of fewer than {} runs all do all three", (word(search._FEWEST),)
+    yield D, "the next term sought beside it, {} at most", (word(search.MOST),)
+    yield D, "hats at {} quantiles of the signal", (word(len(free_curves._KNOTS)),)
+    yield D, "the {} groups that explain most are refitted", (word(free_curves._TRIED),)
+    yield D, "of {}, {} or {} times its slowest other time constant", tuple(plain(t) for t in windows._TIMES)
+    yield D, "on held-out data exceeds {}, or where", (plain(significance.BEYOND_CHANCE),)
+    yield D, "mean gain of a chunk exceeds {} of its standard errors", (plain(significance._STEADY),)
+    yield D, "must cost the others no more than {} of it", (PARTS[significance._LOST],)
+    yield D, "(of {} or more): their mean gain", (word(significance._SEVERAL),)
+    yield D, "their mean gain has to be {} of its standard errors", (plain(significance._UNSTEADY),)
+    yield D, "over its last {} samples", (autoregression._ORDER,)
+    yield D, "over {} nats (`evidence.unforetold_nats`)", (plain(significance._SINGLE),)
+    yield D, "less than {} of what is left is new", (PARTS[significance._NEW],)
+    yield D, "and L over {} nats is enough by itself", (plain(significance._FORETOLD),)
+    yield D, "whole runs, dealt into {} folds", (word(cross_validation.FOLDS),)
+
+
+def of_others() -> Iterator[Tie]:
+    """What decides elsewhere."""
+    yield "which-machine.md", "leaves less than {} of what the other leaves", (plain(structures._MUCH_LESS),)
+    yield "which-machine.md", "[{} effects](models.md#effects)", ({41: "Forty-one"}[len(EFFECTS)],)
+    yield "lab.md", "within {} of it there is nothing left to find", (plain(next_view.NEAR),)
+
+    P = "physics.md"
+    yield P, "it keeps the best {} % of each generation, which gives {} generations", (
+        per_cent(genetic.PAPER["keep"]), _paper_generations(),
+    )  # fmt: skip
+    yield P, "draws the mutated {} of each column", ({0.2: "fifth"}[genetic.PAPER["mutation"]],)
+    yield P, "the mean of the last {} are the text's", (word(genetic.PAPER["survivors"]),)
+    yield P, "**{}e-6 m⁴/s**", (f"{1.48e1 * PRINTED_Z0_FACTOR:.4g}",)
+
+    B = "bench.md"
+    yield B, "a delay beyond {} of its standard deviations and {} % of T", (
+        word(time_constant._TOLD), per_cent(time_constant._SEEN),
+    )  # fmt: skip
+    yield B, "Quantities: `{}`", (" ".join(acceptance.QUANTITIES),)
+
+    M = "matrix-format.md"
+    yield M, "({} % of the deviation that the output has in the others, under more than {} of their command", (
+        per_cent(still._STILL), PARTS[still._DRIVEN],
+    )  # fmt: skip
+    yield M, "of at least {} samples, all finite", (run.SHORTEST,)
+    yield M, "so one of it is 0.0254 m × 6.894757 kPa = {:.6f} m⁴/s", (PRINTED_Z0_FACTOR,)
+
+    yield "line.md", "(σ = mean moving range / {})", (plain(D2),)
+    yield "line.md", "(modified z-score beyond {})", (plain(FAR),)
+    yield "line.md", "confidence interval, from {} sets on", (FEWEST_SETS,)
+
+
+def of_hybrid() -> Iterator[Tie]:
+    """What decides in tracking, controllers, hybrid simulation and what-if."""
+    H = "hybrid.md"
+    yield H, "(at most {} rows", (tracked_run.ROWS,)
+    yield H, "the mean over {} samples is off by {} the parameters have changed", (
+        plain(kalman.MEMORY), plain(kalman.CHANGE),
+    )  # fmt: skip
+    yield H, "at most once in {} samples", (plain(kalman.RESTED),)
+    yield H, "is within {} of the sensor's noise there is no motion", (PARTS[kalman.MOTION],)
+    yield H, "nor does it from a standard deviation of {} % on", (per_cent(kalman.CAP),)
+    yield (
+        H,
+        "`measurement` is the standard deviation of the sensor's noise, m: {}e-4 m",
+        (plain(1e4 * tracking.SENSOR),),
+    )
+    yield H, "Windows of {} samples are judged", (kalman.WINDOW,)
+    yield H, "where the mean is above {}, or where neighbours are correlated by more than {}", (
+        plain(kalman.MOST_NIS), plain(kalman.MOST_COLOUR),
+    )  # fmt: skip
+    yield H, "where more than {} of the windows fail", (PARTS[verdict._FEW_WINDOWS],)
+    yield H, "where more than {} % of the samples were outliers", (per_cent(verdict._FEW_SAMPLES),)
+    yield H, "smoothed over {} s; until then", (plain(compensation.SMOOTHED_OVER),)
+    yield H, "of width {}/ωn unless another is given", (plain(inverse.WIDTH),)
+    yield H, "known ahead by {} widths", (word(inverse._REACH),)
+    yield H, "that needs more than {} % of the supply pressure is refused", (per_cent(inverse._HIGHEST),)
+    yield H, "K∞ with γ = {} γmin", (plain(loop_shaping.FACTOR),)
+    yield H, "differ by at most {} dB and {}° to {} Hz", (*map(plain, reduction.CLOSE), plain(reduction.BAND))
+    yield H, "of at most {} rad/s, with which no frequency is amplified by more than {} dB", (
+        plain(prefilter.FASTEST), plain(prefilter.PEAK),
+    )  # fmt: skip
+    yield H, "{} actuators are drawn from the covariance of the fit", (draws.DRAWS,)
+    yield H, "`within` ± {} dB and ± {}° to {} Hz", (*map(plain, robustness.WITHIN), plain(robustness.HIGHEST))
+    yield H, "{shares} × {shares} of them", (share_map.SHARES,)
+    yield H, "({} times the largest displacement of the reference)", (plain(rig.RUNAWAY),)
+    yield H, "Kp runs from {} to {}.", tuple(map(plain, what_if.USUAL_GAINS))
+    yield H, "there is no peak below {} Hz", (plain(what_if.HIGHEST),)
+    yield H, "from which the curve falls by {} % on either side", (beyond(peaks.PROMINENCE),)
+    yield H, "over all changes up to {} times as large", (plain(oil_column.AS_GOOD),)
+    yield H, "`{{kind: blwn, band: {} Hz, amplitude: {} g, duration: 30 s, seed: {}}}` (the default)", (
+        plain(ground.Ground().band[1]), plain(ground.Ground().amplitude / ground.GRAVITY), ground.Ground().seed,
+    )  # fmt: skip
+    yield H, "else g and {} s), a YAML file", (plain(ground.Ground().step),)
+
+
+TIED = [*of_diagnosis(), *of_others(), *of_hybrid()]
+
+
+@pytest.mark.parametrize(("document", "phrase", "numbers"), TIED, ids=[f"{d}: {p[:40]}" for d, p, _ in TIED])
+def test_a_number_in_a_document_is_the_code_s(document: str, phrase: str, numbers: tuple[object, ...]) -> None:
+    """The phrase with the code's numbers stands in the document."""
+    text = " ".join((ROOT / document).read_text(encoding="utf-8").split())
+    assert phrase.replace("{shares}", "{0}").format(*numbers) in text, f"docs/{document} says otherwise"
