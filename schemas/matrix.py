@@ -15,7 +15,10 @@ class FindingView(BaseModel):
 
 
 class RunView(BaseModel):
-    """One run: conditions in SI; `units` are the SI units of its channels."""
+    """One run: conditions in SI; `units` are the SI units of its channels.
+
+    `time_unit` is "sample" where the sample period is unknown: the rate is then 1/sample, the duration in samples.
+    """
 
     id: str
     use: str
@@ -32,6 +35,7 @@ class RunView(BaseModel):
     damping: float | None
     channels: list[str]
     units: dict[str, str] = Field(default_factory=lambda: {"command": "m", "displacement": "m"})
+    time_unit: str = "s"
 
 
 class MatrixView(BaseModel):

@@ -151,12 +151,14 @@ class WindowView(BaseModel):
 
     `free_run`: by use, the ends of the interval that has 95 % of the free run's errors of parameters within their
     standard errors. `memory`: of the filter (s) that tells the speed with which each begins, where that is begun anew.
+    With the `clock` "sample" both are in samples, for the period is unknown.
     """
 
     horizon: float
     error: Errors
     free_run: dict[str, list[float]] = Field(default_factory=dict)
     memory: float | None = None
+    clock: str = ""
 
 
 class ActuatorStated(BaseModel):

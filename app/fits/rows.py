@@ -103,7 +103,7 @@ def _remarks(entry: Estimate, undetermined: bool) -> Iterator[str]:
 
 def error_rows(fit: FitResult) -> tuple[ErrorRow, ...]:
     """Errors by use, with the noise floor beside each; then those over windows, where the fit was made over some."""
-    over = f" over {fit.window.horizon:.3g} s" if fit.window else ""
+    over = f" over {fit.window.length}" if fit.window else ""
     return (*_errors(fit, fit.error, "", fit.offset), *(_errors(fit, fit.window.error, over, {}) if fit.window else ()))
 
 

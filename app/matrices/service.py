@@ -209,7 +209,7 @@ def _run(run: Run) -> dict[str, Any]:
         "amplitude": run.amplitude, "mass": specimen.mass if specimen else None,
         "stiffness": specimen.stiffness if specimen else None, "damping": specimen.damping if specimen else None,
         "channels": list(run.channels),
-        "units": dict(run.units),
+        "units": dict(run.units), "time_unit": run.time_unit,
     }  # fmt: skip
 
 

@@ -82,7 +82,9 @@ def _bode(runs: Sequence[RunView]) -> tuple[Field, ...]:
     first = "verify" if any(run.use == "verify" for run in runs) else "fit"
     others = tuple((use, f"{use} runs") for use in ("fit",) if first == "verify")
     gains = _stated(runs, lambda run: run.gain, words.gain)
-    amplitudes = _stated(runs, lambda run: run.amplitude, words.amplitude)
+    units = {run.units.get("command", "1") for run in runs}
+    unit = units.pop() if len(units) == 1 else "1"
+    amplitudes = _stated(runs, lambda run: run.amplitude, lambda size: words.amplitude(size, unit))
     ordered = sorted(runs, key=lambda run: (run.mass or 0.0, run.stiffness or 0.0))
     specimens = dict.fromkeys(words.specimen(specimen_of(run)) for run in ordered if run.mass is not None)
     offered = (

@@ -105,10 +105,11 @@ def _beside(text: str, run: str) -> str:
 def _summary(matrix: MatrixView) -> str:
     uses = Counter(run.use for run in matrix.runs)
     seconds = sum(run.duration for run in matrix.runs)
+    clock = "s" if all(run.time_unit == "s" for run in matrix.runs) else "samples"
     runs = "run" if len(matrix.runs) == 1 else "runs"
     return (
         f"{len(matrix.runs)} {runs}: {uses['fit']} to fit, {uses['verify']} to verify; "
-        f"{plain(seconds, 3)} s in all; {counted(matrix.findings) or 'no findings'}"
+        f"{plain(seconds, 3)} {clock} in all; {counted(matrix.findings) or 'no findings'}"
     )
 
 

@@ -8,6 +8,7 @@ from ident.figures import words
 from ident.matrix import Specimen
 from ident.words.conditions import of_rated
 from ident.words.engineering import quantity
+from ident.words.number import count
 from schemas.matrix import RunView
 
 
@@ -28,6 +29,7 @@ class Conditions:
 
 def conditions(run: RunView) -> Conditions:
     """The words for a run; a dash where the matrix states nothing."""
+    timed = run.time_unit == "s"
     return Conditions(
         id=run.id,
         use=run.use,
@@ -36,8 +38,8 @@ def conditions(run: RunView) -> Conditions:
         amplitude=_amplitude(run),
         amplitude_value="" if run.amplitude is None else f"{run.amplitude:g}",
         specimen="–" if run.mass is None else words.specimen(specimen_of(run)),
-        length=quantity(run.duration, "s"),
-        rate=quantity(run.sample_rate, "Hz"),
+        length=quantity(run.duration, "s") if timed else count(run.samples, "sample"),
+        rate=quantity(run.sample_rate, "Hz") if timed else "unknown",
     )
 
 
@@ -45,7 +47,8 @@ def _amplitude(run: RunView) -> str:
     """RMS of the command; of a bench's sine the share of the rated current."""
     if run.amplitude is None:
         return "–"
-    return of_rated(run.amplitude) if run.kind == "frequency" else words.amplitude(run.amplitude)
+    unit = run.units.get("command", "1")
+    return of_rated(run.amplitude) if run.kind == "frequency" else words.amplitude(run.amplitude, unit)
 
 
 def specimen_of(run: RunView) -> Specimen | None:

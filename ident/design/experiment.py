@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ident.design.excitation import KINDS, PERIODIC, excitation
 from ident.matrix import Specimen
+from ident.words.conditions import amplitude
 from ident.words.percent import percent
 from ident.words.shown import Listing, Shown
 
@@ -62,8 +63,9 @@ class Experiment(Shown):
     @property
     def conditions(self) -> str:
         """The run in words."""
-        size = f"{1e3 * self.amplitude:.3g} mm" if self.unit == "m" else f"{self.amplitude:.3g}"
-        where = f"at {self.frequency:.3g} Hz" if self.signal in PERIODIC else f"up to {self.frequency:.3g} Hz"
+        size = amplitude(float(f"{self.amplitude:.3g}"), self.unit)
+        rate = "Hz" if self.time_unit == "s" else "cycles/sample"
+        where = f"at {self.frequency:.3g} {rate}" if self.signal in PERIODIC else f"up to {self.frequency:.3g} {rate}"
         parts = [f"{self.signal} of {size} RMS {where}"]
         if self.specimen is not None:
             parts.append(_words(self.specimen))

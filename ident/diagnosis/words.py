@@ -182,7 +182,7 @@ def told_late(late: Lateness, spoken: Callable[[str], str] = title, without: Seq
 
 
 def _seconds(of: Combination) -> str:
-    return f"{of.value:.3g} ± {of.std_error:.2g} s"
+    return f"{of.value:.3g} ± {of.std_error:.2g} {'s' if of.unit == 's' else 'samples'}"
 
 
 def _told(one: Explanation) -> str:

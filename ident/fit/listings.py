@@ -58,7 +58,7 @@ def error_rows(result: FitResult) -> Iterator[tuple[str, ...]]:
         between = {use: " to ".join(map(error_said, ends)) for use, ends in result.window.free_run.items()}
         if between:
             yield "95 % interval", *(between.get(use, "–") for use in uses)
-        yield f"over {result.window.horizon:.3g} s", *(error_said(over.get(use)) for use in uses)
+        yield f"over {result.window.length}", *(error_said(over.get(use)) for use in uses)
     yield "noise floor", *(percent(result.noise_floor.get(use)) for use in uses)
     offsets = zip((result.offset.get(use) for use in uses), errors, strict=True)
     yield "offset", *("–" if of.is_unstable else percent(offset) for offset, of in offsets)

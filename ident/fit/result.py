@@ -12,6 +12,7 @@ from ident.fit.listings import listings
 from ident.matrix import USES, Actuator, Matrix
 from ident.plain import UNWRITTEN, WHERE_KNOWN, Misfit, read, written
 from ident.presets.description import description
+from ident.presets.record_units import SAMPLE
 from ident.words.engineering import quantity
 from ident.words.error import UNSTABLE, ErrorOf, first_line
 from ident.words.shown import Listing, Shown
@@ -112,13 +113,20 @@ class Window:
     The error is the root mean square of x_m − x, counted from the beginning of each window, over std(x_m). In
     `free_run` are the ends of the interval that has 95 % of the free run's errors, eq. (17), of parameters that lie
     within their standard errors: what a machine integrates hangs on them for as long as the run takes. With a `memory`
-    (s), that of the filter that tells it, the speed of each window is begun anew, too.
+    (s), that of the filter that tells it, the speed of each window is begun anew, too. Where the `clock` is "sample"
+    both are in samples, for the sample period is unknown.
     """
 
     horizon: float
     error: Mapping[str, float | None] = field(default_factory=dict)
     free_run: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     memory: float | None = None
+    clock: str = field(default="", metadata=WHERE_KNOWN)
+
+    @property
+    def length(self) -> str:
+        """The horizon in words: "0.85 s", of an unknown sample period "20 samples"."""
+        return f"{self.horizon:.3g} {'samples' if self.clock == SAMPLE else 's'}"
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,10 @@ _STILL = 1e-6  # of the fastest pole: it integrates
 
 
 def slow_lag(objective: Fitness, found: Covariance) -> Iterator[Combination]:
-    """T where it is determined, s; nothing of a machine that is not driven by a command, or is not set alike."""
+    """T where it is determined, s, or samples of an unknown period.
+
+    Nothing of a machine that is not driven by a command, or is not set alike.
+    """
     runs = objective.matrix.of_use("fit")
     alike = len({(run.gain, run.specimen, run.output) for run in runs}) == 1
     if objective.preset.driven_by != "command" or not alike or runs[0].output not in MOTIONS:
@@ -45,7 +48,7 @@ def slow_lag(objective: Fitness, found: Covariance) -> Iterator[Combination]:
     here = float(lag(found.point[None])[0])
     error = found.deviation(lag) if np.isfinite(here) and here > 0 else np.inf
     if error < DETERMINED * here:
-        yield Combination(NAME, here, "s", error)
+        yield Combination(NAME, here, objective.preset.recorded.clock, error)
 
 
 def lags(objective: Fitness, run: Run, points: Array) -> Array:

@@ -26,6 +26,7 @@ from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
 from ident.matrix import Run, over_runs
 from ident.noise.floor import Floors
 from ident.presets.preset import Combined
+from ident.presets.record_units import SAMPLE
 from ident.simulation.steps import FASTEST, MOST
 from ident.words.error import UNSTABLE, error_said
 from ident.words.plus_minus import determined
@@ -170,14 +171,17 @@ def _window(fitness: Fitness, point: Array, known: Covariance) -> Window | None:
             )
             if np.all(np.isfinite(free)):  # a free run that goes astray has no interval
                 free_run[use] = tuple(float(end) for end in np.quantile(free, (0.025, 0.975)))
-    return Window(fitness.horizon, error, free_run, fitness.memory)
+    clock = fitness.preset.recorded.clock
+    return Window(fitness.horizon, error, free_run, fitness.memory, clock if clock == SAMPLE else "")
 
 
 def _labels(objective: Fitness) -> dict[str, tuple[str, str]]:
     """Name and unit under which a parameter is reported: a ratio to the area where the area is unknown."""
     plain = {p.in_equations: (p.name, objective.preset.unit(p)) for p in objective.preset.parameters}
     known = objective.matrix.actuator.piston_area is not None
-    return plain if known else plain | dict(objective.preset.without_area or {})
+    shown = objective.preset.recorded.shown
+    ratios = {name: (label, shown(unit)) for name, (label, unit) in (objective.preset.without_area or {}).items()}
+    return plain if known else plain | ratios
 
 
 def _labelled(starts: Starts | None, label: Mapping[str, tuple[str, str]]) -> Starts | None:
@@ -235,7 +239,8 @@ def _determined(
         open_ = any(one.held.keys() & combined.equation.names for one in space.conventions)
         if error <= (DETERMINED if open_ else COMBINED):  # all that is known of what a convention holds
             value = float(quantity(found.point[None])[0])
-            yield Combination(combined.text.replace("**", "^"), value, combined.unit, value * error)
+            unit = objective.preset.recorded.shown(combined.unit)
+            yield Combination(combined.text.replace("**", "^"), value, unit, value * error)
     yield from slow_lag(objective, found)
 
 

@@ -35,5 +35,6 @@ FIRST_ORDER = Preset(
         outputs={"displacement": "y", "velocity": "y", "load_pressure": "y", "force": "y"},
     ),
     drive_scale="U",
+    static_gains=("gain",),
     methods=("ekf",),
 )

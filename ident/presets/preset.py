@@ -18,12 +18,12 @@ from ident.equations.equation import Equation
 from ident.errors import Unusable
 from ident.matrix import DISTURBANCES, MOTIONS, Matrix
 from ident.parameter import Parameter
-from ident.presets.angles import in_angles, unit_shown
 from ident.presets.convention import Convention
 from ident.presets.effect_scales import scale_of
 from ident.presets.middle import about, middle_of
 from ident.presets.neutral import from_neutral
 from ident.presets.passivity import passive
+from ident.presets.record_units import RecordUnits
 from ident.presets.stated import refuse_unstated
 from ident.stages import MASS_SPRING_DAMPER, MEASURED_LOAD, OPENED_BY_COMMAND, Scale
 from ident.stages.scale import OF_THE_RUNS, in_reading_order
@@ -70,9 +70,10 @@ class Preset:
     are none. `force_scale` is the size of its forces in the words of a scale, `drive_scale` that of its drive signal,
     the motion times the gain where none is stated; with `relative_ways` lengths of effects' shapes are measured by its
     motion. `of_drive` are parameters in whose unit a metre is one of the drive signal; it is shown as `drive_unit`, the
-    command's in open loop. `turns`: the motion of such a machine is an angle as a rule; `in_angles`: it was recorded as
-    one. `compares` is the channel that its controller does, nothing without one; `gains` are gains of it that are
-    known, Kp that of runs that state none. Multiplied or divided by one factor, the parameters `share_force` change
+    command's in open loop. `turns`: the motion of such a machine is an angle as a rule; `recorded`
+    are the units of the records, `static_gains` parameters that lead from command to output, in the output's unit over
+    the command's. `compares` is the channel that its controller does, nothing without one; `gains` are gains of it that
+    are known, Kp that of runs that state none. Multiplied or divided by one factor, the parameters `share_force` change
     nothing as long as no force is known: the first is then held by convention. `shown` are the two whose search is
     drawn. `middle` is that of the stroke, m, about which effects act.
 
@@ -113,7 +114,8 @@ class Preset:
     of_drive: tuple[str, ...] = ()
     drive_unit: str = "m"
     turns: bool = False
-    in_angles: bool = False
+    recorded: RecordUnits = field(default_factory=RecordUnits)
+    static_gains: tuple[str, ...] = ()
     compares: str = ""
     gains: Mapping[str, float] = field(default_factory=dict)
     share_force: tuple[str, ...] = ()
@@ -228,7 +230,7 @@ class Preset:
             matrix = replace(matrix, runs=tuple(run.driven_by(preset.driven_by) for run in matrix.runs))
         elif OPENED_BY_COMMAND in preset.chain.stages and matrix.runs:
             preset = replace(preset, drive_unit=matrix.runs[0].units.get("command", "m"))
-        preset = replace(preset, in_angles=in_angles(preset.parameters, matrix.runs))
+        preset = replace(preset, recorded=RecordUnits.of(matrix.runs))
         if preset.force_scale and {run.output for run in matrix.runs} == {"load_pressure"}:
             preset = replace(preset, force_scale="A*X")  # its forces are measured
         if "displacement" in preset.chain.outputs and any(run.output not in MOTIONS for run in matrix.runs):
@@ -281,11 +283,15 @@ class Preset:
     def unit(self, parameter: Parameter) -> str:
         """The unit of a parameter as it is shown: a metre of the drive signal is a unit of the command in open loop.
 
-        Where an angle was recorded a length, a force and a mass are an angle, a torque, an inertia.
+        Where an angle was recorded a length, a force and a mass are an angle, a torque, an inertia; of an unknown
+        period a second is a sample, and what was recorded in counts has no metre.
         """
         of_effect = next((effect for effect in self.effects if effect.name == parameter.of), None)
         at_drive = of_effect.place in ("controller", "valve", "spool") if of_effect else parameter.name in self.of_drive
-        return unit_shown(parameter.unit, self.drive_unit if at_drive else None, self.in_angles)
+        if parameter.name in self.static_gains:
+            return self.recorded.gain
+        drive = self.drive_unit if at_drive and OPENED_BY_COMMAND in self.chain.stages else None
+        return self.recorded.shown(parameter.unit, drive)
 
     def refuse_without_specimen(self) -> None:
         """Raise Unusable where the model has no specimen whose force could be measured instead."""

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from ident.words.engineering import printed_unit
+
+_OF_LAB = {"m": (1e3, "mm"), "m/s": (1e3, "mm/s")}
+"""SI units of a command of which a lab states thousandths."""
+
 
 def mass(kilograms: float) -> str:
     """A specimen's mass."""
@@ -15,7 +20,8 @@ def stiffness(newtons_a_metre: float) -> str:
 
 def amplitude(value: float, unit: str = "m") -> str:
     """An RMS amplitude; that of a command without a unit is a number."""
-    return f"{1000 * value:.4g} mm" if unit == "m" else f"{value:.4g} {unit}".removesuffix(" 1")
+    factor, shown = _OF_LAB.get(unit, (1.0, printed_unit(unit)))
+    return f"{factor * value:.4g} {shown}".removesuffix(" 1")
 
 
 def of_rated(share: float) -> str:

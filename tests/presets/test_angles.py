@@ -49,8 +49,11 @@ def test_a_cylinder_does_not(model):
     assert found["end_stop.inverse_way"] == "1/m"
 
 
-def test_where_oil_turns_it_no_volume_a_radian_is_stated():
-    assert units(along(cylinder(2, wander=0.0), "rad"), "open_valve")["c0"] == "N*s/m"
+def test_where_oil_turns_it_the_load_turns_and_the_oil_stays_a_volume():
+    """What the pressure acts on is a volume a radian, of which nothing is stated."""
+    found = units(along(cylinder(2, wander=0.0), "rad"), "open_valve")
+    assert (found["c0"], found["m0"], found["coulomb_friction.force"]) == ("N*m*s/rad", "kg*m^2", "N*m")
+    assert (found["Ka"], found["Cl"], found["Z0"]) == ("m^3/Pa", "m^3/(s*Pa)", "m^4/s")
 
 
 def test_a_setting_may_have_the_unit_that_is_shown():

@@ -207,7 +207,7 @@ class Search:
             effect=own,
             strength=self.base.values[self.models.strength(name)],
             std_error=self.base.deviation(self.models.strength(name)),
-            unit=self.models.effects[name].strength.unit,
+            unit=self.models.preset.recorded.shown(self.models.effects[name].strength.unit),
             parameters=self.base.parameters,
             view=shown_in(candidate.terms[0], self.models.preset, seen.typical),
             beside=self.beside,

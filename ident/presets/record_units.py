@@ -1,0 +1,101 @@
+"""What a record's units make of a model's: an angle for a length, samples for seconds, nothing where none is known."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from ident.matrix import MOTIONS, Run
+from ident.units.grammar import Powers, powers_of
+
+_ANGLES = {"m": "rad", "N": "N*m", "kg": "kg*m^2"}
+_TURNING = ("rad", "rad/s", "N*m")
+_OF_OIL = re.compile(r"\bPa\b|\bm\^[2-9]")
+"""A pressure, an area or a volume: these stay where a machine turns, and with them what they are multiplied by."""
+_ORDER = ("kg", "N", "Pa", "V", "A")  # the names that stand first in a unit
+SAMPLE = "sample"
+
+
+@dataclass(frozen=True)
+class RecordUnits:
+    """How the units of a chain, in m, N, kg and s, are shown of some runs.
+
+    `turning`: a motion was recorded as an angle. `unknown` has what takes the place of a unit that the records do not
+    have, as powers: of records in counts a metre is nothing, {}, or of a speed in counts a second. `clock` is "sample"
+    where the sample period is unknown. `output` and `command` are the units of these channels.
+    """
+
+    turning: bool = False
+    unknown: Mapping[str, Powers] = field(default_factory=dict)
+    clock: str = "s"
+    output: str = "m"
+    command: str = "m"
+
+    @classmethod
+    def of(cls, runs: Iterable[Run]) -> RecordUnits:
+        """Those of a matrix, by what is stated of its channels."""
+        listed = tuple(runs)
+        units = {name: unit for run in listed for name, unit in run.units.items() if name in run.channels}
+        moving = [units[name] for name in MOTIONS if name in units]
+        unknown: dict[str, Powers] = {}
+        if moving and set(moving) == {"1"}:
+            unknown["m"] = {} if "displacement" in units else {"s": 1.0}
+        if {units[name] for name in ("force", "drive_force") if name in units} == {"1"}:
+            unknown["N"] = {}
+        if {unit for name, unit in units.items() if "pressure" in name} == {"1"}:
+            unknown["Pa"] = {}
+        clock = SAMPLE if listed and all(run.time_unit == SAMPLE for run in listed) else "s"
+        outputs = {run.units.get(run.output, "m") for run in listed}
+        return cls(
+            any(run.units.get(run.output) in _TURNING for run in listed), unknown, clock,
+            outputs.pop() if len(outputs) == 1 else "m", units.get("command", "m"),
+        )  # fmt: skip
+
+    def shown(self, unit: str, drive: str | None = None) -> str:
+        """A unit of the chain as it is shown; with a `drive` a metre is one of the drive signal, in that unit."""
+        names = dict(_ANGLES) if self.turning and not _OF_OIL.search(unit) else {}
+        if drive is not None:
+            names["m"] = drive
+        unit = re.sub(r"\b(kg|N|m)\b", lambda found: names.get(found[0], found[0]), unit)
+        unknown = self.unknown if drive is None else {name: of for name, of in self.unknown.items() if name != "m"}
+        if unknown and (powers := powers_of(unit)) is not None and {*powers} & {*unknown, "kg"}:
+            unit = written(_without(powers, unknown))
+        elif drive == "1":
+            unit = written(powers_of(unit) or {})
+        return unit if self.clock == "s" else re.sub(r"\bs\b", self.clock, unit)
+
+    @property
+    def gain(self) -> str:
+        """The unit of a static gain from command to output."""
+        over = dict(powers_of(self.output) or {})
+        for name, power in (powers_of(self.command) or {}).items():
+            over[name] = over.get(name, 0.0) - power
+        return written({name: power for name, power in over.items() if power})
+
+
+def _without(powers: Powers, unknown: Mapping[str, Powers]) -> Powers:
+    """A unit with what takes the place of the unknown ones; a mass is a force over an acceleration, N·s²/m."""
+    if "kg" in powers:
+        mass = powers["kg"]
+        powers = {name: power for name, power in powers.items() if name != "kg"}
+        for name, power in (("N", 1.0), ("s", 2.0), ("m", -1.0)):
+            powers[name] = powers.get(name, 0.0) + mass * power
+    found: Powers = {}
+    for name, power in powers.items():
+        for other, of in (unknown.get(name, {name: 1.0})).items():
+            found[other] = found.get(other, 0.0) + power * of
+    return {name: power for name, power in found.items() if power}
+
+
+def written(powers: Powers) -> str:
+    """The powers of each name as a unit: {N: 1, s: 1, m: −1} → "N*s/m", {} → "1"."""
+    names = sorted(powers, key=lambda name: (name not in _ORDER, _ORDER.index(name) if name in _ORDER else 0, name))
+    above = [_power(name, powers[name]) for name in names if powers[name] > 0]
+    below = [_power(name, -powers[name]) for name in names if powers[name] < 0]
+    over = "" if not below else f"/{below[0]}" if len(below) == 1 else f"/({'*'.join(below)})"
+    return ("*".join(above) or "1") + over
+
+
+def _power(name: str, power: float) -> str:
+    return name if power == 1 else f"{name}^{power:g}"
