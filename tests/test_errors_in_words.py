@@ -188,3 +188,16 @@ def test_no_page_shows_an_error_as_a_bare_per_cent():
         for found in re.findall(r"\{\{[^}]*\b(?:error|predicted)\w*(?:\.\w+|\[\w+\])?\s*\|\s*percent", page.read_text())
     ]
     assert not bare
+
+
+def test_the_measured_tanks_say_both_errors(measured_data):
+    """Levels of 2 to 10 V about which eq. (17) knows nothing: with the mean the model is volts away."""
+    tanks = ident.read_matrix(measured_data / "cascaded_tanks")
+    found = ident.identify(tanks, model="first_order", seed=1, options={"population": 20, "generations": 6})
+    for use in USES:
+        said = found.error_of(use)
+        assert said.with_mean == pytest.approx(found.anchored_error[use])
+        assert ("with the mean" in found.headline) is any(found.error_of(each).mean_counts for each in USES)
+    assert found.rmse["fit"] == pytest.approx(
+        float(np.sqrt(np.mean((tanks.runs[0].measured - ident.compare(tanks, found).runs[0].modelled) ** 2))), rel=1e-6
+    )

@@ -46,7 +46,8 @@ def compare(
     comparison = compared(read, result)
     found = survey(comparison)
     if json is not None:
-        means = {"error": dict(comparison.error), "offset": dict(comparison.offset)}
+        names = ("error", "offset", "error_with_mean", "rmse")
+        means = {name: dict(getattr(comparison, name)) for name in names}
         write_json({**means, "runs": comparison.records(), **found.to_json()}, json)
     if json != STANDARD_OUTPUT:
         show((*comparison.listings(), *found.listings()))

@@ -25,7 +25,8 @@ def compare_several(matrix: Matrix, fits: Sequence[FitResult], json: Path | None
     if json is not None:
         columns = [
             {"name": one.name, "serial": one.serial, "model": one.fit.model, "effects": list(one.fit.effects),
-             "error": dict(one.error), "parameters": one.fit.records()}
+             "error": dict(one.error), "error_with_mean": {use: of.with_mean for use, of in one.words.items()},
+             "parameters": one.fit.records()}
             for one in found.columns
         ]  # fmt: skip
         write_json({"fits": columns, "runs": found.records()}, json)

@@ -12,6 +12,7 @@ from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.progress import Report
+from ident.words.error import ErrorOf
 from ident.workflows import compare, identify
 
 SHARE = 0.1  # of its standard error: what a parameter may differ by, however exactly the same minimum is found
@@ -90,21 +91,27 @@ def found(stored: FitResult, matrix: Matrix, report: Report) -> tuple[Change, ..
 
 def recomputed(stored: FitResult, matrix: Matrix) -> Iterator[Change]:
     """The error of the stored parameters, computed again."""
-    yield from errors("error", stored, compare(matrix, stored).error)
+    compared = compare(matrix, stored)
+    yield from errors("error", stored, compared.error, compared.error_with_mean)
 
 
 def refitted(stored: FitResult, matrix: Matrix, report: Report) -> Iterator[Change]:
     """Error and parameters of a new fit; a parameter that the data do not determine may be anywhere."""
     new = identify(matrix, Settings.from_json(stored.settings), report)
-    yield from errors("refit error", stored, new.error)
+    yield from errors("refit error", stored, new.error, new.error_with_mean)
     for name, estimate in stored.parameters.items():
         if estimate.std_error is not None and not estimate.fixed:
             yield Change(name, estimate.value, new.values.get(name, math.nan), estimate.std_error)
 
 
-def errors(name: str, stored: FitResult, after: Mapping[str, float | None]) -> Iterator[Change]:
-    """The error of each use that was stored."""
+def errors(
+    name: str, stored: FitResult, after: Mapping[str, float | None], with_mean: Mapping[str, float | None]
+) -> Iterator[Change]:
+    """The error of each use that was stored, and the one with the mean counted where that has to stand with it."""
     for use, before in stored.error.items():
-        if before is not None:
-            now = after.get(use)
-            yield Change(f"{name} {use}", before, math.nan if now is None else now)
+        if before is None:
+            continue
+        now, mean_now, was = after.get(use), with_mean.get(use), stored.error_of(use)
+        yield Change(f"{name} {use}", before, math.nan if now is None else now)
+        if was.with_mean is not None and (was.mean_counts or ErrorOf(now, mean_now).mean_counts):
+            yield Change(f"{name} with mean {use}", was.with_mean, math.nan if mean_now is None else mean_now)

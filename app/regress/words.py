@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from app.regress.recheck import Change, Recheck
+from ident.words.error import UNSTABLE
 from ident.words.number import trimmed
 from schemas.regression import ChangeView, Outcome, RecheckView
 
@@ -33,13 +34,18 @@ def told(one: RecheckView) -> str:
     if one.failure:
         return one.failure
     if one.moved:
-        return "; ".join(f"{each.quantity} {each.before:.5g} → {_shown(each.after)}" for each in one.moved)
+        return "; ".join(
+            f"{each.quantity} {_shown(each, each.before)} → {_shown(each, each.after)}" for each in one.moved
+        )
     if one.largest is None or one.largest.relative is None:
         return ""
     return f"largest change {one.largest.relative:.1e} ({one.largest.quantity})"
 
 
-def _shown(value: float | None) -> str:
+def _shown(of: ChangeView, value: float | None) -> str:
+    """A value as a plain number; an error from which on the model is unstable on a run is no number."""
+    if value is not None and value >= UNSTABLE and of.quantity.startswith(("error ", "refit error ")):
+        return "unstable"
     return "none" if value is None else f"{value:.5g}"
 
 

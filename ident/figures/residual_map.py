@@ -36,7 +36,7 @@ def residual_map(
     """
     found = breakdown(compared)
     if not found.runs:
-        raise Unusable("unstable-model", "the model is unstable at every run", "figure residual-map", "fit it first")
+        raise Unusable("unstable-model", "the model is unstable at every run", "fit", "fit it to these data first")
     worst = {each.id for each in sorted(found.runs, key=lambda each: -each.error)[:MOST]}
     runs = {each.run.id: each.run for each in compared.runs if each.run.id in worst}
     order = sorted(runs, key=lambda name: _place(runs[name]))

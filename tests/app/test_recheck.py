@@ -9,8 +9,10 @@ from xml.etree import ElementTree
 import pytest
 
 from app.regress.junit import junit
-from app.regress.recheck import Change, Recheck, recheck
+from app.regress.recheck import Change, Recheck, errors, recheck
+from app.regress.words import as_view, told
 from ident.progress import silent
+from ident.words.error import UNSTABLE, ErrorOf
 
 
 @pytest.mark.parametrize(
@@ -51,3 +53,15 @@ def test_a_fit_that_ran_out_of_its_time_is_not_rechecked():
     found = recheck("SW-1", "f", SimpleNamespace(ended_early=True), None, 1e-3, silent)
     assert not found.passed
     assert "ran out of its time; fit again without a budget" in found.failure
+
+
+def test_where_the_mean_counts_its_error_is_rechecked_too_and_an_unstable_model_has_no_number():
+    """A zero that moved by 830 m is seen by no eq. (17): the error with the mean counted stands with it."""
+    stored = SimpleNamespace(error={"fit": 0.02, "verify": None}, error_of=lambda _use: ErrorOf(0.02, 45.0))
+    changes = {one.quantity: one for one in errors("error", stored, {"fit": 0.02}, {"fit": 90.0})}
+    assert changes["error fit"].relative == 0
+    assert changes["error with mean fit"].relative == 1
+    alike = SimpleNamespace(error={"fit": 0.02}, error_of=lambda _use: ErrorOf(0.02, 0.021))
+    assert [one.quantity for one in errors("error", alike, {"fit": 0.02}, {"fit": 0.021})] == ["error fit"]
+    lost = Recheck("SW-1", "f", (Change("error fit", 0.02, UNSTABLE),), 1e-3, 1.0)
+    assert told(as_view(lost)) == "error fit 0.02 → unstable"
