@@ -25,16 +25,19 @@ from ident.bench.residual import Residual
 from ident.custom.definition import preset_with
 from ident.effects.effect import off_values
 from ident.fit.ends import distinct
+from ident.fit.far_bounds import far_from
 from ident.fit.result import Estimate, FitResult, RunError, Undetermined
 from ident.fit.run_errors import rmse_of
 from ident.fit.search import Search, State, evolution, options_of
 from ident.fit.settings import Settings
 from ident.fit.space import Axis, Space
+from ident.fit.summary import HARDLY
 from ident.fit.typical import typical
 from ident.matrix import BENCH, Matrix
 from ident.parallel import each
 from ident.parameter import Parameter
 from ident.progress import Progress, Report, silent
+from ident.words.percent import percent
 
 Array = NDArray[np.float64]
 _SEARCHED = 60.0  # Hz of the records during the search; the polish takes what each record needs
@@ -188,10 +191,18 @@ class BenchIdentification:
             method=self.settings.method, seed=self.settings.seed,
             evaluations=int(state["evaluations"]) + solution.evaluations, seconds=time.monotonic() - self._started,
             version=version("servoident"), data_hash=self.matrix.data_hash,
-            notes=(*self.matrix.notices, *self._doubts, *notes, *_compared(self.analysis, solution)),
+            notes=(*self._far_bounds(_mean(runs, "fit", "error")), *self.matrix.notices, *self._doubts, *notes,
+                   *_compared(self.analysis, solution)),
             settings=self.settings.to_json(), searched=tuple(called[n] for n in self.space.names),
             evolution=evolution(self.space, state), actuator=self.matrix.actuator,
         )  # fmt: skip
+
+    def _far_bounds(self, error: float | None) -> list[str]:
+        """What was given far from where an actuator has the parameter, where the fit is hardly better than none."""
+        if error is None or error < HARDLY:
+            return []
+        far = list(far_from(self.settings, self.preset, {}))
+        return [f"The model leaves {percent(error)} of the output. Likely cause: {'; '.join(far)}."] if far else []
 
     @property
     def _doubts(self) -> list[str]:

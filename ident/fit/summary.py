@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 from ident.chain.chain import integrates
 from ident.checks.unit_factor import unit_causes
 from ident.fit.ends import SETTLED, parted
+from ident.fit.far_bounds import far_bounds
 from ident.fit.fitness import Fitness
 from ident.fit.multistart import Optimum
 from ident.fit.normal_matrices import NormalMatrices
+from ident.fit.reduction import excited_band
 from ident.fit.result import Combination, Estimate, FitResult, RunError, Starts, Undetermined, Window
 from ident.fit.run_errors import rmse_of, run_error
 from ident.fit.search import evolution
@@ -35,7 +37,7 @@ _DRAWN = 100  # parameter vectors within their standard errors
 _AT_BOUND = "ended at its bound: the data ask for a value beyond it"
 _VAGUE = "its standard error is {:.3g} times its value"
 _FELT = 1.001  # times the error: a strength that is not off by chance
-_HARDLY = 0.8  # of the output left: no fit to be trusted
+HARDLY = 0.8  # of the output left: no fit to be trusted
 _HARDLY_SAID = "The model leaves"
 Array = NDArray[np.float64]
 
@@ -131,7 +133,7 @@ def summarise(
         version=version("servoident"),
         data_hash=matrix.data_hash,
         notes=(
-            *_notes(objective, floors, fit_errors),
+            *_notes(settings, objective, floors, fit_errors),
             *told,
             *_alone(optimum.starts),
             *_fast_modes(objective, point, state),
@@ -270,9 +272,9 @@ def _felt(objective: Fitness, name: str, point: Array) -> bool:
     return bool(without > _FELT * here)
 
 
-def _notes(objective: Fitness, floors: Floors, found: Sequence[RunError]) -> list[str]:
+def _notes(settings: Settings, objective: Fitness, floors: Floors, found: Sequence[RunError]) -> list[str]:
     error = float(over_runs([run.error for run in found], objective.matrix.of_use("fit")))
-    notes = [*_hardly_explained(objective, error), *objective.matrix.notices]
+    notes = [*_hardly_explained(settings, objective, error), *objective.matrix.notices]
     if objective.space.scale_free and objective.space.axes:
         notes.append(
             f"Bounds of the preset {objective.preset.name} were not used: they hold for another machine, or piston "
@@ -302,16 +304,24 @@ def noticed(fit: FitResult, notice: str) -> FitResult:
     return replace(fit, notes=(*fit.notes[:at], notice, *fit.notes[at:]))
 
 
-def _hardly_explained(objective: Fitness, error: float) -> Iterator[str]:
+def _hardly_explained(settings: Settings, objective: Fitness, error: float) -> Iterator[str]:
     """What is said first of a fit that is hardly better than no model, with the likely causes."""
-    if not _HARDLY <= error < UNSTABLE:
+    if error < HARDLY:
         return
     preset, runs = objective.preset, objective.runs
-    causes = ["a channel with the wrong sign, or of another run", f"another structure than {preset.name} (--model)"]
-    causes += unit_causes(objective.matrix.runs)
+    far = list(far_bounds(settings, preset, objective.matrix, excited_band(runs)))
+    if error >= UNSTABLE:
+        yield from [f"The model is unstable. Likely cause: {'; '.join(far)}."] if far else []
+        return
+    causes = [
+        *far,
+        "a channel with the wrong sign, or of another run",
+        f"another structure than {preset.name} (--model)",
+        *unit_causes(objective.matrix.runs),
+    ]
     if integrates(preset.chain, runs, objective.matrix.actuator):
         causes.insert(
-            0, "a command that is not zero where the machine stands, which the machine integrates (null_bias)"
+            len(far), "a command that is not zero where the machine stands, which the machine integrates (null_bias)"
         )
     yield f"{_HARDLY_SAID} {error_said(error)} of the output: hardly better than none. Likely causes: " + (
         "; ".join(causes) + "."
