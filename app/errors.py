@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import json
 import logging
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Iterable, Mapping
 from typing import Any
 
 from fastapi import FastAPI, Request, Response
@@ -15,9 +15,11 @@ from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
 from app.matrices.removed import Removed
+from app.nearest_field import body_of, remedy
 from app.storage import Unreachable
 from ident.errors import Unusable
 from ident.fit.extended import EFFECT_THERE
+from ident.words.nearest import did_you_mean
 from schemas.problem import Problem
 
 MEDIA = "application/problem+json"
@@ -41,9 +43,10 @@ class Failure(HTTPException):
         self.status, self.code, self.what, self.where, self.remedy = status, code, what, where, remedy
 
 
-def missing(kind: str, name: str) -> Failure:
-    """404 for something that is not there."""
-    return Failure(404, f"no-such-{kind}", f"there is no {kind} {name!r}", kind, "list them to see which there are")
+def missing(kind: str, name: str, known: Iterable[str] = ()) -> Failure:
+    """404 for something that is not there, with the nearest of the names that are `known`."""
+    remedy = did_you_mean(name, known, "list them to see which there are")
+    return Failure(404, f"no-such-{kind}", f"there is no {kind} {name!r}", kind, remedy)
 
 
 def problem(status: int, code: str, what: str, where: str = "", remedy: str = "", **headers: str) -> Response:
@@ -86,11 +89,11 @@ async def _removed(_: Request, error: Exception) -> Response:
     return problem(410, error.code, error.what, error.where, error.remedy)
 
 
-async def _invalid(_: Request, error: Exception) -> Response:
+async def _invalid(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
     first = error.errors()[0]
     where = ".".join(str(part) for part in first["loc"])
-    return problem(422, "invalid-request", str(first["msg"]), where, "see the OpenAPI document for what is wanted")
+    return problem(422, "invalid-request", str(first["msg"]), where, remedy(first, body_of(request)))
 
 
 async def _plain(request: Request, error: Exception) -> Response:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ident.errors import Unusable
+from ident.words.nearest import did_you_mean
 
 if TYPE_CHECKING:
     from app.settings import Settings
@@ -42,7 +43,10 @@ def settings(data: Path | None, database: str, **others: Any) -> Settings:
 
     if others.get("log", "text") not in ("text", "json"):
         raise Unusable(
-            "bad-option", f"{others['log']!r} is no form of a log", "--log", "write --log text or --log json"
+            "bad-option",
+            f"{others['log']!r} is no form of a log",
+            "--log",
+            did_you_mean(others["log"], ("text", "json")),
         )
     given: dict[str, Any] = {} if data is None else {"data": data}
     return Settings(**given, database_url=database, **others)

@@ -15,6 +15,7 @@ from pathlib import Path
 from typer import TyperException
 
 from ident.errors import Cancelled, Unusable
+from ident.words.nearest import did_you_mean
 
 UNUSABLE = 2
 INTERRUPTED = 130
@@ -49,7 +50,7 @@ def explain(error: BaseException) -> tuple[int, str]:
         case Unusable():
             return UNUSABLE, str(error)
         case TyperException():
-            return UNUSABLE, f"{error.format_message().rstrip('.')}; `servoident --help` shows what there is"
+            return UNUSABLE, _of_arguments(error)
         case OSError() if error.filename is not None:
             return UNUSABLE, f"{error.filename}: {error.strerror}; check the name, the permissions and the free space"
         case OSError() if error.errno in (errno.ENOSPC, errno.EDQUOT):
@@ -58,6 +59,15 @@ def explain(error: BaseException) -> tuple[int, str]:
             return UNUSABLE, "the machine has too little memory for this matrix; use fewer or shorter runs"
         case _:
             return DEFECT, f"unexpected error ({type(error).__name__}); a defect of the program, {kept(error)}"
+
+
+def _of_arguments(error: TyperException) -> str:
+    """What is said of arguments that cannot be read; of an option that a command has not, the nearest that it has."""
+    given, context = getattr(error, "option_name", None), getattr(error, "ctx", None)
+    usual = "`servoident --help` shows what there is"
+    if given is None or context is None or given in (known := [o for p in context.command.params for o in p.opts]):
+        return f"{error.format_message().rstrip('.')}; {usual}"
+    return f"No such option: {given}; {did_you_mean(given, known, usual)}"
 
 
 def kept(error: BaseException) -> str:

@@ -14,6 +14,7 @@ from app.cli.arguments import split
 from app.cli.check import description, summary
 from app.cli.output import write_bytes
 from ident.errors import Unusable
+from ident.words.nearest import did_you_mean
 from ident.words.number import count
 
 if TYPE_CHECKING:
@@ -110,7 +111,9 @@ def _among(names: list[str], name: str, where: str) -> str:
     found = [wanted] if wanted in names else [one for one in names if one.startswith(f"{wanted}.")]
     if len(found) != 1:
         what = f"{name!r} is {'none' if not found else 'more than one'} of the files"
-        raise Unusable("missing-file", what, where, f"name one of {', '.join(names[:_SHOWN])}")
+        remedy = f"name one of {', '.join(names[:_SHOWN])}"
+        known = (*names, *(Path(one).stem for one in names))
+        raise Unusable("missing-file", what, where, remedy if found else did_you_mean(wanted, known, remedy))
     return found[0]
 
 

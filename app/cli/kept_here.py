@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ident.errors import Unusable
+from ident.words.nearest import did_you_mean
 
 if TYPE_CHECKING:
     from app.own_effects.kept import Kept
@@ -51,8 +52,9 @@ def find(name: str) -> Kept:
     """The effect of a name. Raises Unusable where none is kept."""
     file = _file(name)
     if not file.is_file():
-        raise Unusable("no-such-effect", "no effect is kept under this name", name,
-                       "see `servoident effects` for the names, or name a file that is there")  # fmt: skip
+        remedy = "see `servoident effects` for the names, or name a file that is there"
+        kept = (one.stem for one in sorted(folder().glob("*.json")))
+        raise Unusable("no-such-effect", "no effect is kept under this name", name, did_you_mean(name, kept, remedy))
     return _read(file)
 
 

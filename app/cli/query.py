@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from itertools import islice
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,6 +14,7 @@ from app.cli.output import STANDARD_OUTPUT, write_bytes, write_json
 from app.cli.remote import DEFAULT, Server, Token, items, request
 
 LISTED = "/parameter-sets"
+_MOST = 1000  # actuators whose names are looked at
 
 
 def query(
@@ -39,10 +42,27 @@ def query(
             write_bytes(content, csv)
         return
     sets = list(items(server, token, LISTED, params))
+    if not sets:
+        _tell_nearest(given, range_ or [], server, token)
     if json is not None:
         write_json(sets, json)
     if json != STANDARD_OUTPUT:
         show(sets)
+
+
+def _tell_nearest(given: dict[str, str | None], ranges: list[str], server: str, token: str) -> None:
+    """Say which known name is nearest to one that was asked for: of a model, of a parameter, of an actuator."""
+    from app.cli.nothing_found import models, parameters, tell_nearest
+
+    def known(where: str) -> Iterable[str]:
+        if where in ("serial", "batch"):
+            return (str(one[where]) for one in islice(items(server, token, "/actuators", {}), _MOST))
+        return models() if where == "model" else parameters()
+
+    named = {where: given[where] for where in ("model", "serial", "batch")}
+    tell_nearest(named, known)
+    for text in ranges:
+        tell_nearest({"parameter": split(text, "--range", "NAME=MIN:MAX")[0]}, known)
 
 
 def limits(texts: list[str]) -> dict[str, str]:

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from app.cli.data_options import Data, Database, settings
+from app.cli.nothing_found import models, tell_nearest
 from app.cli.output import check_target, write_bytes
 from app.cli.progress import shown
 from app.cli.remote import Token, request
@@ -45,6 +46,8 @@ def regress(
         rows = _here(data, database, asked, tolerance, junit)
     else:
         rows = _there(server, token, {**asked, "tolerance": tolerance}, junit)
+    if not rows:
+        tell_nearest({"model": model}, lambda _: models())
     show(rows)
     if any(outcome != "same" for _, outcome, _ in rows):
         raise typer.Exit(1)

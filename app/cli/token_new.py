@@ -10,6 +10,7 @@ import typer
 from app.cli.data_options import Data, Database
 from app.cli.records import records
 from ident.errors import Unusable
+from ident.words.nearest import did_you_mean
 
 ROLES = ("lab", "line", "ci", "admin")
 
@@ -35,7 +36,7 @@ def new(
     from schemas.access import TokenRequest
 
     if role not in ROLES:
-        raise Unusable("no-such-role", f"there is no role {role!r}", "--role", f"choose one of {', '.join(ROLES)}")
+        raise Unusable("no-such-role", f"there is no role {role!r}", "--role", did_you_mean(role, ROLES))
     try:
         wanted = TokenRequest.model_validate({"name": name, "role": role, "expires": expires})
     except ValidationError as error:

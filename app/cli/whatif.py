@@ -13,6 +13,7 @@ from app.cli.compare import FORMATS
 from app.cli.given import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
 from app.cli.progress import shown
+from ident.words.nearest import did_you_mean
 
 if TYPE_CHECKING:
     from ident.fit.result import FitResult
@@ -98,7 +99,7 @@ def _change(fit: FitResult, set_: list[str], fitted: list[str], specimen: str | 
     pairs = [split(text, "--set", "NAME=VALUE") for text in set_]
     known = [split(text, "--fitted", "NAME=VALUE") for text in fitted]
     if strange := [name for name, _ in known if name not in SIZES]:
-        raise Unusable("unknown-size", f"no size {strange[0]!r}", "--fitted", f"choose from {', '.join(SIZES)}")
+        raise Unusable("unknown-size", f"no size {strange[0]!r}", "--fitted", did_you_mean(strange[0], SIZES))
     model = preset_with(fit.model, fit.effects, tuple(fit.settings.get("custom", ())))
     return Change(
         sizes={name: quantity(value, SIZES[name], f"--set {name}") for name, value in pairs if name in SIZES},
@@ -119,7 +120,8 @@ def specimen_of(text: str | None) -> Specimen:
         if part.strip():
             name, value = split(part, "--specimen", form)
             if name not in _OF_SPECIMEN:
-                raise Unusable("bad-option", f"a specimen has no {name!r}", "--specimen", f"write --specimen {form}")
+                raise Unusable("bad-option", f"a specimen has no {name!r}", "--specimen",
+                               did_you_mean(name, _OF_SPECIMEN))  # fmt: skip
             found[name] = quantity(value, _OF_SPECIMEN[name], f"--specimen {name}")
             if found[name] < 0:
                 raise Unusable("bad-number", f"{value} is below 0", f"--specimen {name}", "give 0 or more")

@@ -20,6 +20,7 @@ from ident.figures.ladder import Step
 from ident.figures.selection import number
 from ident.fit.result import FitResult
 from ident.presets import preset
+from ident.words.nearest import did_you_mean
 from ident.words.titles import title
 from schemas.fit import LadderRung
 
@@ -32,7 +33,7 @@ _studies: LRU[Study] = LRU(_STUDIED)
 def drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str, Any]) -> tuple[bytes, str]:
     """A figure of a fit as bytes and their media type."""
     if kind not in MEDIA:
-        raise Failure(404, "no-such-format", f"no figures as {kind!r}", "figure", f"use {', '.join(MEDIA)}")
+        raise Failure(404, "no-such-format", f"no figures as {kind!r}", "figure", did_you_mean(kind, MEDIA))
     key = json.dumps([str(context.storage.folder), fit_id, name, kind, options], sort_keys=True)
     return _figures.get(key, lambda: _drawn(context, fit_id, name, kind, dict(options))), MEDIA[kind]
 

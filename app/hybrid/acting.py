@@ -11,6 +11,7 @@ from ident.hybrid.case import Case
 from ident.hybrid.controller import SampledController
 from ident.hybrid.rig import Controller
 from ident.units.quantity import shown
+from ident.words.nearest import did_you_mean
 
 MOST_STATES, _LONGEST = 200, 200  # of a controller that is sent; characters of its name
 
@@ -25,7 +26,7 @@ def acting(given: str | dict[str, Any], fit: FitResult, case: Case) -> Controlle
     if isinstance(given, str):
         if given not in NAMED:
             raise Unusable("unknown-controller", f"{shown(given)!r} is no controller", "controller",
-                           f"give {', '.join(NAMED)}, or the id of one")  # fmt: skip
+                           did_you_mean(given, NAMED, f"give {', '.join(NAMED)}, or the id of one"))  # fmt: skip
         return NAMED[given](fit, case)
     rows = given.get("A")
     if isinstance(rows, list) and len(rows) > MOST_STATES:

@@ -9,13 +9,14 @@ from typing import Any
 from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.fit.result import FitResult
-from ident.hybrid.case import BUILT_IN, Case, case_of
+from ident.hybrid.case import BUILT_IN, NAMES, Case, case_of
 from ident.hybrid.changed_machine import SIZES, Change
 from ident.hybrid.ground import ground_of
 from ident.hybrid.peak_problem import Axes, PeakTarget
 from ident.matrix import Specimen
 from ident.presets import preset
 from ident.units.quantity import parameter_value, shown
+from ident.words.nearest import did_you_mean
 from schemas.hybrid import GroundRequest, HybridRequest, SpecimenRequest, WhatIfRequest
 
 LONGEST = 2_000_000
@@ -41,8 +42,8 @@ class AskedCase:
             return of
         if isinstance(self.ground, str):
             if self.ground not in MOTIONS:
-                raise Unusable("bad-ground", f"{shown(self.ground)!r} is no motion", "ground",
-                               f"give {' or '.join(MOTIONS)}, or a record as text")  # fmt: skip
+                remedy = did_you_mean(self.ground, MOTIONS, f"give {' or '.join(MOTIONS)}, or a record as text")
+                raise Unusable("bad-ground", f"{shown(self.ground)!r} is no motion", "ground", remedy)
             return replace(of, ground=replace(of.ground, kind=self.ground))
         return replace(of, ground=ground_of(_with(self.ground, self.text), None, of.ground))
 
@@ -51,7 +52,7 @@ class AskedCase:
         if isinstance(self.case, str):
             if self.case not in BUILT_IN:
                 raise Unusable("no-such-case", f"no case {shown(self.case)!r}", "case",
-                               "give qian, benchmark2020 (or benchmark2020-1 to -4), or an object")  # fmt: skip
+                               did_you_mean(self.case, BUILT_IN, f"give {NAMES}, or an object"))  # fmt: skip
             return BUILT_IN[self.case]()
         data, ground = self.case, self.case.get("ground")
         if isinstance(ground, dict):
@@ -104,7 +105,7 @@ def effects_of(request: HybridRequest, model: str) -> dict[str, float]:
 def change_of(fit: FitResult, request: WhatIfRequest) -> Change:
     """What is to change of the machine of a fit, SI. Raises Unusable."""
     if strange := [name for name in request.fitted if name not in SIZES]:
-        raise Unusable("unknown-size", f"no size {shown(strange[0])!r}", "fitted", f"choose from {', '.join(SIZES)}")
+        raise Unusable("unknown-size", f"no size {shown(strange[0])!r}", "fitted", did_you_mean(strange[0], SIZES))
     model = preset_with(fit.model, fit.effects, tuple(fit.settings.get("custom", ())))
     units = {name: SIZES.get(name) or model.parameter(name).unit for name in request.set}
     given = {name: parameter_value(value, units[name], f"set {name}") for name, value in request.set.items()}

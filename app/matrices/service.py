@@ -26,6 +26,7 @@ from ident.matrix import Actuator, Matrix, Run, output_id
 from ident.readers.limits import LIMITS
 from ident.readers.source import DESCRIPTION, inside
 from ident.readers.strict_yaml import read_yaml
+from ident.words.nearest import did_you_mean
 from schemas.matrix import FindingView, MatrixPage, MatrixView, Revision, RunView
 
 Made = TypeVar("Made")
@@ -103,9 +104,8 @@ def revise(context: Context, matrix: str, revision: Revision) -> tuple[MatrixVie
     for given, changes in revision.runs.items():
         name = _record_of(given, runs)
         if name not in runs:
-            raise Unusable(
-                "unknown-run", f"there is no run {name!r}", "runs", f"choose from {', '.join(list(runs)[:20])}"
-            )
+            remedy = did_you_mean(name, runs, f"choose from {', '.join(list(runs)[:20])}")
+            raise Unusable("unknown-run", f"there is no run {name!r}", "runs", remedy)
         _merge(runs[name], changes)
     with context.storage.staged() as staged:
         sha256 = staged.put(io.BytesIO(_yaml(description)))

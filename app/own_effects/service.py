@@ -78,7 +78,7 @@ def drop(context: Context, name: str) -> None:
     with context.sessions.begin() as session:
         row = repository.find(session, name)
         if row is None:
-            raise missing("own-effect", name)
+            raise missing("own-effect", name, (kept.name for kept in every(context)))
         repository.drop(session, row)
 
 
@@ -86,5 +86,5 @@ def _find(context: Context, name: str) -> Kept:
     with context.sessions() as session:
         row = repository.find(session, name)
     if row is None:
-        raise missing("own-effect", name)
+        raise missing("own-effect", name, (kept.name for kept in every(context)))
     return repository.kept(row)

@@ -51,6 +51,11 @@ def points(session: Session, parameter: str, chosen: Chosen, most: int) -> Seque
     return [Point(*row) for row in session.execute(query)][::-1]
 
 
+def batches(session: Session) -> Sequence[str]:
+    """The batches of all sets."""
+    return session.scalars(select(SetRow.batch).distinct()).all()
+
+
 def _asked(chosen: Chosen) -> list[ColumnElement[bool]]:
     approved = exists().where(ApprovalRow.number == SetRow.number)
     asked = [approved if chosen.serial is not None else approved.where(ApprovalRow.until.is_(None))]

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from datetime import datetime
 
 from app.context import Context
 from app.errors import Failure
 from app.limits.repository import EVERY, in_batch
 from app.statistics import repository
-from app.statistics.repository import Chosen, Point
+from app.statistics.repository import ERRORS, Chosen, Point
+from ident.effects import CATALOGUE
+from ident.presets import PRESETS
 from ident.statistics import (
     Capability,
     ControlChart,
@@ -21,6 +23,7 @@ from ident.statistics import (
     summary,
     withheld,
 )
+from ident.words.nearest import nearest
 from schemas.statistics import (
     CapabilityView,
     ControlChartView,
@@ -42,7 +45,7 @@ def statistics(
     with context.sessions() as session:
         points = repository.points(session, parameter, Chosen(batch, serial, model), MOST + 1)
         points, left_out = points[-MOST:], len(points) > MOST
-        _check(points, parameter)
+        _check(points, parameter, Chosen(batch, serial, model), lambda: repository.batches(session))
         limit = in_batch(session, points[0].model, batch or EVERY).get(parameter)
     lower, upper = (limit.lower, limit.upper) if limit else (None, None)
     values = [point.value for point in points]
@@ -58,14 +61,35 @@ def statistics(
     )  # fmt: skip
 
 
-def _check(points: Sequence[Point], parameter: str) -> None:
+def _check(points: Sequence[Point], parameter: str, chosen: Chosen, batches: Callable[[], Sequence[str]]) -> None:
     """Raises Failure where there is nothing, or where values of several models would be mixed."""
     if not points:
-        raise Failure(404, "no-sets", f"no approved set here has {parameter!r}", "parameter",
-                      "see /api/v1/parameter-sets for the names, and approve a fit first")  # fmt: skip
+        raise _nothing(parameter, chosen, batches)
     models = sorted({point.model for point in points})
     if len(models) > 1:
         raise Failure(409, "several-models", f"the sets are of {', '.join(models)}", "model", "name one of them")
+
+
+def _nothing(parameter: str, chosen: Chosen, batches: Callable[[], Sequence[str]]) -> Failure:
+    """What is said where no set was found, with the nearest name of the first that is not known."""
+    asked = (
+        ("parameter", parameter, _parameters()),
+        ("model", chosen.model, PRESETS),
+        ("batch", chosen.batch, batches() if chosen.batch else ()),
+    )
+    for where, name, known in asked:
+        if name is not None and name not in known and (near := nearest(name, known)) is not None:
+            return Failure(404, "no-sets", f"no approved set here has the {where} {name!r}", where,
+                           f"did you mean {near}?")  # fmt: skip
+    return Failure(404, "no-sets", f"no approved set here has {parameter!r}", "parameter",
+                   "see /api/v1/parameter-sets for the names, and approve a fit first")  # fmt: skip
+
+
+def _parameters() -> tuple[str, ...]:
+    """The names of every parameter of a model or of an effect of the catalogue, and of the errors."""
+    of_models = (parameter.name for model in PRESETS.values() for parameter in model.parameters)
+    of_effects = (parameter.name for effect in CATALOGUE for parameter in effect.added)
+    return tuple(dict.fromkeys((*of_models, *of_effects, *ERRORS)))
 
 
 def _chart(chart: ControlChart | None) -> ControlChartView | None:

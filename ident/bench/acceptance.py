@@ -14,6 +14,7 @@ from ident.bench.quantity import Found
 from ident.errors import Unusable
 from ident.readers.strict_yaml import read_yaml
 from ident.units.quantity import quantity
+from ident.words.nearest import did_you_mean
 
 QUANTITIES = {
     "zero_shift": ("1", "zero shift I0, in rated currents"),
@@ -131,7 +132,7 @@ def read_limits(text: str, where: str) -> dict[str, tuple[float | None, float | 
 def _limits(data: Mapping[str, Any], where: str) -> Iterator[tuple[str, tuple[float | None, float | None]]]:
     for name, entry in data.items():
         if name not in QUANTITIES:
-            raise Unusable("unknown-quantity", f"no quantity {name!r}", where, f"use one of {', '.join(QUANTITIES)}")
+            raise Unusable("unknown-quantity", f"no quantity {name!r}", where, did_you_mean(str(name), QUANTITIES))
         if not isinstance(entry, Mapping) or not entry or set(entry) - {"min", "max"}:
             raise Unusable("bad-limit", f"{name} has no min or max", where, f"write {name}: {{min: …, max: …}}")
         unit = QUANTITIES[name][0]

@@ -23,6 +23,7 @@ from ident.bench.smoothing import METHODS, bezier, differentiated, fir, iir, on_
 from ident.bench.speed_table import SpeedTable
 from ident.bench.straightness import Straightness, straightness
 from ident.errors import Unusable
+from ident.words.nearest import did_you_mean
 
 Array = NDArray[np.float64]
 _EVEN = 2e-3 + 1e-9  # of rated current: within it, rounding apart, a level is one
@@ -118,7 +119,7 @@ def curve(model: Model, record: Record, method: str = "iir", cutoff: float = 15.
     `cutoff` in Hz is for the filters, `degree` for the Bézier curve, which is held at zero in the zero shift.
     """
     if method not in METHODS:
-        raise Unusable("unknown-method", f"no smoothing {method!r}", "smoothing", f"use one of {', '.join(METHODS)}")
+        raise Unusable("unknown-method", f"no smoothing {method!r}", "smoothing", did_you_mean(method, METHODS))
     after = _after_play(model, record)
     raw = differentiated(record.position, record.rate)
     share = np.maximum(factor(model, after), _FLOOR)

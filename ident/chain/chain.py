@@ -32,6 +32,7 @@ from ident.errors import Unusable
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Run
 from ident.stages import Stage
+from ident.words.nearest import did_you_mean
 
 Array = NDArray[np.float64]
 INPUT, INPUT_RATE, FORCE, DISTURBANCE, STEP = "u", "du", "fm", "dm", "dt"
@@ -218,7 +219,7 @@ class Chain:
                 "unknown-output",
                 f"the model does not produce {output!r}",
                 "output of a run",
-                f"choose one of {', '.join(self.outputs)} or another model",
+                did_you_mean(output, self.outputs, f"choose one of {', '.join(self.outputs)} or another model"),
             )
         return self.outputs[output]
 

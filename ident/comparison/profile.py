@@ -30,6 +30,7 @@ from ident.matrix import Matrix
 from ident.noise.effective_sample_size import independent_samples
 from ident.progress import Progress, Report, silent
 from ident.words.error import error_said
+from ident.words.nearest import did_you_mean
 from ident.words.shown import Listing, Shown
 
 Array = NDArray[np.float64]
@@ -117,8 +118,8 @@ def check_profiled(fit: FitResult, name: str) -> Estimate:
     """The estimate of a parameter that can be profiled. Raises Unusable."""
     estimate = fit.parameters.get(name)
     if estimate is None or estimate.fixed:
-        free = ", ".join(one for one, known in fit.parameters.items() if not known.fixed)
-        raise Unusable("unknown-parameter", f"the fit does not search {name!r}", "profile", f"choose from {free}")
+        remedy = did_you_mean(name, (one for one, known in fit.parameters.items() if not known.fixed))
+        raise Unusable("unknown-parameter", f"the fit does not search {name!r}", "profile", remedy)
     if fit.window is not None:
         raise Unusable("bad-option", "a fit over windows has no likelihood of whole runs", "profile",
                        "use the standard errors")  # fmt: skip

@@ -6,7 +6,6 @@ import ast
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 
 from ident.chain.chain import INPUT, INPUT_RATE, STEP
 from ident.chain.channels import READABLE
@@ -15,6 +14,7 @@ from ident.equations.grammar import ALIASES, CONSTANTS, FUNCTIONS, TIME, parsed
 from ident.errors import Unusable
 from ident.presets import Preset
 from ident.stages import PLACES
+from ident.words.nearest import did_you_mean
 
 RESERVED = frozenset({*FUNCTIONS, *ALIASES, *CONSTANTS, TIME, STEP})
 """Names that mean something in every equation."""
@@ -78,8 +78,7 @@ def check_names(lines: Sequence[Line], place: str, own: Mapping[str, str], model
     allowed = known | set(own.values()) | set(targets) | {TIME, *READABLE}
     for line in lines:
         for name in sorted(line.names - allowed):
-            near = get_close_matches(name, allowed, 1, 0.5)
-            remedy = f"did you mean {near[0]}?" if near else f"known are {' '.join(sorted(allowed))}"
+            remedy = did_you_mean(name, sorted(allowed))
             raise Unusable("unknown-name", f"there is no quantity {name[:40]!r}", line.at(name), remedy)
     strength = next(iter(own.values()))
     if not any(strength in line.names for line in lines):

@@ -9,6 +9,7 @@ from typing import Any
 from ident.errors import Unusable
 from ident.matrix import CHANNELS
 from ident.units.quantity import shown
+from ident.words.nearest import did_you_mean
 
 NONE = "-"
 """The answer that a channel, or a column of times, is not there, though a column is called after it."""
@@ -39,9 +40,7 @@ class FileAnswers:
 
     def __post_init__(self) -> None:
         for channel in self.channels:
-            if channel not in CHANNELS:
-                raise Unusable("unknown-channel", f"no channel {shown(channel)!r}", "channel",
-                               f"choose from {', '.join(CHANNELS)}")  # fmt: skip
+            _check(channel)
 
     def over(self, other: FileAnswers) -> FileAnswers:
         """These answers, completed by more general ones; a column of times stated here outweighs a rate stated there.
@@ -76,6 +75,8 @@ class Answers:
 
     def __post_init__(self) -> None:
         _ = self.of_all
+        if self.output:
+            _check(self.output)
 
     @property
     def of_all(self) -> FileAnswers:
@@ -89,3 +90,8 @@ class Answers:
     def with_file(self, file: str, said: FileAnswers) -> Answers:
         """The answers with more said of one file."""
         return replace(self, files={**self.files, file: said.over(self.files.get(file, FileAnswers()))})
+
+
+def _check(channel: str) -> None:
+    if channel not in CHANNELS:
+        raise Unusable("unknown-channel", f"no channel {shown(channel)!r}", "channel", did_you_mean(channel, CHANNELS))

@@ -22,6 +22,7 @@ import numpy as np
 
 from ident.equations.interpolation import interpolated
 from ident.errors import Unusable
+from ident.words.nearest import did_you_mean
 
 FUNCTIONS: Mapping[str, Callable[..., Any]] = {
     "abs": np.abs,
@@ -212,7 +213,7 @@ def _call_fault(node: ast.Call) -> tuple[str, ...] | None:
     name = node.func.id if isinstance(node.func, ast.Name) else ""
     name = ALIASES.get(name, name)
     if name not in FUNCTIONS or node.keywords:
-        return "unknown function", f"known are {', '.join((*FUNCTIONS, *ALIASES))}"
+        return "unknown function", did_you_mean(name, (*FUNCTIONS, *ALIASES))
     wanted, given = _ARGUMENTS.get(name, 1), len(node.args)
     if name in TABLES:
         whole = given >= 5 and given % 2 == 1

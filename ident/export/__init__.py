@@ -10,6 +10,7 @@ from ident.export.fmu import as_fmu
 from ident.export.header import as_header
 from ident.export.machine import USUAL_RATE, ExportedMachine, exported
 from ident.export.state_space import LinearPart, as_control, as_mat, linear_part
+from ident.words.nearest import did_you_mean
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,7 @@ def as_file(machine: ExportedMachine, name: str) -> bytes:
     for known, form in FORMATS.items():
         if name in (known, form.ending):
             return form.write(machine)
-    raise Unusable("unknown-format", f"no export as {name!r}", "format", f"use one of {', '.join(FORMATS)}")
+    raise Unusable("unknown-format", f"no export as {name!r}", "format", did_you_mean(name, FORMATS))
 
 
 __all__ = [

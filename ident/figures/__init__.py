@@ -19,6 +19,7 @@ from ident.figures.study import Study
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.presets import Preset
+from ident.words.nearest import did_you_mean
 from ident.words.titles import title
 
 __all__ = [
@@ -59,11 +60,16 @@ def figure(name: str, study: Study, theme: str = "light", share: float = 1.0, **
     """
     names = figures_of(study.fit)
     if name not in names:
-        raise Unusable("unknown-figure", f"no figure {name!r}", "figure", f"use one of {', '.join(names)}")
+        raise Unusable("unknown-figure", f"no figure {name!r}", "figure", did_you_mean(name, names))
     known = FIGURES[name].options
     for option in options:
         if option not in known:
-            raise Unusable("unknown-option", f"no option {option!r}", f"figure {name}", f"use {', '.join(known)}")
+            raise Unusable(
+                "unknown-option",
+                f"no option {option!r}",
+                f"figure {name}",
+                did_you_mean(option, (*known, "theme", "share")),
+            )
     with unchecked():
         return FIGURES[name].draw(study, look(theme, share), options)
 

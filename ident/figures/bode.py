@@ -26,6 +26,7 @@ from ident.figures.study import Study
 from ident.figures.thin import decade_ticks, fine_ticks
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Run
+from ident.words.nearest import did_you_mean
 
 FACETS = 4
 _GAP = 22
@@ -59,7 +60,9 @@ def bode(
     `others` are the same runs with another model, `other_name`, whose lines are dashed.
     """
     if axis not in ("log", "linear"):
-        raise Unusable("unknown-axis", f"no frequency axis {axis!r}", "figure option axis", "use log or linear")
+        raise Unusable(
+            "unknown-axis", f"no frequency axis {axis!r}", "figure option axis", did_you_mean(axis, ("log", "linear"))
+        )
     responses = Responses(compared, axis == "log", others)
     gains = list(by_gain([entry.run for entry in compared]))
     lower, upper = responses.band

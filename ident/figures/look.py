@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ident.errors import Unusable
+from ident.words.nearest import did_you_mean
 
 FONT = "Liberation Sans, Arial, Helvetica, sans-serif"
 
@@ -78,5 +79,5 @@ LOOKS: Mapping[str, Look] = {
 def look(theme: str, share: float = 1.0) -> Look:
     """The theme of that name, panels `share` as wide as usual; raises Unusable for any other."""
     if theme not in LOOKS:
-        raise Unusable("unknown-theme", f"no theme {theme!r}", "figure", f"use one of {', '.join(LOOKS)}")
+        raise Unusable("unknown-theme", f"no theme {theme!r}", "figure", did_you_mean(theme, LOOKS))
     return LOOKS[theme] if share == 1.0 else replace(LOOKS[theme], share=share)

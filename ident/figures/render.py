@@ -11,6 +11,7 @@ import vl_convert
 
 from ident.errors import Unusable
 from ident.figures.frame import Filled, unchecked
+from ident.words.nearest import did_you_mean
 
 Panel = alt.Chart | alt.LayerChart | alt.FacetChart
 Chart = alt.LayerChart | alt.HConcatChart | alt.VConcatChart | alt.ConcatChart | Filled
@@ -65,7 +66,7 @@ def render(chart: Chart, format: str, *, live: bool = False) -> bytes:  # noqa: 
     A `live` JSON keeps what differs between runs and bands in its parameters, for a page that exchanges only these.
     """
     if format not in MEDIA:
-        raise Unusable("unknown-format", f"no format {format!r}", "figure", f"use one of {', '.join(MEDIA)}")
+        raise Unusable("unknown-format", f"no format {format!r}", "figure", did_you_mean(format, MEDIA))
     if isinstance(chart, Filled):
         text = chart.to_json(live=live)
     else:

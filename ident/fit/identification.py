@@ -35,6 +35,7 @@ from ident.noise.floor import noise_floors
 from ident.presets import PRESETS, Preset
 from ident.progress import Progress, Report, silent
 from ident.words.error import UNSTABLE
+from ident.words.nearest import did_you_mean
 
 Array = NDArray[np.float64]
 _SEARCHED = 65_536  # samples of a search with effects; the polish takes every sample
@@ -210,7 +211,8 @@ def check_settings(settings: Settings) -> None:
     if settings.method not in (*GENERAL, *preset.methods):
         raise _not_a_method(settings)
     if settings.load not in ("none", "force"):
-        raise Unusable("unknown-load", f"load {settings.load!r} is not known", "load", "use force or none")
+        remedy = did_you_mean(settings.load, ("none", "force"))
+        raise Unusable("unknown-load", f"load {settings.load!r} is not known", "load", remedy)
     if settings.load == "force":
         preset.refuse_without_specimen()
     for name in (*settings.bounds, *settings.fixed):
@@ -246,8 +248,8 @@ def _check_without_model(settings: Settings) -> None:
         if given:
             raise Unusable("no-model", f"{what} are given for no model", "model", "name the model that they belong to")
     if settings.method not in GENERAL:
-        raise Unusable("unknown-method", f"method {settings.method!r} for no model", "method",
-                       f"choose from {', '.join(GENERAL)}, or name a model")  # fmt: skip
+        remedy = did_you_mean(settings.method, GENERAL, f"choose from {', '.join(GENERAL)}, or name a model")
+        raise Unusable("unknown-method", f"method {settings.method!r} for no model", "method", remedy)
 
 
 def _not_a_method(settings: Settings) -> Unusable:
@@ -255,9 +257,8 @@ def _not_a_method(settings: Settings) -> Unusable:
     others = [known.name for known in PRESETS.values() if settings.method in known.methods]
     if not others:
         methods = (*GENERAL, *preset_with(settings.model).methods)
-        return Unusable(
-            "unknown-method", f"no method {settings.method!r}", "method", f"choose from {', '.join(methods)}"
-        )
+        remedy = did_you_mean(settings.method, methods)
+        return Unusable("unknown-method", f"no method {settings.method!r}", "method", remedy)
     what = f"{settings.method} is a method of the model {' and '.join(others)}"
     return Unusable("unknown-method", what, "method", f"use it with that model, or use {GENERAL[0]}")
 

@@ -18,6 +18,7 @@ from ident.fit.space import Space
 from ident.presets import Preset
 from ident.progress import Progress, Report
 from ident.words.error import UNSTABLE
+from ident.words.nearest import did_you_mean
 
 Array = NDArray[np.float64]
 Errors = Callable[[Array], Array]
@@ -99,7 +100,7 @@ def options_of(settings: Settings, preset: Preset) -> dict[str, float]:
     known = {"ga": default, "paper-ga": genetic.PAPER}.get(settings.method, {})
     for name, value in settings.options.items():
         if name not in known:
-            remedy = f"choose from {', '.join(known) or 'none'}"
+            remedy = did_you_mean(name, known)
             raise Unusable("unknown-option", f"method {settings.method} has no option {name!r}", "options", remedy)
         lower, upper = genetic.RANGES[name]
         if not lower <= value <= upper:

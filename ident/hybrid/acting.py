@@ -16,6 +16,7 @@ from ident.hybrid.followed import plant_in
 from ident.hybrid.rig import Controller, no_controller
 from ident.hybrid.substructure import reference
 from ident.units.quantity import shown
+from ident.words.nearest import did_you_mean
 
 _LARGEST = 50_000_000  # bytes of a controller's file
 
@@ -52,7 +53,8 @@ def controller_called(given: str, fit: FitResult, case: Case) -> Controller:
     path = Path(given)
     if not path.is_file() or path.stat().st_size > _LARGEST:
         raise Unusable("unknown-controller", f"{shown(given)!r} is no controller", "controller",
-                       f"give {', '.join(NAMED)}, or the controller.json of `servoident control`")  # fmt: skip
+                       did_you_mean(given, NAMED, f"give {', '.join(NAMED)}, or the controller.json of "
+                                    "`servoident control`"))  # fmt: skip
     try:
         data = json.loads(path.read_bytes())
     except (ValueError, RecursionError):

@@ -32,6 +32,7 @@ from ident.readers.fields import Fields
 from ident.readers.loop_settings import loop_gain, sample_rate
 from ident.readers.strict_yaml import read_yaml
 from ident.units.quantity import quantity, shown, split
+from ident.words.nearest import did_you_mean
 
 Array = NDArray[np.float64]
 _KEYS = (
@@ -208,6 +209,9 @@ def modal_damping(mass: Array, stiffness: Array, ratio: float) -> Array:
     return np.asarray(shape @ np.diag(2 * ratio * np.sqrt(squares)) @ shape.T)
 
 
+NAMES = "qian, benchmark2020 (or benchmark2020-1 to -4)"
+"""The cases by name, in words."""
+
 # Reading ----------------------------------------------------------------------------------------------------------
 
 
@@ -217,8 +221,8 @@ def read_case(given: str | Path) -> Case:
         return BUILT_IN[str(given)]()
     path = Path(given)
     if not path.is_file():
-        names = ", ".join(("qian", "benchmark2020 (or benchmark2020-1 to -4)"))
-        raise Unusable("no-such-case", f"no case {shown(given)!r}", "case", f"give {names} or a YAML file")
+        remedy = did_you_mean(str(given), BUILT_IN, f"give {NAMES} or a YAML file")
+        raise Unusable("no-such-case", f"no case {shown(given)!r}", "case", remedy)
     return case_of(_yaml(path), path.parent, path.stem)
 
 

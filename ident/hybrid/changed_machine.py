@@ -23,6 +23,7 @@ from ident.fit.result import FitResult
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Run, Specimen
 from ident.presets.preset import Preset
+from ident.words.nearest import did_you_mean
 
 Array = NDArray[np.float64]
 FLOW_GAIN = "m^4/s"
@@ -180,7 +181,7 @@ def _scaled(fit: FitResult, preset: Preset, before: Actuator, after: Actuator, c
     fitted = {preset.parameter(name).in_equations for name in fit.parameters}
     if strange := [name for name in change.values if preset.parameter(name).in_equations not in fitted]:
         raise Unusable("unknown-parameter", f"the fit has no parameter {strange[0]!r}", "set",
-                       f"choose from {', '.join((*SIZES, *fit.parameters))}")  # fmt: skip
+                       did_you_mean(strange[0], (*SIZES, *fit.parameters)))  # fmt: skip
     found = {}
     for name, entry in fit.parameters.items():
         symbol = preset.parameter(name).in_equations

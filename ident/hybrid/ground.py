@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ident.errors import Unusable
 from ident.readers.fields import Fields
 from ident.units.quantity import shown, unit_scale
+from ident.words.nearest import did_you_mean
 
 Array = NDArray[np.float64]
 GRAVITY = 9.80665  # m/s²
@@ -109,7 +110,8 @@ def _white(count: int, of: Ground, sample_rate: float) -> Array:
 def read_record(path: Path, column: int | None = None) -> Array:
     """The numbers of a text file, as :func:`record_of`. Raises Unusable: ``no-such-file``, ``bad-ground``."""
     if not path.is_file() or path.stat().st_size > _LARGEST:
-        raise Unusable("no-such-file", "there is no such record of ground motion", str(path), "give its path")
+        remedy = did_you_mean(path.name, (kind for kind in KINDS if kind != "record"), "give its path")
+        raise Unusable("no-such-file", "there is no such record of ground motion", str(path), remedy)
     return record_of(path.read_text(encoding="utf-8", errors="replace"), str(path), column)
 
 

@@ -31,6 +31,7 @@ from ident.hybrid.sampled_loop import SampledLoop
 from ident.hybrid.state_space import StateSpace, sampled_plant
 from ident.hybrid.target import QIAN2014_TARGET, Target
 from ident.linear import LinearModel
+from ident.words.nearest import did_you_mean
 
 Array = NDArray[np.float64]
 STRUCTURES = ("feedback", "two-degree")
@@ -74,9 +75,8 @@ def design(
     Unusable where the plant is not stable, and where the sampled loop would not be.
     """
     if structure not in STRUCTURES:
-        raise Unusable(
-            "unknown-structure", f"no structure {structure!r}", "structure", f"use {' or '.join(STRUCTURES)}"
-        )
+        remedy = did_you_mean(structure, STRUCTURES)
+        raise Unusable("unknown-structure", f"no structure {structure!r}", "structure", remedy)
     if delay > LATEST:
         raise Unusable("too-late", f"the command acts {delay:g} samples after the measurement", "delay",
                        f"design for at most {LATEST} samples, at a lower rate")  # fmt: skip

@@ -14,6 +14,7 @@ from ident.hybrid.tracking import GAIN, TAU, Noise, Tracker
 from ident.hybrid.verdict import Verdict
 from ident.matrix import Matrix, Run
 from ident.words.engineering import quantity
+from ident.words.nearest import did_you_mean
 from ident.words.number import plain, trimmed
 from ident.words.shown import Listing, Shown
 
@@ -98,8 +99,9 @@ def chosen(matrix: Matrix, run: str | None) -> Run:
     for candidate in matrix.runs:
         if run is None or candidate.id == run:
             return candidate
-    few = ", ".join(candidate.id for candidate in matrix.runs[:5])
-    raise Unusable("unknown-run", f"the matrix has no run {run!r}", "run", f"choose from {few}")
+    names = [candidate.id for candidate in matrix.runs]
+    remedy = did_you_mean(str(run), names, f"choose from {', '.join(names[:5])}")
+    raise Unusable("unknown-run", f"the matrix has no run {run!r}", "run", remedy)
 
 
 def sensor_noise(y: Array) -> float:

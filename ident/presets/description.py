@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ident.errors import Unusable
+from ident.words.nearest import did_you_mean
 
 PREFIX = "machine:"
 CHOICES: Mapping[str, tuple[str, ...]] = {
@@ -66,12 +67,12 @@ def described(data: Any, where: str = "machine") -> Description:
     if not isinstance(data, Mapping):
         raise _bad(f"{data!r} is not a list of place: choice", where, "write {valve: first, flow: linear, …}")
     if strange := [key for key in data if key not in _KEYS]:
-        raise _bad(f"unknown key {strange[0]!r}", where, f"known are {', '.join(_KEYS)}")
+        raise _bad(f"unknown key {strange[0]!r}", where, did_you_mean(str(strange[0]), _KEYS))
     places = {}
     for place, choices in CHOICES.items():
         chosen = str(data.get(place) or choices[0])
         if chosen not in choices:
-            raise _bad(f"{chosen!r} is none of its kinds", f"{where} {place}", f"choose from {', '.join(choices)}")
+            raise _bad(f"{chosen!r} is none of its kinds", f"{where} {place}", did_you_mean(chosen, choices))
         places[place] = chosen
     if places["controller"] == "none":
         places["of"] = CHOICES["of"][0]  # nothing is compared
@@ -80,7 +81,7 @@ def described(data: Any, where: str = "machine") -> Description:
         raise _bad(f"{shown!r} is no list of channels", f"{where} sensor", f"choose from {', '.join(SHOWN)}")
     sensor = tuple(dict.fromkeys([shown] if isinstance(shown, str) else map(str, shown)))
     if strange := [name for name in sensor if name not in SHOWN]:
-        raise _bad(f"{strange[0]!r} is no channel of a machine", f"{where} sensor", f"choose from {', '.join(SHOWN)}")
+        raise _bad(f"{strange[0]!r} is no channel of a machine", f"{where} sensor", did_you_mean(strange[0], SHOWN))
     return Description(places, sensor or (_usual(places),), _gains(data.get("gains") or {}, places, f"{where} gains"))
 
 

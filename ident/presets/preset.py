@@ -27,6 +27,7 @@ from ident.presets.record_units import RecordUnits
 from ident.presets.stated import refuse_unstated
 from ident.stages import MASS_SPRING_DAMPER, MEASURED_LOAD, OPENED_BY_COMMAND, Scale
 from ident.stages.scale import OF_THE_RUNS, in_reading_order
+from ident.words.nearest import did_you_mean
 
 Kind = Literal["chain", "bench"]
 """Who serves a model: what fits chains to test runs, or Kononykhin's procedures for the records of a bench."""
@@ -317,10 +318,16 @@ class Preset:
         """Every equation of the model, in the order of the chain."""
         return self.chain.equations
 
+    @property
+    def _called(self) -> tuple[str, ...]:
+        """What a parameter is found by: its name, that without an area, that of an effect for its strength."""
+        without = (name for name, _ in (self.without_area or {}).values())
+        return (*(p.name for p in self.parameters), *without, *(effect.name for effect in self.effects))
+
     def parameter(self, name: str) -> Parameter:
         """The parameter called `name`, also under its name without area, or an effect's by its name alone.
 
-        Raises Unusable with the names there are.
+        Raises Unusable with the nearest name.
         """
         for parameter in self.parameters:
             alias = (self.without_area or {}).get(parameter.name, ("", ""))[0]
@@ -338,7 +345,7 @@ class Preset:
             "unknown-parameter",
             f"model {self.name} has no parameter {name!r}",
             "bounds or values",
-            f"choose from {', '.join(p.name for p in self.parameters)}",
+            did_you_mean(name, self._called),
         )
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from difflib import get_close_matches
 from typing import Any
 
 from ident.errors import Unusable
 from ident.units.quantity import parameter_value, quantity, shown
+from ident.words.nearest import did_you_mean
 
 LONGEST_TEXT = 500
 
@@ -25,9 +25,7 @@ class Fields:
         for key in data:
             if key not in known:
                 _check_comma(data, key, where)
-                near = get_close_matches(key, known, 1, 0.4)
-                remedy = f"did you mean {near[0]!r}?" if near else "known are " + ", ".join(known)
-                raise Unusable("unknown-key", f"unknown key {shown(key)!r}", where, remedy)
+                raise Unusable("unknown-key", f"unknown key {shown(key)!r}", where, did_you_mean(str(key), known))
 
     def __contains__(self, key: str) -> bool:
         return self.data.get(key) is not None
@@ -64,7 +62,7 @@ class Fields:
         """One of the allowed words. Raises Unusable: ``unknown-KEY``."""
         value = self.text(key, default)
         if value not in allowed:
-            remedy = "use one of " + ", ".join(allowed)
+            remedy = did_you_mean(value, allowed)
             raise Unusable(f"unknown-{key}", f"{shown(value)!r} is not a {key}", self.place(key), remedy)
         return value
 

@@ -13,6 +13,7 @@ from ident.readers.fields import Fields
 from ident.readers.loop_settings import loop_gain, sample_rate
 from ident.readers.source import inside
 from ident.units.quantity import quantity, shown, split, unit_scale
+from ident.words.nearest import did_you_mean
 
 RUN = (
     "id", "file", "sample_rate", "time", "specimen", "gain", "amplitude", "kind", "hold", "output", "use", "skip_rows",
@@ -106,7 +107,7 @@ def describe_outputs(fields: Fields, kind: str, channels: dict[str, ChannelDescr
     outputs = fields.names("output") if isinstance(given, list) else (fields.text("output", _usual(channels)),)
     for output in outputs:
         if output not in channels:
-            what, remedy = f"{shown(output)!r} is not a channel of this run", f"choose from {', '.join(channels)}"
+            what, remedy = f"{shown(output)!r} is not a channel of this run", did_you_mean(output, channels)
             raise Unusable("unknown-output", what, fields.place("output"), remedy)
     moved = outputs == ("force",) and channels.keys() & set(MOTIONS)
     if "command" not in channels and not moved and not (kind in BENCH and "current" in channels):

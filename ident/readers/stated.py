@@ -22,6 +22,7 @@ from ident.readers.run_description import RunDescription, describe_run
 from ident.readers.suggestion import suggestion
 from ident.readers.table import Array, Table
 from ident.units.quantity import shown
+from ident.words.nearest import did_you_mean
 from ident.words.stated import Stated
 
 _OF_NO_RUN = ("units", "columns", "actuator")
@@ -32,8 +33,8 @@ def described(stated: Mapping[str, Any], file: str, name: str) -> RunDescription
     """What is stated of the record in `file`, as an entry of matrix.yaml; `name` is its id where none is stated."""
     unknown = [key for key in stated if key not in Stated.__annotations__]
     if unknown:
-        known = ", ".join(Stated.__annotations__)
-        raise Unusable("unknown-key", f"unknown key {unknown[0]!r}", file, f"known are {known}")
+        remedy = did_you_mean(unknown[0], Stated.__annotations__)
+        raise Unusable("unknown-key", f"unknown key {unknown[0]!r}", file, remedy)
     units, columns = stated.get("units") or {}, stated.get("columns") or {}
     for channel in (*columns, *(() if units else ("",))):
         if channel not in units:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 
 from ident.errors import Unusable
 from ident.units.quantity import shown
+from ident.words.nearest import did_you_mean
 
 Array = NDArray[Any]
 NUMERIC = "iuf"  # dtype kinds: whole numbers and floats
@@ -54,8 +54,7 @@ class Table:
             raise Unusable("ambiguous-column", what, where, "give the 0-based number of the column")
         if found:
             return found[0]
-        near = get_close_matches(column, self.names, 1, 0.6)
-        remedy = f"did you mean {near[0]!r}?" if near else self.listed()
+        remedy = did_you_mean(column, self.names, self.listed())
         raise Unusable("missing-column", f"there is no column {shown(column)!r}", where, remedy)
 
     def numbers(self, column: str | int, where: str) -> tuple[int, ...]:

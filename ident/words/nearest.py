@@ -12,6 +12,10 @@ _NEAR_IF_SHORT, _SHORT = 0.5, 3
 """The same of a name of at most three letters, one of which may be wrong."""
 
 
+_PLAIN = re.compile(r"\S+")
+"""A name that needs no quotes in a sentence."""
+
+
 def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:
     """The remedy ``did you mean dead_zone?`` with the known name that is nearest; where none is near, `otherwise`.
 
@@ -20,7 +24,7 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:
     names = list(dict.fromkeys(known))
     found = nearest(name, names)
     if found is not None:
-        return f"did you mean {found}?"
+        return f"did you mean {found if _PLAIN.fullmatch(found) else repr(found)}?"
     return otherwise or (f"choose from {', '.join(names)}" if names else "leave it out")
 
 

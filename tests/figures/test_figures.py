@@ -206,11 +206,11 @@ def test_a_run_without_specimen_has_a_gain_column_only(matrix, fit):
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        ({"name": "nyquist"}, "use one of residual-map, bode"),
-        ({"name": "bode", "theme": "sepia"}, "use one of light, dark"),
+        ({"name": "nyquist"}, "choose from residual-map, bode"),
+        ({"name": "bode", "theme": "sepia"}, "choose from light, dark"),
         ({"name": "bode", "colour": "red"}, "no option 'colour'"),
         ({"name": "bode", "kp": "six"}, "give a number"),
-        ({"name": "bode", "axis": "cubic"}, "use log or linear"),
+        ({"name": "bode", "axis": "cubic"}, "choose from log, linear"),
         ({"name": "time", "start": "noon"}, "give a number"),
         ({"name": "evolution", "generations": "last"}, "give whole numbers"),
     ],
@@ -222,7 +222,7 @@ def test_what_cannot_be_drawn_is_refused_with_the_remedy(arguments, says, matrix
 
 
 def test_an_unknown_format_is_refused(matrix, fit):
-    with pytest.raises(Unusable, match="use one of json, svg, png, pdf"):
+    with pytest.raises(Unusable, match="choose from json, svg, png, pdf"):
         render(figure("evolution", study(matrix, fit)), "gif")
 
 

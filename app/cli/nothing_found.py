@@ -1,0 +1,32 @@
+"""What is said where nothing was found: the nearest of the names that there are."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable, Mapping
+
+
+def tell_nearest(asked: Mapping[str, str | None], known: Callable[[str], Iterable[str]]) -> None:
+    """Say on standard error, of each name that was asked for and is not there, which known one is nearest."""
+    from ident.words.nearest import nearest
+
+    for where, name in asked.items():
+        names = list(known(where)) if name else []
+        if name and name not in names and (near := nearest(name, names)) is not None:
+            print(f"nothing is known of the {where} {name!r}; did you mean {near}?", file=sys.stderr)
+
+
+def models() -> tuple[str, ...]:
+    """The names of the models."""
+    from ident.presets import PRESETS
+
+    return tuple(PRESETS)
+
+
+def parameters() -> tuple[str, ...]:
+    """The names of every parameter of a model, and of an effect of the catalogue."""
+    from ident.effects import CATALOGUE
+    from ident.presets import PRESETS
+
+    of_models = (parameter.name for model in PRESETS.values() for parameter in model.parameters)
+    return (*of_models, *(parameter.name for effect in CATALOGUE for parameter in effect.added))
