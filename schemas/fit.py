@@ -40,8 +40,9 @@ class FitRequest(Chosen):
 class EffectsRequest(BaseModel):
     """Effects to add to a fit: one by `effect`, or some by `effects`, or what `custom` defines.
 
-    A definition whose name is not among `effects` is added all the same; names are those of `/effects` and
-    `/own-effects`.
+    A definition whose name is not among `effects` is added all the same; names are those of `/effects`, of
+    `/own-effects`, and of what the newest diagnosis of the fit ranked or proposes: a proposed term is added with those
+    before it and the effects that they stand on.
     """
 
     model_config = ConfigDict(extra="forbid")

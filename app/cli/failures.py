@@ -67,7 +67,7 @@ def _of_arguments(error: TyperException) -> str:
     usual = "`servoident --help` shows what there is"
     if given is None or context is None or given in (known := [o for p in context.command.params for o in p.opts]):
         return f"{error.format_message().rstrip('.')}; {usual}"
-    return f"No such option: {given}; {did_you_mean(given, known, usual)}"
+    return f"{error.format_message().partition(' (')[0]}; {did_you_mean(given, known, usual)}"
 
 
 def kept(error: BaseException) -> str:

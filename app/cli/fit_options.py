@@ -29,7 +29,8 @@ Model = Annotated[
     ),
 ]
 Effects = Annotated[
-    list[str] | None, typer.Option("--effect", metavar="NAME", help="Effect to add to the model; may be repeated.")
+    list[str] | None,
+    typer.Option("--effect", metavar="NAME", help="Effect to add, of the catalogue or kept; may be repeated."),
 ]
 Custom = Annotated[
     list[Path] | None,

@@ -14,19 +14,3 @@ def tell_nearest(asked: Mapping[str, str | None], known: Callable[[str], Iterabl
         names = list(known(where)) if name else []
         if name and name not in names and (near := nearest(name, names)) is not None:
             print(f"nothing is known of the {where} {name!r}; did you mean {near}?", file=sys.stderr)
-
-
-def models() -> tuple[str, ...]:
-    """The names of the models."""
-    from ident.presets import PRESETS
-
-    return tuple(PRESETS)
-
-
-def parameters() -> tuple[str, ...]:
-    """The names of every parameter of a model, and of an effect of the catalogue."""
-    from ident.effects import CATALOGUE
-    from ident.presets import PRESETS
-
-    of_models = (parameter.name for model in PRESETS.values() for parameter in model.parameters)
-    return (*of_models, *(parameter.name for effect in CATALOGUE for parameter in effect.added))

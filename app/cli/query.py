@@ -52,12 +52,14 @@ def query(
 
 def _tell_nearest(given: dict[str, str | None], ranges: list[str], server: str, token: str) -> None:
     """Say which known name is nearest to one that was asked for: of a model, of a parameter, of an actuator."""
-    from app.cli.nothing_found import models, parameters, tell_nearest
+    from app.cli.nothing_found import tell_nearest
+    from ident.presets import PRESETS
+    from ident.presets.parameter_names import parameter_names
 
     def known(where: str) -> Iterable[str]:
         if where in ("serial", "batch"):
             return (str(one[where]) for one in islice(items(server, token, "/actuators", {}), _MOST))
-        return models() if where == "model" else parameters()
+        return PRESETS if where == "model" else parameter_names()
 
     named = {where: given[where] for where in ("model", "serial", "batch")}
     tell_nearest(named, known)

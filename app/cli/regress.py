@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from app.cli.data_options import Data, Database, settings
-from app.cli.nothing_found import models, tell_nearest
+from app.cli.nothing_found import tell_nearest
 from app.cli.output import check_target, write_bytes
 from app.cli.progress import shown
 from app.cli.remote import Token, request
@@ -47,7 +47,9 @@ def regress(
     else:
         rows = _there(server, token, {**asked, "tolerance": tolerance}, junit)
     if not rows:
-        tell_nearest({"model": model}, lambda _: models())
+        from ident.presets import PRESETS
+
+        tell_nearest({"model": model}, lambda _: PRESETS)
     show(rows)
     if any(outcome != "same" for _, outcome, _ in rows):
         raise typer.Exit(1)

@@ -10,8 +10,8 @@ from app.errors import Failure
 from app.limits.repository import EVERY, in_batch
 from app.statistics import repository
 from app.statistics.repository import ERRORS, Chosen, Point
-from ident.effects import CATALOGUE
 from ident.presets import PRESETS
+from ident.presets.parameter_names import parameter_names
 from ident.statistics import (
     Capability,
     ControlChart,
@@ -73,7 +73,7 @@ def _check(points: Sequence[Point], parameter: str, chosen: Chosen, batches: Cal
 def _nothing(parameter: str, chosen: Chosen, batches: Callable[[], Sequence[str]]) -> Failure:
     """What is said where no set was found, with the nearest name of the first that is not known."""
     asked = (
-        ("parameter", parameter, _parameters()),
+        ("parameter", parameter, (*parameter_names(), *ERRORS)),
         ("model", chosen.model, PRESETS),
         ("batch", chosen.batch, batches() if chosen.batch else ()),
     )
@@ -83,13 +83,6 @@ def _nothing(parameter: str, chosen: Chosen, batches: Callable[[], Sequence[str]
                            f"did you mean {near}?")  # fmt: skip
     return Failure(404, "no-sets", f"no approved set here has {parameter!r}", "parameter",
                    "see /api/v1/parameter-sets for the names, and approve a fit first")  # fmt: skip
-
-
-def _parameters() -> tuple[str, ...]:
-    """The names of every parameter of a model or of an effect of the catalogue, and of the errors."""
-    of_models = (parameter.name for model in PRESETS.values() for parameter in model.parameters)
-    of_effects = (parameter.name for effect in CATALOGUE for parameter in effect.added)
-    return tuple(dict.fromkeys((*of_models, *of_effects, *ERRORS)))
 
 
 def _chart(chart: ControlChart | None) -> ControlChartView | None:

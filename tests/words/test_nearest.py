@@ -1,0 +1,47 @@
+"""The nearest name to a misspelt one."""
+
+from __future__ import annotations
+
+import pytest
+
+from ident.effects import CATALOGUE, effect
+from ident.errors import Unusable
+from ident.words.nearest import did_you_mean, nearest
+
+
+@pytest.mark.parametrize(
+    ("misspelt", "known", "meant"),
+    [
+        ("deadzone", ("dead_zone", "lead"), "dead_zone"),
+        ("Dead Zone", ("dead_zone", "lead"), "dead_zone"),
+        ("KP", ("Ka", "Kp"), "Kp"),
+        ("tua", ("Z0", "tau", "T"), "tau"),
+        ("Z1", ("Z0", "tau"), "Z0"),
+        ("magic", ("dead_zone", "lead"), None),
+        ("", ("dead_zone",), None),
+        ("__", ("dead_zone",), None),
+        ("x", (), None),
+    ],
+)
+def test_neither_case_nor_separators_count(misspelt, known, meant):
+    """A slip of a letter or two is near; of a name of up to three letters one."""
+    assert nearest(misspelt, known) == meant
+
+
+def test_where_none_is_near_the_names_are_listed_or_a_remedy_is_given():
+    assert did_you_mean("magic", ("a", "b")) == "choose from a, b"
+    assert did_you_mean("magic", ("a", "b"), "look there") == "look there"
+    assert did_you_mean("magic", ()) == "leave it out"
+
+
+def test_a_name_with_spaces_stands_in_quotes():
+    assert did_you_mean("Weg [m]", ("Weg [mm]", "Zeit")) == "did you mean 'Weg [mm]'?"
+
+
+@pytest.mark.parametrize("name", [known.name for known in CATALOGUE])
+def test_every_effect_is_found_without_a_letter_and_with_two_exchanged(name):
+    """The first of the slips that the catalogue's own names do not take for another one."""
+    for slip in (name[:-1], name[:-2] + name[-1] + name[-2], name.replace("_", "")):
+        if slip != name:
+            with pytest.raises(Unusable, match=f"did you mean {name}\\?"):
+                effect(slip)
