@@ -14,6 +14,7 @@ from ident.units.quantity import quantity, shown, si_scale, split
 
 _KEYS = ("name", "symbol", "unit", "lower", "upper", "value", "meaning")
 _MOST = 6  # shapes
+_ROUNDING = 1e-12  # relative, by which arithmetic of some steps may write a value beyond its bound
 _WIDE = 10.0  # by which factor a shape that is given as one value may be searched to either side
 
 
@@ -62,6 +63,14 @@ def _shape(name: str, data: Any) -> Parameter:
     return Parameter(symbol, symbol, scale.unit, lower, upper, value, f"shape {name}")
 
 
+def _on_bounds(value: float, lower: float, upper: float) -> float:
+    """The value, put onto a bound beyond which it lies by no more than rounding: a refit writes what ended there so."""
+    if lower <= value <= upper:
+        return value
+    nearest = min(max(value, lower), upper)
+    return nearest if abs(value - nearest) <= _ROUNDING * abs(nearest) else value
+
+
 def parameter_of(entry: Fields, symbol: str, default: float | None = None, name: str = "") -> Parameter:
     """A parameter from an entry with unit, bounds and value; without a value in the middle. Raises Unusable."""
     unit = entry.text("unit")
@@ -77,6 +86,7 @@ def parameter_of(entry: Fields, symbol: str, default: float | None = None, name:
         entry.need(key, f"write {key}: 0, in {unit}")
     lower, upper = si("lower"), si("upper")
     value = default if default is not None else si("value") if "value" in entry else 0.5 * (lower + upper)
+    value = _on_bounds(value, lower, upper)
     if not lower <= value <= upper:
         raise Unusable("outside-bounds", f"{value:g} {scale.unit} is outside its bounds", entry.where, "widen them")
     own = symbol_of(entry, entry.text("name") or name or symbol)

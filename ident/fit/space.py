@@ -94,9 +94,12 @@ class Space:
 
 
 def _ratio(axis: Axis, u: Array) -> Array:
+    """The ratio at places of an axis, never outside its bounds: at an end rounding alone would lead there."""
     if axis.logarithmic:
-        return np.asarray(axis.lower * (axis.upper / axis.lower) ** u)
-    return np.asarray(axis.lower + (axis.upper - axis.lower) * u)
+        ratio = axis.lower * (axis.upper / axis.lower) ** u
+    else:
+        ratio = axis.lower + (axis.upper - axis.lower) * u
+    return np.asarray(np.clip(ratio, axis.lower, axis.upper))
 
 
 def _scale(axis: Axis, known: Mapping[str, Array], typical: Mapping[str, float]) -> Array:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from ident.fit.settings import Settings
+from ident.fit.space import Axis, Space
 from ident.workflows import identify
 from tests.diagnosis.test_held_commands import RATE, late
 
@@ -52,3 +54,15 @@ def test_a_strength_that_the_data_moved_to_its_bound_is_not_said_to_be_any():
     assert fit.parameters["command_delay.delay"].std_error is None
     (reason,) = [entry.reason for entry in fit.undetermined if entry.name == "command_delay.delay"]
     assert reason == "ended at its bound: the data ask for a value beyond it"
+
+
+def test_no_point_of_a_search_space_lies_outside_its_bounds_by_rounding():
+    """Of two thousand drawn axes, straight and logarithmic: what is written of an end is accepted when it is read."""
+    rng = np.random.default_rng(3)
+    for number in range(2000):
+        lower, upper = np.sort(10.0 ** rng.uniform(-12, 6, 2)).tolist()
+        space = Space((Axis("a", lower, upper, logarithmic=bool(number % 2)),), ("a",), {}, {})
+        values = space.values(np.array([[0.0], [1.0], [1 - 1e-16], [rng.random()]]))["a"]
+        assert np.all((lower <= values) & (values <= upper))
+        assert values[0] == lower
+        assert values[1] == pytest.approx(upper, rel=1e-12)
