@@ -213,3 +213,4 @@ class FitResultView(BaseModel):
     structures: list[StructureView] = Field(default_factory=list)
     actuator: ActuatorStated | None = None
     ended_early: bool = False
+    left_out: list[str] = Field(default_factory=list)

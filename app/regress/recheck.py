@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ident.errors import Unusable
 from ident.fit.result import FitResult
@@ -98,15 +98,29 @@ def recomputed(stored: FitResult, matrix: Matrix) -> Iterator[Change]:
 def refitted(stored: FitResult, matrix: Matrix, report: Report) -> Iterator[Change]:
     """Error and parameters of a new fit; a parameter that the data do not determine may be anywhere."""
     new = identify(matrix, Settings.from_json(stored.settings), report)
-    yield from errors("refit error", stored, new.error, new.error_with_mean)
+    error, with_mean = on_the_same_runs(new, stored, matrix)
+    yield from errors("refit error", stored, error, with_mean)
     for name, estimate in stored.parameters.items():
         if estimate.std_error is not None and not estimate.fixed:
             yield Change(name, estimate.value, new.values.get(name, math.nan), estimate.std_error)
 
 
-def errors(
-    name: str, stored: FitResult, after: Mapping[str, float | None], with_mean: Mapping[str, float | None]
-) -> Iterator[Change]:
+Errors = Mapping[str, float | None]
+"""Errors by the use of the runs that they are over."""
+
+
+def on_the_same_runs(new: FitResult, stored: FitResult, matrix: Matrix) -> tuple[Errors, Errors]:
+    """The errors of a new fit, without and with the mean, over the runs that the stored ones are over.
+
+    An earlier version counted the runs that a fit left out, and did not name them.
+    """
+    if new.left_out == stored.left_out:
+        return new.error, new.error_with_mean
+    compared = compare(matrix, replace(new, left_out=stored.left_out))
+    return compared.error, compared.error_with_mean
+
+
+def errors(name: str, stored: FitResult, after: Errors, with_mean: Errors) -> Iterator[Change]:
     """The error of each use that was stored, and the one with the mean counted where that has to stand with it."""
     for use, before in stored.error.items():
         if before is None:

@@ -161,7 +161,7 @@ class Comparison(Shown):
 
     @property
     def error(self) -> dict[str, float | None]:
-        """Eq. (17) averaged over the runs of each use."""
+        """Eq. (17) averaged over the runs of each use, but for those that the fit left out."""
         return {use: self._mean(use, "error") for use in USES}
 
     @property
@@ -178,12 +178,12 @@ class Comparison(Shown):
     def rmse(self) -> dict[str, float | None]:
         """The RMSE averaged over the runs of each use; None where a run has none, or the outputs have several units."""
         units = {one.unit for one in self.runs}
-        known = {use: all(one.rmse is not None for one in self.runs if one.run.use == use) for use in USES}
+        known = {use: all(one.rmse is not None for one in self._meant(use)) for use in USES}
         return {use: self._mean(use, "rmse") if told and len(units) == 1 else None for use, told in known.items()}
 
     def error_of(self, use: str) -> ErrorOf:
         """The error on the runs of a use as a reader reads it."""
-        unstable = tuple(one.run.id for one in self.runs if one.run.use == use and one.unstable)
+        unstable = tuple(one.run.id for one in self._meant(use) if one.unstable)
         size = self.rmse[use]
         said = "" if size is None else quantity(size, self.runs[0].unit)
         return ErrorOf(self.error[use], self.error_with_mean[use], unstable, said)
@@ -212,8 +212,12 @@ class Comparison(Shown):
             for one in self.runs
         ]  # fmt: skip
 
+    def _meant(self, use: str) -> list[RunComparison]:
+        """The runs of a use that a mean is over: not those that the fit left out."""
+        return [one for one in self.runs if one.run.use == use and one.run.id not in self.fit.left_out]
+
     def _mean(self, use: str, what: str) -> float | None:
-        found = [run for run in self.runs if run.run.use == use]
+        found = self._meant(use)
         return float(over_runs([getattr(run, what) for run in found], [run.run for run in found])) if found else None
 
 

@@ -17,7 +17,7 @@ from ident.words.engineering import quantity
 from ident.words.error import UNSTABLE, ErrorOf, first_line
 from ident.words.shown import Listing, Shown
 
-_WHERE_KNOWN = ("structures", "window", "anchored_error", "starts", "machine", "actuator", "ended_early")
+_WHERE_KNOWN = ("structures", "window", "anchored_error", "starts", "machine", "actuator", "ended_early", "left_out")
 
 
 @dataclass(frozen=True)
@@ -154,8 +154,9 @@ class FitResult(Shown):
     `rmse_unit`, None where the outputs have several units; both are averaged as the error is. Earlier versions wrote
     the first as `anchored_error` alone, which is the same. `window` is there where the fit was made over windows.
     `evolution` belongs to the parameters `searched`, in that order. `actuator` is what was stated of the machine;
-    earlier versions did not keep it. The search of one that `ended_early` ran out of its time. `matrix` holds the data,
-    where the fit was made here.
+    earlier versions did not keep it. The search of one that `ended_early` ran out of its time. Runs that are `left_out`
+    were not fitted, and are in no mean over the runs to fit; they stand in `runs`. `matrix` holds the data, where the
+    fit was made here.
     """
 
     model: str
@@ -184,6 +185,7 @@ class FitResult(Shown):
     starts: Starts | None = None
     structures: tuple[Structure, ...] = ()
     ended_early: bool = False
+    left_out: tuple[str, ...] = ()
     searched: tuple[str, ...] = ()
     evolution: tuple[Generation, ...] = field(default=(), repr=False)
     actuator: Actuator | None = None
@@ -205,7 +207,8 @@ class FitResult(Shown):
     def error_of(self, use: str) -> ErrorOf:
         """The error on the runs of a use as a reader reads it: with the mean where it counts, and the unstable runs."""
         with_mean, size = (self.error_with_mean or self.anchored_error).get(use), self.rmse.get(use)
-        unstable = tuple(run.id for run in self.runs if run.use == use and run.unstable)
+        meant = (run for run in self.runs if run.use == use and run.id not in self.left_out)
+        unstable = tuple(run.id for run in meant if run.unstable)
         return ErrorOf(self.error.get(use), with_mean, unstable, quantity(size, self.rmse_unit) if size else "")
 
     @property

@@ -54,15 +54,17 @@ def summarise(
     verify = objective.fresh(verify_runs).exact(point, sensitivities=False).runs if verify_runs else ()
     fit_runs = matrix.of_use("fit")
     found = covariance(here, point, optimum.as_good)
-    window = _window(over_windows, point, found)
+    window = _window(over_windows, point, found, optimum.left_out)
     own = (
         here.runs
-        if preset.is_linear and not window
+        if preset.is_linear and not window and not optimum.left_out
         else objective.fresh(fit_runs).exact(point, sensitivities=False).runs
     )
     fit_errors, verify_errors = _run_errors(fit_runs, own), _run_errors(verify_runs, verify)
+    meant = [i for i, run in enumerate(fit_runs) if run.id not in optimum.left_out]
+    mean_runs, mean_errors = [fit_runs[i] for i in meant], [fit_errors[i] for i in meant]
     with_mean = {
-        "fit": _mean(fit_runs, fit_errors, "error_with_mean"),
+        "fit": _mean(mean_runs, mean_errors, "error_with_mean"),
         "verify": _mean(verify_runs, verify_errors, "error_with_mean"),
     }
     strengths = {p.in_equations for p in preset.parameters if p.of}
@@ -108,23 +110,24 @@ def summarise(
             for name in weak
         ),
         error={
-            "fit": _mean(fit_runs, fit_errors, "error"),
+            "fit": _mean(mean_runs, mean_errors, "error"),
             "held_out": None,
             "verify": _mean(verify_runs, verify_errors, "error"),
         },
         offset={
-            "fit": _mean(fit_runs, fit_errors, "offset"),
+            "fit": _mean(mean_runs, mean_errors, "offset"),
             "verify": _mean(verify_runs, verify_errors, "offset"),
         },
         anchored_error=with_mean,
         error_with_mean=with_mean,
         **rmse_of(
-            (*fit_errors, *verify_errors),
-            {"fit": [run.share for run in fit_runs], "verify": [run.share for run in verify_runs]},
+            (*mean_errors, *verify_errors),
+            {"fit": [run.share for run in mean_runs], "verify": [run.share for run in verify_runs]},
         ),
         window=window,
         starts=_labelled(optimum.starts, label),
         noise_floor=floors.of_use(matrix),
+        left_out=optimum.left_out,
         runs=(*fit_errors, *verify_errors),
         method=settings.method,
         seed=settings.seed,
@@ -157,7 +160,7 @@ def _mean(runs: Sequence[Run], found: Sequence[RunError], what: str) -> float | 
     return float(over_runs([getattr(of_run, what) for of_run in found], runs)) if runs else None
 
 
-def _window(fitness: Fitness, point: Array, known: Covariance) -> Window | None:
+def _window(fitness: Fitness, point: Array, known: Covariance, left_out: tuple[str, ...]) -> Window | None:
     """The windows of a fit that was made over them, the errors there, and between what those of the free run lie."""
     if not isinstance(fitness, SimulatedFitness) or fitness.horizon is None:
         return None
@@ -165,7 +168,7 @@ def _window(fitness: Fitness, point: Array, known: Covariance) -> Window | None:
     free_run: dict[str, tuple[float, ...]] = {}
     scatter = known.drawn(_DRAWN)
     for use in ("fit", "verify"):
-        if runs := fitness.matrix.of_use(use):
+        if runs := tuple(run for run in fitness.matrix.of_use(use) if run.id not in left_out):
             found = fitness.fresh(runs).exact(point, sensitivities=False).runs
             error[use] = float(over_runs([min(run.error, UNSTABLE) for run in found], runs))
             free = over_runs(

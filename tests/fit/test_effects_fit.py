@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from app.regress.recheck import on_the_same_runs
 from ident.effects.effect import Effect
 from ident.fit.identification import Identification
 from ident.fit.settings import Settings
@@ -16,7 +17,7 @@ from ident.fit.space import search_space
 from ident.matrix import Matrix, Specimen
 from ident.parameter import Parameter
 from ident.presets import PRESETS
-from ident.workflows import identify
+from ident.workflows import compare, identify
 from tests.fit.recovery import NOISE, matrix
 
 SETTINGS = Settings(effects=("dead_zone",), seed=4)
@@ -42,9 +43,17 @@ def test_one_bad_run_is_named_and_left_out(data):
     wrong = data.runs[5]
     changed = replace(wrong, specimen=Specimen(wrong.specimen.mass, wrong.specimen.stiffness + 60e3))
     runs = tuple(changed if run is wrong else run for run in data.runs)
-    found = identify(replace(data, runs=runs), SETTINGS)
+    matrix = replace(data, runs=runs)
+    found = identify(matrix, SETTINGS)
     assert any(wrong.id in note and "left out" in note for note in found.notes)
     assert {run.id: run.error for run in found.runs}[wrong.id] > 5 * NOISE
+    assert found.left_out == (wrong.id,)
+    others = [run.error for run in found.runs if run.use == "fit" and run.id != wrong.id]
+    assert found.error["fit"] == pytest.approx(np.mean(others))
+    assert compare(matrix, found).error["fit"] == pytest.approx(found.error["fit"], rel=1e-3)
+    earlier = replace(found, left_out=(), error={"fit": float(np.mean([*others, found.runs[5].error]))})
+    assert on_the_same_runs(found, found, matrix) == found.error
+    assert on_the_same_runs(found, earlier, matrix)["fit"] == pytest.approx(earlier.error["fit"], rel=1e-3)
     assert found.values["dead_zone.half_width"] == pytest.approx(2e-4, rel=0.01)
 
 
