@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
+from ident.bench.continued import ContinuedBench
 from ident.bench.diagnosis import diagnose_bench
 from ident.bench.identification import BenchIdentification
 from ident.bench.outputs import outputs as bench_outputs
@@ -21,6 +22,7 @@ from ident.design import proposal as design
 from ident.design.experiment import Experiment
 from ident.diagnosis import diagnose as diagnosis
 from ident.diagnosis.course import Course
+from ident.diagnosis.recommended import settings_after
 from ident.diagnosis.result import Diagnosis
 from ident.diagnosis.rivals import rivals
 from ident.diagnosis.stepwise import MOST, USUAL
@@ -29,6 +31,7 @@ from ident.diagnosis.unfitted import unfitted
 from ident.effects.effect import Effect
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.choices import Choices, settings_of
+from ident.fit.continued import ContinuedIdentification
 from ident.fit.identification import Identification, StepwiseFit, check_settings, completed
 from ident.fit.regressed import RegressedIdentification
 from ident.fit.result import FitResult
@@ -51,13 +54,15 @@ Diagnoser = Callable[[Matrix, FitResult, Sequence[Effect], Course], Diagnosis]
 class Served:
     """Who serves a kind of model: its fitter, those of methods of their own, its simulator and its diagnoser.
 
-    It `proposes` terms that no list holds where its models have signals inside.
+    `continued` is the fitter that begins where an earlier result ended, instead of with a search. It `proposes` terms
+    that no list holds where its models have signals inside.
     """
 
     fitter: Fitter
     simulator: Simulator
     diagnoser: Diagnoser
     by_method: Mapping[str, Fitter]
+    continued: Fitter
     proposes: bool = False
 
 
@@ -67,9 +72,10 @@ SERVED: Mapping[Kind, Served] = {
         comparison.modelled,
         diagnosis.diagnose,
         {"inverse-dynamics": RegressedIdentification, "ekf": KalmanIdentification},
+        ContinuedIdentification,
         proposes=True,
     ),
-    "bench": Served(BenchIdentification, bench_outputs, diagnose_bench, {}),
+    "bench": Served(BenchIdentification, bench_outputs, diagnose_bench, {}, ContinuedBench),
 }
 
 
@@ -90,16 +96,26 @@ def identification(matrix: Matrix, settings: Settings, report: Report = silent) 
         made = choice.made(named)
         return ChosenFit(Made(made) if made else identification(choice.matrix, named, report), choice.structures)
     served = _served(settings.model)
+    if settings.start is not None:
+        return served.continued(matrix, settings, report)
     return served.by_method.get(settings.method, served.fitter)(matrix, settings, report)
 
 
 def identify(
-    matrix: Matrix, settings: Settings | None = None, report: Report = silent, **choices: Unpack[Choices]
+    matrix: Matrix, settings: Settings | None = None, report: Report = silent,
+    start: FitResult | Diagnosis | None = None, **choices: Unpack[Choices],
 ) -> FitResult:  # fmt: skip
     """The whole fit in one call; `choices` stand over the settings, as effects=["dead_zone"], fixed={"tau": "1 ms"}.
 
-    Raises Unusable as :func:`identification`.
+    With a `start` it is the fit that begins where that ended, and nothing else is chosen; of a diagnosis the one that
+    it recommends, see :func:`ident.diagnosis.recommended.settings_after` for others. Raises Unusable as
+    :func:`identification`.
     """
+    if start is not None:
+        if settings is not None or choices:
+            raise Unusable("bad-option", "a start, and settings beside it", "start",
+                           "give one of them: model, effects and bounds are those of the start")  # fmt: skip
+        return replace(completed(identification(matrix, settings_after(start), report)), matrix=matrix)
     chosen = settings_of(choices, settings) if choices else settings or Settings()
     return replace(completed(identification(matrix, chosen, report)), matrix=matrix)
 

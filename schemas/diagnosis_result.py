@@ -199,7 +199,7 @@ class DiagnosisResult(BaseModel):
     """The contract's diagnose JSON.
 
     Not `complete`, the stages `not_looked_at` are missing: there was no time for them, or they failed. Of the terms
-    that were `looked_at` so many were `left_out`, for no model can hold them or they are not finite.
+    that were `looked_at` so many are `terms_left_out`, for no model can hold them or they are not finite.
     """
 
     model: str
@@ -207,13 +207,15 @@ class DiagnosisResult(BaseModel):
     baseline: BaselineView
     noise_floor: Errors
     horizon: float | None = None
+    memory: float | None = None
+    left_out: list[str] = Field(default_factory=list)
     budget: ErrorBudget | Nothing
     candidates: list[CandidateView]
     ladder: list[RungView]
     verdict: VerdictView
     proposals: list[TermView] = Field(default_factory=list)
     looked_at: int | None = None
-    left_out: int | None = None
+    terms_left_out: int | None = None
     complete: bool = True
     not_looked_at: list[str] = Field(default_factory=list)
     next_experiment: ProposalView | Nothing

@@ -30,11 +30,27 @@ class Chosen(BaseModel):
     budget: float | None = Field(default=None, gt=0)
 
 
+class StartRequest(BaseModel):
+    """The stored `fit` or `diagnosis` where a fit begins; of a diagnosis the model that it recommends.
+
+    `effects` take another model that the diagnosis refitted, with just these added, and `terms` the first of the terms
+    that it proposes. With `search` the whole space is searched too, and the better end is the fit.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+    fit: str | None = None
+    diagnosis: str | None = None
+    effects: list[str] = Field(default_factory=list, max_length=50)
+    terms: int | None = Field(default=None, ge=0)
+    search: bool = False
+
+
 class FitRequest(Chosen):
-    """A fit to be queued."""
+    """A fit to be queued; one with a `start` begins where an earlier result ended, and chooses nothing else."""
 
     matrix: str
     parent: str | None = None
+    start: StartRequest | None = None
 
 
 class EffectsRequest(BaseModel):
@@ -42,13 +58,15 @@ class EffectsRequest(BaseModel):
 
     A definition whose name is not among `effects` is added all the same; names are those of `/effects`, of
     `/own-effects`, and of what the newest diagnosis of the fit ranked or proposes: a proposed term is added with those
-    before it and the effects that they stand on.
+    before it and the effects that they stand on. Where the `diagnosis` of the fit refitted the model with just these,
+    the new fit begins there.
     """
 
     model_config = ConfigDict(extra="forbid")
     effect: str | None = None
     effects: list[str] = Field(default_factory=list, max_length=50)
     custom: list[dict[str, Any] | str] = Field(default_factory=list, max_length=10)
+    diagnosis: str | None = None
 
 
 class ExpectedView(BaseModel):

@@ -1,6 +1,6 @@
 """What a fit and a diagnosis hold, in the contract's words: one JSON over HTTP and in the files of the commands."""
 
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -33,6 +33,22 @@ class DefinitionView(BaseModel):
     source: Entry = None
 
 
+class StartView(BaseModel):
+    """Where a fit begins: the end of a `fit`, or of a refit of a `diagnosis`, `values` SI by parameter.
+
+    `horizon` and `memory` (s) are those of its windows, `left_out` the runs that it was not fitted to.
+    """
+
+    of: Literal["fit", "diagnosis"]
+    values: dict[str, float]
+    horizon: float | None = None
+    memory: float | None = None
+    left_out: list[str] = Field(default_factory=list)
+    error: float | None = None
+    data_hash: str = ""
+    search: bool = False
+
+
 class SettingsView(BaseModel):
     """What was chosen about a fit, SI; an earlier version may not have known all of it, which is then absent."""
 
@@ -46,6 +62,7 @@ class SettingsView(BaseModel):
     options: dict[str, Number] = Field(default_factory=dict)
     custom: list[DefinitionView] = Field(default_factory=list)
     budget: Number | None = None
+    start: StartView | None = None
 
 
 class ErrorBudget(BaseModel):

@@ -123,7 +123,7 @@ def _tell(found: Diagnosis, target: Path | None) -> None:
     if target != STANDARD_OUTPUT:
         from app.cli.diagnosis_tables import show_diagnosis
 
-        show_diagnosis(found)
+        show_diagnosis(found, *([str(target)] if target is not None else []))
 
 
 @contextmanager

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli.fit_options import (
+    AlsoSearch,
     Bounds,
     Budget,
     Custom,
@@ -21,6 +22,7 @@ from app.cli.fit_options import (
     Options,
     Profiled,
     Seed,
+    StartFile,
     Terms,
     Values,
     modelled,
@@ -38,6 +40,8 @@ if TYPE_CHECKING:
 
 def fit(
     matrix: MatrixPath,
+    start: StartFile = None,
+    search: AlsoSearch = False,
     model: Model = None,
     effect: Effects = None,
     custom: Custom = None,
@@ -56,12 +60,22 @@ def fit(
 
     Of a folder of matrices each is fitted, and a table has them all.
     """
+    from app.cli.start import Searched, StartOptions
     from ident.readers import read_matrix
     from ident.workflows import identify
 
     check_target(json)
+    continued = None
+    if start is not None:
+        others = {"--model": model, "--custom": custom, "--bounds": bounds, "--set": set_, "--load": load != "none"}
+        how = Searched(method, seed, tuple(option or ()), budget)
+        continued = StartOptions(start, tuple(effect or ()), terms, search, how, others).settings()
+    elif search:
+        raise Unusable("bad-option", "a search beside a start, and no start", "--search", "give --start FILE.json")
 
     def fitted(path: Path, report: Report) -> FitResult:
+        if continued is not None:
+            return identify(read_matrix(path), continued, report)
         named, choice = modelled(read_matrix(path), model, report)
         chosen = settings(named, effect, method, bounds, set_, load, seed, option, custom, budget, terms)
         result = choice.made(chosen) or identify(choice.matrix, chosen, report)

@@ -43,7 +43,23 @@ Custom = Annotated[
 ]
 Terms = Annotated[
     int | None,
-    typer.Option("--terms", metavar="N", help="Of the terms that a diagnosis proposes take the first N only."),
+    typer.Option(
+        "--terms",
+        metavar="N",
+        help="Of the terms that a diagnosis proposes take the first N only (with --start also 0).",
+    ),
+]
+StartFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--start",
+        metavar="FILE.json",
+        help="Begin where a fit or a diagnosis ended, and refine that: its model, effects, terms, windows and runs. Of "
+        "a diagnosis --effect takes another of its candidates.",
+    ),
+]
+AlsoSearch = Annotated[
+    bool, typer.Option("--search", help="With --start: search the whole space, too, and take the better end.")
 ]
 Ranked = Annotated[
     list[Path] | None,

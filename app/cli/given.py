@@ -31,6 +31,18 @@ def read_diagnosis(path: Path) -> Diagnosis:
     return _read(path, Diagnosis.from_json)
 
 
+def read_result(path: Path) -> FitResult | Diagnosis:
+    """The fit or the diagnosis of a JSON file; raises Unusable where it is neither."""
+    from ident.diagnosis.result import Diagnosis
+    from ident.fit.result import FitResult
+
+    def either(data: object) -> FitResult | Diagnosis:
+        is_diagnosis = isinstance(data, dict) and "candidates" in data
+        return Diagnosis.from_json(data) if is_diagnosis else FitResult.from_json(data)
+
+    return _read(path, either)
+
+
 def _read(path: Path, reader: Callable[[object], T]) -> T:
     """What the file holds; a refusal names the file."""
     try:

@@ -10,7 +10,7 @@ from app.access.roles import LAB, READERS
 from app.access.who import Me
 from app.context import Here
 from app.errors import COMMON
-from app.fits import drawing, export, lineage, service, sizes
+from app.fits import drawing, export, lineage, service, sizes, starting
 from app.idempotency import Answer, Key, fingerprint, once, queued_once
 from schemas.fit import (
     ComparisonView,
@@ -38,9 +38,9 @@ Rate = Annotated[str, Query(max_length=60, description="Samples a second; withou
 
 @router.post("", dependencies=[LAB], status_code=202, response_model=JobView)
 def start_fit(here: Here, me: Me, request: FitRequest, key: Key = None) -> Response:
-    """Queue a fit; Location is its job."""
+    """Queue a fit, by a search or from where an earlier result ended; Location is its job."""
     asked = fingerprint("fit", request.model_dump())
-    return queued_once(here, key, asked, lambda job: service.submit(here, request, job, me.name))
+    return queued_once(here, key, asked, lambda job: starting.submit(here, request, job, me.name))
 
 
 @router.get("/{fit}", dependencies=[READERS], response_model_exclude_unset=True)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from app.context import Context
 from app.diagnoses import service as diagnoses
 from app.errors import Failure
-from app.fits import repository, service
+from app.fits import repository, service, starting
 from app.own_effects.naming import defined, every
 from app.tables import FitRow
 from ident.custom.definition import definition_of
@@ -28,9 +28,14 @@ def add(context: Context, fit_id: str, request: EffectsRequest, job: str, who: s
     names = [*([request.effect] if request.effect is not None else []), *request.effects]
     if not names and not more:
         raise Failure(422, "bad-request", "no effect is given", "effect", "name one of those at /api/v1/effects")
+    if request.diagnosis is not None:
+        wanted = [*dict.fromkeys([*names, *(str(definition["name"]) for definition in more)])]
+        begun = starting.with_effects(context, fit_id, request.diagnosis, wanted)
+        if begun is not None and begun.effects != fit.effects:
+            return service.queue(context, job, parent.matrix, begun, parent.id, who)
     newest, _ = diagnoses.of_fit(context, fit_id)
     settings = with_named(
-        replace(settings, effects=fit.effects), names, more, newest.found if newest else None,
+        replace(settings, effects=fit.effects, start=None), names, more, newest.found if newest else None,
         lambda: {kept.name: kept.definition for kept in every(context)},
     )  # fmt: skip
     return service.queue(context, job, parent.matrix, settings, parent.id, who)

@@ -70,10 +70,13 @@ def settings_facts(settings: dict[str, Any]) -> tuple[tuple[str, str], ...]:
     """What the user chose, as far as it is not empty."""
     names = ("model", "effects", "method", "seed", "budget", "bounds", "fixed", "load", "options", "max_effects",
              "time", "parameter", "case", "controller", "ground")  # fmt: skip
-    chosen = ((name, settings.get(name)) for name in names)
-    return tuple(
+    start = settings.get("start")
+    of_search = () if not start or start["search"] else ("method", "seed", "options")
+    chosen = ((name, settings.get(name)) for name in names if name not in of_search)
+    facts = tuple(
         (title(name).capitalize(), _words(value)) for name, value in chosen if value not in (None, [], {}, "none")
     )
+    return (*facts, ("Begins", f"where a {start['of']} ended")) if start else facts
 
 
 def _words(value: Any) -> str:

@@ -9,6 +9,7 @@ from app.report.blocks import Block, Facts, Figure, Formula, Heading, Report, Ta
 from app.report.rows import budget_rows, candidate_rows, curve_rows, group_tables, ladder_steps, trend_rows
 from ident.checks.check import check
 from ident.custom.definition import preset_with
+from ident.diagnosis.recommended import next_command
 from ident.diagnosis.result import Diagnosis
 from ident.diagnosis.words import not_told
 from ident.errors import Unusable
@@ -127,6 +128,8 @@ def _missing(diagnosis: Diagnosis, matrix: Matrix) -> Iterator[Block]:
         yield Text(f"These data {not_told(group, verdict.effects)}.")
     for suspect in verdict.suspects:
         yield Text(f"Doubtful: run {suspect.run}: {suspect.what}")
+    if command := next_command(diagnosis):
+        yield Text(command)
     if steps := ladder_steps(diagnosis):
         chart = ladder(steps, diagnosis.noise_floor.get("fit"), matrix.actuator, look("light"))
         yield Figure("ladder", chart, "The error with each effect added")

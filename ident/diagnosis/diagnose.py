@@ -69,11 +69,13 @@ def diagnose(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], course: C
     `custom` are effects beside the catalogue's. Verify runs only report. Raises Unusable where matrix and fit do not
     go together.
     """
-    given = replace(Settings.from_json(dict(fit.settings)), effects=()) if fit.settings else Settings(model=fit.model)
+    given = Settings.from_json(dict(fit.settings)) if fit.settings else Settings(model=fit.model)
+    begun_without = given.start.left_out if given.start else ()
+    given = replace(given, effects=(), start=None)
     over = (fit.window.horizon, fit.window.memory) if fit.window else (None, None)
     with course.budget.running():
         try:
-            models = ModelFamily.of(matrix, given, custom, *over)
+            models = ModelFamily.of(matrix, given, custom, *over).without(begun_without)
             found = Diagnoser(models, fit, course, others(matrix, fit, custom)).diagnosis(matrix, custom)
         except TimeIsUp:
             found = unranked(matrix, fit, course.taken)
@@ -130,7 +132,7 @@ class Diagnoser:
             verdict=replace(named.verdict, text=text),
             proposals=proposed.found,
             looked_at=proposed.looked_at,
-            left_out=proposed.left_out,
+            terms_left_out=proposed.left_out,
             complete=not missing,
             not_looked_at=missing,
             notes=(*found.notes, *(() if going_on else _refused(proposed, self.course.propose)), *self.stages.notes),
@@ -140,7 +142,7 @@ class Diagnoser:
         """What the catalogue gives, without the runs that are doubted, and these. Raises TimeIsUp before it begins."""
         selection = self._added(self.models)
         doubted = self._doubted(selection)
-        if doubted:
+        if {suspect.run for suspect in doubted} - selection.models.left_out:
             sound = selection.models.without(suspect.run for suspect in doubted)
             again = self.stages.attempt(FURTHER, lambda: self._added(sound), None)
             if again is not None:
@@ -237,6 +239,8 @@ class Diagnoser:
             baseline=Baseline(dict(ladder[0].error), base.offset, base.errors_with_mean, base.unstable),
             noise_floor=floor,
             horizon=models.horizon,
+            memory=models.memory,
+            left_out=tuple(run.id for run in self.models.matrix.runs if run.id in models.left_out),
             candidates=tuple(self._ranked(selection, floor["fit"])),
             ladder=tuple(ladder),
             verdict=self._verdict(selection, steps, doubted, floor["fit"], pairs),

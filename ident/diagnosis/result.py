@@ -193,11 +193,12 @@ class Diagnosis(Shown):
     """Everything that was found about one fit of one matrix; `effects` are those that the fit had.
 
     `budget` is None where the model is unstable at every run, `next_experiment` where no run can be proposed. With a
-    `horizon` (s) every error is that over windows of this length, as `window` of the fit says it. Not `complete`, it is
-    what had been found when the search was stopped, or goes on; `not_looked_at` are the stages that are missing.
-    `proposals` are terms that no list holds, of as many that were `looked_at`, of which so many were `left_out`, for no
-    model can hold them or they are not finite: they are no part of the verdict. None is what an earlier version did
-    not tell. `matrix` holds the data, where the diagnosis was made here.
+    `horizon` (s) every error is that over windows of this length, as `window` of the fit says it (`memory`, s, too).
+    Runs that are `left_out`, for their labels are doubted, are in no refit and no error. Not `complete`, it is what had
+    been found when the search was stopped, or goes on; `not_looked_at` are the stages that are missing. `proposals`
+    are terms that no list holds, of as many that were `looked_at`: they are no part of the verdict. `terms_left_out` of
+    these no model can hold, or they are not finite. None is what an earlier version did not tell. `matrix` holds the
+    data, where the diagnosis was made here.
     """
 
     model: str = "qian2014"
@@ -205,13 +206,15 @@ class Diagnosis(Shown):
     baseline: Baseline = Baseline()
     noise_floor: Errors = field(default_factory=dict)
     horizon: float | None = None
+    memory: float | None = None
+    left_out: tuple[str, ...] = ()
     budget: Budget | None = None
     candidates: tuple[Ranked, ...]
     ladder: tuple[Rung, ...] = ()
     verdict: Verdict
     proposals: tuple[Proposal, ...] | None = None
     looked_at: int | None = None
-    left_out: int | None = None
+    terms_left_out: int | None = None
     complete: bool = True
     not_looked_at: tuple[str, ...] = ()
     next_experiment: NextRun | None = None
@@ -249,12 +252,13 @@ class Diagnosis(Shown):
         data: dict[str, Any] = written(self) | {"proposals": [one.to_json() for one in self.proposals or ()]}
         if self.proposals is None:
             del data["proposals"]
-        if self.horizon is None:
-            del data["horizon"]
+        for name in ("horizon", "memory", "left_out"):
+            if not data[name]:
+                del data[name]
         if self.looked_at is None:
             del data["looked_at"]
-        if self.left_out is None:
-            del data["left_out"]
+        if self.terms_left_out is None:
+            del data["terms_left_out"]
         if not self.verdict.stood_in:
             del data["verdict"]["stood_in"]
         if self.verdict.standing is None:

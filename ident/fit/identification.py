@@ -38,11 +38,11 @@ from ident.words.error import UNSTABLE
 from ident.words.nearest import did_you_mean
 
 Array = NDArray[np.float64]
-_SEARCHED = 65_536  # samples of a search with effects; the polish takes every sample
+SEARCHED = 65_536  # samples of a search with effects; the polish takes every sample
 _FURTHER = 16  # members of the first generation that it starts from, too, where those do not settle it
 _JUDGED = 8  # runs of a matrix that are looked at for a controller
 _WITH_NOISE = "windows begun anew where it was measured are fitted, for plain output error would be biased"
-_CANDIDATES = 5  # distinct vectors of the last generation from which the polish starts
+CANDIDATES = 5  # distinct vectors of the last generation from which the polish starts
 
 
 class Identification:
@@ -73,7 +73,7 @@ class Identification:
         if is_simulated(self.preset, matrix):
             absolute = self.preset.absolute
             self.objective = SimulatedFitness(self.preset, matrix, self._runs, band, space, absolute=absolute)
-            self.searched: Fitness = replace(self.objective, roughly=True).fresh(shortened(self._runs, _SEARCHED))
+            self.searched: Fitness = replace(self.objective, roughly=True).fresh(shortened(self._runs, SEARCHED))
         else:
             self.objective = self.searched = LinearFitness(self.preset, matrix, self._runs, space, Basis(band))
         options = options_of(settings, self.preset)
@@ -155,6 +155,10 @@ class Identification:
 
     def finish(self, state: State) -> FitResult:
         """Polish (all methods but the paper's), errors of every run, uncertainty."""
+        return self.told(self.optimum(state), state)
+
+    def optimum(self, state: State) -> Optimum:
+        """Where the polish of the best of a search ends."""
         self._take_up(state)
         objective = self.objective
         # Counted from the state, so that a search that was cut by a restart counts the same.
@@ -162,22 +166,25 @@ class Identification:
         objective.unstable = sum(error >= UNSTABLE for entry in state["history"] for error in entry["errors"])
         nothing = np.empty((0, len(objective.space.axes)))
         if not objective.space.axes:
-            found = Optimum(objective, np.empty(0), objective.exact(np.empty(0)), nothing)
-        elif self.settings.method == "paper-ga":
+            return Optimum(objective, np.empty(0), objective.exact(np.empty(0)), nothing)
+        if self.settings.method == "paper-ga":
             point = np.array(state["best"])
-            found = Optimum(objective, point, objective.exact(point), nothing)
-        else:
-            members = np.concatenate([np.array(state["best"])[None], np.array(state["population"])])
-            # The last of the first generation were drawn over the whole space.
-            count = int(self.search.options.get("starts", 0))
-            drawn = np.array(state["history"][0]["population"])[: -max(_FURTHER, count) - 1 : -1]
-            found = multistart(self.searched, objective, distinct(members, _CANDIDATES), self.report, drawn, count)
-            # A measured motion that a specimen integrates is known; only what a command drives is disturbed on its way.
-            if self._integrates and self.preset.driven_by == "command":
-                if not state.get("horizon"):
-                    found = in_windows(found, self.report, whole=not self._fed_back)
-                elif not self._fed_back:
-                    found = in_longer_windows(found, self.report)
+            return Optimum(objective, point, objective.exact(point), nothing)
+        members = np.concatenate([np.array(state["best"])[None], np.array(state["population"])])
+        # The last of the first generation were drawn over the whole space.
+        count = int(self.search.options.get("starts", 0))
+        drawn = np.array(state["history"][0]["population"])[: -max(_FURTHER, count) - 1 : -1]
+        found = multistart(self.searched, objective, distinct(members, CANDIDATES), self.report, drawn, count)
+        # A measured motion that a specimen integrates is known; only what a command drives is disturbed on its way.
+        if self._integrates and self.preset.driven_by == "command":
+            if not state.get("horizon"):
+                return in_windows(found, self.report, whole=not self._fed_back)
+            if not self._fed_back:
+                return in_longer_windows(found, self.report)
+        return found
+
+    def told(self, found: Optimum, state: State) -> FitResult:
+        """The result of a fit that ended at an optimum: errors of every run, uncertainty, notes."""
         self.report(Progress("uncertainty", 0, 1, found.here.error))
         seconds = time.monotonic() - self._started
         result = with_bulk_modulus(summarise(self.settings, found, state, self.floors, seconds))

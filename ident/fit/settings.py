@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ident.errors import Unusable
+from ident.fit.start import Start
 from ident.plain import Misfit, read, written
 
 GENERAL = ("ga", "paper-ga", "differential-evolution", "cma-es")
@@ -22,7 +23,8 @@ class Settings:
     model, like those of the catalogue. `bounds` maps a parameter's name to (lower, upper), `fixed` to the value it is
     held at, all SI. With every parameter fixed nothing is searched and the result is the error of that model. Without a
     `model` ("") that which fits is taken, of those that the channels allow. The search ends with the generation that
-    goes beyond `budget`, s; with one, two fits need not be the same.
+    goes beyond `budget`, s; with one, two fits need not be the same. With a `start` the fit begins where an earlier one
+    ended, and nothing is searched unless that asks for it.
     """
 
     model: str = "qian2014"
@@ -35,11 +37,12 @@ class Settings:
     options: Mapping[str, float] = field(default_factory=dict)  # of the method: population, keep, mutation, ...
     custom: tuple[Mapping[str, Any], ...] = ()
     budget: float | None = None
+    start: Start | None = None
 
     def to_json(self) -> dict[str, Any]:
-        """As plain JSON data."""
+        """As plain JSON data; a start that is not there is left out."""
         data: dict[str, Any] = written(self)
-        return data
+        return {name: entry for name, entry in data.items() if name != "start" or entry is not None}
 
     @classmethod
     def from_json(cls, data: object) -> Settings:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,10 +29,12 @@ class SimulatedFitness(SimulatedRuns):
     `evaluations` counts parameter vectors, `unstable` those that were unstable at some run. A search that is `trusting`
     believes what better first states promise where that is worse than what it has. To follow them there is most of what
     a step that fails costs, and mostly in vain; not of a machine in saturation, though, where a search begins anywhere.
+    `known` are first states that every fresh copy begins with.
     """
 
     space: Space
     trusting: bool = field(default=False, kw_only=True)
+    known: Mapping[str, Array] = field(default_factory=dict, kw_only=True)
     evaluations: int = 0
     unstable: int = 0
 
@@ -117,7 +120,19 @@ class SimulatedFitness(SimulatedRuns):
 
     def fresh(self, runs: tuple[Run, ...]) -> SimulatedFitness:
         """The same for other runs, which know nothing of this search."""
-        return replace(self, runs=runs, starts={}, evaluations=0, unstable=0)
+        return replace(self, runs=runs, starts=dict(self.known), evaluations=0, unstable=0)
+
+    def whole(self) -> Self:
+        """The same over whole runs, as eq. (17) sees them: first states of windows are none of theirs."""
+        found = super().whole()
+        return found if self.horizon is None else replace(found, known={})
+
+    def followed(self, point: Array, rounds: int) -> SimulatedFitness:
+        """The same with the first states at a point known, which are followed closer there than a search needs it."""
+        for _ in range(rounds):
+            self._accept(self.exact(point))
+            self.exact(point, sensitivities=False)
+        return replace(self, known=dict(self.starts))
 
     def outputs(self, point: Array) -> dict[str, Array]:
         """The model's output of each run, with the first state that fits best."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import zipfile
 from typing import Any
 
@@ -15,9 +16,12 @@ from app.diagnoses.work import DIAGNOSIS
 from app.jobs import repository
 from app.jobs.steps import Runs
 from app.jobs.work import Kept, Kind, State, Task, Work
+from ident.diagnosis.result import Diagnosis
 from ident.progress import Progress
+from ident.readers import read_matrix
+from ident.workflows import identify
 from tests.app.conftest import reached
-from tests.hidden_dead_zone import HALF_WIDTH, zipped
+from tests.hidden_dead_zone import HALF_WIDTH, write, zipped
 
 API = "/api/v1"
 OWN = {
@@ -61,6 +65,55 @@ def diagnosis(service: TestClient, linear: str) -> dict[str, Any]:
     assert [one["effect"] for one in job["progress"]["added"]] == ["dead_zone"]
     assert job["progress"]["added"][0]["error"] == found["ladder"][1]["error"]["held_out"]
     return found
+
+
+def promised(service: TestClient, answer: Any, diagnosis: dict[str, Any]) -> dict[str, Any]:
+    """The fit that a 202 leads to: it begins where the diagnosis ended, and ends at or below that."""
+    job = ended(service, answer)
+    assert job["state"] == "succeeded", job
+    assert (job["parent"], job["settings"]["start"]["of"]) == (diagnosis["fit"], "diagnosis")
+    fit: dict[str, Any] = service.get(f"{API}/fits/{job['fit']}").json()["result"]
+    assert (fit["effects"], fit["method"]) == (["dead_zone"], "refinement")
+    assert fit["error"]["fit"] <= (1 + 1e-6) * diagnosis["ladder"][-1]["error"]["fit"]
+    return fit
+
+
+def test_the_recommended_fit_is_one_and_the_same_by_every_way(service, diagnosis, linear, matrix, tmp_path):
+    """`POST /fits` with a start, what the page's button sends, and the library; a fit may go on from a fit as well."""
+    start = {"diagnosis": diagnosis["id"]}
+    first = promised(service, service.post(f"{API}/fits", json={"matrix": matrix, "start": start}), diagnosis)
+    asked = {"effects": ["dead_zone"], "diagnosis": diagnosis["id"]}
+    second = promised(service, service.post(f"{API}/fits/{linear}/effects", json=asked), diagnosis)
+    own = identify(read_matrix(write(tmp_path / "m")), start=Diagnosis.from_json(diagnosis))
+    assert first["parameters"] == second["parameters"] == json.loads(json.dumps(own.to_json()["parameters"]))
+    job = ended(service, service.post(f"{API}/fits", json={"matrix": matrix, "start": {"fit": linear}}))
+    assert (job["state"], job["parent"]) == ("succeeded", linear)
+    stored = [service.get(f"{API}/fits/{fit}").json()["result"]["error"]["fit"] for fit in (linear, job["fit"])]
+    assert stored[1] <= (1 + 1e-6) * stored[0]
+    assert service.get(f"/jobs/{job['id']}").status_code in (200, 404)
+
+
+def test_every_button_of_a_diagnosis_names_it(service, diagnosis, linear):
+    """So that the fit that it adds begins where the diagnosis ended."""
+    page = service.get(f"/fits/{linear}").text
+    section = page[page.index('id="missing"') : page.index("Terms of the signals") if "Terms of the" in page else None]
+    forms = re.findall(r'<form[^>]*data-add="[^"]*"[^>]*>', section)
+    named = [form for form in forms if f'data-diagnosis="{diagnosis["id"]}"' in form]
+    assert len(named) >= len([one for one in diagnosis["candidates"] if one["parameters"]])
+
+
+@pytest.mark.parametrize(("start", "beside", "said"), [
+    ({}, {}, "a start is the end of a fit or of a diagnosis"), ({"fit": "f", "diagnosis": "d"}, {}, "name one of them"),
+    ({"diagnosis": "DIAGNOSIS"}, {"model": "strano"}, "model beside it"),
+    ({"diagnosis": "DIAGNOSIS"}, {"seed": 4}, "seed beside it"),
+    ({"diagnosis": "DIAGNOSIS", "effects": ["stiction"]}, {}, "refitted no model with just stiction"),
+    ({"diagnosis": "nothing"}, {}, "no diagnosis"), ({"fit": "nothing"}, {}, "no fit"),
+])  # fmt: skip
+def test_a_start_that_cannot_be_is_refused(service, diagnosis, matrix, start, beside, said):
+    start = {name: diagnosis["id"] if value == "DIAGNOSIS" else value for name, value in start.items()}
+    answer = service.post(f"{API}/fits", json={"matrix": matrix, "start": start, **beside})
+    assert answer.status_code in (404, 422)
+    assert said in answer.text
 
 
 @pytest.fixture(scope="module")

@@ -122,12 +122,17 @@ def test_a_proposed_term_goes_from_a_diagnosis_into_a_fit(servoident, tmp_path):
     (term,) = json.loads(found.read_text())["proposals"]
     assert term["equation"] == "w = w + s * (w * exp(-((x - xm) / d)**2))"
     assert "acts at one part of the way" in " ".join(done.stdout.split())
-    assert "--custom D.json" in done.stdout
+    assert f"`servoident fit MATRIX --start {found}`" in " ".join(done.stdout.split())
     assert "Beyond the catalogue a search proposes: w = w + s * (w * exp(" in " ".join(done.stdout.split())
-    done = servoident("fit", matrix, "--custom", found, "--json", fitted)
-    assert done.returncode == 0, done.stderr
-    fit = json.loads(fitted.read_text())
-    assert fit["effects"] == ["proposed_1"]
+    promised = json.loads(found.read_text())["proposals"][0]["error"]["fit"]
+    for how in ("--custom", "--start"):
+        done = servoident("fit", matrix, how, found, "--json", fitted)
+        assert done.returncode == 0, done.stderr
+        fit = json.loads(fitted.read_text())
+        assert fit["effects"] == ["proposed_1"]
+    assert fit["error"]["fit"] <= (1 + 1e-6) * promised
+    done = servoident("fit", matrix, "--start", found, "--terms", 0, "--json", "-")
+    assert json.loads(done.stdout)["effects"] == []
     assert fit["error"]["verify"] < 1.05 * hidden_bump.NOISE
     done = servoident(*asked)
     assert done.returncode == 0, done.stderr
@@ -135,3 +140,39 @@ def test_a_proposed_term_goes_from_a_diagnosis_into_a_fit(servoident, tmp_path):
     done = servoident("fit", matrix, "--custom", found)
     assert done.returncode == 2
     assert "the diagnosis proposes no term; its notes say why" in done.stderr
+
+
+def test_the_recommended_fit_begins_where_the_diagnosis_ended(servoident, matrix, told, tmp_path):
+    """Its errors are those of the last rung, and a fit goes on from a fit as well."""
+    printed, found = told
+    diagnosis, fitted = tmp_path / "D.json", tmp_path / "fit.json"
+    diagnosis.write_text(json.dumps(found))
+    assert "makes the recommended fit, with dead zone: it begins where the diagnosis ended" in " ".join(printed.split())
+    for start in (diagnosis, fitted):
+        done = servoident("fit", matrix, "--start", start, "--json", fitted)
+        assert done.returncode == 0, done.stderr
+        fit = json.loads(fitted.read_text())
+        assert (fit["effects"], fit["method"]) == (["dead_zone"], "refinement")
+        assert fit["error"]["fit"] <= (1 + 1e-6) * found["ladder"][-1]["error"]["fit"]
+        assert fit["settings"]["start"]["of"] == ("diagnosis" if start == diagnosis else "fit")
+
+
+@pytest.mark.parametrize(("options", "said"), [
+    (("--model", "strano"), "--model beside a start"), (("--seed", 3), "options of a search, and none is made"),
+    (("--effect", "stiction"), "refitted no model with just stiction added; choose from dead_zone"),
+    (("--terms", 1), "1 term of 0"), (("--bounds", "tau=1 ms:9 ms", "--load", "force"), "--bounds and --load beside"),
+])  # fmt: skip
+def test_what_does_not_go_with_a_start_is_refused_in_a_line(servoident, matrix, told, tmp_path, options, said):
+    diagnosis = tmp_path / "D.json"
+    diagnosis.write_text(json.dumps(told[1]))
+    done = servoident("fit", matrix, "--start", diagnosis, *options)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_a_search_without_a_start_and_a_file_that_is_no_result_are_refused(servoident, matrix):
+    for options in (("--search",), ("--start", matrix / "matrix.yaml"), ("--start", matrix / "nothing.json")):
+        done = servoident("fit", matrix, *options)
+        assert done.returncode == 2
+        assert len(done.stderr.strip().splitlines()) == 1

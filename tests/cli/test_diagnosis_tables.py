@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
 from app.cli.diagnosis_tables import show_diagnosis
 from app.cli.fit_options import settings
+from ident.diagnosis.estimate import Found
 from ident.diagnosis.proposals.proposal import Proposal
-from ident.diagnosis.result import Diagnosis, Verdict
+from ident.diagnosis.result import Diagnosis, Rung, Verdict
 
 STRENGTH = {"symbol": "s", "lower": -1e-10, "upper": 1e-10}
 LEAK = {
@@ -39,13 +40,21 @@ def diagnosis(tmp_path) -> Path:
     return file
 
 
-def test_the_command_that_adds_terms_says_what_it_adds(capsys):
-    def printed(*beside: str) -> str:
-        show_diagnosis(SimpleNamespace(proposals=(term(LEAK, *beside),), listings=list, seed=0, seconds=1.0))
+def test_what_is_printed_ends_with_the_command_that_makes_the_recommended_fit(capsys):
+    """By the file that the JSON was written to; where nothing is to be added there is none."""
+
+    def printed(**found: Any) -> str:
+        show_diagnosis(Diagnosis(candidates=(), verdict=Verdict(), **found), "out/found.json")
         return " ".join(capsys.readouterr().out.split())
 
-    assert "`servoident fit MATRIX --custom D.json` adds the terms, with" in printed()
-    assert "--custom D.json` adds the terms and what they stand beside, with" in printed("coulomb_friction")
+    values = {"Z0": Found(3e-6, "m^4/s", None, "Z0")}
+    first = Rung(error={"fit": 0.2}, parameters=values)
+    ladder = (first, Rung(added="dead_zone", error={"fit": 0.0463}, parameters=values))
+    command = "`servoident fit MATRIX --start out/found.json` makes the recommended fit, with "
+    assert f"{command}dead zone: it begins where the diagnosis ended, at 4.63 %." in printed(ladder=ladder)
+    told = printed(ladder=ladder, proposals=(term(LEAK, "coulomb_friction"),))
+    assert f"{command}coulomb friction, proposed 1: it begins where the diagnosis ended, at 10.0 %. --terms N" in told
+    assert "--start" not in printed(ladder=(first,))
 
 
 @pytest.mark.parametrize(("terms", "beside"), [

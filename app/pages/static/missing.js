@@ -39,12 +39,13 @@ function link(address, text) {
   return made;
 }
 
-// The effects by name, with the definitions of those that are the user's own.
+// The effects by name, with the definitions of those that are the user's own, and the diagnosis whose refit they are of.
 function wanted(form) {
   const fields = new FormData(form);
   const option = form.querySelector("select")?.selectedOptions[0];
   const custom = [...fields.getAll("custom"), option?.dataset.custom].filter(Boolean).map((text) => JSON.parse(text));
-  return { effects: fields.getAll("effects"), custom };
+  const diagnosis = form.dataset.diagnosis;
+  return { effects: fields.getAll("effects"), custom, ...(diagnosis && { diagnosis }) };
 }
 
 function onSubmit(form, work) {

@@ -1,0 +1,59 @@
+"""`fit --start FILE.json`: the settings of a fit that begins where a fit or a diagnosis ended."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.arguments import method_options
+from app.cli.given import read_result
+from ident.errors import Unusable
+
+if TYPE_CHECKING:
+    from ident.fit.settings import Settings
+
+
+@dataclass(frozen=True)
+class Searched:
+    """How the whole space is to be searched beside the start; as usual where nothing is said."""
+
+    method: str = "ga"
+    seed: int = 0
+    option: Sequence[str] = ()
+    budget: float | None = None
+
+
+@dataclass(frozen=True)
+class StartOptions:
+    """What the command line says about a start: the file, which of its models, and what else was given beside it.
+
+    `searched` is None where nothing but the start is refined; `others` are options that the file has decided, by name,
+    with what was given for each.
+    """
+
+    file: Path
+    effects: Sequence[str] = ()
+    terms: int | None = None
+    search: bool = False
+    searched: Searched = field(default_factory=Searched)
+    others: Mapping[str, object] = field(default_factory=dict)
+
+    def settings(self) -> Settings:
+        """The settings of the fit that the file leads to. Raises Unusable."""
+        from ident.diagnosis.recommended import settings_after
+
+        given = [name for name, value in self.others.items() if value]
+        if given:
+            raise Unusable("bad-option", f"{' and '.join(given)} beside a start", "--start",
+                           "leave it out: model, effects and bounds are those of the file")  # fmt: skip
+        found = settings_after(read_result(self.file), self.effects, self.terms, self.search)
+        if not self.search:
+            if self.searched != Searched():
+                raise Unusable("bad-option", "options of a search, and none is made", "--start",
+                               "add --search, or leave out --method, --seed, --option and --budget")  # fmt: skip
+            return found
+        how = self.searched
+        options = method_options(list(how.option))
+        return replace(found, method=how.method, seed=how.seed, options=options, budget=how.budget)

@@ -1,0 +1,144 @@
+"""The fit that a diagnosis recommends: the model that it ended with, begun where its refit of that model ended."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from ident.custom.definition import Definition, together
+from ident.diagnosis.estimate import Found
+from ident.diagnosis.proposals.proposal import Errors, Proposal
+from ident.diagnosis.result import Diagnosis
+from ident.errors import Unusable
+from ident.fit.continued import settings_from
+from ident.fit.result import FitResult
+from ident.fit.settings import Settings
+from ident.fit.start import Start
+from ident.words.number import count
+from ident.words.percent import percent
+from ident.words.titles import title
+
+
+@dataclass(frozen=True)
+class End:
+    """Where a refit of a diagnosis ended: what its model has beyond the fitted one, with definitions."""
+
+    added: tuple[str, ...]
+    parameters: Mapping[str, Found]
+    error: Errors
+    custom: tuple[Definition, ...] = ()
+
+
+def settings_after(
+    found: FitResult | Diagnosis, effects: Sequence[str] = (), terms: int | None = None, search: bool = False
+) -> Settings:  # fmt: skip
+    """The settings of the fit that begins where a fit ended, or a refit of a diagnosis: of what that recommends.
+
+    `effects` take another model that the diagnosis refitted, with just these added to the fitted one; `terms` the first
+    of the terms that it proposes. With `search` the whole space is searched, too. Raises Unusable.
+    """
+    if isinstance(found, FitResult):
+        if effects or terms is not None:
+            raise Unusable("bad-option", "a fit to begin from, and what to add to it", "start",
+                           "give a diagnosis, which refitted what it adds, or fit without a start")  # fmt: skip
+        return settings_from(found, search)
+    if effects and terms is not None:
+        raise Unusable("bad-option", "effects, and a number of terms", "start", "give one of them")
+    end = end_with(found, effects) if effects else recommended(found, terms)
+    if end is None:
+        known = "; ".join(dict.fromkeys(", ".join(one.added) for one in _ends(found) if one.added))
+        raise Unusable("no-such-end", f"the diagnosis refitted no model with just {', '.join(effects)} added", "start",
+                       f"choose from {known or 'none'}; or fit without a start")  # fmt: skip
+    return settings_of_end(found, end, search)
+
+
+def recommended(found: Diagnosis, terms: int | None = None) -> End:
+    """What a diagnosis would add, with all terms that it proposes or the first `terms` of them (0: none).
+
+    Raises Unusable where it proposes fewer, or where it came to no refit.
+    """
+    proposals = found.proposals or ()
+    if terms is not None and not 0 <= terms <= len(proposals):
+        raise Unusable("bad-option", f"{count(terms, 'term')} of {len(proposals)}", "terms",
+                       f"give 0 to {len(proposals)}")  # fmt: skip
+    taken = proposals[:terms]
+    if taken:
+        return _with_terms(taken)
+    ladder = [*_rungs(found)]
+    if not ladder:
+        raise Unusable("bad-diagnosis", "the diagnosis holds no refit", "start",
+                       "give what `servoident diagnose --json FILE` wrote")  # fmt: skip
+    return ladder[-1]
+
+
+def next_command(found: Diagnosis, file: str = "D.json") -> str:
+    """The command that makes the recommended fit, in sentences; "" where a diagnosis has nothing to add."""
+    proposals = found.proposals or ()
+    if not proposals and not any(rung.added for rung in found.ladder):
+        return ""
+    end = recommended(found)
+    told = (
+        f"`servoident fit MATRIX --start {file}` makes the recommended fit, with {', '.join(map(title, end.added))}: "
+        f"it begins where the diagnosis ended, at {percent(end.error.get('fit'))}."
+    )
+    return told + (" --terms N takes the first N of the proposed terms, 0 none." if proposals else "")
+
+
+def end_with(found: Diagnosis, effects: Sequence[str]) -> End | None:
+    """The refit of the model with just these effects and terms added to the fitted one; None where there was none."""
+    wanted = {*found.effects, *effects}
+    return next((end for end in _ends(found) if {*found.effects, *end.added} == wanted), None)
+
+
+def settings_of_end(found: Diagnosis, end: End, search: bool = False) -> Settings:
+    """The settings of the fit that begins at an end of a diagnosis: over the same runs and windows."""
+    before = Settings.from_json(dict(found.settings)) if found.settings else Settings(seed=found.seed)
+    values = {name: one.value for name, one in end.parameters.items()}
+    start = Start(
+        "diagnosis", values, found.horizon, found.memory, found.left_out, end.error.get("fit"), found.data_hash,
+        search=search,
+    )  # fmt: skip
+    effects, custom = tuple(dict.fromkeys((*found.effects, *end.added))), together(before.custom, end.custom)
+    return replace(before, model=found.model, effects=effects, custom=custom, budget=None, start=start)
+
+
+def _ends(found: Diagnosis) -> Iterator[End]:
+    """Every refit that a diagnosis tells of, what it would add first."""
+    proposals = found.proposals or ()
+    yield from (_with_terms(proposals[:terms]) for terms in range(len(proposals), 0, -1))
+    yield from _rungs(found)
+    yield from (End((one.effect,), one.parameters, one.error) for one in found.candidates if one.parameters)
+
+
+def _rungs(found: Diagnosis) -> Iterator[End]:
+    """Those of the ladder, the fitted model first."""
+    added: tuple[str, ...] = ()
+    for rung in found.ladder:
+        added = (*added, rung.added) if rung.added else added
+        if rung.parameters:
+            yield End(added, rung.parameters, rung.error)
+
+
+def _with_terms(terms: Sequence[Proposal]) -> End:
+    """The model with these terms, one on top of the other, and the effects that they were found with."""
+    last = terms[-1]
+    custom = tuple(_as_refitted(one.effect, last.parameters) for one in terms)
+    return End((*last.beside, *(str(one["name"]) for one in custom)), last.parameters, last.error, custom)
+
+
+def _as_refitted(own: Mapping[str, Any], parameters: Mapping[str, Found]) -> dict[str, Any]:
+    """The definition of a term with its shapes and its curve as a refit found them: a fit holds them there."""
+
+    def value(symbol: str, otherwise: Any) -> Any:
+        known = parameters.get(f"{own['name']}.{symbol}")
+        return otherwise if known is None else known.value
+
+    found = dict(own)
+    if "shape" in own:
+        found["shape"] = {symbol: {**of, "value": value(symbol, of["value"])} for symbol, of in own["shape"].items()}
+    if "curve" in own:
+        curve = own["curve"]
+        values = [value(f"{curve['symbol']}_{n}", known) for n, known in enumerate(curve["values"], 1)]
+        found["curve"] = {**curve, "values": values}
+    return found
