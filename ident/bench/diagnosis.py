@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
@@ -65,11 +64,7 @@ class BenchDiagnoser:
             self._errors(steps[0])
             self._add(first, steps)
             self.complete = True
-        found = self._said(first, steps)
-        if found.complete:
-            return found
-        text = " ".join((found.verdict.text, *not_looked_at((FURTHER,))))
-        return replace(found, verdict=replace(found.verdict, text=text), not_looked_at=(FURTHER,))
+        return self._said(first, steps)
 
     def _said(self, first: list[Candidate], steps: list[Refit]) -> Diagnosis:
         """What was found so far, by the first ranking and the refits from the fitted model on."""
@@ -79,10 +74,12 @@ class BenchDiagnoser:
         errors, before = self._errors(found), self._errors(base)
         unexplained = bool(self.floor["fit"] and (errors["fit"] or 0.0) > _NEAR_FLOOR * self.floor["fit"])
         added = found.effects[len(base.effects) :]
-        text = verdict_text(
+        missing = () if self.complete else (FURTHER,)
+        said = verdict_text(
             added, groups, (), unexplained, errors, float(before["fit"] or 0.0), floor=self.floor["fit"],
             complete=self.complete,
         )  # fmt: skip
+        text = " ".join((said, *not_looked_at(missing)))
         return Diagnosis(
             model=self.fit.model, effects=base.effects,
             baseline=Baseline(before, self._offset(base), unstable=self._unstable(base)),
@@ -90,7 +87,7 @@ class BenchDiagnoser:
             candidates=tuple(self._ranked(c, group, base, i == 0) for i, c in enumerate(first)),
             ladder=tuple(self._rung(step, steps[i - 1] if i else None) for i, step in enumerate(steps)),
             verdict=Verdict(added, standing(added, unexplained, ()), (), groups, (), unexplained, text),
-            proposals=(), complete=self.complete, seed=self.fit.seed, seconds=self.course.taken,
+            proposals=(), complete=self.complete, not_looked_at=missing, seed=self.fit.seed, seconds=self.course.taken,
             version=version("servoident"), data_hash=self.matrix.data_hash,
             settings=dict(self.fit.settings),
         )  # fmt: skip

@@ -31,8 +31,7 @@ class Course:
     def __post_init__(self) -> None:
         self._sight: tuple[Expected, ...] = ()
         self._verdict = ""
-        self.stopped_by: BaseException | None = None
-        """What the report raised, by which the caller ends the work."""
+        self._stopped_by: list[BaseException] = []
 
     @property
     def taken(self) -> float:
@@ -51,9 +50,13 @@ class Course:
         except TimeIsUp:
             self.budget.end()
         except BaseException as error:
-            self.stopped_by = error
+            self._stopped_by.append(error)
             raise
         self.budget.check()
+
+    def is_stopped_by(self, error: BaseException) -> bool:
+        """Whether it is what the caller raised to end the work."""
+        return any(error is one for one in self._stopped_by)
 
     def hear(self, found: Diagnosis) -> None:
         """Tell of the diagnosis as it stands."""
@@ -63,6 +66,9 @@ class Course:
             self.found(replace(found, seconds=self.taken))
         except TimeIsUp:
             self.budget.end()
+        except BaseException as error:
+            self._stopped_by.append(error)
+            raise
 
     def conclude(self, found: Diagnosis) -> None:
         """Tell of the catalogue's verdict, which stands whatever follows."""

@@ -49,7 +49,7 @@ class Stages:
         except TimeIsUp:
             self.miss(stage)
         except Exception as error:
-            if error is self.course.stopped_by:
+            if self.course.is_stopped_by(error):
                 raise
             self._failed(stage, error)
         return instead

@@ -81,3 +81,14 @@ def test_ctrl_c_ends_the_work_at_its_next_report_where_it_was_swallowed():
             report(Progress("prepare", 1, 1))
     with heard(), shown() as report:
         report(Progress("prepare", 1, 1))
+
+
+def test_the_catalogues_verdict_is_printed_once_before_terms_are_searched_for(capsys):
+    """On standard error, as all that is told on the way: standard output may hold JSON."""
+    with shown() as report:
+        report(Progress("next run", 0, 1))
+        for done in range(3):
+            report(Progress("proposing", done, 3, verdict="The model lacks dead zone."))
+    told = capsys.readouterr()
+    assert told.err.count("verdict of the catalogue: The model lacks dead zone.") == 1
+    assert told.out == ""

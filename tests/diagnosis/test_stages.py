@@ -9,7 +9,7 @@ import pytest
 
 from ident.diagnosis import diagnose as diagnosing
 from ident.diagnosis.course import Course
-from ident.diagnosis.result import Diagnosis
+from ident.diagnosis.result import Diagnosis, Verdict
 from ident.diagnosis.stages import ERROR_BUDGET, LAGS, NEXT_RUN, TERMS, Stages
 from ident.errors import Cancelled, TimeIsUp, Unusable
 from ident.matrix import Matrix
@@ -93,6 +93,13 @@ def test_what_the_caller_stops_the_work_by_is_no_failure():
     stages = Stages(course)
     with pytest.raises(Cancelled):
         stages.attempt(NEXT_RUN, lambda: course.tell(Progress("labels", 0, 1)), None)
+
+    def full_disk(_found: Diagnosis) -> None:
+        raise OSError("no space is left")
+
+    course.found = full_disk  # as where the file cannot be written
+    with pytest.raises(OSError, match="no space"):
+        stages.attempt(NEXT_RUN, lambda: course.hear(Diagnosis(candidates=(), verdict=Verdict())), None)
     assert stages.attempt(NEXT_RUN, lambda: course.tell(Progress("next run", 0, 1)), None) is None
     assert course.budget.is_over
     assert stages.notes == ["There was no time for the next run."]
