@@ -133,3 +133,25 @@ def test_an_answer_that_swings_back_is_not_taken_for_one_that_has_ended(seen) ->
     assert np.median(early / whole) > 0.8
     run = Run("r", "", 100.0, {"command": u, "velocity": y}, {"command": "V", "velocity": "rad/s"}, output="velocity")
     assert ("r", "sample-rate") not in doubts(replace(run, hold="zoh"))
+
+
+def test_a_rest_that_a_step_ends_is_no_stuck_sensor() -> None:
+    """Coarse counts stand until the step and jump then by more than later, when they flicker by one."""
+    u = np.where(np.arange(2000) < 100, 0.0, 3.0)
+    y = (np.round(60 * lag(u, 200.0, 0.05) / 3) + ((np.arange(2000) > 300) & (np.arange(2000) % 7 == 0))) / 60
+    run = Run("r", "", 200.0, {"command": u, "velocity": y}, {"command": "V", "velocity": "rad/s"}, output="velocity")
+    assert ("r", "flat") not in doubts(run)
+    stuck = np.sin(np.arange(2000) / 30.0)
+    held = np.where((np.arange(2000) > 500) & (np.arange(2000) < 600), stuck[500], stuck)
+    assert ("r", "flat") in doubts(replace(run, channels={"command": stuck, "velocity": held}))
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-4])
+def test_an_output_on_its_way_to_a_command_at_rest_has_no_offset(noise: float) -> None:
+    rng = np.random.default_rng(5)
+    u = 0.1 + noise * rng.standard_normal(2000)
+    x = 0.1 + np.exp(-np.arange(2000) / 1000.0) + 1e-3 * rng.standard_normal(2000)
+    run = Run("r", "", 100.0, {"command": u, "displacement": x}, {"command": "m", "displacement": "m"})
+    assert ("r", "offset") not in doubts(run)
+    moving = replace(run, channels={"command": u + 0.1 * np.sin(np.arange(2000) / 50.0), "displacement": x})
+    assert ("r", "offset") in doubts(moving)
