@@ -10,6 +10,7 @@ from ident.drafts.raw import read_raw
 from ident.errors import Unusable
 from ident.readers.layout import recognise
 from ident.readers.limits import LIMITS
+from ident.readers.numeral import in_thousands
 from ident.readers.text import read_text
 from ident.readers.time_stamp import seconds
 
@@ -153,3 +154,13 @@ def test_a_rate_or_an_interval_above_the_table_is_found_where_it_carries_a_unit(
     text = "\n".join([above, "", "n,command [V],position [mm]", *(f"{n},{n % 7},{n % 3}" for n in range(30))])
     found = read_raw(text.encode(), "run.csv").rate
     assert (found and found.value) == (None if rate is None else pytest.approx(rate))
+
+
+def test_numbers_whose_thousands_may_be_parted_are_those_of_three_digits_behind_one_to_three():
+    assert all(map(in_thousands, ("1.234", "12,345", "-123.456", "1,234,567")))
+    assert not any(map(in_thousands, ("0.123", "1234.567", "1.23", "1.2345", "1,234.5", "123")))
+
+
+@pytest.mark.parametrize(("blank", "names"), [(0, ("u", "x")), (2, ("u", "x")), (3, ("0", "1"))])
+def test_names_may_be_parted_from_the_rows_by_two_blank_lines(blank, names):
+    assert read("\n".join(["Bench", "", "u,x", *[""] * blank, *lines()])).names == names
