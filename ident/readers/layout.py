@@ -114,6 +114,7 @@ def recognise(text: bytes, where: str, skip_rows: int = 0) -> Layout:
     above = first if found.begin is None else found.begin
     below = line_start(text, first, start)
     end, notices = _end(text, below, form, shape, cut[first:], where)
+    notices += _on_thousands(form, cut[first:], where)
     return Layout(form, skip_rows + above, found, below, end, skip_rows + first + 1, shape.stamps,
                   shape.numbers | _seldom(cut[first:], shape, form), (*found.notices, *notices))  # fmt: skip
 
@@ -275,6 +276,14 @@ def _numbers_columns(above: Sequence[Sequence[str]]) -> bool:
     return len(above) == 1 and not blank.strip() and [field.strip() for field in others] == list(
         map(str, range(len(others)))
     )  # fmt: skip
+
+
+def _on_thousands(form: Form, rows: Sequence[Sequence[str]], where: str) -> tuple[str, ...]:
+    """What to say of decimal commas each of which may as well part thousands, as in 1,234;5,678."""
+    shown = [field for row in rows for field in row if form.comma and has_fraction(field, True)]
+    if not shown or not all(map(in_thousands, shown)):
+        return ()
+    return (f"{where}: the comma was read as the decimal sign; where it parts thousands, export it without",)
 
 
 def _end(

@@ -164,3 +164,12 @@ def test_numbers_whose_thousands_may_be_parted_are_those_of_three_digits_behind_
 @pytest.mark.parametrize(("blank", "names"), [(0, ("u", "x")), (2, ("u", "x")), (3, ("0", "1"))])
 def test_names_may_be_parted_from_the_rows_by_two_blank_lines(blank, names):
     assert read("\n".join(["Bench", "", "u,x", *[""] * blank, *lines()])).names == names
+
+
+def test_commas_that_may_all_part_thousands_are_read_as_decimal_signs_and_it_is_said():
+    """A number such as 0,123 leaves no doubt."""
+    rows = [f"{n},{100 + n};{n + 3},{200 + n}" for n in range(1, 30)]
+    doubted, sure = (read("\n".join(["u;x", *lines])) for lines in (rows, [*rows, "0,123;4,567"]))
+    assert doubted.load([0])[0][0] == 1.101
+    assert any("parts thousands" in notice for notice in doubted.notices)
+    assert not sure.notices
