@@ -73,9 +73,12 @@ def recommended(found: Diagnosis, terms: int | None = None) -> End:
 
 
 def next_command(found: Diagnosis, file: str = "D.json") -> str:
-    """The command that makes the recommended fit, in sentences; "" where a diagnosis has nothing to add."""
+    """The command that makes the recommended fit, in sentences; "" where a diagnosis has nothing to add.
+
+    Nor is there one where an earlier version did not tell what its refits ended with.
+    """
     proposals = found.proposals or ()
-    if not proposals and not any(rung.added for rung in found.ladder):
+    if not proposals and not any(end.added for end in _rungs(found)):
         return ""
     end = recommended(found)
     told = (

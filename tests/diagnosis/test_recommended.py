@@ -13,7 +13,7 @@ import pytest
 
 from ident.custom.definition import read_effect
 from ident.diagnosis.recommended import End, next_command, recommended, settings_after
-from ident.diagnosis.result import Diagnosis
+from ident.diagnosis.result import Diagnosis, Rung
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
@@ -156,6 +156,10 @@ def test_the_command_that_comes_next_names_the_model_its_error_and_the_file():
     assert "--terms N" in told
     nothing = replace(found, proposals=(), ladder=found.ladder[:1])
     assert next_command(nothing) == ""
+    earlier = replace(found, proposals=(), ladder=tuple(replace(rung, parameters={}) for rung in found.ladder))
+    assert next_command(replace(earlier, ladder=(*earlier.ladder, Rung(added="dead_zone")))) == ""
+    with pytest.raises(Unusable, match="holds no refit"):
+        recommended(earlier)
 
 
 def definition_with(shape: dict) -> dict:
