@@ -32,7 +32,7 @@ def found(matrix, fit):
 def test_choices_carry_units_and_are_refused_by_name(matrix, fit):
     assert fit.parameters["tau"].fixed
     assert fit.parameters["tau"].value == pytest.approx(3.6e-3)
-    with pytest.raises(ident.Unusable, match="no choice 'efects' about a fit; did you mean effects?"):
+    with pytest.raises(ident.Unusable, match=r"no choice 'efects' about a fit; did you mean effects\?"):
         ident.identify(matrix, efects=["dead_zone"])
 
 

@@ -36,7 +36,8 @@ def main() -> None:
     fit = identify(matrix, Settings(seed=1))
     for name, options in PICTURES.items():
         draw(name, fit, name, **options)
-    draw("paper-evolution", identify(matrix, Settings(method="paper-ga", seed=1)), "evolution", generations=[1, 4, 8, 12])
+    paper = identify(matrix, Settings(method="paper-ga", seed=1))
+    draw("paper-evolution", paper, "evolution", generations=[1, 4, 8, 12])
 
 
 def draw(picture: str, fit: FitResult, name: str, **options: Any) -> None:
