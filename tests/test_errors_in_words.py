@@ -153,6 +153,7 @@ def test_a_model_that_overflows_is_compared_drawn_and_written_without_a_number_t
         assert not LARGE.search(text), name
     assert all("unstable" in what for what in refused)
     assert "unstable on" in text_of(figure("time", studied))
+    assert "error unstable" not in text_of(figure("time", studied))
     assert "unstable on" in text_of(side_by_side(of_comparisons([compared, compared]), matrix.actuator, look("light")))
 
 

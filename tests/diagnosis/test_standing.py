@@ -44,6 +44,9 @@ def test_a_run_that_cannot_be_followed_with_an_effect_is_a_contradiction_and_one
     runs, before = [run_of(1), run_of(2)], [residual(i, 0.1) for i in (3, 4)]
     lost = [before[0], before[1] * np.nan]
     found = contradiction("lead", runs, before, lost)
+    grown = contradiction("lead", runs, before, [before[0], before[1] * 1e104])  # a number, and yet no error
+    assert grown is not None
+    assert (grown.after, grown.unstable) == (None, (runs[1].id,))
     assert found is not None
     assert (found.after, found.deviations) == (None, None)
     assert found.before == pytest.approx(0.1, rel=0.05)
