@@ -138,7 +138,7 @@ def test_an_answer_that_swings_back_is_not_taken_for_one_that_has_ended(seen) ->
 def test_a_rest_that_a_step_ends_is_no_stuck_sensor() -> None:
     """Coarse counts stand until the step and jump then by more than later, when they flicker by one."""
     u = np.where(np.arange(2000) < 100, 0.0, 3.0)
-    y = (np.round(60 * lag(u, 200.0, 0.05) / 3) + ((np.arange(2000) > 300) & (np.arange(2000) % 7 == 0))) / 60
+    y = (np.round(60 * lag(u, 200.0, 0.05) / 3) + ((np.arange(2000) > 140) & (np.arange(2000) % 7 == 0))) / 60
     run = Run("r", "", 200.0, {"command": u, "velocity": y}, {"command": "V", "velocity": "rad/s"}, output="velocity")
     assert ("r", "flat") not in doubts(run)
     stuck = np.sin(np.arange(2000) / 30.0)
