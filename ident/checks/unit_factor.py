@@ -28,7 +28,7 @@ AGREE = 0.7  # nepers and radians, median: noise of 8 frames, another amplitude 
 TIMES_BETTER = 2.0  # the corrected clock has to agree better by; both agree of a machine that answers at once
 VARIED = 0.25  # nepers and radians: a response that changes less over the band tells nothing of the clock
 CLOSE = 0.5  # of that change: what two responses differ by at most where they are taken as one
-AS_LONG, AS_SLOW, AS_PEAKED = 2.0, 1.5, 1.5  # times: samples, median frequency and crest factor of sisters
+AS_LONG, AS_SLOW, AS_PEAKED = 2.0, 1.5, 1.5  # times: samples, mean frequency and crest factor of sisters
 DRIVERS = ("command", "drive_force", "current", "velocity", "displacement")
 """What may drive a run: the first of them that it has."""
 MOST_CAUSES = 2  # that a fit names
@@ -77,9 +77,9 @@ class Record:
 
     @cached_property
     def pace(self) -> float:
-        """The median frequency of the input's power, cycles a sample."""
-        power = np.cumsum(np.abs(np.fft.rfft(self.input - self.input.mean())) ** 2)
-        return max(int(np.searchsorted(power, 0.5 * power[-1])), 1) / len(self.input)
+        """The mean frequency of the input's power, cycles a sample."""
+        power = np.abs(np.fft.rfft(self.input - self.input.mean())) ** 2
+        return float(np.arange(len(power)) @ power / power.sum()) / len(self.input)
 
     @cached_property
     def crest(self) -> float:
