@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,7 +10,9 @@ import numpy as np
 
 from ident.bench.analysis import Analysis
 from ident.bench.model import dead_space
+from ident.bench.position_error import position_error
 from ident.bench.quantity import Found
+from ident.bench.straightness import of_table
 from ident.errors import Unusable
 from ident.readers.strict_yaml import read_yaml
 from ident.units.quantity import quantity
@@ -33,6 +35,10 @@ QUANTITIES = {
 }
 """What a limit may be set for: unit and meaning."""
 _PRINTED = {"1": (100.0, "%"), "s": (1e3, "ms"), "Pa": (1e-6, "MPa"), "m/s": (1e3, "mm/s")}
+_CHARACTERISTIC = {
+    "gain": "gain", "gain_forward": "forward", "gain_back": "back", "nonlinearity": "nonlinearity",
+    "asymmetry": "asymmetry",
+}  # fmt: skip
 _SLOPE = (1e-8, "MPa/%")
 
 
@@ -75,14 +81,10 @@ def found_quantities(analysis: Analysis) -> dict[str, Found]:
         out |= _of_whole(analysis)
     if analysis.delay is not None:
         out["delay"] = analysis.delay.delay
-    if analysis.speed is not None:
-        s_ = analysis.speed.straightness
-        pairs = {"gain": (s_.gain, "m/s"), "gain_forward": (s_.forward, "m/s"), "gain_back": (s_.back, "m/s"),
-                 "nonlinearity": (s_.nonlinearity, "1"), "asymmetry": (s_.asymmetry, "1")}  # fmt: skip
-        out |= {name: Found(value, 0.0, unit) for name, (value, unit) in pairs.items()}
-    sines = [analysis.errors[response.id] for response in analysis.frequency if response.id in analysis.errors]
-    if sines:
-        out["position_error"] = Found(float(np.mean(sines)), 0.0, "1")
+    out |= _of_characteristic(analysis)
+    sines = [response.id for response in analysis.frequency if response.id in analysis.errors]
+    if sines and analysis.whole is not None:
+        out["position_error"] = position_error(analysis.whole, sines)
     return out
 
 
@@ -98,6 +100,30 @@ def _of_whole(analysis: Analysis) -> dict[str, Found]:
     )
     out = {name: Found(v[own], solution.deviations[own], unit) for name, own, unit in named}
     return out | {"dead_space": Found(solution.model.dead_space, solution.deviation(dead_space), "1")}
+
+
+def _of_characteristic(analysis: Analysis) -> dict[str, Found]:
+    """Gains, nonlinearity, asymmetry of the model's characteristic, or where there is no model of the procedure's."""
+    solution, model = analysis.whole, analysis.model
+    if solution is None or model is None:
+        if analysis.speed is None:
+            return {}
+        s = analysis.speed.straightness
+        return {name: Found(getattr(s, own), 0.0, QUANTITIES[name][0]) for name, own in _CHARACTERISTIC.items()}
+    table = model.table
+
+    def of(own: str) -> Callable[[Mapping[str, Any]], Any]:
+        def value(values: Mapping[str, Any]) -> Any:
+            columns = zip(*(np.atleast_1d(values[name]) for name in table.names), strict=True)
+            tables = (table.with_values(dict(zip(table.names, map(float, column), strict=True))) for column in columns)
+            return np.array([getattr(of_table(each), own) for each in tables])
+
+        return value
+
+    return {
+        name: Found(float(of(own)(model.table.values())[0]), solution.deviation(of(own)), QUANTITIES[name][0])
+        for name, own in _CHARACTERISTIC.items()
+    }
 
 
 def sheet(analysis: Analysis, limits: Mapping[str, tuple[float | None, float | None]]) -> tuple[Line, ...]:

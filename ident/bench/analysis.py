@@ -10,29 +10,31 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from importlib import import_module
 
 import numpy as np
 
 from ident.bench.frequency import Response, frequency_response
-from ident.bench.least_squares import Solution, solve
+from ident.bench.least_squares import LAST, ROUGH, Solution, solve
 from ident.bench.listings import listings
 from ident.bench.model import CONSTANTS, Model
 from ident.bench.motion import groups
 from ident.bench.observed import Observed, errors, observe
-from ident.bench.records import BenchSet, Record
+from ident.bench.records import BenchSet, Record, step_of
 from ident.bench.residual import Residual
+from ident.bench.scatter import scatter
 from ident.bench.speed import Speed, speed
-from ident.bench.speed_table import SpeedTable
-from ident.bench.static import Static, first_values, ranges, static
+from ident.bench.speed_table import SPLINE, SpeedTable
+from ident.bench.static import Static, first_values, ranges, refined_static, static
 from ident.bench.time_constant import DelayCheck, Dynamics, delay_check, dynamics
 from ident.errors import Unusable
+from ident.fit.levenberg_marquardt import Way
 from ident.parallel import each
 from ident.words.shown import Listing, Shown
 
 FIRST_T = 0.02  # s, where the search for T begins
-SMALL, FINE = 10.0, 1000.0  # dead spaces, within which a record tells of them; Hz of such a record in the last fit
+_ROUNDS = 2  # of the refinement, behind each of which the records are weighed anew
 SPEED = ("speed-levels", "speed-continuous")
 
 
@@ -133,30 +135,32 @@ def _whole(bench: BenchSet, model: Model, seen: dict[str, Observed], found: Anal
     characteristic = speed(at_rest.model, moving, _of(seen, moving))
     steps, every = replace(at_rest.model, table=characteristic.table), list(seen.values())
     first = fit_whole(steps, every).model
-    whole = fit_whole(first, weighed(first, every, bench.records), steps=2)
+    whole = refined(first, every, bench.records)
+    with_delay, doubt = delay_check(whole)
+    whole = replace(whole, scatter=scatter(whole) if doubt.doubt else with_delay[:-1, :-1])
     return replace(
-        found, static=at_rest, by_range=ranges(still, at_rest.model, _of(seen, still)), dynamics=lag,
-        speed=characteristic, delay=delay_check(whole.model, drifting), steps=steps, whole=whole,
+        found, static=refined_static(still, whole), by_range=ranges(still, whole), dynamics=lag,
+        speed=characteristic, delay=doubt, steps=steps, whole=whole,
         errors=errors(whole.model, every), step_errors=errors(steps, every),
     )  # fmt: skip
 
 
-def fit_whole(start: Model, observed: Sequence[Observed], steps: int = 8) -> Solution:
+def fit_whole(start: Model, observed: Sequence[Observed], steps: int = 8, way: Way = ROUGH) -> Solution:
     """Every value of the model at once on all records."""
-    return solve(Residual(start, tuple(observed), (*CONSTANTS, *start.table.names)), steps=steps)
+    return solve(Residual(start, tuple(observed), (*CONSTANTS, *start.table.names)), steps=steps, way=way)
 
 
-def weighed(model: Model, observed: Sequence[Observed], records: Sequence[Record]) -> list[Observed]:
-    """The records as the last fit takes them: each weighed by what `model` leaves of it, small currents in fine steps.
+def refined(start: Model, observed: Sequence[Observed], records: Sequence[Record]) -> Solution:
+    """Every value once more on the whole records, each weighed by what is left of it.
 
     Means over several ms cut the peaks of a regulator's current, which the play keeps: kp would come out 1 % too high.
     """
-
-    def one(pair: tuple[Observed, Record]) -> Observed:
-        small = pair[0].reach - abs(model.I0) < SMALL * model.dead_space
-        return (Observed.of(pair[1], rate=FINE) if small else pair[0]).weighed(model)
-
-    return each(one, zip(observed, records, strict=True))
+    step, start = step_of(records), replace(start, table=replace(start.table, kind=SPLINE))
+    exact = each(lambda pair: pair[0].exact(pair[1], start, step), list(zip(observed, records, strict=True)))
+    for _ in range(_ROUNDS):
+        start = fit_whole(start, exact, way=LAST).model
+        exact = each(partial(Observed.reweighed, model=start), exact)
+    return fit_whole(start, exact, way=LAST)
 
 
 def _of(seen: dict[str, Observed], records: Sequence[Record]) -> tuple[Observed, ...]:

@@ -22,6 +22,7 @@ from ident.bench.outputs import errors_of, model_of, noise_floor
 from ident.bench.polish import polished, weak
 from ident.bench.records import bench_set
 from ident.bench.residual import Residual
+from ident.bench.speed_table import MONOTONE
 from ident.custom.definition import preset_with
 from ident.effects.effect import off_values
 from ident.fit.ends import distinct
@@ -140,6 +141,8 @@ class BenchIdentification:
         Effects come one after the other. They are told from the lag by parts of a millisecond and by what few samples
         see: then the records are taken finely, each weighed by what is left of it.
         """
+        # The chain's equations have the table's monotone cubics.
+        found = replace(found, table=replace(found.table, kind=MONOTONE))
         if not self.preset.effects:
             return found.with_values(self.space.fixed), self._fine
         values = {**found.values(), **off_values(self.preset.effects), **self.space.fixed}

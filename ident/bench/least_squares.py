@@ -16,8 +16,11 @@ from ident.fit.uncertainty import Covariance, covariance
 
 Array = NDArray[np.float64]
 _STEPS = 12
-_WAY = Way(converged=1e-5, longest=0.7, rough=1e-4)
+ROUGH = Way(converged=1e-5, longest=0.7, rough=1e-4)
 """Where the play turns, the sum of squares is not smooth: `rough`. A value goes no farther than twofold in one step."""
+
+LAST = Way(converged=1e-9, longest=0.7, rough=1e-7)
+"""Of the last fit, whose standard errors count: of 10⁵ readings a standard error is 1e-5 of the sum of squares."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +31,8 @@ class Solution:
     point: Array
     normal: Normal
     evaluations: int
+    scatter: Array | None = None
+    """Covariance of the gradient, (p, p), where the instruments say it; else that of blocks of the records."""
 
     @cached_property
     def model(self) -> Model:
@@ -47,7 +52,7 @@ class Solution:
     @cached_property
     def covariance(self) -> Covariance:
         """Of the point."""
-        return covariance(self.normal, self.point)
+        return covariance(self.normal, self.point, scatter=self.scatter)
 
     def deviation(self, of: Callable[[Mapping[str, Array]], Array]) -> float:
         """Standard deviation of a quantity, a function of the values."""
@@ -71,7 +76,7 @@ class Solution:
         return {name: value(name) for name in self.residual.names}
 
 
-def solve(residual: Residual, steps: int = _STEPS, start: Array | None = None) -> Solution:
+def solve(residual: Residual, steps: int = _STEPS, start: Array | None = None, way: Way = ROUGH) -> Solution:
     """The least sum of squares near `start`, the origin by default, in at most so many steps."""
     tried = 0
 
@@ -81,6 +86,6 @@ def solve(residual: Residual, steps: int = _STEPS, start: Array | None = None) -
         return residual.normal(point) if residual.cost(point) < least else None
 
     first = residual.origin if start is None else start
-    way = replace(_WAY, most=steps, within=residual.within)
+    way = replace(way, most=steps, within=residual.within)
     point, normal = levenberg_marquardt(residual.normal, first, way, better=better)
     return Solution(residual, point, normal, 1 + tried)

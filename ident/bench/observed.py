@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.bench.model import Model, Models, by_chain
+from ident.bench.readings import LEAST, Readings, readings
 from ident.bench.records import Record
-from ident.bench.response import residuals, rest
+from ident.bench.response import at_readings, residuals, rest
 from ident.cached import cached_property
 from ident.noise.effective_sample_size import independent_samples
 from ident.time_budget import check_time
@@ -26,6 +27,10 @@ IMPERFECT = 2e-3  # of a record's standard deviation
 _SETTLED = 0.25  # s at the start of a record that its unknown past may have shaped
 _MOVED = 3.0 + 1e-6  # steps of the converter that are no accident; three of them are, however they are rounded
 _NOTHING = np.empty(0)
+_FINE_STEP = 5e-6  # m: a hundred times what simulation in two parts of a sample misplaces
+STEPS, STEPS_STATIC, STEPS_FINE = 2, 4, 8
+"""Parts of a sample in which a whole record is simulated: any, a static one, one in fine steps. Where the link starts
+its speed rises as a root: 1 ms misplaces it by 0.2 µm, a quarter by 0.01 µm, which a slow test's readings tell."""
 
 
 def rate_wanted(record: Record) -> float:
@@ -44,6 +49,9 @@ class Observed:
     position_scale: float
     pressure_scale: float | None
     drifting: bool = False
+    readings: Readings | None = None
+    noise: float | None = None
+    """Deviation of the gauges' white noise, Pa, which is a part of `pressure_scale`."""
 
     @classmethod
     def of(
@@ -63,7 +71,7 @@ class Observed:
             noise = float(np.std(np.diff(small.pressure)) / np.sqrt(2.0)) + 1.0
         # A link under a sharp regulator makes thousands of small moves; their sum has as many near-optima.
         told = position and not (noise is not None and record.jumps)
-        return cls(small, parts, scale if told else np.inf, noise, drifting)
+        return cls(small, parts, scale if told else np.inf, noise, drifting, noise=noise)
 
     @property
     def start(self) -> float:
@@ -77,8 +85,26 @@ class Observed:
     @property
     def count(self) -> int:
         """Samples compared."""
-        outputs = int(np.isfinite(self.position_scale)) + int(self.pressure_scale is not None)
-        return outputs * sum(end - first for first, end in self.parts)
+        samples = sum(end - first for first, end in self.parts)
+        return self.positions + (samples if self.pressure_scale is not None else 0)
+
+    @cached_property
+    def positions(self) -> int:
+        """Positions compared."""
+        if not np.isfinite(self.position_scale):
+            return 0
+        if self.readings is None:
+            return sum(end - first for first, end in self.parts)
+        return len(self.within)
+
+    @cached_property
+    def within(self) -> NDArray[np.int64]:
+        """Which of the readings lie in the parts, with the sample before."""
+        if self.readings is None:
+            raise ValueError("the record is compared sample by sample")
+        k = self.readings.picked
+        inside = [np.flatnonzero((k > first) & (k < end)) for first, end in self.parts]
+        return np.concatenate(inside) if inside else np.empty(0, dtype=np.int64)
 
     def error(self, models: Models) -> Array:
         """The RMS of the residuals of several models, (models,)."""
@@ -93,12 +119,62 @@ class Observed:
         if models.each[0].chain is not None:
             self._by_chain(models, out)
             return out
+        if self.readings is not None:
+            self._at_readings(models, self.readings, out)
+            return out
         scales = np.array([self.position_scale if positions else 0.0, self.pressure_scale or 0.0])
         residuals(
             record.current, 1.0 / record.rate, record.hold == "zoh", models.constants, models.each[0].table.nodes,
             models.pieces, record.position, record.pressure if record.pressure is not None else _NOTHING,
             np.array(self.parts, dtype=np.int64).reshape(-1, 2), scales, self.drifting, out,
         )  # fmt: skip
+        return out
+
+    def _at_readings(self, models: Models, told: Readings, out: Array) -> None:
+        record = self.record
+        picked = told.picked if self.positions else told.picked[:0]
+        at_readings(
+            record.current, 1.0 / record.rate, self.divided, record.hold == "zoh", models.constants,
+            models.each[0].table.nodes, models.pieces, self.start, picked, told.values, told.deviations, told.between,
+            record.pressure if record.pressure is not None else _NOTHING,
+            np.array(self.parts, dtype=np.int64).reshape(-1, 2), self.pressure_scale or 0.0, self.drifting, out,
+        )  # fmt: skip
+
+    @property
+    def divided(self) -> int:
+        """Parts of a sample in which the whole record is simulated."""
+        if self.readings is not None and 0 < self.readings.step < _FINE_STEP:
+            return STEPS_FINE
+        return STEPS_STATIC if self.record.kind == "static" else STEPS
+
+    def way(self, model: Model) -> Array:
+        """The position of a model sample by sample, m, (n,)."""
+        record = self.record
+        return model.answer(record.current, record.rate, record.hold, self.start, self.divided).position
+
+    def exact(self, record: Record, model: Model, step: float) -> Observed:
+        """The whole `record` in place of its means, its position at the readings that tell it, of a converter's `step`.
+
+        Until :meth:`reweighed` each reading may be off by a converter's deviation more than it is known.
+        """
+        whole = Observed.of(record, self.positions > 0, self.pressure_scale is not None, np.inf, self.drifting)
+        moved = np.diff(model.answer(record.current, record.rate, record.hold).position, prepend=0.0)
+        return replace(whole, readings=readings(record.position, step, moved, step / np.sqrt(12.0) or 1e-6))
+
+    def reweighed(self, model: Model) -> Observed:
+        """Itself with the deviations that the residual of a fitted model shows beyond those of converter and gauges."""
+        found, out = self.residual(model), self
+        if self.readings is not None and self.positions > 8:
+            told, r = self.readings, found[: self.positions]
+            off = (r * told.deviations[self.within]) ** 2
+            least = LEAST * told.step / np.sqrt(12.0)
+            beyond = max(float(np.mean(off) - np.mean(told.known[self.within] ** 2)), 0.0)
+            memory = len(r) / independent_samples(r)
+            out = replace(self, readings=replace(told, extra=max(np.sqrt(beyond * memory), least, 1e-9)))
+        if self.pressure_scale is not None and self.noise is not None:
+            r = found[self.positions :] * self.pressure_scale / self.noise
+            larger = float(np.std(r)) * np.sqrt(len(r) / independent_samples(r))
+            out = replace(out, pressure_scale=self.noise * max(larger, 1.0))
         return out
 
     def _by_chain(self, models: Models, out: Array) -> None:

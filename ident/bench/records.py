@@ -16,6 +16,7 @@ from ident.matrix import BENCH, Matrix, Run
 Array = NDArray[np.float64]
 _END = 0.02  # s at the same extreme reading: the actuator or its transducer is at its end
 _BRIEF, _ROUGH = 4e-3, 5e-5  # s, rated currents: beyond it means over so short a time hide what the play sees
+_OFF_GRID = 0.1  # of a step: farther from a whole number of them is no reading of the same converter
 _FAR = 0.02 + 1e-9  # of rated current: farther from the middle, not by rounding alone, an actuator that is free moves
 
 
@@ -163,6 +164,21 @@ def _record(run: Run, rated: float) -> Record:
         run.id, run.kind, run.sample_rate, run.hold, _current(run) / rated, position, pressure, resolution(position),
         frequency, run.position_range, run.use,
     )  # fmt: skip
+
+
+def step_of(records: Sequence[Record]) -> float:
+    """The step of the converter that read the positions of a set, m; 0 where they are not in steps.
+
+    A link that moves by steps in every sample hides them: slower records of the same converter show them.
+    """
+    steps = [record.resolution for record in records if record.resolution > 0]
+    step = min(steps, default=0.0)
+    return step if step and all(_in_steps(record.position, step) for record in records) else 0.0
+
+
+def _in_steps(position: Array, step: float) -> bool:
+    off = (position - position[0]) / step
+    return bool(np.max(np.abs(off - np.round(off))) < _OFF_GRID)
 
 
 def resolution(position: Array) -> float:

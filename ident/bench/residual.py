@@ -18,7 +18,7 @@ from ident.parallel import cores, each
 Array = NDArray[np.float64]
 _STEP = 1e-4  # relative, of a difference
 _STRIDE = {"stiction__pressure": 0.1}  # the same where a value acts in jumps, from one sample to the next
-_BLOCKS = 8  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
+BLOCKS = 8  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
 _REACH = {
     "I0": 1e-2, "command_delay__delay": 1e-2, "second_lag__time_constant": 1e-2, "stiction__pressure": 1e5,
     "spring_load__rate": 1e7, "spring_load__centre": 1e-2,
@@ -37,6 +37,8 @@ class Residual:
     model: Model
     observed: tuple[Observed, ...]
     names: tuple[str, ...]
+    any_sign: frozenset[str] = frozenset()
+    """Strengths of one sign that may take either here: a check that is blind to one side of nothing is biased."""
 
     @cached_property
     def _shares(self) -> list[list[int]]:
@@ -67,7 +69,11 @@ class Residual:
     def within(self) -> tuple[Array, Array]:
         """Bounds of each axis: a strength of one sign keeps it."""
         added = (parameter for effect in (*FAST, *self._beyond_fast) for parameter in effect.added)
-        lower = {p.in_equations: p.lower / self.reach[p.in_equations] for p in added if p.lower >= 0}
+        lower = {
+            p.in_equations: p.lower / self.reach[p.in_equations]
+            for p in added
+            if p.lower >= 0 and p.in_equations not in self.any_sign
+        }
         return np.array([lower.get(name, -np.inf) for name in self.names]), np.full(len(self.names), np.inf)
 
     def values(self, points: Array) -> dict[str, Array]:
@@ -96,13 +102,47 @@ class Residual:
         model = self.at(point)
         return sum(float(np.sum(observed.residual(model) ** 2)) for observed in self.observed)
 
+    def slopes(self, point: Array, observed: Observed) -> tuple[Array, Array]:
+        """The derivatives of a record's residual, (p, k), and the residual, (k,)."""
+        seen, every = self._seen(point, observed)
+        rows = observed.residuals(every)
+        return self._spread(rows, seen), rows[0]
+
+    def ways(self, point: Array, observed: Observed) -> tuple[Array, Array]:
+        """The position of a record sample by sample, m, (n,), and its derivatives, (p, n)."""
+        seen, every = self._seen(point, observed)
+        way = np.array([observed.way(model) for model in every.each])
+        return way[0], self._spread(way, seen)
+
+    def _seen(self, point: Array, observed: Observed) -> tuple[NDArray[np.intp], Models]:
+        """The models of :meth:`_moved` that a record tells apart, and their places."""
+        every = self._moved(point)
+        seen = np.flatnonzero(observed.reach + abs(every.each[0].I0) > self._limits(every.each[0]))
+        return seen, every.some(seen)
+
+    def _spread(self, rows: Array, seen: NDArray[np.intp]) -> Array:
+        """Differences from the first row over the strides, a row a value; zero for what the record does not see."""
+        out = np.zeros((len(self.names), rows.shape[1]))
+        out[seen[1:] - 1] = (rows[1:] - rows[0]) / self._strides[seen[1:] - 1, None]
+        return out
+
+    def _limits(self, here: Model) -> Array:
+        """The current from which on each of :meth:`_moved` acts."""
+        return np.array([-1.0, *(_seen_from(here.table, name) for name in self.names)])
+
+    @cached_property
+    def _strides(self) -> Array:
+        return np.array([_STRIDE.get(name, _STEP) for name in self.names])
+
+    def _moved(self, point: Array) -> Models:
+        """The model at a point, then with each value moved by its stride."""
+        return Models.of([self.at(point), *(self.at(moved) for moved in point + np.diag(self._strides))])
+
     def normal(self, point: Array) -> Normal:
         """The sum of squares with its derivatives; what a record cannot see is not computed."""
-        here = self.at(point)
-        strides = np.array([_STRIDE.get(name, _STEP) for name in self.names])
-        models = [self.at(moved) for moved in point + np.diag(strides)]
-        limits = np.array([-1.0, *(_seen_from(here.table, name) for name in self.names)])
-        every = Models.of([here, *models])
+        every, strides = self._moved(point), self._strides
+        here = every.each[0]
+        limits = self._limits(here)
 
         def one(observed: Observed, room: Array) -> tuple[int, Array]:
             seen = np.flatnonzero(observed.reach + abs(here.I0) > limits)
@@ -110,9 +150,9 @@ class Residual:
             base = rows[0].copy()
             rows[:-1] = (rows[1:] - base) / strides[seen[1:] - 1, None]
             rows[-1] = base
-            found = np.empty((_BLOCKS, len(rows), len(rows)))
-            products(rows, _BLOCKS, found)
-            out, place = np.zeros((_BLOCKS, len(every), len(every))), np.append(seen[1:] - 1, len(every) - 1)
+            found = np.empty((BLOCKS, len(rows), len(rows)))
+            products(rows, BLOCKS, found)
+            out, place = np.zeros((BLOCKS, len(every), len(every))), np.append(seen[1:] - 1, len(every) - 1)
             out[:, place[:, None], place] = found
             return len(base), out
 

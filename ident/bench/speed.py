@@ -21,7 +21,7 @@ from ident.bench.records import Record
 from ident.bench.residual import Residual
 from ident.bench.smoothing import METHODS, bezier, differentiated, fir, iir, on_bezier
 from ident.bench.speed_table import SpeedTable
-from ident.bench.straightness import Straightness, straightness
+from ident.bench.straightness import Straightness, of_table
 from ident.errors import Unusable
 from ident.words.nearest import did_you_mean
 
@@ -78,11 +78,10 @@ def speed(model: Model, records: Sequence[Record], observed: Sequence[Observed],
     solution = fit_table(replace(model, table=through(points - [model.I0, 0.0], model.table)), observed)
     table = solution.model.table
     heights, ends = bezier(points[:, 0], points[:, 1], min(degree, max(1, len(points) - 1)), model.I0)
-    fine = np.linspace(-1, 1, 201) * table.nodes[-1]
     return Speed(
         table,
         solution.deviations,
-        straightness(fine, table.speed(fine)),
+        of_table(table),
         tuple(found),
         tuple(map(float, heights)),
         ends,

@@ -14,7 +14,7 @@ from ident.errors import Unusable
 from ident.stages.bench import FRACTIONS, node_names
 
 Array = NDArray[np.float64]
-KINDS = ("monotone", "lines")
+KINDS = MONOTONE, LINES, SPLINE = ("monotone", "lines", "spline")
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class SpeedTable:
     forward: tuple[float, ...]
     back: tuple[float, ...]
     fractions: tuple[float, ...] = FRACTIONS
-    kind: str = "monotone"
+    kind: str = MONOTONE
 
     def __post_init__(self) -> None:
         rising = np.all(np.diff((0.0, *self.fractions)) > 0)

@@ -9,18 +9,19 @@ of samples give first values; the loop itself is then fitted to every sample.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.bench.least_squares import Solution, solve
+from ident.bench.least_squares import LAST, Solution, solve
 from ident.bench.model import Model, dead_space
 from ident.bench.motion import groups, onsets
 from ident.bench.observed import Observed, observe
 from ident.bench.quantity import Found
 from ident.bench.records import Record
 from ident.bench.residual import Residual
+from ident.bench.scatter import scatter
 from ident.bench.speed_table import SpeedTable
 from ident.errors import Unusable
 
@@ -51,15 +52,32 @@ def static(records: Sequence[Record], start: Model, observed: Sequence[Observed]
     return _result(records, solve(Residual(start, tuple(observed), NAMES), steps=4))
 
 
-def ranges(records: Sequence[Record], start: Model, observed: Sequence[Observed]) -> tuple[Static, ...]:
+def refined_static(records: Sequence[Record], whole: Solution) -> Static:
+    """The quantities from these records alone, sample by sample, with T and weights of the fit of all records.
+
+    The speeds that the records see are found with them: held, they would hand their errors on without a word.
+    """
+    wanted = {record.id for record in records}
+    observed = tuple(one for one in whole.residual.observed if one.record.id in wanted)
+    seen = max(one.reach for one in observed) + abs(whole.model.I0) if any(one.positions for one in observed) else 0.0
+    table = whole.model.table
+    sides = [names[:_speeds_seen(table, seen)] for names in (table.names[: len(table.fractions)],
+                                                            table.names[len(table.fractions) :])]  # fmt: skip
+    solution = solve(Residual(whole.model, observed, (*NAMES, *sides[0], *sides[1])), way=LAST)
+    return _result(records, replace(solution, scatter=scatter(solution)))
+
+
+def _speeds_seen(table: SpeedTable, reach: float) -> int:
+    """How many speeds of a side currents up to `reach` tell: those of the nodes below, and the one above."""
+    return int(np.searchsorted(table.nodes[1:], reach)) + 1 if reach > 0 else 0
+
+
+def ranges(records: Sequence[Record], whole: Solution) -> tuple[Static, ...]:
     """The same for each range of positions, where there are several."""
-    by_range: dict[tuple[float, float] | str, list[int]] = {}
-    for number, record in enumerate(records):
-        by_range.setdefault(record.position_range or record.id, []).append(number)
-    if len(by_range) < 2:
-        return ()
-    parts = [([records[i] for i in part], [observed[i] for i in part]) for part in by_range.values()]
-    return tuple(static(some, start, their) for some, their in parts)
+    by_range: dict[tuple[float, float] | str, list[Record]] = {}
+    for record in records:
+        by_range.setdefault(record.position_range or record.id, []).append(record)
+    return tuple(refined_static(part, whole) for part in by_range.values()) if len(by_range) > 1 else ()
 
 
 def _result(records: Sequence[Record], solution: Solution) -> Static:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.speed_table import SpeedTable
+
 Array = NDArray[np.float64]
 
 
@@ -36,6 +38,12 @@ def straightness(current: Array, speed: Array) -> Straightness:
         float(line[0]), float(np.max(np.abs(speed - A @ line))) / full, gains[0], gains[1],
         (gains[0] - gains[1]) / mean if mean else 0.0,
     )  # fmt: skip
+
+
+def of_table(table: SpeedTable) -> Straightness:
+    """Of a characteristic over the rated currents."""
+    fine = np.linspace(-1, 1, 201) * table.nodes[-1]
+    return straightness(fine, table.speed(fine))
 
 
 def _through_zero(current: Array, speed: Array) -> float:

@@ -13,11 +13,12 @@ import numpy as np
 import scipy  # optimize, which takes a third of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
 
-from ident.bench.least_squares import solve
+from ident.bench.least_squares import LAST, Solution, solve
 from ident.bench.model import Model
 from ident.bench.observed import Observed
 from ident.bench.quantity import Found
 from ident.bench.residual import Residual
+from ident.bench.scatter import scatter
 from ident.effects.command_delay import COMMAND_DELAY
 
 Array = NDArray[np.float64]
@@ -109,12 +110,19 @@ def dynamics(model: Model, observed: Sequence[Observed]) -> Dynamics:
     return Dynamics(Found(T, alone.deviations["T"], "s"), gradient_T, target.error(T), gradient_error, steps)
 
 
-def delay_check(model: Model, observed: Sequence[Observed]) -> DelayCheck:
-    """T, B and a delay refitted together from a model that has T and B alone."""
-    both = solve(Residual(model, tuple(observed), ("T", "B", _DELAY)), steps=5)
+def delay_check(whole: Solution) -> tuple[Array, DelayCheck]:
+    """A delay refitted with every value, from the fit of all records that has none; first the scatter with it."""
+    model, of = whole.model, whole.residual
+    both = solve(Residual(model, of.observed, (*of.names, _DELAY), frozenset({_DELAY})), steps=8, way=LAST)
+    around = scatter(both)
+    both = replace(both, scatter=around)
     delay = Found(both.values[_DELAY], both.deviations[_DELAY], "s")
     called = {"T": "T", "B": "B", _DELAY: "delay"}
-    correlation = {called[a]: {called[b]: value for b, value in row.items()} for a, row in both.correlation.items()}
+    correlation = {
+        called[a]: {called[b]: value for b, value in row.items() if b in called}
+        for a, row in both.correlation.items()
+        if a in called
+    }
     T, B = both.values["T"], both.values["B"]
     doubt = ""
     if abs(delay.value) > max(_TOLD * delay.deviation, _SEEN * model.T):
@@ -124,4 +132,4 @@ def delay_check(model: Model, observed: Sequence[Observed]) -> DelayCheck:
             f"{100 * model.B:.3g} %; correlation of T and delay {correlation['T']['delay']:.2f}, of B and delay "
             f"{correlation['B']['delay']:.2f}."
         )
-    return DelayCheck(delay, T, B, correlation, doubt)
+    return around, DelayCheck(delay, T, B, correlation, doubt)

@@ -1,4 +1,4 @@
-"""Tables between their nodes: straight lines, or the monotone cubics of Fritsch and Carlson (PCHIP).
+"""Tables between their nodes: straight lines, the monotone cubics of Fritsch and Carlson (PCHIP), or a cubic spline.
 
 F. N. Fritsch, R. E. Carlson: Monotone piecewise cubic interpolation. SIAM J. Numer. Anal. 17 (1980) 238-246, with the
 slopes of F. N. Fritsch, J. Butland (1984), as scipy's PchipInterpolator has them.
@@ -27,10 +27,30 @@ def piece_coefficients(x: Array, y: Array, kind: str) -> Array:
     if kind == "lines":
         nothing = np.zeros_like(steepness)
         return np.stack([y[:-1], steepness, nothing, nothing], axis=-1)
-    slopes = monotone_slopes(h, steepness)
+    slopes = spline_slopes(h, steepness) if kind == "spline" else monotone_slopes(h, steepness)
     c2 = (3 * steepness - 2 * slopes[:-1] - slopes[1:]) / h
     c3 = (slopes[:-1] + slopes[1:] - 2 * steepness) / h**2
     return np.stack([y[:-1], slopes[:-1], c2, c3], axis=-1)
+
+
+def spline_slopes(h: Array, steepness: Array) -> Array:
+    """Slopes at the nodes of the cubic spline, twice continuously differentiable, "not a knot" at both ends.
+
+    Exact where the table is of a polynomial up to the third degree. C. de Boor: A Practical Guide to Splines, ch. IV.
+    """
+    if len(steepness) < 3:
+        return monotone_slopes(h, steepness)
+    width, n = h.reshape(len(h), -1)[:, 0], len(h) + 1
+    A, rhs = np.zeros((n, n)), np.zeros((n, *steepness.shape[1:]))
+    for i in range(1, n - 1):
+        A[i, i - 1], A[i, i], A[i, i + 1] = width[i], 2.0 * (width[i - 1] + width[i]), width[i - 1]
+        rhs[i] = 3.0 * (width[i] * steepness[i - 1] + width[i - 1] * steepness[i])
+    for row, a, b, first, second in ((0, 0, 1, steepness[0], steepness[1]),
+                                     (n - 1, -1, -2, steepness[-1], steepness[-2])):  # fmt: skip
+        step, total = (1, width[0] + width[1]) if row == 0 else (-1, width[-1] + width[-2])
+        A[row, row], A[row, row + step] = width[b], total
+        rhs[row] = ((width[a] + 2.0 * total) * width[b] * first + width[a] ** 2 * second) / total
+    return np.asarray(np.linalg.solve(A, rhs.reshape(n, -1)).reshape(rhs.shape))
 
 
 def monotone_slopes(h: Array, steepness: Array) -> Array:

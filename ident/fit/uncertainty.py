@@ -89,15 +89,15 @@ class Covariance:
         return self._slope(lambda points: np.log(np.abs(quantity(points))))
 
 
-def covariance(here: Scattered, point: Array, valley: Array | None = None) -> Covariance:
-    """The covariance at the optimum."""
+def covariance(here: Scattered, point: Array, valley: Array | None = None, scatter: Array | None = None) -> Covariance:
+    """The covariance at the optimum; `scatter` (p, p) is that of the gradient, where it is known."""
     p, H = len(point), here.curvature
     valley = np.empty((0, p)) if valley is None else valley
     if not p or not np.isfinite(here.error):
         return Covariance(point, np.zeros((p, p)), np.eye(p), valley)
     blocks = len(here.scores)
     # The optimum makes the scores of the blocks sum to zero in p directions: so much less do they scatter (HC1).
-    S = here.scores.T @ here.scores * (blocks / (blocks - p) if blocks > p else 1.0)
+    S = here.scores.T @ here.scores * (blocks / (blocks - p) if blocks > p else 1.0) if scatter is None else scatter
     scale = np.sqrt(np.maximum(np.diag(H), 1e-12 * max(np.diag(H).max(), 1e-300)))
     strengths, directions = np.linalg.eigh(H / scale[:, None] / scale)
     seen = strengths > _LOST * strengths[-1]

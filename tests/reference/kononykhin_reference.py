@@ -26,7 +26,8 @@ RATE = 1000.0  # Hz
 STROKE = 100.0  # mm
 BITS = 12
 PRESSURE_NOISE = 0.2  # MPa RMS, of each cavity
-SUBSTEPS = 8
+PRESSURE_RANGE = 25.0  # MPa, of a gauge's converter
+SUBSTEPS = 32
 FREQUENCIES = (0.2, 0.5, 1.0, 2.0, 5.0)  # Hz
 AMPLITUDES = (2.0, 10.0, 50.0)  # %
 LEVELS = (3.0, 6.0, 12.0, 25.0, 50.0, 75.0, 100.0)  # %
@@ -71,6 +72,31 @@ def scattered(seed: int) -> Truth:
         I0=rng.uniform(-2.0, 2.0), kp=4.2 * rng.uniform(0.85, 1.15), dPfr=0.5 * rng.uniform(0.7, 1.4),
         asymmetry=0.1 * rng.choice([-1.0, 1.0]),
     )  # fmt: skip
+
+
+class Instruments(NamedTuple):
+    """What reads the bench: converters of so many bits over the stroke and the gauges' range, noise of each gauge."""
+
+    bits: int = BITS
+    pressure_noise: float = PRESSURE_NOISE  # MPa RMS
+    pressure_bits: int = 0  # over PRESSURE_RANGE; 0 where the gauges are not converted in steps
+    held: bool = False  # the current of a sample stays until the next one, else it is a straight line between them
+    regulator: float = 1.0  # % of current a mm, of the static test
+    anywhere: float = 0.0  # mm within which each record begins at random: where in a step of the converter is chance
+
+    def position(self, x: Samples) -> Samples:
+        """mm, in steps."""
+        step = STROKE / 2**self.bits
+        return np.round(x / step) * step
+
+    def pressure(self, p: Samples) -> Samples:
+        """MPa, in steps where there are any."""
+        step = PRESSURE_RANGE / 2**self.pressure_bits
+        return np.round(p / step) * step if self.pressure_bits else p
+
+
+TABLE = Instruments()
+"""The instruments of the table in docs/bench.md."""
 
 
 @dataclass(frozen=True)
@@ -131,8 +157,9 @@ def _advance(state, i0, i1, dt, T, B, I0, kp, fr, Ps, G, asymmetry, bend, T2, st
 
 @njit(cache=True)
 def _bench(
-    law, settings, samples, dt, lsb, start, T, B, I0, kp, fr, Ps, G, asymmetry, bend, delay, T2, stick, load, steps
-):
+    law, settings, samples, dt, lsb, start, T, B, I0, kp, fr, Ps, G, asymmetry, bend, delay, T2, stick, load, steps,
+    held,
+):  # fmt: skip
     """A record under one of the bench's laws; the controller sees the quantised position of the sample before."""
     state = np.array([settings[0], 0.0, start, 0.0, settings[0], 0.0])
     state[1] = min(max(I0, state[0] - B), state[0] + B)
@@ -181,47 +208,51 @@ def _bench(
             drive = current[k - late] if k >= late else settings[0]
             before = current[k - late - 1] if k >= late + 1 else settings[0]
         if k > 0:
-            _advance(state, before, drive, dt, T, B, I0, kp, fr, Ps, G, asymmetry, bend, T2, stick, load, steps)
+            _advance(state, before, before if held else drive, dt, T, B, I0, kp, fr, Ps, G, asymmetry, bend, T2, stick,
+                     load, steps)  # fmt: skip
         current[k], x[k], p[k] = now, state[2], state[3]
         old = now
     return current, x, p
 
 
 def record(truth: Truth, name: str, kind: str, law: int, settings: list[float], seconds: float, start: float,
-           rng: np.random.Generator, **labels) -> Record:  # fmt: skip
+           rng: np.random.Generator, read: Instruments = TABLE, **labels) -> Record:  # fmt: skip
     """Run the bench and add what its transducers make of it."""
-    lsb = STROKE / 2**BITS
+    lsb = STROKE / 2**read.bits
+    start += read.anywhere * rng.uniform() if read.anywhere else 0.0
     current, x, p = _bench(
         law, np.array([*settings, 0.0, 0.0, 0.0, 0.0][:6]), round(seconds * RATE), 1 / RATE, lsb, start, truth.T,
         truth.B, truth.I0, truth.kp, truth.dPfr, truth.Ps, truth.G, truth.asymmetry, 4 * truth.nonlinearity,
-        truth.delay, truth.second_lag, truth.stiction, truth.load, SUBSTEPS,
+        truth.delay, truth.second_lag, truth.stiction, truth.load, SUBSTEPS, read.held,
     )  # fmt: skip
-    noise = PRESSURE_NOISE * rng.standard_normal((2, len(x)))
-    middle = 0.5 * truth.Ps
-    seen = np.round(x / lsb) * lsb
-    return Record(name, kind, current, seen, middle + 0.5 * p + noise[0], middle - 0.5 * p + noise[1], x, **labels)
+    noise = read.pressure_noise * rng.standard_normal((2, len(x)))
+    a, b = 0.5 * (truth.Ps + p) + noise[0], 0.5 * (truth.Ps - p) + noise[1]
+    return Record(name, kind, current, read.position(x), read.pressure(a), read.pressure(b), x, **labels)
 
 
-def full_set(truth: Truth, seed: int) -> list[Record]:
-    """Every record that the procedures want; the bench knows the zero shift to half a per cent."""
+def full_set(truth: Truth, seed: int, read: Instruments = TABLE, short: bool = False) -> list[Record]:
+    """Every record that the procedures want; the bench knows the zero shift to half a per cent.
+
+    `short` leaves out what takes longest: one range of positions, sines from 1 Hz on.
+    """
     rng = np.random.default_rng([seed, 77])
     guess = truth.I0 + rng.uniform(-0.5, 0.5) if truth.I0 else 0.0
     out = []
-    for low, high in RANGES:
-        settings = [guess, 1.0, 0.25, 1.5]  # offset %, gain %/mm, rate mm/s, width mm
+    for low, high in RANGES[1:2] if short else RANGES:
+        settings = [guess, read.regulator, 0.25, 1.5]  # offset %, gain %/mm, rate mm/s, width mm
         out.append(record(truth, f"static-{low:.0f}", "static", 0, settings, 48.0, 0.5 * (low + high), rng,
-                          position_range=(low, high)))  # fmt: skip
+                          read, position_range=(low, high)))  # fmt: skip
     for amplitude in AMPLITUDES:
-        for frequency in FREQUENCIES:
+        for frequency in FREQUENCIES[2:] if short else FREQUENCIES:
             gain = 0.3 * frequency / truth.G * 100.0  # % of current a mm of drift from period to period
             out.append(record(
                 truth, f"sine-{amplitude:g}-{frequency:g}", "frequency", 1, [guess, amplitude, frequency, gain],
-                5.0 / frequency, 50.0, rng, frequency=frequency, amplitude=amplitude,
+                5.0 / frequency, 50.0, rng, read, frequency=frequency, amplitude=amplitude,
             ))  # fmt: skip
     for level in LEVELS:
         length = min(3.0, 60.0 / (1.3 * truth.G * level / 100.0))
         out.append(record(truth, f"level-{level:g}", "speed-levels", 2, [guess, level, length, 0.3, 2000.0],
-                          2 * (length + 0.3), 20.0, rng))  # fmt: skip
+                          2 * (length + 0.3), 20.0, rng, read))  # fmt: skip
     out.append(record(truth, "stroke", "speed-continuous", 3, [guess, 3.0, 100.0, 90.0, 400.0],
-                      12.0 * 100.0 / truth.G, 5.0, rng))  # fmt: skip
+                      12.0 * 100.0 / truth.G, 5.0, rng, read))  # fmt: skip
     return out

@@ -1,0 +1,41 @@
+"""Standard errors of the bench are as large as what is wrong: pass and fail at two standard errors rest on them.
+
+Actuators and records are the independent reference's. In the short form eight actuators from 700 on, each with other
+converters and gauges, on fewer records; with ``--full`` 100 actuators with each of the eight.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ident.bench.acceptance import QUANTITIES
+from tests.bench.calibration import INSTRUMENTS, wrong
+
+FIRST = 700
+HONEST, UNBIASED = (0.8, 1.25), 0.5  # RMS of z over many sets; its mean
+
+
+@pytest.fixture(scope="module")
+def found(full: bool) -> list[dict[str, float]]:
+    if full:
+        return [wrong(seed, read) for seed in range(FIRST, FIRST + 100) for read in INSTRUMENTS]
+    return [wrong(FIRST + i, read, short=True) for i, read in enumerate(INSTRUMENTS)]
+
+
+def test_every_quantity_of_the_sheet_is_judged(found: list[dict[str, float]]) -> None:
+    assert set(QUANTITIES) <= set(found[0])
+    assert np.isfinite([list(one.values()) for one in found]).all()
+
+
+def test_standard_errors_are_honest_and_nothing_is_biased(found: list[dict[str, float]], full: bool) -> None:
+    """Of every quantity over 800 sets; in the short form of all quantities and eight sets together."""
+    by_name = {name: np.array([one[name] for one in found]) for name in found[0]}
+    if full:
+        rms = {name: float(np.sqrt(np.mean(z**2))) for name, z in by_name.items()}
+        assert not {name: value for name, value in rms.items() if not HONEST[0] <= value <= HONEST[1]}
+        assert not {name: z.mean() for name, z in by_name.items() if abs(z.mean()) > UNBIASED}
+        return
+    every = np.concatenate(list(by_name.values()))
+    assert 0.7 < np.sqrt(np.mean(every**2)) < 1.4
+    assert max(float(np.sqrt(np.mean(z**2))) for z in by_name.values()) < 2.5

@@ -1,0 +1,64 @@
+"""What a position in steps tells: the readings at its changes, and how far each may be off."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+from ident.bench.readings import in_steps, readings
+from ident.bench.response import respond, respond_plain
+from ident.bench.speed_table import SPLINE, SpeedTable
+from ident.equations.interpolation import interpolated
+
+STEP = 2.5e-5  # m
+
+
+@pytest.mark.parametrize("moved", [0.01, 0.13, 0.5, 0.93, 1.0, 1.3, 2.5, 7.8])
+def test_a_reading_at_a_change_is_off_by_its_deviation(moved: float) -> None:
+    """A link at constant speed, begun anywhere within a step, 4000 times: RMS of what the readings are off by."""
+    begin = np.random.default_rng(1).uniform(0, 1, 4000)
+    way = STEP * (begin[:, None] + moved * np.arange(int(3 + 2 / moved)))
+    seen = STEP * np.round(way / STEP)
+    changed = np.diff(seen) != 0
+    off = (0.5 * (seen[:, 1:] + seen[:, :-1]) - 0.5 * (way[:, 1:] + way[:, :-1]))[changed]
+    assert np.sqrt(np.mean(off**2)) / STEP == pytest.approx(in_steps(np.array(moved)), rel=0.03)
+
+
+def test_a_link_at_rest_tells_nothing_and_a_moving_one_at_its_changes() -> None:
+    """Half a second of rest, then 5 mm/s: a reading for each step that is passed."""
+    way = np.concatenate([np.full(500, 0.3), 0.3 + 5e-6 * np.arange(501)])
+    found = readings(STEP * np.round(way / STEP), STEP, np.diff(way, prepend=way[0]), 0.0)
+    assert found.picked.min() > 500
+    assert len(found.picked) == pytest.approx(100, abs=1)
+    assert np.abs(found.of(way) - found.values).max() <= 0.5 * 5e-6 * (1 + 1e-9)
+
+
+def test_a_reading_that_is_not_in_steps_tells_in_every_sample() -> None:
+    way = np.linspace(0, 1e-3, 50)
+    found = readings(way, 0.0, np.diff(way, prepend=0.0), 1e-6)
+    assert found.of(way) == pytest.approx(way[1:])
+    assert found.deviations == pytest.approx(np.full(49, 1e-6))
+
+
+def test_the_spline_is_scipy_s() -> None:
+    x, y = np.array([0.0, 0.05, 0.1, 0.25, 0.5, 0.75, 1.0]), np.array([0.0, 0.03, 0.09, 0.2, 0.6, 0.8, 0.9])
+    fine = np.linspace(0, 1, 301)
+    pairs = [number for pair in zip(x, y, strict=True) for number in pair]
+    assert interpolated(SPLINE, fine, *pairs) == pytest.approx(CubicSpline(x, y)(fine), abs=1e-12)
+
+
+def test_the_quick_simulation_is_the_one_that_knows_effects() -> None:
+    """With every effect off, over a sine that stops at each turn; position and pressure to rounding."""
+    table = SpeedTable.straight(0.1, kind=SPLINE)
+    constants = np.array([0.02, 2e-3, 1e-3, 4.2e8, 5e5, 2.1e7, 0.0, 0.0, 0.0, 0.0, 0.0])
+    current = 0.02 * np.sin(np.arange(3000) / 150)
+    for held in (False, True):
+        rows = []
+        for simulate in (respond, respond_plain):
+            out = np.empty((3, len(current)))
+            start = np.array([0.05, 0.0, 0.0, 1e-3])
+            simulate(current, 1e-3, 4, held, constants, table.nodes, table.pieces, start, out)
+            rows.append(out[:2])
+        assert np.ptp(rows[0][0]) > 1e-4
+        assert rows[1] == pytest.approx(rows[0], rel=1e-12, abs=1e-15)
