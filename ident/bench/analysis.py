@@ -136,7 +136,7 @@ def _whole(bench: BenchSet, model: Model, seen: dict[str, Observed], found: Anal
     steps, every = replace(at_rest.model, table=characteristic.table), list(seen.values())
     first = fit_whole(steps, every).model
     whole = refined(first, every, bench.records)
-    with_delay, doubt = delay_check(whole)
+    with_delay, doubt = delay_check(whole, drifting)
     whole = replace(whole, scatter=scatter(whole) if doubt.doubt else with_delay[:-1, :-1])
     return replace(
         found, static=refined_static(still, whole), by_range=ranges(still, whole), dynamics=lag,

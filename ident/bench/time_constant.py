@@ -110,10 +110,23 @@ def dynamics(model: Model, observed: Sequence[Observed]) -> Dynamics:
     return Dynamics(Found(T, alone.deviations["T"], "s"), gradient_T, target.error(T), gradient_error, steps)
 
 
-def delay_check(whole: Solution) -> tuple[Array, DelayCheck]:
-    """A delay refitted with every value, from the fit of all records that has none; first the scatter with it."""
-    model, of = whole.model, whole.residual
-    both = solve(Residual(model, of.observed, (*of.names, _DELAY), frozenset({_DELAY})), steps=8, way=LAST)
+def delay_check(whole: Solution, drifting: Sequence[Observed]) -> tuple[Array, DelayCheck]:
+    """A delay refitted with every value, from the fit of all records that has none; first the scatter with it.
+
+    The sines alone, as they are compared for T, say whether there is one: then it is refitted from there, the records
+    weighed anew, for their weights of a model that lacks it hide it.
+    """
+    model, names, free = whole.model, (*whole.residual.names, _DELAY), frozenset({_DELAY})
+    observed, rounds = whole.residual.observed, 1
+    near = solve(Residual(model, tuple(drifting), ("T", "B", _DELAY), free), steps=5)
+    if abs(near.values[_DELAY]) > _SEEN * model.T:
+        model, rounds = near.model, 2
+        observed = tuple(one.reweighed(model) for one in observed)
+    for more in reversed(range(rounds)):
+        both = solve(Residual(model, observed, names, free), steps=8, way=LAST)
+        if more:
+            model = both.model
+            observed = tuple(one.reweighed(model) for one in observed)
     around = scatter(both)
     both = replace(both, scatter=around)
     delay = Found(both.values[_DELAY], both.deviations[_DELAY], "s")
@@ -123,7 +136,7 @@ def delay_check(whole: Solution) -> tuple[Array, DelayCheck]:
         for a, row in both.correlation.items()
         if a in called
     }
-    T, B = both.values["T"], both.values["B"]
+    T, B, model = both.values["T"], both.values["B"], whole.model
     doubt = ""
     if abs(delay.value) > max(_TOLD * delay.deviation, _SEEN * model.T):
         doubt = (
