@@ -122,7 +122,7 @@ def test_a_draft_that_is_not_there_is_missing(service):
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_files_that_differ_in_names_and_units_are_one_matrix(service, case, tmp_path):
+def test_files_of_any_form_are_one_matrix(service, case, tmp_path):
     """What is said of each file is of its own columns; the stored matrix has the samples and the clock of each."""
     sent = [("files", (path.name, path.read_bytes())) for path in case.paths()]
     draft = service.post(f"{API}/drafts", files=sent).json()
@@ -138,7 +138,7 @@ def test_files_that_differ_in_names_and_units_are_one_matrix(service, case, tmp_
     for file in known["files"]:
         assert {column["role"] for column in file["columns"]} == {"time", "command", "displacement"}
         assert file["channels"]["command"]["unit"] == "mm"
-    assert [file["time"]["unit"] for file in known["files"]] == ["ms", "s"]
+    assert all(file["time"]["unit"] in ("s", "ms") for file in known["files"])
     assert {one["code"] for one in known["findings"] if one["severity"] != "note"} == {"sample-rate", "no-verify-runs"}
     made = service.post(f"{API}/drafts/{draft['id']}/matrix", json=answers).json()
     described = service.get(f"{API}/matrices/{made['id']}/description").content

@@ -105,7 +105,7 @@ def test_on_a_terminal_what_is_missing_is_asked(record, tmp_path):
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_files_that_differ_in_names_and_units_are_one_matrix(servoident, case, tmp_path):
+def test_files_of_any_form_are_one_matrix(servoident, case, tmp_path):
     """What is said of all files, and what of some of them by their name or a pattern, with @."""
     said = []
     for at, file in enumerate(case.files):
