@@ -11,9 +11,8 @@ from sqlalchemy.orm import Session
 from app.diagnoses import repository
 from app.fits import repository as fits
 from app.fits.history import put_apart
-from app.jobs.work import Kept, Kind, State, Task, Work
-from app.own_effects.kept import Kept as KeptEffect
-from app.own_effects.kept import suited
+from app.jobs.work import Kind, MadeSoFar, State, Task, Work
+from app.own_effects.kept import Kept, suited
 from app.tables import JobRow
 from ident.custom.definition import read_effect
 from ident.diagnosis.result import Diagnosis
@@ -54,7 +53,7 @@ class DiagnosisWork(Work):
 
         def kept(so_far: Diagnosis) -> None:
             if FURTHER not in so_far.not_looked_at:  # the catalogue is through
-                report(Kept("kept", 1, 1, made={"diagnosis": so_far.to_json(), "fit": with_fit}))
+                report(MadeSoFar("kept", 1, 1, made={"diagnosis": so_far.to_json(), "fit": with_fit}))
 
         found = diagnose(
             matrix, fit, most=chosen["max_effects"], custom=own, report=report, budget=budget, found=kept,
@@ -79,7 +78,7 @@ def _beside_the_lab_s(fit: FitResult, kept: Sequence[Mapping[str, Any]]) -> FitR
     """The fit with the lab's own effects that its model can take beside its own, which come first."""
     known = tuple(fit.settings.get("custom", ()))
     names = {definition["name"] for definition in known}
-    entries = suited((read(KeptEffect, entry) for entry in kept), fit.model)
+    entries = suited((read(Kept, entry) for entry in kept), fit.model)
     more = [entry.definition for entry in entries if entry.name not in names]
     return fit.with_custom((*known, *more)) if more else fit
 

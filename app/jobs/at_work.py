@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from app.jobs.generations import added
 from app.jobs.packed import packed, unpacked
-from app.jobs.work import Kept, Search, State, Task, Work
+from app.jobs.work import MadeSoFar, Search, State, Task, Work
 from app.lru import LRU
 from ident.progress import Progress, Report
 
@@ -99,7 +99,7 @@ def _seldom(report: Report) -> Report:
     def told(progress: Progress) -> None:
         nonlocal last
         due = time.monotonic() - last >= _EVERY or progress.done == progress.total
-        if due or isinstance(progress, Kept):
+        if due or isinstance(progress, MadeSoFar):
             last = time.monotonic()
             report(progress)
 

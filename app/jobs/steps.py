@@ -17,7 +17,7 @@ from app.fits import repository as fits
 from app.jobs import at_work, repository
 from app.jobs.ending import end
 from app.jobs.lease import AWAY, Lease, Superseded, patiently
-from app.jobs.work import Kept, Kind, State, Task
+from app.jobs.work import Kind, MadeSoFar, State, Task
 from app.processes import Here, Place, Stopped
 from app.storage import Storage, Unreachable
 from app.tables import JobRow
@@ -167,7 +167,7 @@ class Run:
 
         Raises Cancelled when the job is to stop, TimeIsUp when it is to keep what it found.
         """
-        if isinstance(progress, Kept):
+        if isinstance(progress, MadeSoFar):
             patiently(lambda: self._keep(progress.made), self.runs.stopping, _PATIENCE)
             return
         with suppress(*AWAY):  # progress can wait

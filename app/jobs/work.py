@@ -22,7 +22,7 @@ Keep = Callable[[Session, JobRow, str, State], None]
 
 
 @dataclass(frozen=True)
-class Kept(Progress):
+class MadeSoFar(Progress):
     """What a job has made so far, to be stored as if it were its end: whatever becomes of the job later, it is there.
 
     In `made` as :meth:`Work.finish` returns it; what is stored later takes its place.
