@@ -13,6 +13,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from app.pages.manual import is_there
 from ident.words.error import ErrorOf
 from ident.words.percent import percent_in_print
+from ident.words.sentence import sentence
 from ident.words.titles import title
 
 HERE = Path(__file__).parent
@@ -46,6 +47,7 @@ def _environment() -> Environment:
     environment.filters["percent"] = percent_in_print
     environment.filters["error"] = _error
     environment.filters["in_words"] = title
+    environment.filters["sentence"] = sentence
     environment.globals["static"] = static
     environment.globals["has_manual"] = is_there
     return environment
