@@ -13,7 +13,7 @@ from ident.diagnosis.estimate import Found
 from ident.effects.effect import Effect
 from ident.equations.mathml import mathml
 from ident.fit.result import Estimate
-from ident.words.plus_minus import UNDETERMINED, plus_minus
+from ident.words.plus_minus import UNDETERMINED, determined, plus_minus
 from ident.words.titles import title
 from schemas.result import EstimateView
 
@@ -52,7 +52,7 @@ def member(name: str, effect: Effect | None, parameters: Mapping[str, Valued], o
         meaning=effect.meaning if effect else "",
         equations=tuple(Markup(mathml(line.text)) for line in effect.equations) if effect else (),
         strength=strength(name, parameters) or "–",
-        determined=not strength(name, parameters).startswith(UNDETERMINED),
+        determined=_is_determined(_strength_of(name, parameters)),
         strength_is=f"{effect.strength.symbol}, {effect.strength.meaning}" if effect else "strength",
         definition=json.dumps(own) if own is not None else "",
         origin=effect.source if own is not None and effect is not None and effect.source != effect.meaning else "",
@@ -60,15 +60,23 @@ def member(name: str, effect: Effect | None, parameters: Mapping[str, Valued], o
 
 
 def strength(effect: str, parameters: Mapping[str, Valued]) -> str:
-    """The first parameter of the effect, with standard error and unit; "" where it is not among the parameters.
-
-    Without a standard error one that is neither held nor at a bound is not determined by the data.
-    """
-    own = (entry for name, entry in parameters.items() if name.startswith(f"{effect}."))
-    entry = next(own, None)
+    """The strength of the effect, with standard error and unit; "" where it is not among the parameters."""
+    entry = _strength_of(effect, parameters)
     if entry is None:
         return ""
-    held = isinstance(entry, Estimate | EstimateView) and (entry.fixed or entry.at_bound)
-    if entry.std_error is None and not held:
+    if entry.std_error is None and not _is_determined(entry):
         return UNDETERMINED
     return plus_minus(entry.value, entry.std_error, entry.unit)
+
+
+def _strength_of(effect: str, parameters: Mapping[str, Valued]) -> Valued | None:
+    """The first parameter of the effect; None where it is not among the parameters."""
+    return next((entry for name, entry in parameters.items() if name.startswith(f"{effect}.")), None)
+
+
+def _is_determined(entry: Valued | None) -> bool:
+    """Whether the data determine a strength: without a standard error they do not, unless it is held or at a bound."""
+    if entry is None:
+        return True
+    held = isinstance(entry, Estimate | EstimateView) and (entry.fixed or entry.at_bound)
+    return determined(entry.value, entry.std_error) and (entry.std_error is not None or held)
