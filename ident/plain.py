@@ -57,7 +57,7 @@ def written(value: Any) -> Any:
 
 def _left_out(field: Field[Any], entry: Any) -> bool:
     """Whether a field that is written where it is known holds nothing."""
-    return bool(field.metadata.get("where_known")) and (entry is None or entry in ("", (), {}))
+    return bool(field.metadata.get("where_known")) and (entry is None or entry is False or entry in ("", (), {}))
 
 
 @cache

@@ -205,16 +205,16 @@ class Diagnosis(Shown):
     effects: tuple[str, ...] = ()
     baseline: Baseline = Baseline()
     noise_floor: Errors = field(default_factory=dict)
-    horizon: float | None = None
-    memory: float | None = None
-    left_out: tuple[str, ...] = ()
+    horizon: float | None = field(default=None, metadata=WHERE_KNOWN)
+    memory: float | None = field(default=None, metadata=WHERE_KNOWN)
+    left_out: tuple[str, ...] = field(default=(), metadata=WHERE_KNOWN)
     budget: Budget | None = None
     candidates: tuple[Ranked, ...]
     ladder: tuple[Rung, ...] = ()
     verdict: Verdict
     proposals: tuple[Proposal, ...] | None = None
-    looked_at: int | None = None
-    terms_left_out: int | None = None
+    looked_at: int | None = field(default=None, metadata=WHERE_KNOWN)
+    terms_left_out: int | None = field(default=None, metadata=WHERE_KNOWN)
     complete: bool = True
     not_looked_at: tuple[str, ...] = ()
     next_experiment: NextRun | None = None
@@ -252,13 +252,6 @@ class Diagnosis(Shown):
         data: dict[str, Any] = written(self) | {"proposals": [one.to_json() for one in self.proposals or ()]}
         if self.proposals is None:
             del data["proposals"]
-        for name in ("horizon", "memory", "left_out"):
-            if not data[name]:
-                del data[name]
-        if self.looked_at is None:
-            del data["looked_at"]
-        if self.terms_left_out is None:
-            del data["terms_left_out"]
         if not self.verdict.stood_in:
             del data["verdict"]["stood_in"]
         if self.verdict.standing is None:

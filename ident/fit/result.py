@@ -17,8 +17,6 @@ from ident.words.engineering import quantity
 from ident.words.error import UNSTABLE, ErrorOf, first_line
 from ident.words.shown import Listing, Shown
 
-_WHERE_KNOWN = ("structures", "window", "anchored_error", "starts", "machine", "actuator", "ended_early", "left_out")
-
 
 @dataclass(frozen=True)
 class Estimate:
@@ -177,18 +175,18 @@ class FitResult(Shown):
     data_hash: str
     notes: tuple[str, ...] = ()
     settings: Mapping[str, Any] = field(default_factory=dict)
-    anchored_error: Mapping[str, float | None] = field(default_factory=dict)
+    anchored_error: Mapping[str, float | None] = field(default_factory=dict, metadata=WHERE_KNOWN)
     error_with_mean: Mapping[str, float | None] = field(default_factory=dict, metadata=WHERE_KNOWN)
     rmse: Mapping[str, float | None] = field(default_factory=dict, metadata=WHERE_KNOWN)
     rmse_unit: str = field(default="", metadata=WHERE_KNOWN)
-    window: Window | None = None
-    starts: Starts | None = None
-    structures: tuple[Structure, ...] = ()
-    ended_early: bool = False
-    left_out: tuple[str, ...] = ()
+    window: Window | None = field(default=None, metadata=WHERE_KNOWN)
+    starts: Starts | None = field(default=None, metadata=WHERE_KNOWN)
+    structures: tuple[Structure, ...] = field(default=(), metadata=WHERE_KNOWN)
+    ended_early: bool = field(default=False, metadata=WHERE_KNOWN)
+    left_out: tuple[str, ...] = field(default=(), metadata=WHERE_KNOWN)
     searched: tuple[str, ...] = ()
     evolution: tuple[Generation, ...] = field(default=(), repr=False)
-    actuator: Actuator | None = None
+    actuator: Actuator | None = field(default=None, metadata=WHERE_KNOWN)
     matrix: Matrix | None = field(default=None, compare=False, repr=False, metadata=UNWRITTEN)
 
     def listings(self) -> Iterable[Listing | str]:
@@ -223,8 +221,8 @@ class FitResult(Shown):
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data (no NaN, no infinity), with the stages of a machine; what is not known is left out."""
-        data: dict[str, Any] = written(self) | {"machine": description(self.model)}
-        return {name: entry for name, entry in data.items() if entry or name not in _WHERE_KNOWN}
+        machine = description(self.model)
+        return {**written(self), **({"machine": machine} if machine else {})}
 
     @classmethod
     def from_json(cls, data: object) -> FitResult:

@@ -8,7 +8,7 @@ from typing import Any
 
 from ident.errors import Unusable
 from ident.fit.start import Start
-from ident.plain import Misfit, read, written
+from ident.plain import WHERE_KNOWN, Misfit, read, written
 
 GENERAL = ("ga", "paper-ga", "differential-evolution", "cma-es")
 """Methods of any model; a preset may name more of its own."""
@@ -37,12 +37,12 @@ class Settings:
     options: Mapping[str, float] = field(default_factory=dict)  # of the method: population, keep, mutation, ...
     custom: tuple[Mapping[str, Any], ...] = ()
     budget: float | None = None
-    start: Start | None = None
+    start: Start | None = field(default=None, metadata=WHERE_KNOWN)
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data; a start that is not there is left out."""
         data: dict[str, Any] = written(self)
-        return {name: entry for name, entry in data.items() if name != "start" or entry is not None}
+        return data
 
     @classmethod
     def from_json(cls, data: object) -> Settings:
