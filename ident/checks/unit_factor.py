@@ -91,23 +91,37 @@ class Record:
         return max(float(np.std(self.run.channels[channel])), np.finfo(float).tiny)
 
 
+@dataclass(frozen=True)
+class _Doubt:
+    """What is off in the run with the id `run`, as a cause of a bad fit, and what to correct."""
+
+    run: str
+    code: str
+    what: str
+    remedy: str
+
+
 def unit_factor(measured: Sequence[tuple[Run, Response | None]], scaled: Sequence[str | None]) -> Iterator[Finding]:
     """A doubt for each run whose clock, input or output is off its sisters' by the factor of a unit.
 
     `measured` are all runs with their responses to a command; `scaled` those whose output is doubted already.
     """
+    for one in _doubts(measured, scaled):
+        yield Finding(one.run, "doubt", one.code, f"{one.what}; {one.remedy}")
+
+
+def unit_causes(runs: Sequence[Run]) -> list[str]:
+    """What units may have to do with a fit that explains hardly anything, as likely causes."""
+    found = [f"a wrong unit: {one.what}" for one in _doubts([(run, respond(run)) for run in runs], [])]
+    return found[:MOST_CAUSES] or ["a wrong unit of a channel or of the time"]
+
+
+def _doubts(measured: Sequence[tuple[Run, Response | None]], scaled: Sequence[str | None]) -> Iterator[_Doubt]:
     records = list(_records(measured))
     alone = list({record.name: record for record in reversed(records)}.values())[::-1]  # one output of each
     yield from _clocks([record for record in alone if record.run.time_unit == "s"])
     yield from _inputs(alone)
     yield from _outputs([record for record in records if record.run.id not in scaled])
-
-
-def unit_causes(runs: Sequence[Run]) -> list[str]:
-    """What units may have to do with a fit that explains hardly anything, as likely causes."""
-    found = unit_factor([(run, respond(run)) for run in runs], [])
-    told = [f"a wrong unit: {finding.text.partition('; correct')[0]}" for finding in found]
-    return told[:MOST_CAUSES] or ["a wrong unit of a channel or of the time"]
 
 
 def _records(measured: Sequence[tuple[Run, Response | None]]) -> Iterator[Record]:
@@ -119,7 +133,7 @@ def _records(measured: Sequence[tuple[Run, Response | None]]) -> Iterator[Record
             yield Record(run, driver, told)
 
 
-def _clocks(records: Sequence[Record]) -> Iterator[Finding]:
+def _clocks(records: Sequence[Record]) -> Iterator[_Doubt]:
     """Runs whose sample rate, or duration, is off: against the runs of the most usual rate, the first of two."""
     usual = _largest(records, lambda record: record.run.sample_rate)
     duration = float(np.median([record.run.duration for record in usual])) if usual else 0.0
@@ -130,19 +144,17 @@ def _clocks(records: Sequence[Record]) -> Iterator[Finding]:
         rate = run.sample_rate / sisters[0].run.sample_rate
         by_rate, by_duration = factor(rate), factor(run.duration / duration)
         if by_rate and _clock_is_off(record, sisters, 1 / rate):
-            text = (
+            what = (
                 f"run {record.name} is sampled at {run.sample_rate:.6g} Hz and lasts {run.duration:.4g} s: the rate is "
-                f"{rate:.4g} times that of {_named(sisters)} ({by_rate.told}), though sample by sample it is like "
-                "them; correct the unit of its time or its sample rate"
+                f"{rate:.4g} times that of {_named(sisters)} ({by_rate.told}), though sample by sample it is like them"
             )
-            yield Finding(run.id, "doubt", "clock-factor", text)
+            yield _Doubt(run.id, "clock-factor", what, "correct the unit of its time or its sample rate")
         elif by_duration and factor(rate) is None and _answers_as(record, sisters, run.duration / duration) is True:
-            text = (
+            what = (
                 f"run {record.name} lasts {run.duration:.4g} s, {run.duration / duration:.4g} times as long as "
-                f"{_named(sisters)} ({by_duration.told}), and answers its command as much more slowly; correct the "
-                "unit of its time or resample"
+                f"{_named(sisters)} ({by_duration.told}), and answers its command as much more slowly"
             )
-            yield Finding(run.id, "doubt", "clock-factor", text)
+            yield _Doubt(run.id, "clock-factor", what, "correct the unit of its time or resample")
 
 
 def _clock_is_off(record: Record, sisters: Sequence[Record], scale: float) -> bool:
@@ -207,7 +219,7 @@ def _differ(one: Response, other: Response, scale: float) -> tuple[float, float]
     return differ, float(np.hypot(np.ptp(over[0]), np.ptp(over[1])))
 
 
-def _inputs(records: Sequence[Record]) -> Iterator[Finding]:
+def _inputs(records: Sequence[Record]) -> Iterator[_Doubt]:
     """Runs whose input is off in size, which neither a stated amplitude nor a stated gain explains."""
     for number, record in enumerate(records):
         if record.run.amplitude is not None:  # what is stated of it is checked by itself
@@ -220,7 +232,7 @@ def _inputs(records: Sequence[Record]) -> Iterator[Finding]:
             yield _size(record, record.driver, off, ", or state the amplitude that was meant")
 
 
-def _outputs(records: Sequence[Record]) -> Iterator[Finding]:
+def _outputs(records: Sequence[Record]) -> Iterator[_Doubt]:
     """Runs whose output is off in size, though input, specimen and gain are those of their sisters."""
     for number, record in enumerate(records):
         sisters = [
@@ -275,12 +287,12 @@ def _levels(records: Sequence[Record], channel: str) -> list[list[Record]]:
     return found
 
 
-def _size(record: Record, channel: str, off: Off, otherwise: str) -> Finding:
-    text = (
+def _size(record: Record, channel: str, off: Off, otherwise: str) -> _Doubt:
+    what = (
         f"{channel} of run {record.name} is {off.ratio:.4g} times as large as that of {_named(off.sisters)} "
-        f"({off.near.told}); correct its unit or scale{otherwise}"
+        f"({off.near.told})"
     )
-    return Finding(record.run.id, "doubt", "amplitude-factor", text)
+    return _Doubt(record.run.id, "amplitude-factor", what, f"correct its unit or scale{otherwise}")
 
 
 def _by_gain(run: Run, sisters: Sequence[Run], ratio: float) -> bool:
