@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from ident.checks.finding import Finding
 from ident.matrix import BENCH, Matrix, Run
+from ident.words.listed import first_of
 
 _TURNING = ("rad", "rad/s", "N*m")  # units of an output
 
@@ -72,8 +73,7 @@ def unstated(runs: list[Run], name: str, code: str, follows: str) -> Iterator[Fi
     """A note where runs do not state something: once, however many they are."""
     without = [run.id for run in runs if getattr(run, name) is None]
     if without:
-        listed = ", ".join(without[:3]) + (f" and {len(without) - 3} more" if len(without) > 3 else "")
-        yield note(code, f"{name} is not stated for {listed}: {follows}")
+        yield note(code, f"{name} is not stated for {first_of(without)}: {follows}")
 
 
 def note(code: str, text: str) -> Finding:

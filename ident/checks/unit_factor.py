@@ -17,6 +17,7 @@ from ident.cached import cached_property
 from ident.checks.finding import Finding
 from ident.checks.response import RELATED, Response, respond, response
 from ident.matrix import Run
+from ident.words.listed import first_of
 
 NEAR = 0.02  # a clock is right to 1e-4 and a repeated RMS to 1 %; by chance one ratio in 40 is so near to a factor
 FACTORS = {25.4: "in for mm", 60.0: "min for s", 180 / pi: "deg for rad", 9.80665: "kgf for N, or g for m/s^2"}
@@ -333,6 +334,4 @@ def _conditions(run: Run) -> tuple[object, ...]:
 
 
 def _named(records: Sequence[Record]) -> str:
-    return ", ".join(dict.fromkeys(record.name for record in records[:3])) + (
-        f" and {len(records) - 3} more" if len(records) > 3 else ""
-    )
+    return first_of(list(dict.fromkeys(record.name for record in records)))

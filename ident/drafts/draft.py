@@ -16,13 +16,13 @@ from ident.matrix import CHANNELS
 from ident.readers import PACKED
 from ident.readers.table import MINUS, some_of
 from ident.units.quantity import shown
+from ident.words.listed import first_of
 
 __all__ = ["NONE", "OUTPUTS", "Answer", "Answers", "Draft", "FileAnswers", "Known", "Missing", "run_ids"]
 
 OUTPUTS = ("displacement", "velocity", "force", "load_pressure")
 """Channels that a model may have to reproduce; the first that there is, unless one is named."""
 _DRIVES = ("command", "current")
-_NAMED = 3  # files that a doubt names
 _HELD = "the command rests and jumps, so it is taken to be held between its changes (hold: zoh)"
 _DRAWN = "the command is taken to run straight from sample to sample (hold: linear); say zoh where it is held"
 _LEFT_OUT = 3  # columns with an empty cell that a question names
@@ -151,7 +151,7 @@ class Draft:
         for file, one in zip(self.files, known, strict=True):
             for doubt in dict.fromkeys(one.doubts):
                 found.setdefault(doubt, []).append(file.name)
-        told = [doubt if len(names) == len(self.files) else f"{_some(names)}: {doubt}"
+        told = [doubt if len(names) == len(self.files) else f"{first_of(names)}: {doubt}"
                 for doubt, names in found.items()]  # fmt: skip
         return tuple(dict.fromkeys([*remarks, *told, *self._on_hold(known)]))
 
@@ -164,7 +164,7 @@ class Draft:
             yield _HELD if held else _DRAWN
             return
         yield (
-            f"the command of {_some(held)} rests and jumps, so it is taken to be held there between its changes "
+            f"the command of {first_of(held)} rests and jumps, so it is taken to be held there between its changes "
             "(hold: zoh), and in the other files to run straight from sample to sample (hold: linear); say zoh where "
             "it is held"
         )
@@ -244,11 +244,6 @@ def _other_unit(time: Column, said: str) -> Iterator[str]:
 
 def _contradicted(column: str, what: str, said: str, stated: str) -> str:
     return f"{shown(column)!r} is {what} in {said}, as was said; the file states {stated}"
-
-
-def _some(names: Sequence[str]) -> str:
-    """The first names of a list in words."""
-    return ", ".join(names[:_NAMED]) + (f" and {len(names) - _NAMED} more" if len(names) > _NAMED else "")
 
 
 def _columns(file: RawFile, column: str | int, where: str) -> list[Column]:

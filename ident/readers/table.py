@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ident.errors import Unusable
 from ident.units.quantity import shown
+from ident.words.listed import first_of
 from ident.words.nearest import did_you_mean
 
 Array = NDArray[Any]
@@ -83,8 +84,7 @@ class Table:
 
 def some_of(names: Sequence[str]) -> str:
     """The first of some names, and how many more there are."""
-    more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
-    return ", ".join(map(shown, names[:_LISTED])) + more
+    return first_of(list(map(shown, names)), _LISTED)
 
 
 def filled(fields: Sequence[str], count: int) -> tuple[str, ...]:
