@@ -8,17 +8,16 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from ident.drafts.answers import NONE, Answer, Answers, FileAnswers
-from ident.drafts.names import is_time, suggested, unit_of
+from ident.drafts.names import suggested, unit_of
 from ident.drafts.raw import Column, RawFile
 from ident.drafts.steps import moves_in_steps
 from ident.errors import Unusable
 from ident.matrix import CHANNELS
 from ident.readers import PACKED
+from ident.readers.column_names import is_time
 from ident.readers.table import MINUS, some_of
 from ident.units.quantity import shown
 from ident.words.listed import first_of
-
-__all__ = ["NONE", "OUTPUTS", "Answer", "Answers", "Draft", "FileAnswers", "Known", "Missing", "run_ids"]
 
 OUTPUTS = ("displacement", "velocity", "force", "load_pressure")
 """Channels that a model may have to reproduce; the first that there is, unless one is named."""

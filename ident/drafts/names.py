@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ident.drafts.raw import Column
-from ident.readers.column_names import PAIRS, UNITS_BY_NAME, channel_of, is_time, said, stem_of
-
-__all__ = ["channel_of", "is_time", "suggested", "unit_of"]
+from ident.readers.column_names import PAIRS, UNITS_BY_NAME, channel_of, said, stem_of
 
 
 def suggested(columns: Sequence[Column]) -> dict[str, Column]:

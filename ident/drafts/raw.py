@@ -14,7 +14,7 @@ from ident.cached import cached_property
 from ident.errors import Unusable
 from ident.matrix import Samples
 from ident.readers import PACKED, TEXT, ending_of, read_table
-from ident.readers.column_names import bare, bracketed, is_time, is_unit, measures_time, suffix
+from ident.readers.column_names import bracketed, is_time, is_unit, measures_time, suffix
 from ident.readers.controldesk import is_controldesk
 from ident.readers.gzipped import unpacked
 from ident.readers.layout import Form, line_start, recognise
@@ -23,8 +23,6 @@ from ident.readers.suggestion import unit_in
 from ident.readers.table import MINUS, NUMERIC, Table
 from ident.readers.text import as_utf8
 from ident.units.quantity import unit_scale
-
-__all__ = ["Column", "Rate", "RawFile", "bare", "is_unit", "read_parts", "read_raw"]
 
 _OF_TABLES = (".json",)
 _LETTER_M = "m"  # behind a name it may be metres, or say that it was measured

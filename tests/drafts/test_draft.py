@@ -9,11 +9,11 @@ import pytest
 
 from ident.drafts.answers import NONE, Answer, Answers, FileAnswers
 from ident.drafts.draft import Draft
-from ident.drafts.names import channel_of
 from ident.drafts.raw import read_raw
 from ident.drafts.text import drafted, gathered
 from ident.errors import Unusable
 from ident.readers import read_matrix
+from ident.readers.column_names import channel_of
 from ident.readers.description import describe
 from ident.readers.limits import LIMITS
 from ident.units.quantity import unit_scale

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from ident.drafts.draft import Answers, Draft
+from ident.drafts.answers import Answers
+from ident.drafts.draft import Draft
 from ident.drafts.raw import read_raw
 from ident.readers.column_names import MEASURED, PAIRS, TIMES, WORDS, channel_of, is_time, said, suffix
 

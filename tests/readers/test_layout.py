@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ident.drafts.draft import Answers, Draft
+from ident.drafts.answers import Answers
+from ident.drafts.draft import Draft
 from ident.drafts.raw import read_raw
 from ident.errors import Unusable
 from ident.readers.layout import recognise

@@ -7,13 +7,14 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from ident.drafts.draft import NONE, Answer, Answers, Draft
-from ident.drafts.names import channel_of
+from ident.drafts.answers import NONE, Answer, Answers
+from ident.drafts.draft import Draft
 from ident.drafts.raw import RawFile, read_raw
 from ident.drafts.text import drafted, gathered
 from ident.errors import Unusable
 from ident.matrix import Run
 from ident.readers import read_matrix
+from ident.readers.column_names import channel_of
 from ident.units.quantity import si_scale
 from tests.readers.random_tables import Written, drawn
 
