@@ -113,8 +113,8 @@ def identify(
     """
     if start is not None:
         if settings is not None or choices:
-            raise Unusable("bad-option", "a start, and settings beside it", "start",
-                           "give one of them: model, effects and bounds are those of the start")  # fmt: skip
+            raise Unusable("bad-option", "settings cannot be given with a start", "start",
+                           "give one of the two: model, effects and bounds are those of the start")  # fmt: skip
         return replace(completed(identification(matrix, settings_after(start), report)), matrix=matrix)
     chosen = settings_of(choices, settings) if choices else settings or Settings()
     return replace(completed(identification(matrix, chosen, report)), matrix=matrix)

@@ -13,4 +13,4 @@ def tell_nearest(asked: Mapping[str, str | None], known: Callable[[str], Iterabl
     for where, name in asked.items():
         names = list(known(where)) if name else []
         if name and name not in names and (near := nearest(name, names)) is not None:
-            print(f"nothing is known of the {where} {name!r}; did you mean {near}?", file=sys.stderr)
+            print(f"there is no {where} {name!r}; did you mean {near}?", file=sys.stderr)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Searched:
-    """How the whole space is to be searched beside the start; as usual where nothing is said."""
+    """How the whole space is to be searched in addition to the start; as usual where nothing is said."""
 
     method: str = "ga"
     seed: int = 0
@@ -27,7 +27,7 @@ class Searched:
 
 @dataclass(frozen=True)
 class StartOptions:
-    """What the command line says about a start: the file, which of its models, and what else was given beside it.
+    """What the command line says about a start: the file, which of its models, and what else was given.
 
     `searched` is None where nothing but the start is refined; `others` are options that the file has decided, by name,
     with what was given for each.
@@ -46,12 +46,12 @@ class StartOptions:
 
         given = [name for name, value in self.others.items() if value]
         if given:
-            raise Unusable("bad-option", f"{' and '.join(given)} beside a start", "--start",
-                           "leave it out: model, effects and bounds are those of the file")  # fmt: skip
+            raise Unusable("bad-option", f"{' and '.join(given)} cannot be given with a start", "--start",
+                           "leave out what the file decides: model, effects, bounds and values")  # fmt: skip
         found = settings_after(read_result(self.file), self.effects, self.terms, self.search)
         if not self.search:
             if self.searched != Searched():
-                raise Unusable("bad-option", "options of a search, and none is made", "--start",
+                raise Unusable("bad-option", "options of a search are given, and no search is made", "--start",
                                "add --search, or leave out --method, --seed, --option and --budget")  # fmt: skip
             return found
         how = self.searched

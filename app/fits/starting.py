@@ -50,15 +50,15 @@ def _after(context: Context, start: StartRequest) -> tuple[Settings, str]:
     if start.fit is not None and start.diagnosis is None:
         found = FitResult.from_json(service.find(context, start.fit).result)
         return settings_after(found, start.effects, start.terms, start.search), start.fit
-    raise Failure(422, "bad-request", "a start is the end of a fit or of a diagnosis", "start", "name one of them")
+    raise Failure(422, "bad-request", "a start names one result: a fit or a diagnosis", "start", "give one of the two")
 
 
 def _searched(request: FitRequest, settings: Settings) -> Settings:
-    """The settings with what the request says of the search beside the start. Raises Failure for anything else."""
+    """The settings with what the request says of the search. Raises Failure for anything else."""
     given = request.model_fields_set & set(Chosen.model_fields)
     search = settings.start is not None and settings.start.search
     if given - (_OF_A_SEARCH if search else set()):
-        raise Failure(422, "bad-request", f"a start is given, and {', '.join(sorted(given))} beside it", "start",
-                      "leave them out: model, effects and bounds are those of the start")  # fmt: skip
+        raise Failure(422, "bad-request", f"{', '.join(sorted(given))} cannot be given with a start", "start",
+                      "leave out what the start decides: model, effects, bounds and values")  # fmt: skip
     chosen = {name: getattr(request, name) for name in given}
     return replace(settings, **chosen)

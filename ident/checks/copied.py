@@ -1,4 +1,4 @@
-"""An output that is its command once more: one column taken for both."""
+"""An output that is a copy of its command: one column taken for both."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ def copied(run: Run) -> Iterator[Finding]:
     if "command" not in run.channels or run.stepped:
         return
     u, x = run.command - run.command.mean(), run.measured - run.measured.mean()
-    rest = x - u * (float(u @ x) / float(u @ u))
-    if not x.any() or float(np.std(rest)) > EXACT * float(np.std(x)):
+    residual = x - u * (float(u @ x) / float(u @ u))
+    if not x.any() or float(np.std(residual)) > EXACT * float(np.std(x)):
         return
     text = (
-        f"{run.output} of run {run.id} is its command once more, without delay, dynamics or noise: no sensor gives "
-        "that; check that its column is that of the sensor"
+        f"{run.output} of run {run.id} is a copy of its command, without delay, dynamics or noise, which no sensor "
+        "gives; check that its column is that of the sensor"
     )
     yield Finding(run.id, "doubt", "copied", text)

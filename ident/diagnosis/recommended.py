@@ -40,11 +40,13 @@ def settings_after(
     """
     if isinstance(found, FitResult):
         if effects or terms is not None:
-            raise Unusable("bad-option", "a fit to begin from, and what to add to it", "start",
+            raise Unusable("bad-option", "a start that is a fit takes neither effects nor terms", "start",
                            "give a diagnosis, which refitted what it adds, or fit without a start")  # fmt: skip
         return settings_from(found, search)
     if effects and terms is not None:
-        raise Unusable("bad-option", "effects, and a number of terms", "start", "give one of them")
+        raise Unusable(
+            "bad-option", "effects and a number of terms cannot both be given", "start", "give one of the two"
+        )
     end = end_with(found, effects) if effects else recommended(found, terms)
     if end is None:
         known = "; ".join(dict.fromkeys(", ".join(one.added) for one in _ends(found) if one.added))
@@ -107,7 +109,7 @@ def settings_of_end(found: Diagnosis, end: End, search: bool = False) -> Setting
 
 
 def _ends(found: Diagnosis) -> Iterator[End]:
-    """Every refit that a diagnosis tells of, what it would add first."""
+    """Every refit of a diagnosis, that of what it would add first."""
     proposals = found.proposals or ()
     yield from (_with_terms(proposals[:terms]) for terms in range(len(proposals), 0, -1))
     yield from _rungs(found)

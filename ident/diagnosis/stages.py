@@ -1,6 +1,6 @@
 """What follows the search for effects, stage by stage: one that runs out of time, or fails, takes nothing away.
 
-What was not looked at is listed, what failed is told in a note and logged with its traceback for the developers.
+What was not looked at is listed; what failed is said in a note and logged with its traceback for the developers.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ident.errors import TimeIsUp, Unusable
 
 EFFECTS, FURTHER = "effects of the catalogue", "further effects"
 LABELS, OTHERS, LAGS = "labels of the runs", "other models", "lags and delays"
-VERIFY, NOISE = "runs to verify", "whether what is left is noise"
+VERIFY, NOISE = "runs to verify", "whether the residual is noise"
 TERMS, NEXT_RUN, ERROR_BUDGET = "search for unknown terms", "next run", "error budget"
 _GIVEN = (NEXT_RUN, ERROR_BUDGET)
 """Stages that give a figure of their own, null where there was no time for them."""
@@ -62,7 +62,7 @@ class Stages:
 
     def _failed(self, stage: str, error: Exception) -> None:
         self._missed.add(stage)
-        self.notes.append(f"The {stage} failed: {_why(error)}. What was found before it stands.")
+        self.notes.append(f"The stage {stage!r} failed: {_why(error)}. What was found before it stands.")
         if not isinstance(error, Unusable | MemoryError):
             _log.error("the %s of a diagnosis failed", stage, exc_info=error)
 
@@ -72,7 +72,7 @@ def _why(error: Exception) -> str:
         return str(error)
     if isinstance(error, MemoryError):
         return "it needs more memory than there is; use fewer or shorter runs"
-    return f"a defect of the program ({type(error).__name__}), which its log tells of"
+    return f"a defect of the program ({type(error).__name__}); its log has the details"
 
 
 def not_looked_at(stages: Sequence[str]) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""What is told where the time was over before anything was ranked."""
+"""The diagnosis where the time was over before anything was ranked."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _NONE = {"fit": None, "held_out": None, "verify": None}
 
 def unfitted(matrix: Matrix, settings: Settings, seconds: float) -> Diagnosis:
     """The diagnosis of no fit: there was no time to make one; `seconds` is what it took."""
-    text = "The search was not over: there was no time to fit a model first; give more, or a fit."
+    text = "The search was not over: there was no time to fit a model first. Give more time, or a fit."
     return _told(matrix, settings, Baseline(dict(_NONE)), dict(_NONE), text, seconds)
 
 
 def unranked(matrix: Matrix, fit: FitResult, seconds: float) -> Diagnosis:
-    """That of a fit beside which no effect could be looked at: its own errors stand."""
+    """The diagnosis of a fit where there was no time to look at any effect: the errors of the fit stand."""
     error, floor = ({**_NONE, **of} for of in (fit.error, fit.noise_floor))
     settings = Settings.from_json(dict(fit.settings)) if fit.settings else Settings(model=fit.model)
     baseline = Baseline(error, fit.offset.get("fit"))

@@ -115,7 +115,7 @@ class Fields:
         return value[0], value[1]
 
 
-_PAIR = "write [first, end], with decimal points: a comma parts the list"
+_PAIR = "write [first, end], with decimal points: a comma separates the two"
 
 
 def _check_comma(data: Mapping[Any, Any], key: Any, where: str) -> None:
@@ -124,5 +124,5 @@ def _check_comma(data: Mapping[Any, Any], key: Any, where: str) -> None:
     text = str(key).strip()
     if before is None or data[key] is not None or not text[:1].isdigit() or not str(before[1]).lstrip("+-").isdigit():
         return
-    what = f"the comma in '{before[0]}: {before[1]},{shown(text)}' parts two entries of the mapping"
+    what = f"the comma in '{before[0]}: {before[1]},{shown(text)}' separates two entries of the mapping"
     raise Unusable("decimal-comma", what, where, f"write {before[0]}: {before[1]}.{shown(text)}, with a decimal point")

@@ -279,11 +279,13 @@ def _numbers_columns(above: Sequence[Sequence[str]]) -> bool:
 
 
 def _on_thousands(form: Form, rows: Sequence[Sequence[str]], where: str) -> tuple[str, ...]:
-    """What to say of decimal commas each of which may as well part thousands, as in 1,234;5,678."""
+    """What to say of decimal commas each of which may as well separate thousands, as in 1,234;5,678."""
     shown = [field for row in rows for field in row if form.comma and has_fraction(field, True)]
     if not shown or not all(map(in_thousands, shown)):
         return ()
-    return (f"{where}: the comma was read as the decimal sign; where it parts thousands, export it without",)
+    return (
+        f"{where}: the comma was read as the decimal sign; where it separates thousands, export the numbers without it",
+    )
 
 
 def _end(
@@ -334,5 +336,5 @@ def _without_rows(text: bytes, start: int, lines: Sequence[str], form: Form, ski
 
 
 def mixes_thousands(field: str) -> bool:
-    """Whether a number with a decimal point in a table of decimal commas may have its thousands parted by it."""
+    """Whether a number with a decimal point in a table of decimal commas may have its thousands separated by it."""
     return "." in field and in_thousands(field)

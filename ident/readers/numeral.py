@@ -30,7 +30,7 @@ def is_begun(field: str) -> bool:
 
 
 def in_thousands(field: str) -> bool:
-    """Whether the sign in a number may part thousands as well as decimals: 1,234 may, 0,123 and 1,23 may not."""
+    """Whether the sign in a number may separate thousands as well as decimals: 1,234 may, 0,123 and 1,23 may not."""
     return bool(_IN_THOUSANDS.fullmatch(field.strip(QUOTES)))
 
 

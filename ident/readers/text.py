@@ -186,7 +186,7 @@ def as_float(field: bytes, comma: bool, line: int, where: str) -> float:
             pass
     text = field.decode("utf-8", "replace").strip()
     if parted:
-        what = f"line {line} holds {shown(text)!r} among decimal commas, where the point may part thousands"
+        what = f"line {line} holds {shown(text)!r} among decimal commas, where the point may separate thousands"
         raise Unusable("not-numeric", what, where, "export it without signs between thousands")
     if not text.strip("\"' "):
         what = f"line {line} has an empty cell where a number belongs"

@@ -15,7 +15,7 @@ from fastapi.testclient import TestClient
 from app.diagnoses.work import DIAGNOSIS
 from app.jobs import repository
 from app.jobs.steps import Runs
-from app.jobs.work import Kept, Kind, State, Task, Work
+from app.jobs.work import Kind, MadeSoFar, State, Task, Work
 from ident.diagnosis.result import Diagnosis
 from ident.progress import Progress
 from ident.readers import read_matrix
@@ -103,9 +103,10 @@ def test_every_button_of_a_diagnosis_names_it(service, diagnosis, linear):
 
 
 @pytest.mark.parametrize(("start", "beside", "said"), [
-    ({}, {}, "a start is the end of a fit or of a diagnosis"), ({"fit": "f", "diagnosis": "d"}, {}, "name one of them"),
-    ({"diagnosis": "DIAGNOSIS"}, {"model": "strano"}, "model beside it"),
-    ({"diagnosis": "DIAGNOSIS"}, {"seed": 4}, "seed beside it"),
+    ({}, {}, "a start names one result: a fit or a diagnosis"),
+    ({"fit": "f", "diagnosis": "d"}, {}, "give one of the two"),
+    ({"diagnosis": "DIAGNOSIS"}, {"model": "strano"}, "model cannot be given with a start"),
+    ({"diagnosis": "DIAGNOSIS"}, {"seed": 4}, "seed cannot be given with a start"),
     ({"diagnosis": "DIAGNOSIS", "effects": ["stiction"]}, {}, "refitted no model with just stiction"),
     ({"diagnosis": "nothing"}, {}, "no diagnosis"), ({"fit": "nothing"}, {}, "no fit"),
 ])  # fmt: skip
@@ -266,7 +267,7 @@ def test_the_catalogues_verdict_is_kept_whatever_becomes_of_the_job(service, dia
             self.task = task
 
         def finish(self, state: State) -> State:  # noqa: ARG002  nothing comes before it
-            self.task.report(Kept("kept", 1, 1, made={"diagnosis": so_far, "fit": None}))
+            self.task.report(MadeSoFar("kept", 1, 1, made={"diagnosis": so_far, "fit": None}))
             self.task.report(Progress("proposing", 3, 3, verdict=so_far["verdict"]["text"]))
             seen.append(service.get(f"{API}/jobs/{name}").json())
             seen.append(service.get(f"{API}/diagnoses/{name}").json())

@@ -158,9 +158,11 @@ def test_the_recommended_fit_begins_where_the_diagnosis_ended(servoident, matrix
 
 
 @pytest.mark.parametrize(("options", "said"), [
-    (("--model", "strano"), "--model beside a start"), (("--seed", 3), "options of a search, and none is made"),
+    (("--model", "strano"), "--model cannot be given with a start"),
+    (("--seed", 3), "options of a search are given, and no search is made"),
     (("--effect", "stiction"), "refitted no model with just stiction added; choose from dead_zone"),
-    (("--terms", 1), "1 term of 0"), (("--bounds", "tau=1 ms:9 ms", "--load", "force"), "--bounds and --load beside"),
+    (("--terms", 1), "1 term of 0"),
+    (("--bounds", "tau=1 ms:9 ms", "--load", "force"), "--bounds and --load cannot be"),
 ])  # fmt: skip
 def test_what_does_not_go_with_a_start_is_refused_in_a_line(servoident, matrix, told, tmp_path, options, said):
     diagnosis = tmp_path / "D.json"

@@ -172,5 +172,5 @@ def test_commas_that_may_all_part_thousands_are_read_as_decimal_signs_and_it_is_
     rows = [f"{n},{100 + n};{n + 3},{200 + n}" for n in range(1, 30)]
     doubted, sure = (read("\n".join(["u;x", *lines])) for lines in (rows, [*rows, "0,123;4,567"]))
     assert doubted.load([0])[0][0] == 1.101
-    assert any("parts thousands" in notice for notice in doubted.notices)
+    assert any("separates thousands" in notice for notice in doubted.notices)
     assert not sure.notices

@@ -1,4 +1,4 @@
-"""A decimal comma is read where it can be nothing else, and named where it may part thousands, wherever one types."""
+"""A decimal comma is read where it can be nothing else, and named where it may separate thousands."""
 
 from __future__ import annotations
 
