@@ -69,7 +69,7 @@ def stored(
 
 def main_deeds(page: str) -> list[str]:
     """The texts of the main buttons at the head of a page."""
-    head = page.partition('<div class="deeds">')[2].partition('<div class="columns')[0]
+    head = page.partition('<div class="deeds whole">')[2].partition('<div class="columns')[0]
     return re.findall(r'<(?:button|a)[^>]*class="(?:button )?main"[^>]*>([^<]*)<', head)
 
 
