@@ -39,7 +39,8 @@ Limit = Annotated[
     float | None,
     typer.Option(
         metavar="S",
-        help="Seconds after which nothing more is begun: what was found is told, and what was not looked at.",
+        help="Seconds after which nothing more is begun: the result is what was found, and names what was not looked "
+        "at.",
     ),
 ]
 Most = Annotated[int | None, typer.Option(min=0, metavar="N", help="Largest number of effects that may be added.")]
