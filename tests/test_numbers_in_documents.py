@@ -149,7 +149,7 @@ def of_others() -> Iterator[Tie]:
         per_cent(genetic.PAPER["keep"]), _paper_generations(),
     )  # fmt: skip
     yield P, "draws the mutated {} of each column", ({0.2: "fifth"}[genetic.PAPER["mutation"]],)
-    yield P, "the mean of the last {} are the text's", (word(genetic.PAPER["survivors"]),)
+    yield P, "so is the mean of the last {} vectors", (word(genetic.PAPER["survivors"]),)
     yield P, "**{}e-6 m⁴/s**", (f"{1.48e1 * PRINTED_Z0_FACTOR:.4g}",)
 
     B = "bench.md"
