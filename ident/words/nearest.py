@@ -10,19 +10,18 @@ _NEAR = 0.6
 """Ratio of difflib (twice the letters in common over all letters) from which on a name may be meant."""
 _NEAR_IF_SHORT, _SHORT = 0.5, 3
 """The same of a name of at most three letters, one of which may be wrong."""
-
-
 _PLAIN = re.compile(r"\S+")
 """A name that needs no quotes in a sentence."""
 
 
-def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:
+def did_you_mean(name: object, known: Iterable[str], otherwise: str = "") -> str:
     """The remedy ``did you mean dead_zone?`` with the known name that is nearest; where none is near, `otherwise`.
 
-    Without `otherwise` the known names are listed. Neither case, separators nor spaces count for how near a name is.
+    Without `otherwise` the known names are listed. Neither case, separators nor spaces count for how near a name is;
+    what is no text, such as a number in its place, is taken as it would be written.
     """
     names = list(dict.fromkeys(known))
-    found = nearest(name, names)
+    found = nearest(str(name), names)
     if found is not None:
         return f"did you mean {found if _PLAIN.fullmatch(found) else repr(found)}?"
     return otherwise or (f"choose from {', '.join(names)}" if names else "leave it out")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from difflib import SequenceMatcher
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -110,3 +112,18 @@ def test_a_question_ends_without_a_full_stop():
     assert sentence("did you mean mm?") == "Did you mean mm?"
     assert sentence("add one") == "Add one."
     assert sentence("") == ""
+
+
+def test_a_unit_of_any_length_is_compared_with_none_that_it_cannot_be(monkeypatch):
+    """Comparing takes time with the length: a file may state a megabyte for a unit."""
+    compared: list[int] = []
+
+    def counted(_: None, first: str, second: str, autojunk: bool) -> SequenceMatcher:
+        compared.append(len(first))
+        return SequenceMatcher(None, first, second, autojunk)
+
+    monkeypatch.setattr("ident.units.nearest.SequenceMatcher", counted)
+    assert nearest("m" * 10**6, "m") == ""
+    assert compared == []
+    assert nearest("cmm", "m") != ""
+    assert set(compared) == {3}

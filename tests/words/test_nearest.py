@@ -6,6 +6,8 @@ import pytest
 
 from ident.effects import CATALOGUE, effect
 from ident.errors import Unusable
+from ident.fit.choices import settings_of
+from ident.fit.identification import check_settings
 from ident.words.nearest import did_you_mean, nearest
 
 
@@ -32,6 +34,13 @@ def test_where_none_is_near_the_names_are_listed_or_a_remedy_is_given():
     assert did_you_mean("magic", ("a", "b")) == "choose from a, b"
     assert did_you_mean("magic", ("a", "b"), "look there") == "look there"
     assert did_you_mean("magic", ()) == "leave it out"
+
+
+def test_what_is_no_text_is_answered_too():
+    """As of a library's call with a number for a name."""
+    assert did_you_mean(5, ("none", "force")) == "choose from none, force"
+    with pytest.raises(Unusable, match="choose from none, force"):
+        check_settings(settings_of({"load": 5}))
 
 
 def test_a_name_with_spaces_stands_in_quotes():
