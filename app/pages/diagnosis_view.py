@@ -220,5 +220,5 @@ def _left(found: Diagnosis) -> str:
     error, floor = found.ladder[-1].error_of("fit").in_print(), found.noise_floor.get("fit")
     after = " with all that helps" if len(found.ladder) > 1 else ""
     if floor is None:
-        return f"The error is {error}{after}, and what is left has a memory that noise has not."
+        return f"The error is {error}{after}, and the residual has a memory that noise does not have."
     return f"The error is {error}{after}, above the noise floor of {percent_in_print(floor)}."

@@ -22,7 +22,18 @@ from ident.diagnosis.longer import over_longer
 from ident.diagnosis.proposals.outcome import Proposals
 from ident.diagnosis.proposals.search import Search
 from ident.diagnosis.refit import Refit
-from ident.diagnosis.result import Baseline, Diagnosis, Errors, Explanation, NextRun, Ranked, Rung, Suspect, Verdict
+from ident.diagnosis.result import (
+    NO_ERRORS,
+    Baseline,
+    Diagnosis,
+    Errors,
+    Explanation,
+    NextRun,
+    Ranked,
+    Rung,
+    Suspect,
+    Verdict,
+)
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.stages import (
     EFFECTS,
@@ -57,7 +68,6 @@ from ident.time_budget import in_time
 
 _SIMPLER = 1.05  # times the error that terms may leave without what was found, and still come before those beside it
 _RISES = 1.1  # times the least error on verify runs on the way: from there on it is told
-_NONE: Errors = {"fit": None, "held_out": None, "verify": None}
 _LATE = 2  # models, the last one first, of which it is asked how late they answer
 Steps = Sequence[tuple[str | None, Refit]]
 """From the fitted model to the last, what each step added."""
@@ -231,7 +241,7 @@ class Diagnoser:
         """What a search found so far; `pairs` are lags and delays of which no two can be told from two others."""
         steps, base = in_time(selection.ladder) or selection.known_ladder(), selection.base
         ladder, models = self._ladder(steps, selection.added), selection.models
-        unknown: Errors = {**_NONE, **self.fit.noise_floor}
+        unknown: Errors = {**NO_ERRORS, **self.fit.noise_floor}
         floor = in_time(lambda: models.floors.of_use(models.matrix)) or unknown
         return Diagnosis(
             model=self.fit.model,
@@ -335,7 +345,7 @@ class Diagnoser:
             )
             listed.append(Ranked(
                 effect=candidate.effect,
-                error=refit.errors if refit else dict(_NONE),
+                error=refit.errors if refit else dict(NO_ERRORS),
                 offset=refit.held_out.offset if refit else None,
                 predicted_error=base.error * candidate.prediction.share,
                 parameters=refit.parameters if refit else {},
@@ -354,7 +364,7 @@ class Diagnoser:
         before: Refit | None = steps[0][1]
         for name in added:
             refit = known.get(name)
-            rungs.append(Rung(added=name, error=dict(_NONE)) if refit is None else self._rung(name, before, refit))
+            rungs.append(Rung(added=name, error=dict(NO_ERRORS)) if refit is None else self._rung(name, before, refit))
             before = refit
         return rungs
 

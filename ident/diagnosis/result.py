@@ -19,6 +19,8 @@ from ident.words.shown import Listing, Shown
 
 Errors = Mapping[str, float | None]
 """Eq. (17) averaged over the runs of a kind: fit, held_out, verify; None where there are none."""
+NO_ERRORS: Errors = {"fit": None, "held_out": None, "verify": None}
+"""The errors of what was not refitted."""
 
 
 class Judged:

@@ -4,25 +4,24 @@ from __future__ import annotations
 
 from importlib.metadata import version
 
-from ident.diagnosis.result import Baseline, Diagnosis, Verdict
+from ident.diagnosis.result import NO_ERRORS, Baseline, Diagnosis, Verdict
 from ident.diagnosis.stages import EFFECTS, LATER, not_looked_at
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 
 _STAGES = (EFFECTS, *LATER[1:])
-_NONE = {"fit": None, "held_out": None, "verify": None}
 
 
 def unfitted(matrix: Matrix, settings: Settings, seconds: float) -> Diagnosis:
     """The diagnosis of no fit: there was no time to make one; `seconds` is what it took."""
     text = "The search was not over: there was no time to fit a model first. Give more time, or a fit."
-    return _told(matrix, settings, Baseline(dict(_NONE)), dict(_NONE), text, seconds)
+    return _told(matrix, settings, Baseline(dict(NO_ERRORS)), dict(NO_ERRORS), text, seconds)
 
 
 def unranked(matrix: Matrix, fit: FitResult, seconds: float) -> Diagnosis:
     """The diagnosis of a fit where there was no time to look at any effect: the errors of the fit stand."""
-    error, floor = ({**_NONE, **of} for of in (fit.error, fit.noise_floor))
+    error, floor = ({**NO_ERRORS, **of} for of in (fit.error, fit.noise_floor))
     settings = Settings.from_json(dict(fit.settings)) if fit.settings else Settings(model=fit.model)
     baseline = Baseline(error, fit.offset.get("fit"))
     text = "The search was not over: there was no time to look at any effect."

@@ -92,7 +92,7 @@ def verdict_text(
     elif not complete:
         parts.append(f"No effect was confirmed that lowers the error of {error_said(before)}.")
     elif not unexplained and floor is None:
-        parts.append(f"Nothing is seen to be missing: what is left, {error_said(before)}, has no memory from sample to "
+        parts.append(f"Nothing is seen to be missing: the residual, {error_said(before)}, has no memory from sample to "
                      "sample. How much of it is noise is not known.")  # fmt: skip
     elif not unexplained:
         parts.append(f"Nothing is missing: the error of {error_said(before)} is the noise's.")
