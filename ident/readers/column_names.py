@@ -11,7 +11,7 @@ from functools import lru_cache
 
 from ident.errors import Unusable
 from ident.readers.channel_description import channel_scale
-from ident.units.quantity import si_scale, unit_scale
+from ident.units.quantity import is_known_unit, si_scale, unit_scale
 
 WORDS = {
     "command": (
@@ -97,7 +97,7 @@ _SPEEDS = ("m/s", "rad/s", "m^3/s")
 @lru_cache(_KEPT)
 def is_unit(text: str) -> bool:
     """Whether a text is a unit that is known here; the 1 of unknown units is none, which a file may not choose."""
-    if not text or text[0].isdigit():
+    if not text or text[0].isdigit() or not is_known_unit(text):  # a refusal would look for the nearest unit
         return False
     try:
         si_scale(text, "unit")

@@ -189,6 +189,12 @@ def known_powers(unit: str, where: str, target: str = "") -> Powers:
     return powers
 
 
+def is_known_unit(unit: str) -> bool:
+    """Whether every name in a unit is known here."""
+    powers = powers_of(unit) if len(unit) <= LONGEST else None
+    return powers is not None and all(known_atom(name) is not None for name in powers)
+
+
 def not_known(unit: str, where: str, target: str = "") -> Unusable:
     """The error for a unit that cannot be read, with the nearest one of the kind that is wanted, else of all."""
     near = nearest(unit, target)
