@@ -59,7 +59,7 @@ def test_the_admin_lets_somebody_in_and_out_again(page, site, stranger, screensh
 
 def test_the_audit_is_read_by_object(page, site, fitted, screenshots):
     """What was done to a fit, with who did it."""
-    site.client.post(f"/fits/{fitted}/approve")
+    site.client.post(f"/fits/{fitted}/approve", json={"why": "as it is"})
     page.goto(f"{site.address}/audit")
     page.get_by_label("Object").fill(f"fits/{fitted}")
     page.get_by_role("button", name="Show").click()

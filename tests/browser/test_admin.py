@@ -47,7 +47,7 @@ def test_a_webhook_is_made_shown_failing_and_revoked(page: Page, site: Process, 
     expect(row).to_contain_text("in use")
     assert secret not in page.content()
     assert old
-    site.client.post("/fits/f-BESIDE/approve")
+    site.client.post("/fits/f-BESIDE/approve", json={"why": "as it is"})
     site.client.post("/fits/f-BESIDE/withdraw")
     sent = page.locator("section", has=page.get_by_role("heading", name="Last deliveries")).locator("tbody tr")
     for _ in range(100):
@@ -97,7 +97,7 @@ def test_the_lines_pages_look_sound(page: Page, site: Process, old: str, screens
     """With two sets in force, their chart, a verdict, and who works."""
     assert old
     for fit in SETS:
-        site.client.post(f"/fits/{fit}/approve")
+        site.client.post(f"/fits/{fit}/approve", json={"why": "as it is"})
     page.goto(site.address + path)
     expect(page.get_by_role("main")).to_contain_text(re.compile(shows, re.I))
     everywhere(page, screenshots, re.sub(r"\W+", "-", path).strip("-"))

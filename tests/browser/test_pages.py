@@ -208,7 +208,7 @@ def test_drift_is_seen_once_a_second_set_is_approved(page, site, screenshots):
     for seed, bounds in enumerate(({}, {"tau": ["3.7 ms", "4 ms"]}, {"tau": ["3.65 ms", "4 ms"]})):
         fit = site.fit(stored["id"], seed=seed, bounds=bounds)
         assert site.ended(fit)["state"] == "succeeded"
-        assert site.client.post(f"/fits/{fit}/approve").status_code == 200
+        assert site.client.post(f"/fits/{fit}/approve", json={"why": "as it came"}).status_code == 200
     page.goto(f"{site.address}/?q=SW-DRIFT")
     page.get_by_label("Drift of").select_option("tau")
     page.get_by_role("button", name="Search").click()
