@@ -32,7 +32,11 @@ def test_the_address_of_the_site_is_said(monkeypatch: pytest.MonkeyPatch, capsys
 
 def test_the_site_is_served_until_it_is_interrupted(tmp_path: Path) -> None:
     (tmp_path / "index.html").write_text("<h1>the site</h1>")
-    code = "import sys; from pathlib import Path; from docs.build import serve; serve(Path(sys.argv[1]), 0)"
+    code = (
+        "import signal, sys; from pathlib import Path; from docs.build import serve; "
+        "signal.signal(signal.SIGINT, signal.default_int_handler); "  # which tests in the background have not
+        "serve(Path(sys.argv[1]), 0)"
+    )
     serving = subprocess.Popen(
         [sys.executable, "-u", "-c", code, str(tmp_path)], cwd=ROOT, stdout=subprocess.PIPE, text=True
     )

@@ -114,7 +114,7 @@ def errors_of(context: Context, fits: Sequence[str]) -> dict[str, dict[str, Erro
     """The errors of these fits as they are read, by id and use: with the mean counted, and the unstable runs."""
     with context.sessions() as session:
         found = repository.errors(session, fits)
-    return {fit: _errors(error, new or old or {}, runs) for fit, error, new, old, runs in found}
+    return {fit: _errors(error or {}, new or old or {}, runs or ()) for fit, error, new, old, runs in found}
 
 
 def _errors(error: Mapping[str, Any], with_mean: Mapping[str, Any], runs: Sequence[Any]) -> dict[str, ErrorOf]:

@@ -15,7 +15,7 @@ import numpy as np
 
 from ident.cached import cached_property
 from ident.checks.finding import Finding
-from ident.checks.response import RELATED, Response, respond, response
+from ident.checks.response import RELATED, Response, respond, response, rests
 from ident.matrix import Run
 from ident.words.listed import first_of
 
@@ -127,6 +127,8 @@ def _doubts(measured: Sequence[tuple[Run, Response | None]], scaled: Sequence[st
 
 def _records(measured: Sequence[tuple[Run, Response | None]]) -> Iterator[Record]:
     for run, answer in measured:
+        if rests(run):  # to its rounding or its recorder's noise: it has no size
+            continue
         moved = [name for name in DRIVERS if name in run.channels and np.ptp(run.channels[name]) > 0]
         driver = next((name for name in moved if name != run.output), "")
         if driver:

@@ -218,7 +218,7 @@ class Diagnosis(Shown):
     looked_at: int | None = field(default=None, metadata=WHERE_KNOWN)
     terms_left_out: int | None = field(default=None, metadata=WHERE_KNOWN)
     complete: bool = True
-    not_looked_at: tuple[str, ...] = ()
+    not_looked_at: tuple[str, ...] = field(default=(), metadata=WHERE_KNOWN)
     next_experiment: NextRun | None = None
     settings: Mapping[str, Any] = field(default_factory=dict)
     seed: int = 0

@@ -94,12 +94,15 @@ class Space:
 
 
 def _ratio(axis: Axis, u: Array) -> Array:
-    """The ratio at places of an axis, never outside its bounds: at an end rounding alone would lead there."""
+    """The ratio at places of an axis. Within the axis it is within the bounds, which rounding alone would leave.
+
+    A difference quotient at a bound asks for places outside of the axis: there the ratio goes on.
+    """
     if axis.logarithmic:
         ratio = axis.lower * (axis.upper / axis.lower) ** u
     else:
         ratio = axis.lower + (axis.upper - axis.lower) * u
-    return np.asarray(np.clip(ratio, axis.lower, axis.upper))
+    return np.where((u >= 0) & (u <= 1), np.clip(ratio, axis.lower, axis.upper), ratio)
 
 
 def _scale(axis: Axis, known: Mapping[str, Array], typical: Mapping[str, float]) -> Array:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import httpx
@@ -99,7 +100,7 @@ DRAWN = {"fit", "matrix", "webhook", "token", "--by", "--object"}
 FREE = ADDRESSES | MADE_UP | QUANTITIES | DRAWN | {"files", "source"}
 """Options that take text but no name of a list."""
 FREE_OF = {
-    ("init", "--serial"), ("limits", "--batch"),  # a new name may be given
+    ("init", "--serial"), ("simulate", "--serial"), ("limits", "--batch"),  # a new name may be given
     ("regress", "--serial"), ("regress", "--batch"), ("statistics", "--serial"),  # of a whole line
     ("verdict", "serial"),
 }  # fmt: skip
@@ -137,9 +138,15 @@ class Given:
 
 
 @pytest.fixture(scope="module")
-def given(service: TestClient, servoident: Program, tmp_path_factory: pytest.TempPathFactory) -> Given:
+def given(service: TestClient, servoident: Program, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Given]:
     """A matrix as a folder and stored, a fit of it as a file, an effect that is kept, here and by the service."""
-    place = tmp_path_factory.mktemp("misspelt")
+    with pytest.MonkeyPatch.context() as own:  # what other tests keep is kept elsewhere
+        own.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
+        yield made(service, servoident, tmp_path_factory.mktemp("misspelt"))
+
+
+def made(service: TestClient, servoident: Program, place: Path) -> Given:
+    """The same, its files in a folder."""
     folder = unpacked(files("NEAR-1"), place / "matrix")
     run = yaml.safe_load((folder / "matrix.yaml").read_text())["runs"][0]["id"]
     held = [text for name, value in HELD.items() for text in ("--set", f"{name}={value!r}")]

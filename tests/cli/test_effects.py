@@ -111,7 +111,7 @@ def test_a_kept_effect_is_named_without_its_file(servoident, few, lapped, tmp_pa
     fit = json.loads(fitted.read_text())
     assert fit["effects"] == ["lapped"]
     assert fit["settings"]["custom"][0]["equation"] == "w = w - clip(w, -h, h)"
-    refused(servoident("fit", few, "--custom", "loped", *asked), "loped: no effect is kept", "servoident effects")
+    refused(servoident("fit", few, "--custom", "loped", *asked), "loped: no effect is kept", "did you mean lapped?")
 
 
 def test_a_diagnosis_ranks_what_is_kept_where_it_is_asked_to(lapped, servoident):

@@ -20,11 +20,11 @@ from ident.bench.records import bench_set
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
 from ident.errors import Unusable
-from ident.fit.fitness import UNSTABLE
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.matrix import Actuator, Matrix, Run, Specimen
 from ident.presets import PRESETS, preset
+from ident.words.error import UNSTABLE
 from ident.workflows import identification, identify
 from tests.bench.sets import as_matrix
 from tests.presets.test_composed import RATE, UNITS, drawn, smooth, with_own_outputs

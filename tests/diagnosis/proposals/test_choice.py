@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.cli.arguments import definitions
+from app.cli.arguments import additions
 from app.pages.diagnosis_view import missing
 from ident.diagnosis.listings import proposal_rows
 from ident.diagnosis.proposals.choice import choices
@@ -60,10 +60,10 @@ def test_terminal_and_page_show_the_error_against_the_number_of_terms():
 def test_so_many_terms_of_a_diagnosis_are_taken(tmp_path):
     file = tmp_path / "D.json"
     file.write_text(json.dumps(replace(found().found, proposals=TERMS).to_json()))
-    assert [one["name"] for one in definitions([file])] == ["proposed_1", "proposed_2"]
-    assert [one["name"] for one in definitions([file], 1)] == ["proposed_1"]
+    assert [one["name"] for one in additions([file])[0].custom] == ["proposed_1", "proposed_2"]
+    assert [one["name"] for one in additions([file], 1)[0].custom] == ["proposed_1"]
     for terms in (0, 3):
         with pytest.raises(Unusable, match="give 1 to 2"):
-            definitions([file], terms)
+            additions([file], terms)
     with pytest.raises(Unusable, match="no diagnosis"):
-        definitions([], 1)
+        additions([], 1)
