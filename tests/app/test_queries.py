@@ -114,7 +114,8 @@ def test_the_list_of_actuators_costs_the_same_for_one_and_for_many(context: Cont
 def test_what_to_do_next_is_known_of_every_actuator_of_the_list(context: Context) -> None:
     """Also where a fit of an earlier version tells no noise floor."""
     steps = pages.actuator_list(context, "", "error", None)["next"]
-    assert {serial: step.at for serial, step in steps.items()} == {"BUSY": "/fits/busy-259", "QUIET": "/fits/quiet#fails"}
+    at = {serial: step.at for serial, step in steps.items()}
+    assert at == {"BUSY": "/fits/busy-259", "QUIET": "/fits/quiet#fails"}
     assert "cannot be told" in steps["QUIET"].words
 
 
