@@ -31,13 +31,15 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 LONGEST = (
-    "diagnosis/test_diagnose", "browser/test_workbench", "browser/test_linked", "browser/test_pages",
+    "diagnosis/test_diagnose", "bench/test_procedures", "bench/test_recovery", "bench/test_calibration",
+    "browser/test_workbench", "browser/test_linked", "browser/test_pages",
     "diagnosis/proposals/test_free_curves", "test_project", "faults/test_workers", "cli/test_postgresql",
     "app/test_hybrid", "app/test_own_effects", "test_site", "app/test_contract", "fit/test_fifth_order",
     "app/test_older_database", "cli/test_service_commands", "test_wheel", "test_windows", "test_additions",
-    "bench/test_diagnosis",
-    "acceptance/test_any_lab", "presets/test_composed", "diagnosis/test_structures", "browser/test_proposals",
-    "browser/test_matrix_page", "diagnosis/test_far_starts", "fit/test_disturbance",
+    "bench/test_diagnosis", "bench/test_acceptance", "bench/test_continued", "diagnosis/test_late",
+    "diagnosis/test_time_budget", "test_readme", "app/test_adding", "readers/test_random_tables",
+    "effects/test_every_pair", "acceptance/test_any_lab", "presets/test_composed", "diagnosis/test_structures",
+    "browser/test_proposals", "browser/test_matrix_page", "diagnosis/test_far_starts", "fit/test_disturbance",
     "fit/test_beginnings", "cli/test_any_machine", "presets/test_machines", "app/test_diagnoses",
     "diagnosis/test_measured", "diagnosis/proposals/test_search", "cli/test_diagnose",
     "acceptance/test_identification", "bench/test_model", "effects/test_contract", "app/test_bench",
