@@ -219,21 +219,30 @@ class Diagnoser:
     def _proposed(self, selection: StepwiseSelection) -> Proposals:
         """What no list holds: beside the fitted model as it was and, where that is not all, beside what was found.
 
-        What was found may stand for something else: with the term itself it is not needed.
+        What was found may stand for something else: with the term itself it is not needed. The terms of the first
+        search stay where there is no time for the second.
         """
-        given, asked = selection.base.effects, self.course.propose is True
-        alone = Search(selection.models, selection.base, self.course.tell, given, asked).run()
+        alone = self._terms_of(selection, selection.base)
         if not selection.added:
             return alone
+        both = in_time(lambda: self._of_both_searches(selection, alone))
+        return replace(alone, complete=False) if both is None else both
+
+    def _of_both_searches(self, selection: StepwiseSelection, alone: Proposals) -> Proposals:
+        """The terms `alone`, or those in addition to the effects that were found: what leaves less, or is simpler."""
         alone = alone.instead(selection.found, selection.added, self.models.matrix.of_use("verify"))
         if not alone.complete or self.models.is_noise(alone.left(selection.base.error)):
             return alone
-        beside = Search(selection.models, selection.found, self.course.tell, given, asked).run()
+        further = self._terms_of(selection, selection.found)
         before, found = (refit.held_out.error for refit in (selection.base, selection.found))
-        with_both = beside.left(found, "held_out")
-        if alone.left(before, "held_out") < min(with_both * _SIMPLER, found) and not _repeated(alone, selection):
-            return alone
-        return beside.or_refused(alone)
+        with_both = further.left(found, "held_out")
+        simpler = alone.left(before, "held_out") < min(with_both * _SIMPLER, found) and not _repeated(alone, selection)
+        return replace(alone if simpler else further.or_refused(alone), complete=further.complete)
+
+    def _terms_of(self, selection: StepwiseSelection, refit: Refit) -> Proposals:
+        """The terms that a search adds to a refit."""
+        asked = self.course.propose is True
+        return Search(selection.models, refit, self.course.tell, selection.base.effects, asked).run()
 
     def _said(
         self, selection: StepwiseSelection, doubted: Sequence[Suspect], pairs: Sequence[tuple[str, ...]] = ()

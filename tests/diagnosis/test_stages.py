@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import logging
 from functools import cache
+from types import SimpleNamespace
 
 import pytest
 
 from ident.diagnosis import diagnose as diagnosing
 from ident.diagnosis.course import Course
+from ident.diagnosis.proposals.outcome import Proposals
 from ident.diagnosis.result import Diagnosis, Verdict
 from ident.diagnosis.stages import ERROR_BUDGET, LAGS, NEXT_RUN, TERMS, Stages
 from ident.errors import Cancelled, TimeIsUp, Unusable
@@ -121,3 +123,32 @@ def test_a_defect_is_kept_in_the_error_log_of_the_command_line(tmp_path, monkeyp
         for handler in handlers:
             log.addHandler(handler)
     assert "ZeroDivisionError: somewhere inside" in error_log().read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("second", ["cut off", "not begun"])
+def test_terms_of_the_first_search_stay_where_there_is_no_time_for_the_second(monkeypatch, second):
+    """And the search is not called complete."""
+    term = SimpleNamespace(error={"fit": 0.1, "held_out": 0.1})
+    searches = iter([Proposals(found=(term,)), Proposals(complete=False)])
+
+    def search(*_given):
+        try:
+            return SimpleNamespace(run=lambda: next(searches))
+        finally:
+            if second == "not begun":
+                monkeypatch.setattr(diagnosing, "Search", no_time_left)
+
+    monkeypatch.setattr(diagnosing, "Search", search)
+    monkeypatch.setattr(diagnosing, "_repeated", lambda *_: False)
+    errors = [SimpleNamespace(held_out=SimpleNamespace(error=error), error=error, effects=()) for error in (0.5, 0.4)]
+    selection = SimpleNamespace(base=errors[0], found=errors[1], added=("lead",), models=None)
+    diagnoser = object.__new__(diagnosing.Diagnoser)
+    diagnoser.models = SimpleNamespace(matrix=SimpleNamespace(of_use=lambda _: ()), is_noise=lambda _: False)
+    diagnoser.course = SimpleNamespace(propose=True, tell=None)
+    found = diagnoser._proposed(selection)
+    assert found.found == (term,)
+    assert not found.complete
+
+
+def no_time_left(*_given):
+    raise TimeIsUp
