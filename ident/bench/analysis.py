@@ -34,7 +34,7 @@ from ident.parallel import each
 from ident.words.shown import Listing, Shown
 
 FIRST_T = 0.02  # s, where the search for T begins
-_ROUNDS = 2  # of the refinement, behind each of which the records are weighed anew
+_ROUNDS = 1  # of the refinement, behind each of which the records are weighed anew
 SPEED = ("speed-levels", "speed-continuous")
 
 
@@ -175,7 +175,12 @@ def load_compiled() -> None:
     groups(record)
     model = Model(FIRST_T, 1e-3, 0.0, 1e8, 1e5, SpeedTable.straight(0.1))
     model.answer(ramp, 100.0)
-    Residual(model, (Observed.of(record),), ("T",)).normal(np.zeros(1))
+    observed = Observed.of(record)
+    Residual(model, (observed,), ("T",)).normal(np.zeros(1))
+    stairs = replace(record, position=1e-2 * np.round(1e2 * ramp))
+    exact = Residual(model, (observed.exact(stairs, model, 1e-2),), ("T",))
+    scatter(Solution(exact, np.zeros(1), exact.normal(np.zeros(1)), 1))
+    exact.cost(np.zeros(1))
 
 
 def _missing(bench: BenchSet) -> list[Missing]:

@@ -19,7 +19,7 @@ _STEPS = 12
 ROUGH = Way(converged=1e-5, longest=0.7, rough=1e-4)
 """Where the play turns, the sum of squares is not smooth: `rough`. A value goes no farther than twofold in one step."""
 
-LAST = Way(converged=1e-9, longest=0.7, rough=1e-7)
+LAST = Way(converged=1e-8, longest=0.7, rough=1e-7)
 """Of the last fit, whose standard errors count: of 10⁵ readings a standard error is 1e-5 of the sum of squares."""
 
 

@@ -24,6 +24,7 @@ Array = NDArray[np.float64]
 CONSTANTS = ("T", "B", "I0", "kp", "dPfr")
 FAST = (COMMAND_DELAY, SECOND_LAG, SPRING_LOAD, STICTION)
 """The effects that the compiled simulation of a bench knows; with any other the chain is simulated."""
+DELAY = COMMAND_DELAY.added[0].in_equations
 _STRENGTHS = tuple(
     parameter.in_equations
     for effect in (SECOND_LAG, STICTION, SPRING_LOAD, COMMAND_DELAY)
@@ -84,6 +85,16 @@ class Model:
         """As the compiled simulation takes them."""
         of_effects = [self.strengths.get(name, 0.0) for name in _STRENGTHS]
         return np.array([self.T, self.B, self.I0, self.kp, self.dPfr, self.Ps, *of_effects])
+
+    @property
+    def delay(self) -> float:
+        """Of the current, s."""
+        return float(self.constants[-1])
+
+    @property
+    def is_plain(self) -> bool:
+        """The four blocks, with a delay at most: no second lag, no stiction, no load, no other effect."""
+        return self.chain is None and not np.any(self.constants[len(CONSTANTS) + 1 : len(CONSTANTS) + 4])
 
     def with_values(self, values: Mapping[str, float]) -> Model:
         """The model with other values of constants, of effects, or of the table (``V_p5``: at +5 %)."""

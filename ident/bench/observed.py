@@ -14,10 +14,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.exact_response import CONSTANTS as EXACT
+from ident.bench.exact_response import respond_exact
 from ident.bench.model import Model, Models, by_chain
 from ident.bench.readings import LEAST, Readings, readings
 from ident.bench.records import Record
-from ident.bench.response import at_readings, residuals, rest
+from ident.bench.response import compared, residuals, rest
 from ident.cached import cached_property
 from ident.noise.effective_sample_size import independent_samples
 from ident.time_budget import check_time
@@ -27,10 +29,9 @@ IMPERFECT = 2e-3  # of a record's standard deviation
 _SETTLED = 0.25  # s at the start of a record that its unknown past may have shaped
 _MOVED = 3.0 + 1e-6  # steps of the converter that are no accident; three of them are, however they are rounded
 _NOTHING = np.empty(0)
-_FINE_STEP = 5e-6  # m: a hundred times what simulation in two parts of a sample misplaces
-STEPS, STEPS_STATIC, STEPS_FINE = 2, 4, 8
-"""Parts of a sample in which a whole record is simulated: any, a static one, one in fine steps. Where the link starts
-its speed rises as a root: 1 ms misplaces it by 0.2 µm, a quarter by 0.01 µm, which a slow test's readings tell."""
+_NO_MOVES = np.zeros((0, 2, 1, 4))
+STEPS = 4
+"""Parts of a sample in which a whole record is simulated with an effect that :func:`respond_exact` does not know."""
 
 
 def rate_wanted(record: Record) -> float:
@@ -131,26 +132,72 @@ class Observed:
         return out
 
     def _at_readings(self, models: Models, told: Readings, out: Array) -> None:
-        record = self.record
         picked = told.picked if self.positions else told.picked[:0]
-        at_readings(
-            record.current, 1.0 / record.rate, self.divided, record.hold == "zoh", models.constants,
-            models.each[0].table.nodes, models.pieces, self.start, picked, told.values, told.deviations, told.between,
-            record.pressure if record.pressure is not None else _NOTHING,
+        positions = np.empty((len(models), len(picked)))
+        pressures = np.empty((len(models), self.record.length if self.pressure_scale else 0))
+        for j, model in enumerate(models.each):
+            self._simulated(model, picked, told.between, positions[j : j + 1], pressures[j : j + 1])
+        self._compared(told, picked, positions, pressures, False, out)
+
+    def slopes(self, model: Model, moves: Array) -> Array:
+        """The residual at the readings and its derivatives, (rows, samples compared), in `respond_exact`'s order."""
+        check_time()
+        told = self.readings
+        if told is None:
+            raise ValueError("the record is compared sample by sample")
+        picked = told.picked if self.positions else told.picked[:0]
+        positions = np.empty((1 + EXACT + 2 * len(moves), len(picked)))
+        pressures = np.empty((1 + EXACT, self.record.length) if self.pressure_scale else (0, 0))
+        self._exactly(model, moves, picked, told.between, positions, pressures)
+        out = np.empty((len(positions), self.count))
+        self._compared(told, picked, positions, pressures, True, out)
+        return out
+
+    def ways(self, model: Model, moves: Array | None = None) -> Array:
+        """The position of a model sample by sample, m, (1, n); with `moves` its derivatives too, (rows, n)."""
+        every = np.arange(self.record.length)
+        positions = np.empty((1 if moves is None else 1 + EXACT + 2 * len(moves), len(every)))
+        if moves is None:
+            self._simulated(model, every, 0.0, positions, np.empty((1, 0)))
+        else:
+            self._exactly(model, moves, every, 0.0, positions, np.empty((0, 0)))
+        return positions
+
+    def _simulated(
+        self, model: Model, picked: NDArray[np.int64], between: float, positions: Array, pressures: Array
+    ) -> None:
+        """Fill one row of each with the answer of a model."""
+        if model.is_plain:
+            self._exactly(model, _NO_MOVES, picked, between, positions, pressures if pressures.size else pressures[:0])
+            return
+        record = self.record
+        answer = model.answer(record.current, record.rate, record.hold, self.start, STEPS)
+        here, before = answer.position[picked], answer.position[np.maximum(picked - 1, 0)]
+        positions[0] = here + between * (before - here)
+        if pressures.size:
+            pressures[0] = answer.pressure
+
+    def _exactly(
+        self, model: Model, moves: Array, picked: NDArray[np.int64], between: float, positions: Array, pressures: Array
+    ) -> None:
+        record = self.record
+        respond_exact(
+            record.current, model.delay * record.rate, 1.0 / record.rate, record.hold == "zoh", model.constants,
+            model.table.nodes, model.table.pieces, moves, self.start, picked, between, positions, pressures,
+        )  # fmt: skip
+
+    def _compared(
+        self, told: Readings, picked: NDArray[np.int64], positions: Array, pressures: Array, slopes: bool, out: Array
+    ) -> None:
+        compared(
+            positions, pressures, slopes, picked, told.values, told.deviations,
+            self.record.pressure if self.record.pressure is not None else _NOTHING,
             np.array(self.parts, dtype=np.int64).reshape(-1, 2), self.pressure_scale or 0.0, self.drifting, out,
         )  # fmt: skip
 
-    @property
-    def divided(self) -> int:
-        """Parts of a sample in which the whole record is simulated."""
-        if self.readings is not None and 0 < self.readings.step < _FINE_STEP:
-            return STEPS_FINE
-        return STEPS_STATIC if self.record.kind == "static" else STEPS
-
     def way(self, model: Model) -> Array:
         """The position of a model sample by sample, m, (n,)."""
-        record = self.record
-        return model.answer(record.current, record.rate, record.hold, self.start, self.divided).position
+        return np.asarray(self.ways(model)[0])
 
     def exact(self, record: Record, model: Model, step: float) -> Observed:
         """The whole `record` in place of its means, its position at the readings that tell it, of a converter's `step`.

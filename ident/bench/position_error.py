@@ -35,7 +35,10 @@ def _of(solution: Solution, observed: Observed) -> tuple[float, float]:
         return error, by_samples
     places = (np.arange(PLACES) + 0.5) / PLACES
     read = [told.step * np.round(way / told.step + place) for place in places]
-    steps = [_error(observed, one, one - way)[0] for one in read]
+    # Of a motion within a step the converter sees nothing from some places: there is no deviation to divide by.
+    steps = [_error(observed, one, one - way)[0] for one in read if np.ptp(one) > 0]
+    if len(steps) < 2:
+        return error, by_samples
     beyond = max(0.0, 1.0 - (float(np.mean(steps)) / error) ** 2) if error > 0 else 0.0
     return error, float(np.hypot(np.std(steps, ddof=1), beyond * by_samples))
 

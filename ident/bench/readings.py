@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -57,9 +58,20 @@ def readings(position: Array, step: float, moved: Array, extra: float) -> Readin
     change = np.diff(position)
     picked = np.flatnonzero(np.abs(change) > _CHANGED * step) + 1
     values = 0.5 * (position[picked] + position[picked - 1])
-    fastest = np.max(np.lib.stride_tricks.sliding_window_view(np.pad(np.abs(moved), _AROUND), 2 * _AROUND + 1), axis=1)
-    way = np.maximum(fastest[picked], _by_spacing(picked, np.abs(change[picked - 1])))
-    return Readings(picked, values, step * in_steps(way / step), 0.5, extra, step)
+    way = np.maximum(fastest(moved)[picked], _by_spacing(picked, np.abs(change[picked - 1])))
+    return Readings(picked, values, step * np.array([in_steps(one) for one in way / step]), 0.5, extra, step)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def fastest(moved: Array) -> Array:
+    """The largest movement in a sample around each, (n,), of those to either side that count."""
+    out, n = np.empty(len(moved)), len(moved)
+    for k in range(n):
+        most = 0.0
+        for i in range(max(k - _AROUND, 0), min(k + _AROUND + 1, n)):
+            most = max(most, abs(moved[i]))
+        out[k] = most
+    return out
 
 
 def _by_spacing(picked: NDArray[np.int64], change: Array) -> Array:
@@ -71,7 +83,8 @@ def _by_spacing(picked: NDArray[np.int64], change: Array) -> Array:
     return np.asarray(np.minimum(change, change / np.minimum(before, behind)))
 
 
-def in_steps(moved: Array) -> Array:
+@njit(cache=True, nogil=True, error_model="numpy")
+def in_steps(moved: float) -> float:
     """The deviation of a reading at a change, in steps, where the link goes so many steps in a sample."""
     f = moved % 1.0
-    return np.asarray(np.sqrt(np.where(moved < 1.0, f**2, (1.0 - f) ** 3 + f**3) / 12.0))
+    return float(np.sqrt((f * f if moved < 1.0 else (1.0 - f) ** 3 + f**3) / 12.0))

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.bench.model import FAST, Model, Models
+from ident.bench.exact_response import CONSTANTS as EXACT
+from ident.bench.model import CONSTANTS, DELAY, FAST, Model, Models
 from ident.bench.observed import Observed
 from ident.bench.response import products
 from ident.bench.speed_table import SpeedTable
@@ -104,15 +105,80 @@ class Residual:
 
     def slopes(self, point: Array, observed: Observed) -> tuple[Array, Array]:
         """The derivatives of a record's residual, (p, k), and the residual, (k,)."""
+        found = self._exact(point, observed)
+        if found is not None:
+            model, moves, scales = found
+            rows = observed.slopes(model, moves)
+            return self._ordered(rows, scales), rows[0]
         seen, every = self._seen(point, observed)
         rows = observed.residuals(every)
         return self._spread(rows, seen), rows[0]
 
     def ways(self, point: Array, observed: Observed) -> tuple[Array, Array]:
         """The position of a record sample by sample, m, (n,), and its derivatives, (p, n)."""
+        found = self._exact(point, observed)
+        if found is not None:
+            model, moves, scales = found
+            rows = observed.ways(model, moves)
+            return rows[0], self._ordered(rows, scales)
         seen, every = self._seen(point, observed)
         way = np.array([observed.way(model) for model in every.each])
         return way[0], self._spread(way, seen)
+
+    def _exact(self, point: Array, observed: Observed) -> tuple[Model, Array, list[tuple[int, int, float]]] | None:
+        """What the exact simulation of a record needs for its derivatives; None where differences have to do.
+
+        The model, what each value of the table that the record sees adds to its pieces, and for each name that it sees
+        its place among the names, its row, and by what that is multiplied for a derivative along the point's axis.
+        """
+        if observed.readings is None or not self._differentiable:
+            return None
+        model, moves = self._here(point)
+        seen = np.flatnonzero(observed.reach + abs(model.I0) > self._limits(model)[1:])
+        half, values = len(model.table.fractions), model.values()
+        places = {name: divmod(place, half) for place, name in enumerate(model.table.names)}
+        nodes = 1 + max((places[self.names[i]][1] for i in seen if self.names[i] in places), default=-1)
+        found = []
+        for i in seen:
+            name = self.names[i]
+            if name in places:
+                side, node = places[name]
+                found.append((int(i), 1 + EXACT + side * nodes + node, 1.0))
+            elif name == DELAY:
+                found.append((int(i), EXACT, self.reach[name] * observed.record.rate))
+            else:
+                found.append((int(i), 1 + CONSTANTS.index(name), self.reach.get(name, values[name])))
+        return model, moves[:nodes], found
+
+    @cached_property
+    def _differentiable(self) -> bool:
+        return self.model.is_plain and {*self.names} <= {*CONSTANTS, *self.model.table.names, DELAY}
+
+    @cached_property
+    def _known(self) -> dict[bytes, tuple[Model, Array]]:
+        return {}
+
+    def _here(self, point: Array) -> tuple[Model, Array]:
+        """The model at a point, and what each value of its table adds to the pieces, (nodes, sides, pieces, 4)."""
+        key = point.tobytes()
+        if key not in self._known:
+            model = self.at(point)
+            table, half, values = model.table, len(model.table.fractions), model.table.values()
+            moves = np.zeros((half, 2, *table.pieces.shape[1:]))
+            for place, name in enumerate(table.names):
+                side, node = divmod(place, half)
+                moved = table.with_values({name: values[name] * np.exp(_STEP)})
+                moves[node, side] = (moved.pieces[side] - table.pieces[side]) / _STEP
+            self._known.clear()
+            self._known[key] = model, moves
+        return self._known[key]
+
+    def _ordered(self, rows: Array, scales: list[tuple[int, int, float]]) -> Array:
+        """Rows of the exact simulation as derivatives along the axes, (p, n); zero for what the record does not see."""
+        out = np.zeros((len(self.names), rows.shape[1]))
+        for place, row, scale in scales:
+            np.multiply(rows[row], scale, out=out[place])
+        return out
 
     def _seen(self, point: Array, observed: Observed) -> tuple[NDArray[np.intp], Models]:
         """The models of :meth:`_moved` that a record tells apart, and their places."""
@@ -140,21 +206,26 @@ class Residual:
 
     def normal(self, point: Array) -> Normal:
         """The sum of squares with its derivatives; what a record cannot see is not computed."""
-        every, strides = self._moved(point), self._strides
-        here = every.each[0]
+        exact = self._differentiable and all(observed.readings is not None for observed in self.observed)
+        every, strides = (Models.of([self.at(point)]) if exact else self._moved(point)), self._strides
+        here, size = every.each[0], len(self.names) + 1
         limits = self._limits(here)
+        if exact:
+            self._here(point)
 
         def one(observed: Observed, room: Array) -> tuple[int, Array]:
+            found = self._exact(point, observed) if exact else None
+            if found is not None:
+                model, moves, scales = found
+                all_rows = observed.slopes(model, moves)
+                rows = np.array([*(all_rows[row] * scale for _, row, scale in scales), all_rows[0]])
+                return all_rows.shape[1], _summed(rows, np.array([*(place for place, _, _ in scales), size - 1]), size)
             seen = np.flatnonzero(observed.reach + abs(here.I0) > limits)
             rows = observed.residuals(every.some(seen), room)
             base = rows[0].copy()
             rows[:-1] = (rows[1:] - base) / strides[seen[1:] - 1, None]
             rows[-1] = base
-            found = np.empty((BLOCKS, len(rows), len(rows)))
-            products(rows, BLOCKS, found)
-            out, place = np.zeros((BLOCKS, len(every), len(every))), np.append(seen[1:] - 1, len(every) - 1)
-            out[:, place[:, None], place] = found
-            return len(base), out
+            return len(base), _summed(rows, np.append(seen[1:] - 1, size - 1), size)
 
         def of_share(share: list[int]) -> list[tuple[int, tuple[int, Array]]]:
             # One piece of memory for all of them: fresh memory would cost more than the simulation.
@@ -196,6 +267,15 @@ class Normal:
     def scores(self) -> Array:
         """The parts of the gradient that the blocks make, (blocks, p)."""
         return np.asarray(2.0 * self.products[:, :-1, -1])
+
+
+def _summed(rows: Array, places: NDArray[np.intp], size: int) -> Array:
+    """The products of rows, block by block, at their places of (blocks, size, size)."""
+    found = np.empty((BLOCKS, len(rows), len(rows)))
+    products(rows, BLOCKS, found)
+    out = np.zeros((BLOCKS, size, size))
+    out[:, places[:, None], places] = found
+    return out
 
 
 def _seen_from(table: SpeedTable, name: str) -> float:

@@ -107,43 +107,6 @@ def respond(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def respond_plain(
-    current: Array, step: float, steps: int, held: bool, constants: Array, nodes: Array, pieces: Array, start: Array,
-    out: Array,
-) -> None:  # fmt: skip
-    """As :func:`respond`, without effects and without the current after the play: in a third of the time."""
-    T, B, I0, kp, friction, supply = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
-    phi, g0, g1 = filter_gains(T, step / steps)
-    x, q, w = start[0], start[1], start[3]
-    speed, half, still = 0.0, 0.5 * step / steps, friction / kp
-    for k in range(len(current)):
-        before = current[k - 1] if k else current[0]
-        rise = 0.0 if held else (current[k] - before) / steps
-        u, sign = w - I0, 1.0
-        for part in range(steps if k else 1):
-            if k:
-                first = before + part * rise
-                q = phi * q + g0 * first + g1 * (first + rise)
-            if q - B > w:
-                w = q - B
-            elif q + B < w:
-                w = q + B
-            u = w - I0
-            sign = 1.0 if u > 0.0 else -1.0
-            now = 0.0
-            if u > still or u < -still:
-                available = min(kp * abs(u), supply)
-                if available > friction:
-                    now = sign * characteristic(u, nodes, pieces) * sqrt(1.0 - friction / available)
-            if k:
-                x += half * (speed + now)
-            speed = now
-        available = min(kp * abs(u), supply)
-        out[0, k] = x
-        out[1, k] = sign * min(available, friction)
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
 def rest(answer: Array, measured: Array, first: int, end: int, scale: float, drifting: bool, out: Array) -> None:
     """Fill `out` with answer − measured of a part, less its mean or, where `drifting`, its straight line; scaled."""
     count = end - first
@@ -187,36 +150,29 @@ def residuals(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def at_readings(
-    current: Array, step: float, steps: int, held: bool, constants: Array, nodes: Array, pieces: Array, begin_at: float,
-    picked: NDArray[np.int64], values: Array, deviations: Array, between: float,
-    pressure: Array, parts: NDArray[np.int64], scale: float, drifting: bool, out: Array,
+def compared(
+    positions: Array, pressures: Array, slopes: bool, picked: NDArray[np.int64], values: Array, deviations: Array,
+    measured: Array, parts: NDArray[np.int64], scale: float, drifting: bool, out: Array,
 ) -> None:  # fmt: skip
-    """Fill `out` (models, readings and pressures) with the residuals of several models, each over its deviation.
+    """Fill `out` (rows, readings and pressures) with what answers leave of the readings, each over its deviation.
 
-    The position at `picked` less its mean of each part weighed by the deviations, or where `drifting` less its straight
-    line; then the pressure, where `scale` is above 0.
+    `positions` (rows, picked) less `values`, less the mean of each part weighed by the deviations, or where `drifting`
+    its straight line; then `pressures` (rows, n) less `measured`, where `scale` is above 0. Of `slopes`, the first row
+    is an answer and the others are its derivatives, from which nothing measured is taken off.
     """
-    answer, start = np.empty((3, len(current))), np.empty(4)
-    for j in range(len(constants)):
-        B, I0 = constants[j, 1], constants[j, 2]
-        start[0], start[1], start[2] = begin_at, current[0], current[0]
-        start[3] = min(max(I0, current[0] - B), current[0] + B)
-        if np.any(constants[j, 6:] != 0.0):
-            respond(current, step, steps, held, constants[j], nodes, pieces[j], start, answer)
-        else:
-            respond_plain(current, step, steps, held, constants[j], nodes, pieces[j], start, answer)
+    nothing = np.zeros_like(measured)
+    for j in range(len(out)):
+        counts = 1.0 if j == 0 or not slopes else 0.0
         at, i = 0, 0
         for p in range(len(parts)):
             while i < len(picked) and picked[i] <= parts[p, 0]:
                 i += 1
             begin, total, middle, mean = i, 0.0, 0.0, 0.0
             while i < len(picked) and picked[i] < parts[p, 1]:
-                k = picked[i]
-                out[j, at + i - begin] = answer[0, k] + between * (answer[0, k - 1] - answer[0, k]) - values[i]
+                out[j, at + i - begin] = positions[j, i] - counts * values[i]
                 weight = 1.0 / deviations[i] ** 2
                 total += weight
-                middle += weight * k
+                middle += weight * picked[i]
                 mean += weight * out[j, at + i - begin]
                 i += 1
             if i == begin:
@@ -234,7 +190,11 @@ def at_readings(
         if scale > 0.0:
             for p in range(len(parts)):
                 first, end = parts[p, 0], parts[p, 1]
-                rest(answer[1], pressure, first, end, scale, False, out[j, at : at + end - first])
+                if j < len(pressures):
+                    seen = measured if counts > 0.0 else nothing
+                    rest(pressures[j], seen, first, end, scale, False, out[j, at : at + end - first])
+                else:
+                    out[j, at : at + end - first] = 0.0
                 at += end - first
 
 

@@ -11,11 +11,12 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from ident.bench.least_squares import Solution
 from ident.bench.observed import Observed
-from ident.bench.readings import Readings, readings
+from ident.bench.readings import fastest, in_steps
 from ident.bench.residual import BLOCKS, Residual
 from ident.parallel import each
 
@@ -49,22 +50,62 @@ def _positions(residual: Residual, point: Array, observed: Observed, J: Array, r
     if not told.step:
         return np.asarray(out)
     way, slopes = residual.ways(point, observed)
-    scores = np.array([_score(observed, told, way, slopes, place) for place in (np.arange(PLACES) + 0.5) / PLACES])
+    seen = np.flatnonzero(np.any(slopes, axis=1))
+    scores = np.zeros((PLACES, len(slopes)))
+    scores[:, seen] = at_places(
+        way, np.ascontiguousarray(slopes[seen].T), fastest(np.diff(way, prepend=way[0])), told.step, told.extra,
+        np.array(observed.parts, dtype=np.int64).reshape(-1, 2), PLACES,
+    )  # fmt: skip
     return np.asarray(out + np.cov(scores, rowvar=False).reshape(out.shape))
 
 
-def _score(observed: Observed, told: Readings, way: Array, slopes: Array, place: float) -> Array:
-    """2 Jᵀ r of a way that begins at `place` within a step, as the converter would have read it."""
-    step = told.step
-    seen = step * np.round(way / step + place)
-    again = readings(seen, step, np.diff(way, prepend=way[0]), told.extra)
-    error, J, weight = again.of(way + step * place) - again.values, again.of(slopes), again.deviations**-2
-    out = np.zeros(len(slopes))
-    for first, end in observed.parts:
-        inside = (again.picked > first) & (again.picked < end)
-        w, r, j = weight[inside], error[inside], J[:, inside]
-        if w.sum() > 0:
-            out += 2.0 * (j - (j @ w)[:, None] / w.sum()) @ (w * r)
+@njit(cache=True, nogil=True, error_model="numpy")
+def at_places(
+    way: Array, slopes: Array, moved: Array, step: float, extra: float, parts: NDArray[np.int64], places: int
+) -> Array:
+    """2 Jᵀ r of ways that begin at so many places within a step, as the converter would have read them, (places, p).
+
+    `way` (n,) with its derivatives `slopes` (n, p) and the fastest movement around each sample, `moved`, is the same
+    each time; readings are picked and weighed as :func:`~ident.bench.readings.readings` does.
+    """
+    n, p = slopes.shape
+    out, both, alone = np.zeros((places, p)), np.empty(p), np.empty(p)
+    picked, jumps = np.empty(n, dtype=np.int64), np.empty(n)
+    for place in range(places):
+        shift, count = (place + 0.5) / places, 0
+        code = np.floor(way[0] / step + shift + 0.5)
+        for k in range(1, n):
+            following = np.floor(way[k] / step + shift + 0.5)
+            if following != code:
+                picked[count], jumps[count] = k, following - code
+                count += 1
+            code = following
+        for part in range(len(parts)):
+            total, mean = 0.0, 0.0
+            both[:], alone[:] = 0.0, 0.0
+            for i in range(count):
+                k = picked[i]
+                if k <= parts[part, 0] or k >= parts[part, 1]:
+                    continue
+                size = abs(jumps[i])
+                by_spacing = size
+                if i:
+                    by_spacing = min(by_spacing, size / (k - picked[i - 1]))
+                if i + 1 < count:
+                    by_spacing = min(by_spacing, size / (picked[i + 1] - k))
+                # Where the reading is: half-way between the codes that it changes from and to.
+                here = np.floor(way[k] / step + shift + 0.5) - 0.5 * jumps[i]
+                r = 0.5 * (way[k] + way[k - 1]) + step * (shift - here)
+                w = 1.0 / ((step * in_steps(max(moved[k] / step, by_spacing))) ** 2 + extra**2)
+                total += w
+                mean += w * r
+                for j in range(p):
+                    slope = 0.5 * w * (slopes[k, j] + slopes[k - 1, j])
+                    alone[j] += slope
+                    both[j] += slope * r
+            if total > 0.0:
+                for j in range(p):
+                    out[place, j] += 2.0 * (both[j] - alone[j] * mean / total)
     return out
 
 
