@@ -16,7 +16,7 @@ from importlib import import_module
 import numpy as np
 
 from ident.bench.frequency import Response, frequency_response
-from ident.bench.least_squares import LAST, ROUGH, Solution, solve
+from ident.bench.least_squares import BUT_ONE, LAST, ROUGH, Solution, solve
 from ident.bench.listings import listings
 from ident.bench.model import CONSTANTS, Model
 from ident.bench.motion import groups
@@ -158,7 +158,7 @@ def refined(start: Model, observed: Sequence[Observed], records: Sequence[Record
     step, start = step_of(records), replace(start, table=replace(start.table, kind=SPLINE))
     exact = each(lambda pair: pair[0].exact(pair[1], start, step), list(zip(observed, records, strict=True)))
     for _ in range(_ROUNDS):
-        start = fit_whole(start, exact, way=LAST).model
+        start = fit_whole(start, exact, way=BUT_ONE).model
         exact = each(partial(Observed.reweighed, model=start), exact)
     return fit_whole(start, exact, way=LAST)
 

@@ -19,6 +19,8 @@ _STEPS = 12
 ROUGH = Way(converged=1e-5, longest=0.7, rough=1e-4)
 """Where the play turns, the sum of squares is not smooth: `rough`. A value goes no farther than twofold in one step."""
 
+BUT_ONE = Way(converged=1e-6, longest=0.7, rough=1e-6)
+"""Of the fit before the last one, which only says how the records are weighed in that."""
 LAST = Way(converged=1e-8, longest=0.7, rough=1e-7)
 """Of the last fit, whose standard errors count: of 10⁵ readings a standard error is 1e-5 of the sum of squares."""
 
@@ -83,7 +85,10 @@ def solve(residual: Residual, steps: int = _STEPS, start: Array | None = None, w
     def better(point: Array, least: float) -> Normal | None:
         nonlocal tried
         tried += 1
-        return residual.normal(point) if residual.cost(point) < least else None
+        if not residual.is_exact and residual.cost(point) >= least:
+            return None  # by differences the derivatives cost many times what the sum of squares does
+        there = residual.normal(point)
+        return there if there.error < least else None
 
     first = residual.origin if start is None else start
     way = replace(way, most=steps, within=residual.within)

@@ -151,6 +151,11 @@ class Residual:
         return model, moves[:nodes], found
 
     @cached_property
+    def is_exact(self) -> bool:
+        """Whether every record is simulated exactly, with its derivatives; else they are differences."""
+        return self._differentiable and all(observed.readings is not None for observed in self.observed)
+
+    @cached_property
     def _differentiable(self) -> bool:
         return self.model.is_plain and {*self.names} <= {*CONSTANTS, *self.model.table.names, DELAY}
 
@@ -206,7 +211,7 @@ class Residual:
 
     def normal(self, point: Array) -> Normal:
         """The sum of squares with its derivatives; what a record cannot see is not computed."""
-        exact = self._differentiable and all(observed.readings is not None for observed in self.observed)
+        exact = self.is_exact
         every, strides = (Models.of([self.at(point)]) if exact else self._moved(point)), self._strides
         here, size = every.each[0], len(self.names) + 1
         limits = self._limits(here)
