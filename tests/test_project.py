@@ -16,6 +16,7 @@ WHOLE = {"tests/reference/nonlinear_reference.py"}  # one flat file on purpose: 
 LONGEST_FUNCTION = 50  # lines of its body: a command's options are no part of its story
 IN_ONE_GO = {
     "ident/fit/summary.py: summarise": "a fit's result is put together from a search, each part by a name of its own",
+    "ident/bench/exact_response.py: respond_exact": "one compiled loop over the samples of a record",
     "app/pages/fit_page.py: fit_page": "what the page of a fit shows is put together, each part by a name of its own",
 }
 """Longer functions whose story splitting would hide, each with the reason."""

@@ -145,7 +145,7 @@ class Diagnoser:
             terms_left_out=proposed.left_out,
             complete=not missing,
             not_looked_at=missing,
-            notes=(*found.notes, *(() if going_on else _refused(proposed, self.course.propose)), *self.stages.notes),
+            notes=(*found.notes, *(() if going_on else proposed.notes(self.course.propose)), *self.stages.notes),
         )
 
     def _selected(self) -> tuple[StepwiseSelection, list[Suspect]]:
@@ -419,21 +419,6 @@ def _repeated(alone: Proposals, selection: StepwiseSelection) -> bool:
     named = (c.refit.error for c in selection.ranking if c.refit is not None and c.effect in selection.added)
     first = alone.found[0].error["fit"] if alone.found else None
     return first is not None and any(abs(first - error) <= TIE * error for error in named)
-
-
-def _refused(proposed: Proposals, asked: bool | None) -> Iterator[str]:
-    """What is said of a search for terms that was stopped, or ended below its bar."""
-    if not proposed.complete:
-        yield "The search for terms that no list holds was stopped before its end."
-    if proposed.left_out:
-        yield (
-            f"Of {proposed.looked_at} terms that were looked at {proposed.left_out} were left out: no model can hold "
-            "them, or what they add is not finite."
-        )
-    if proposed.refused is not None:
-        yield proposed.refused.told(proposed.looked_at)
-    elif asked and not proposed.looked_at:
-        yield "No term was looked for: the error is the noise's."
 
 
 def _judged(candidate: Candidate, weighed: bool) -> tuple[object, object]:

@@ -140,7 +140,7 @@ def test_a_start_where_the_model_is_unstable_is_refused():
 
 @pytest.mark.parametrize(("chosen", "said"), [
     ({"effects": ("stiction",)}, "refitted no model with just stiction added; choose from "),
-    ({"terms": 4}, "4 terms of "), ({"effects": ("dead_zone",), "terms": 1}, "give one of them"),
+    ({"terms": 4}, "4 terms of "), ({"effects": ("dead_zone",), "terms": 1}, "give one of the two"),
 ])  # fmt: skip
 def test_what_a_diagnosis_did_not_refit_is_refused_with_what_it_did(chosen, said):
     _, found = stored(STORED[-1])

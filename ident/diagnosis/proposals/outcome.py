@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from ident.diagnosis.proposals.proposal import Errors, Proposal
@@ -62,6 +62,20 @@ class Proposals:
         best = min(refused, key=lambda one: one.error["fit"] or 0.0)
         looked_at, left_out = self.looked_at + other.looked_at, self.left_out + other.left_out
         return replace(self, refused=best, looked_at=looked_at, left_out=left_out)
+
+    def notes(self, asked: bool | None) -> Iterator[str]:
+        """What is said of a search that was stopped, left terms out, or ended below its bar; `asked`: it was wanted."""
+        if not self.complete:
+            yield "The search for terms that no list holds was stopped before its end."
+        if self.left_out:
+            yield (
+                f"Of {self.looked_at} terms that were looked at {self.left_out} were left out: no model can hold them, "
+                "or what they add is not finite."
+            )
+        if self.refused is not None:
+            yield self.refused.told(self.looked_at)
+        elif asked and not self.looked_at:
+            yield "No term was looked for: the error is the noise's."
 
     def left(self, before: float, what: str = "fit") -> float:
         """The error with all of it on the fitted runs, or "held_out" from the fit in turn; `before` without."""
