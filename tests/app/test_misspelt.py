@@ -141,7 +141,8 @@ class Given:
 def given(service: TestClient, servoident: Program, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Given]:
     """A matrix as a folder and stored, a fit of it as a file, an effect that is kept, here and by the service."""
     with pytest.MonkeyPatch.context() as own:  # what other tests keep is kept elsewhere
-        own.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
+        for name in ("XDG_STATE_HOME", "XDG_DATA_HOME"):
+            own.setenv(name, str(tmp_path_factory.mktemp("state")))
         yield made(service, servoident, tmp_path_factory.mktemp("misspelt"))
 
 
