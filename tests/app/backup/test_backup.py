@@ -32,6 +32,10 @@ def kept(service, fitted, tmp_path_factory) -> Path:
     """A backup of a running service that has a fit."""
     while any(service.get("/api/v1/jobs", params={"state": at}).json()["items"] for at in ("queued", "running")):
         time.sleep(0.1)  # what other tests left at work would change while the backup is made
+    before = None
+    while (now := rows(service.app.state.context.settings.data)) != before:  # a job that was cancelled ends its work
+        before = now
+        time.sleep(2.0)
     file = tmp_path_factory.mktemp("backup") / "all.backup"
     held = backup(service.app.state.context.settings, file)
     assert fitted
