@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from ident.words.error import ErrorOf
 from ident.words.number import plain
 from ident.words.percent import percent_in_print
 from ident.words.titles import title
@@ -50,5 +51,7 @@ def _is_far(error: float | None, yardstick: float | None) -> bool:
 
 
 def _said(what: str, error: float | None, yardstick: float | None, of: str) -> str:
+    if ErrorOf(error).is_unstable:
+        return f"{what} is that of a model that is unstable on a run"
     ratio = plain((error or 0.0) / (yardstick or 1.0), 2)
     return f"{what} is {percent_in_print(error)}, {ratio} times {of} of {percent_in_print(yardstick)}"

@@ -11,6 +11,7 @@ from fastapi.testclient import TestClient
 
 from app.approvals.objections import FAR, objections
 from app.tables import ActuatorRow, DiagnosisRow, FitRow, MatrixRow, SetRow
+from ident.words.error import UNSTABLE
 
 API = "/api/v1"
 FLOOR = {"fit": 0.005, "verify": 0.006}
@@ -28,6 +29,7 @@ UNKNOWN = {"fit": None, "verify": None}
          ["the error on the verify runs is 5.00 %, 2.5 times the error on the runs of the fit of 2.00 %"]),
         (0.02, 0.02, UNKNOWN, []),
         (None, None, {}, []),
+        (UNSTABLE, None, FLOOR, ["the error is that of a model that is unstable on a run"]),
     ],
 )  # fmt: skip
 def test_what_speaks_against_an_approval_follows_from_errors_and_floors(
