@@ -52,7 +52,8 @@ def fill(url: str, sets: int, batches: int = 1000, per_serial: float = 10 / 3, s
         copy(raw, FitRow, ((f"{n:032x}", f"m{n % serials}", _serial(n % serials), None, "qian2014", moment(n), result)
                            for n in range(1, sets + 1)))  # fmt: skip
         copy(raw, SetRow, ((n, f"{n:032x}", _serial(n % serials), batch[n % serials], "qian2014", moment(n), 0.01, 0.02,
-                            "[]", "d" * 64, 0, "1.0", "e" * 64, "lab") for n in range(1, sets + 1)))  # fmt: skip
+                            0.01, 0.02, "[]", "[]", "[]", "d" * 64, 0, "1.0", "e" * 64, "lab")
+                           for n in range(1, sets + 1)))  # fmt: skip
         copy(raw, ValueRow, _values(sets, seed))
         copy(raw, ApprovalRow, _approvals(sets, serials))
         for table in (SetRow, ApprovalRow):

@@ -28,7 +28,10 @@ class LineageView(BaseModel):
 class ParameterSetView(BaseModel):
     """A parameter set of an actuator; `current` is the approved one in force, `approved_at` when it was last made so.
 
-    The batch is that of the matrix from which it was identified.
+    The batch is that of the matrix from which it was identified. `error_fit` and `error_verify` are eq. (17), which a
+    difference of means does not change; with the mean counted they are RMS(x − x_m)/std(x_m), null where an earlier
+    version did not keep it. `unstable_fit` and `unstable_verify` are the runs on which the model is unstable: the
+    error over them is no number then.
     """
 
     id: str
@@ -40,6 +43,10 @@ class ParameterSetView(BaseModel):
     current: bool
     error_fit: float | None
     error_verify: float | None
+    error_with_mean_fit: float | None = None
+    error_with_mean_verify: float | None = None
+    unstable_fit: list[str] = []
+    unstable_verify: list[str] = []
     parameters: dict[str, ValueView]
     lineage: LineageView | None = None
 

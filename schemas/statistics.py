@@ -78,6 +78,8 @@ class StatisticsView(BaseModel):
 
     `left_out` is true where there are more sets than were taken, which are the newest. `limits` are those of the
     product, null where none are set; `capability` is null where Cpk is not given, and `no_capability` says why.
+    `unstable` is the number of further sets whose model is unstable on a run: their error is in none of the numbers,
+    and outside an upper limit.
     """
 
     parameter: str
@@ -97,3 +99,4 @@ class StatisticsView(BaseModel):
     left_out: bool
     limits: ProductLimitsView | None = None
     no_capability: str = ""
+    unstable: int = 0

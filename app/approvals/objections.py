@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from app.parameters.error import Use
 from ident.words.error import ErrorOf
 from ident.words.number import plain
 from ident.words.percent import percent_in_print
@@ -16,11 +17,12 @@ A fit with the right model ends within 1.1 of its floor, and the floor of a few 
 by tests/app/test_objections.py.
 """
 
-Errors = Mapping[str, float | None]
+Errors = Mapping[Use, ErrorOf]
+Floors = Mapping[str, float | None]
 
 
 def objections(
-    error: Errors, noise_floor: Errors, effects: Sequence[str], contradicted: Sequence[str]
+    error: Errors, noise_floor: Floors, effects: Sequence[str], contradicted: Sequence[str]
 ) -> tuple[str, ...]:
     """The reasons why a fit should not be approved without a word, each a clause; none for a sound fit.
 
@@ -31,27 +33,27 @@ def objections(
 
 
 def _objections(
-    error: Errors, noise_floor: Errors, effects: Sequence[str], contradicted: Sequence[str]
+    error: Errors, noise_floor: Floors, effects: Sequence[str], contradicted: Sequence[str]
 ) -> Iterator[str]:
-    fit, verify = error.get("fit"), error.get("verify")
+    fit, verify = error["fit"], error["verify"]
     if _is_far(fit, noise_floor.get("fit")):
         yield _said("the error", fit, noise_floor.get("fit"), "the noise floor")
     if noise_floor.get("verify") is not None:
         if _is_far(verify, noise_floor.get("verify")):
             yield _said("the error on the verify runs", verify, noise_floor.get("verify"), "their noise floor")
-    elif _is_far(verify, fit):
-        yield _said("the error on the verify runs", verify, fit, "the error on the runs of the fit")
+    elif _is_far(verify, fit.error):
+        yield _said("the error on the verify runs", verify, fit.error, "the error on the runs of the fit")
     for name in effects:
         if name in contradicted:
             yield f"with {title(name)} the error rises on the verify runs"
 
 
-def _is_far(error: float | None, yardstick: float | None) -> bool:
-    return error is not None and bool(yardstick) and not error <= FAR * (yardstick or 0.0)
+def _is_far(said: ErrorOf, yardstick: float | None) -> bool:
+    return said.error is not None and bool(yardstick) and not said.error <= FAR * (yardstick or 0.0)
 
 
-def _said(what: str, error: float | None, yardstick: float | None, of: str) -> str:
-    if ErrorOf(error).is_unstable:
-        return f"{what} is that of a model that is unstable on a run"
-    ratio = plain((error or 0.0) / (yardstick or 1.0), 2)
-    return f"{what} is {percent_in_print(error)}, {ratio} times {of} of {percent_in_print(yardstick)}"
+def _said(what: str, said: ErrorOf, yardstick: float | None, of: str) -> str:
+    if said.is_unstable:
+        return f"{what} is that of a model that is {said.in_print()}"
+    ratio = plain((said.error or 0.0) / (yardstick or 1.0), 2)
+    return f"{what} is {said.in_print()}, {ratio} times {of} of {percent_in_print(yardstick)}"

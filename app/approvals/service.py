@@ -11,6 +11,7 @@ from app.diagnoses.repository import verdicts
 from app.errors import Failure, missing
 from app.fits import repository as fits
 from app.limits.broken import tell_broken
+from app.parameters.error import USES, error_of
 from app.tables import FitRow
 from app.webhooks.outbox import announce
 from schemas.parameters import ApprovalView
@@ -43,7 +44,8 @@ def of_fit(session: Session, row: FitRow) -> tuple[str, ...]:
     found = row.result
     verdict = verdicts(session, [row.parent]).get(row.parent) if row.parent else None
     contradicted = (verdict or {}).get("contradicted_by", ())
-    return objections(found.get("error", {}), found.get("noise_floor") or {}, found.get("effects", ()), contradicted)
+    error = {use: error_of(row.set, use) for use in USES}
+    return objections(error, found.get("noise_floor") or {}, found.get("effects", ()), contradicted)
 
 
 def against(context: Context, fit: str) -> tuple[str, ...]:

@@ -80,14 +80,16 @@ def limits(texts: list[str]) -> dict[str, str]:
 def show(sets: list[dict[str, Any]]) -> None:
     """Print the sets as a table."""
     from app.cli.tables import output, table
-    from ident.words.error import error_said
+    from app.parameters.error import error_of
+    from schemas.parameters import ParameterSetView
 
     header = ("serial", "fit", "model", "approved", "current", "error fit", "verify", "parameters")
     rows = []
     for one in sets:
         parameters = ", ".join(f"{name} {entry['value']:.4g}" for name, entry in one["parameters"].items())
         approved = (one["approved_at"] or "–")[:10]
-        errors = (error_said(one["error_fit"]), error_said(one["error_verify"]))
+        said = ParameterSetView.model_validate(one)
+        errors = (error_of(said, "fit").said(), error_of(said, "verify").said())
         rows.append(
             (one["serial"], one["id"], one["model"], approved, "yes" if one["current"] else "", *errors, parameters)
         )

@@ -6,12 +6,14 @@ from collections.abc import Sequence
 from typing import Any
 
 from sqlalchemy import select
-from sqlalchemy.orm import Session, aliased
+from sqlalchemy.orm import Session, aliased, raiseload
 
 from app.fits.equations import equations_of
 from app.fits.history import read, taken_apart
 from app.storage import Storage
 from app.tables import EvolutionRow, FitRow, JobRow, MatrixRow, SetRow, ValueRow
+from ident.fit.result import FitResult
+from ident.matrix import USES
 
 
 def fit(session: Session, fit_id: str) -> FitRow | None:
@@ -31,19 +33,13 @@ def lineage(session: Session, row: FitRow) -> Sequence[FitRow]:
     return found
 
 
-def floors(session: Session, fits: Sequence[str]) -> Sequence[tuple[str, str | None, float | None, Any]]:
-    """Of each of these fits: its id, the fit before it, that one's error on runs to fit, and its own noise floors."""
+def floors(session: Session, fits: Sequence[str]) -> Sequence[tuple[str, str | None, SetRow | None, Any]]:
+    """Of each of these fits: its id, the fit before it, the set of that one, and its own noise floors."""
     earlier = aliased(SetRow)
-    query = select(FitRow.id, FitRow.parent, earlier.error_fit, FitRow.result["noise_floor"])
+    query = select(FitRow.id, FitRow.parent, earlier, FitRow.result["noise_floor"])
     query = query.join(earlier, earlier.fit == FitRow.parent, isouter=True).where(FitRow.id.in_(fits))
+    query = query.options(raiseload(earlier.values), raiseload(earlier.approvals))
     return [(fit, parent, before, floor) for fit, parent, before, floor in session.execute(query)]
-
-
-def errors(session: Session, fits: Sequence[str]) -> Sequence[Sequence[Any]]:
-    """Of each of these fits: its id, its errors, those with the mean counted by both names, those of its runs."""
-    names = ("error", "error_with_mean", "anchored_error", "runs")
-    query = select(FitRow.id, *(FitRow.result[name] for name in names)).where(FitRow.id.in_(fits))
-    return session.execute(query).all()
 
 
 def add_fit(session: Session, job: JobRow, result: dict[str, Any]) -> FitRow:
@@ -62,9 +58,9 @@ def add_fit(session: Session, job: JobRow, result: dict[str, Any]) -> FitRow:
 
 def _set(matrix: MatrixRow, result: dict[str, Any], who: str) -> SetRow:
     """What a result says of its actuator, and where it comes from."""
+    fit = FitResult.from_json(result)
     row = SetRow(
-        serial=matrix.serial, batch=matrix.batch, model=result["model"],
-        error_fit=result["error"]["fit"], error_verify=result["error"]["verify"],
+        serial=matrix.serial, batch=matrix.batch, model=result["model"], **_errors(fit),
         **{name: result[name] for name in ("effects", "data_hash", "seed", "version")},
         equations=equations_of(result), who=who,
     )  # fmt: skip
@@ -73,6 +69,16 @@ def _set(matrix: MatrixRow, result: dict[str, Any], who: str) -> SetRow:
         for place, (name, entry) in enumerate(result["parameters"].items())
     ]
     return row
+
+
+def _errors(fit: FitResult) -> dict[str, Any]:
+    """What a set knows of the errors of its fit: eq. (17), with the mean counted, and the runs that are unstable."""
+    found: dict[str, Any] = {}
+    for use in USES:
+        said = fit.error_of(use)
+        found[f"error_{use}"], found[f"error_with_mean_{use}"] = said.error, said.with_mean
+        found[f"unstable_{use}"] = list(said.unstable)
+    return found
 
 
 def whole_result(session: Session, storage: Storage, row: FitRow) -> dict[str, Any]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from app.approvals import service as approvals
@@ -13,6 +13,7 @@ from app.fits import repository
 from app.jobs import service as jobs
 from app.matrices import service as matrices
 from app.own_effects.naming import with_kept
+from app.parameters.error import error_of
 from app.tables import FitRow
 from ident.comparison.side_by_side import SideBySide, of_fits
 from ident.fit.choices import Choices
@@ -20,12 +21,11 @@ from ident.fit.choices import settings_of as chosen_settings
 from ident.fit.identification import check_settings
 from ident.fit.result import FitResult
 from ident.fit.settings import GENERAL, Settings
-from ident.matrix import USES
 from ident.plain import written
 from ident.presets.suited import in_question
 from ident.residuals.budget import budget
 from ident.residuals.survey import survey
-from ident.words.error import UNSTABLE, ErrorOf
+from ident.words.error import ErrorOf
 from ident.workflows import compare
 from schemas.fit import (
     Chosen,
@@ -61,7 +61,7 @@ class Yardstick:
     """What the error of a fit on runs to fit is held against: its noise floor, and the error of the fit before it."""
 
     parent: str | None = None
-    before: float | None = None
+    before: ErrorOf = field(default_factory=lambda: ErrorOf(None))
     floor: float | None = None
 
 
@@ -107,19 +107,10 @@ def yardsticks(context: Context, fits: Sequence[str]) -> dict[str, Yardstick]:
     """That of each of these fits."""
     with context.sessions() as session:
         found = repository.floors(session, fits)
-    return {fit: Yardstick(parent, before, (floor or {}).get("fit")) for fit, parent, before, floor in found}
-
-
-def errors_of(context: Context, fits: Sequence[str]) -> dict[str, dict[str, ErrorOf]]:
-    """The errors of these fits as they are read, by id and use: with the mean counted, and the unstable runs."""
-    with context.sessions() as session:
-        found = repository.errors(session, fits)
-    return {fit: _errors(error or {}, new or old or {}, runs or ()) for fit, error, new, old, runs in found}
-
-
-def _errors(error: Mapping[str, Any], with_mean: Mapping[str, Any], runs: Sequence[Any]) -> dict[str, ErrorOf]:
-    unstable = {use: [run["id"] for run in runs if run["use"] == use and run["error"] >= UNSTABLE] for use in USES}
-    return {use: ErrorOf(error.get(use), with_mean.get(use), unstable[use]) for use in USES}
+    return {
+        fit: Yardstick(parent, error_of(before, "fit"), (floor or {}).get("fit"))
+        for fit, parent, before, floor in found
+    }
 
 
 def find(context: Context, fit_id: str) -> FitRow:

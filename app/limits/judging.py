@@ -10,7 +10,7 @@ from app.context import Context
 from app.errors import missing
 from app.limits import repository
 from app.limits.verdict import Judged, verdict
-from app.statistics.repository import ERRORS
+from app.parameters.error import USES, error_of
 from app.tables import LimitRow, SetRow
 from schemas.limits import JudgedView, LineVerdictView
 
@@ -44,9 +44,10 @@ def judged_by(row: SetRow, limits: Mapping[str, LimitRow]) -> list[Judged]:
 
 
 def _judged(row: SetRow, limit: LimitRow) -> Judged:
-    if limit.name in ERRORS:
-        value = row.error_fit if limit.name == "error.fit" else row.error_verify
-        return Judged(limit.name, value, None, "1", limit.lower, limit.upper, exact=True)
+    for use in USES:
+        if limit.name == f"error.{use}":
+            said = error_of(row, use)
+            return Judged(limit.name, said.error, None, "1", limit.lower, limit.upper, said)
     found = next((value for value in row.values if value.name == limit.name), None)
     if found is None:
         return Judged(limit.name, None, None, "", limit.lower, limit.upper)

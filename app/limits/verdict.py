@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ident.words.engineering import quantity
-from ident.words.error import error_said
+from ident.words.error import ErrorOf
+from ident.words.percent import percent
 from ident.words.plus_minus import plus_minus
 
 SURE = 2.0  # standard errors from a limit
@@ -29,7 +30,7 @@ class Judged:
     unit: str
     lower: float | None
     upper: float | None
-    exact: bool = False  # an error, which has no standard error and needs none
+    error: ErrorOf | None = None  # of an error, as it is read: it has no standard error and needs none
 
     @property
     def nearest(self) -> float:
@@ -50,7 +51,7 @@ class Judged:
     @property
     def outcome(self) -> Outcome:
         """Inside or outside for sure, else unknown."""
-        if self.value is None or (self.std_error is None and not self.exact) or self.uncertain:
+        if self.value is None or (self.std_error is None and self.error is None) or self.uncertain:
             return "unknown"
         return "inside" if self.nearest >= 0 else "outside"
 
@@ -59,7 +60,7 @@ class Judged:
         """The outcome in words."""
         if self.value is None:
             return f"{self.name}: the set has no such value"
-        if self.std_error is None and not self.exact:
+        if self.std_error is None and self.error is None:
             return f"{self.name} {self._shown(self.value)}: held fixed or not determined by the data, so not judged"
         said = f"{self.name} {self._with_error} is {'within' if self.nearest >= 0 else 'outside'} {self._limits}"
         return f"{said}, but uncertain: a limit is less than two standard errors away" if self.uncertain else said
@@ -67,7 +68,7 @@ class Judged:
     @property
     def _with_error(self) -> str:
         assert self.value is not None
-        return error_said(self.value) if self.exact else plus_minus(self.value, self.std_error, self.unit)
+        return self.error.said() if self.error else plus_minus(self.value, self.std_error, self.unit)
 
     @property
     def _limits(self) -> str:
@@ -77,7 +78,7 @@ class Judged:
         return f"{lower} to {upper}"
 
     def _shown(self, value: float) -> str:
-        return error_said(value) if self.exact else quantity(value, self.unit)
+        return percent(value) if self.error else quantity(value, self.unit)
 
 
 def verdict(judged: list[Judged]) -> Verdict:

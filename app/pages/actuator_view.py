@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from app.pages.sparkline import ERROR, Drift, drift
+from app.parameters.error import error_of
 from ident.errors import Unusable
 from ident.presets import preset
 from ident.words.engineering import quantity
@@ -14,9 +15,6 @@ from ident.words.symbols import symbol
 from ident.words.titles import title
 from schemas.fit import JobView
 from schemas.parameters import ActuatorView, ParameterSetView
-
-Errors = Mapping[str, Mapping[str, ErrorOf]]
-"""Errors of fits as they are read, by the fit's id and the use of runs."""
 
 
 @dataclass(frozen=True)
@@ -57,12 +55,9 @@ class FitRow:
 
 def actuator_row(
     actuator: ActuatorView, newest: ParameterSetView | None, job: JobView | None,
-    approved: Sequence[ParameterSetView] = (), drifting: str = ERROR, errors: Errors | None = None,
+    approved: Sequence[ParameterSetView] = (), drifting: str = ERROR,
 ) -> ActuatorRow:  # fmt: skip
-    """The row of an actuator; `job` is one that waits or runs for it, `drifting` what is followed over `approved`.
-
-    `errors` has those of fits as they are read, by id and use.
-    """
+    """The row of an actuator; `job` is one that waits or runs for it, `drifting` what is followed over `approved`."""
     shown = actuator.current or newest
     state, text = _state(actuator, newest, job)
     return ActuatorRow(
@@ -74,8 +69,8 @@ def actuator_row(
         model=shown.model if shown else "",
         error_fit=shown.error_fit if shown else None,
         error_verify=shown.error_verify if shown else None,
-        said_fit=said(shown, "fit", errors or {}),
-        said_verify=said(shown, "verify", errors or {}),
+        said_fit=error_of(shown, "fit"),
+        said_verify=error_of(shown, "verify"),
         parameters=_parameters(shown) if shown else (),
         drift=drift(approved, drifting, drifting if shown is None else _symbol(shown.model, drifting)),
         made=newest.created_at if newest else None,
@@ -123,22 +118,13 @@ def _symbol(model: str, name: str) -> str:
         return name
 
 
-def said(made: ParameterSetView | None, use: str, errors: Errors) -> ErrorOf:
-    """The error of a set on the runs of a use as it is read, with the mean and the unstable runs where known."""
-    if made is None:
-        return ErrorOf(None)
-    return errors.get(made.id, {}).get(use) or ErrorOf(made.error_fit if use == "fit" else made.error_verify)
-
-
-def fit_rows(
-    jobs: Iterable[JobView], sets: Iterable[ParameterSetView], errors: Errors | None = None
-) -> tuple[FitRow, ...]:  # fmt: skip
+def fit_rows(jobs: Iterable[JobView], sets: Iterable[ParameterSetView]) -> tuple[FitRow, ...]:
     """A row a job, with the errors of the set that it made."""
     made = {entry.id: entry for entry in sets}
-    return tuple(_fit_row(job, made.get(job.id), errors or {}) for job in jobs)
+    return tuple(_fit_row(job, made.get(job.id)) for job in jobs)
 
 
-def _fit_row(job: JobView, made: ParameterSetView | None, errors: Errors) -> FitRow:
+def _fit_row(job: JobView, made: ParameterSetView | None) -> FitRow:
     state, text = _fit_state(job.state, made)
     return FitRow(
         id=job.id,
@@ -149,8 +135,8 @@ def _fit_row(job: JobView, made: ParameterSetView | None, errors: Errors) -> Fit
         seed=str(job.settings.seed),
         error_fit=made.error_fit if made else None,
         error_verify=made.error_verify if made else None,
-        said_fit=said(made, "fit", errors),
-        said_verify=said(made, "verify", errors),
+        said_fit=error_of(made, "fit"),
+        said_verify=error_of(made, "verify"),
         made=job.created_at,
     )
 

@@ -21,6 +21,7 @@ from app.pages.ladder_view import Step, steps
 from app.pages.matrix_view import counted
 from app.pages.next_view import Next
 from app.pages.run_view import Conditions, conditions
+from app.parameters.error import error_of
 from ident.custom.definition import HANDED_ON, preset_with
 from ident.equations.equation import Equation
 from ident.equations.mathml import mathml
@@ -181,7 +182,7 @@ def other_fit(fit: ParameterSetView) -> str:
     """Another fit in a line: when, which model, how good."""
     effects = dict.fromkeys(name.partition(".")[0] for name in fit.parameters if "." in name)
     made = fit.created_at[:16].replace("T", " ")
-    return f"{made} · {with_effects(fit.model, effects)} · {error_in_print(fit.error_fit)}"
+    return f"{made} · {with_effects(fit.model, effects)} · {error_of(fit, 'fit').in_print()}"
 
 
 def fit_request(fit: FitResult, parent: str) -> dict[str, Any]:

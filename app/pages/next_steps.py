@@ -10,7 +10,6 @@ from app.fits import service as fits
 from app.pages.next_view import Next, fit_step, next_step
 from app.parameters import service as parameters
 from app.parameters.wanted import Wanted
-from ident.words.error import ErrorOf
 from schemas.fit import JobView
 from schemas.parameters import ActuatorView, ParameterSetView
 
@@ -20,25 +19,20 @@ def next_steps(
     found: Iterable[ActuatorView],
     newest: Mapping[str, ParameterSetView],
     waiting: Mapping[str, JobView],
-    errors: Mapping[str, Mapping[str, ErrorOf]],
 ) -> dict[str, Next]:
-    """What to do next with each of these actuators, by serial number: of its newest fit, or of the job before one.
-
-    `errors` are those of the fits as they are read, by id and use.
-    """
+    """What to do next with each of these actuators, by serial number: of its newest fit, or of the job before one."""
     undecided = [one.id for one in newest.values() if not one.current]
     yardsticks, searches = fits.yardsticks(context, undecided), diagnoses.searches(context, undecided)
     steps = {}
     for each in found:
         fit, job = newest.get(each.serial), waiting.get(each.serial)
         known = fit.id if fit else ""
-        said = errors.get(known, {}).get("fit")
-        steps[each.serial] = next_step(each, fit, job, yardsticks.get(known), searches.get(known), said)
+        steps[each.serial] = next_step(each, fit, job, yardsticks.get(known), searches.get(known))
     return steps
 
 
-def of_fit(context: Context, fit: str, said: ErrorOf) -> Next:
-    """What to do next with a fit, in the words of the first page; `said` is its error on the runs to fit."""
+def of_fit(context: Context, fit: str) -> Next:
+    """What to do next with a fit, in the words of the first page."""
     (stored,) = parameters.page(context, Wanted(ids=[fit]), None, 1).items
     yardsticks, searches = fits.yardsticks(context, [fit]), diagnoses.searches(context, [fit])
-    return fit_step(stored, yardsticks.get(fit), searches.get(fit), said)
+    return fit_step(stored, yardsticks.get(fit), searches.get(fit))

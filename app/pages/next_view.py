@@ -8,10 +8,10 @@ from urllib.parse import quote
 
 from app.diagnoses.service import Search
 from app.fits.service import Yardstick
+from app.parameters.error import Use, error_of
 from ident.diagnosis.result import Verdict
-from ident.words.error import ErrorOf, error_in_print
+from ident.words.error import ErrorOf
 from ident.words.number import plain
-from ident.words.percent import percent_in_print
 from ident.words.titles import title
 from schemas.fit import JobView
 from schemas.parameters import ActuatorView, ParameterSetView
@@ -36,12 +36,9 @@ class Next:
 
 def next_step(
     actuator: ActuatorView, newest: ParameterSetView | None, job: JobView | None,
-    yardstick: Yardstick | None = None, search: Search | None = None, said: ErrorOf | None = None,
+    yardstick: Yardstick | None = None, search: Search | None = None,
 ) -> Next:  # fmt: skip
-    """The line of an actuator: of a `job` that is to make a fit of it, else of its set in force, or its `newest` fit.
-
-    `said` is the error of that on the runs to fit as it is read.
-    """
+    """The line of an actuator: of a `job` that is to make a fit, else of its set in force, or of its `newest` fit."""
     if job is not None:
         words = "It is being identified." if job.state == "running" else "It waits to be identified."
         return Next(words, "Watch it", f"/fits/{job.id}", waits=job.id, main=False)
@@ -49,16 +46,11 @@ def next_step(
         return Next("Its runs are here, but no fit is.", "Start a fit", f"/actuators/{quote(actuator.serial)}")
     if actuator.current is not None and not newest.current:
         return _approved(actuator.current, newest, search or Search())
-    return fit_step(newest, yardstick, search, said)
+    return fit_step(newest, yardstick, search)
 
 
-def fit_step(
-    fit: ParameterSetView, yardstick: Yardstick | None = None, search: Search | None = None, said: ErrorOf | None = None
-) -> Next:
-    """The next step with a fit; the first page and the page of the fit name the same one.
-
-    `said` is the error on the runs to fit as it is read.
-    """
+def fit_step(fit: ParameterSetView, yardstick: Yardstick | None = None, search: Search | None = None) -> Next:
+    """The next step with a fit; the first page and the page of the fit name the same one."""
     at = f"/fits/{fit.id}"
     if fit.current:
         return Next("Its parameters are in force: nothing to do.", "Look at them", at, main=False)
@@ -66,7 +58,7 @@ def fit_step(
     if search.job is not None:
         words = "It is being searched for what its model lacks."
         return Next(words, "Watch it", f"{at}#missing", waits=search.job, main=False)
-    said = said or ErrorOf(fit.error_fit)
+    said = error_of(fit, "fit")
     if said.is_unstable:
         return Next(f"The model is {said.in_print()}.", "See where it fails", f"{at}#fails")
     return _fitted(fit, yardstick or Yardstick(), search.verdict, at)
@@ -84,33 +76,37 @@ def _approved(current: ParameterSetView, newest: ParameterSetView, search: Searc
     if current.approved_at and current.approved_at >= newest.created_at:
         return Next(f"{approved}: nothing to do.", "Look at them", f"/fits/{current.id}", main=False)
     before, after = _errors(current, newest)
-    if before is None or after is None:
-        words = f"{approved}. There is a newer fit, not approved."
+    if before.error is None or after.error is None:
+        words, better = f"{approved}. There is a newer fit, not approved.", False
     else:
-        words = f"{approved}, with an error of {error_in_print(before)}. A newer fit has {error_in_print(after)}."
-    better = before is not None and after is not None and after * NEAR < before
+        stands = "but its model is" if before.is_unstable else "with an error of"
+        newer = "is" if after.is_unstable else "has"
+        words = f"{approved}, {stands} {before.in_print()}. A newer fit {newer} {after.in_print()}."
+        better = after.error * NEAR < before.error
     return Next(words, "Compare them", f"/compare?fits={current.id},{newest.id}", main=better)
 
 
-def _errors(one: ParameterSetView, other: ParameterSetView) -> tuple[float | None, float | None]:
+def _errors(one: ParameterSetView, other: ParameterSetView) -> tuple[ErrorOf, ErrorOf]:
     """The errors of two sets on runs that no fit saw; on those that were fitted where one has no such runs."""
-    if one.error_verify is None or other.error_verify is None:
-        return one.error_fit, other.error_fit
-    return one.error_verify, other.error_verify
+    use: Use = "fit" if one.error_verify is None or other.error_verify is None else "verify"
+    return error_of(one, use), error_of(other, use)
 
 
 def _fitted(newest: ParameterSetView, yardstick: Yardstick, verdict: Verdict | None, at: str) -> Next:
     """Of a fit that waits for its user."""
-    error, before = newest.error_fit, yardstick.before
+    error, before, said = newest.error_fit, yardstick.before, error_of(newest, "fit")
     if error is None or not yardstick.floor:
         words = "It is fitted; how much of its error is noise cannot be told."
         return Next(words, "See where it fails", f"{at}#fails")
     if error > NEAR * yardstick.floor:
         return _failing(error / yardstick.floor, verdict, f"{at}#missing")
-    if before is not None and before > NEAR * error:
-        fell = f"The error fell from {percent_in_print(before)} to {percent_in_print(error)}, which is noise."
-        return Next(fell, "Compare before and after", f"/compare?fits={yardstick.parent},{newest.id}")
-    return Next("The model explains all but the noise.", "Look and approve it", at, main=False, does="approve")
+    if before.error is not None and before.error > NEAR * error:
+        fell = "Its model is no longer" if before.is_unstable else "The error fell from"
+        to = "; the error is" if before.is_unstable else " to"
+        words = f"{fell} {before.in_print()}{to} {said.in_print()}, which is noise."
+        return Next(words, "Compare before and after", f"/compare?fits={yardstick.parent},{newest.id}")
+    words = f"The model explains all but the noise{f', {said.in_print()}' if said.mean_counts else ''}."
+    return Next(words, "Look and approve it", at, main=False, does="approve")
 
 
 def _failing(ratio: float, verdict: Verdict | None, at: str) -> Next:

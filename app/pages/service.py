@@ -29,6 +29,7 @@ from app.pages.side_view import further, side_view
 from app.pages.start_view import start_view
 from app.pages.thumbnails import thumbnail
 from app.parameters import service as parameters
+from app.parameters.error import USES, error_of
 from app.parameters.wanted import Wanted
 from app.workers import service as workers
 from ident.comparison.side_by_side import MOST
@@ -49,17 +50,13 @@ def actuator_list(context: Context, query: str, drifting: str, cursor: str | Non
     serials = [actuator.serial for actuator in found.items]
     newest, waiting = parameters.newest(context, serials), jobs.open_of_actuators(context, serials)
     approved = parameters.approved(context, serials)
-    sets = (*newest.values(), *(each.current for each in found.items if each.current))
-    errors = fits.errors_of(context, [one.id for one in sets])
     rows = [
-        actuator_row(
-            each, newest.get(each.serial), waiting.get(each.serial), approved.get(each.serial, ()), drifting, errors
-        )
+        actuator_row(each, newest.get(each.serial), waiting.get(each.serial), approved.get(each.serial, ()), drifting)
         for each in found.items
     ]
     return {
         "rows": rows, "query": query, "drifting": drifting, "followed": followed(approved), "more": found.next,
-        "next": next_steps(context, found.items, newest, waiting, errors),
+        "next": next_steps(context, found.items, newest, waiting),
         "only_simulated": not (query or cursor) and _simulated(found),
     }  # fmt: skip
 
@@ -78,7 +75,7 @@ def actuator(context: Context, serial: str, cursor: str | None) -> Shown:
         "actuator": found,
         "facts": _facts(found),
         "approved": _approved(context, found),
-        "said": fits.errors_of(context, [found.current.id])[found.current.id] if found.current else {},
+        "said": {use: error_of(found.current, use) for use in USES},
         "drifts": _drifts(context, found),
         "verdict": judge(context, serial),
         "approvals": approvals.of_actuator(context, serial),
@@ -91,8 +88,7 @@ def _fits(context: Context, cursor: str | None, serial: str | None = None, matri
     """Fits and the jobs that are to make them, newest first, with the number of the next page."""
     made_by = jobs.listed(context, cursor, _ROWS, serial=serial, matrix=matrix, of_fits=True)
     made = parameters.page(context, Wanted(ids=[job.id for job in made_by.items]), None, _ROWS).items
-    errors = fits.errors_of(context, [entry.id for entry in made])
-    return {"fits": fit_rows(made_by.items, made, errors), "more": made_by.next}
+    return {"fits": fit_rows(made_by.items, made), "more": made_by.next}
 
 
 def _facts(found: ActuatorView) -> list[tuple[str, str]]:
@@ -174,6 +170,6 @@ def fit(context: Context, fit_id: str) -> FitPageView | JobPageView:
     way = lineage.ladder(context, fit_id)
     others = parameters.page(context, Wanted(serial=stored.serial), None, _ROWS).items
     newer = matrices.newer(context, stored.matrix)
-    step = of_fit(context, fit_id, stored.found.error_of("fit"))
+    step = of_fit(context, fit_id)
     against = approvals.against(context, fit_id)
     return fit_page(stored, matrix, lacks, way, step, against, others, newer, own_effects.every(context))

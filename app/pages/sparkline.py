@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from app.parameters.error import error_of
 from ident.words.engineering import quantity
-from ident.words.error import error_in_print
+from ident.words.error import ErrorOf
 from ident.words.error_change import error_change
 from ident.words.percent import change
 from schemas.parameters import ParameterSetView
@@ -28,29 +29,39 @@ class Drift:
 
 def drift(sets: Sequence[ParameterSetView], name: str, symbol: str) -> Drift | None:
     """The drift of a parameter, or of the error on verify runs; None where fewer than two sets have it."""
-    found = [value for entry in sets if (value := _value(entry, name)) is not None]
+    known = [(entry, value) for entry in sets if (value := _value(entry, name)) is not None]
+    found = [value for _, value in known]
     if len(found) < 2:
         return None
-    first, last = found[0], found[-1]
+    (one, first), (other, last) = known[0], known[-1]
     share = (last - first) / abs(first) if first else 0.0
-    moved = error_change(first, last) if name == ERROR else change(share, "+")
+    moved = _error_change(one, other) if name == ERROR else change(share, "+")
     places = _places(found)
-    ends = f"from {_words(sets, name, first)} to {_words(sets, name, last)}"
+    ends = f"from {_words(one, name)} to {_words(other, name)}"
     said = f"{symbol} over {len(found)} approved sets, {ends}, {moved}"
     return Drift(" ".join(f"{x},{y}" for x, y in places), places[-1], said, moved, share)
 
 
 def _value(entry: ParameterSetView, name: str) -> float | None:
     if name == ERROR:
-        return entry.error_fit if entry.error_verify is None else entry.error_verify
+        return _error(entry).error
     return entry.parameters[name].value if name in entry.parameters else None
 
 
-def _words(sets: Sequence[ParameterSetView], name: str, value: float) -> str:
+def _error(entry: ParameterSetView) -> ErrorOf:
+    """The error on verify runs; on those that were fitted where the set has no such runs."""
+    return error_of(entry, "fit" if entry.error_verify is None else "verify")
+
+
+def _error_change(one: ParameterSetView, other: ParameterSetView) -> str:
+    before, after = _error(one), _error(other)
+    return "–" if before.is_unstable or after.is_unstable else error_change(before.error, after.error)
+
+
+def _words(entry: ParameterSetView, name: str) -> str:
     if name == ERROR:
-        return error_in_print(value)
-    unit = next(entry.parameters[name].unit for entry in sets if name in entry.parameters)
-    return quantity(value, unit)
+        return _error(entry).in_print()
+    return quantity(entry.parameters[name].value, entry.parameters[name].unit)
 
 
 def _places(found: Sequence[float]) -> list[tuple[str, str]]:

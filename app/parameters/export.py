@@ -16,9 +16,10 @@ _BLOCK = 2000  # sets in memory
 _KINDS = {
     "id": "text", "serial": "text", "batch": "text", "model": "text", "created_at": "text", "approved_at": "text",
     "current": "bool", "error_fit": "number", "error_verify": "number", "data_hash": "text", "seed": "int",
-    "version": "text", "equations": "text", "who": "text",
+    "version": "text", "equations": "text", "who": "text", "error_with_mean_fit": "number",
+    "error_with_mean_verify": "number", "unstable_fit": "names", "unstable_verify": "names",
 }  # fmt: skip
-"""The columns before those of the parameters, and what they hold."""
+"""The columns before those of the parameters, and what they hold; names are written one after the other."""
 
 
 def csv_rows(context: Context, wanted: Wanted) -> Iterator[str]:
@@ -35,7 +36,7 @@ def parquet_blocks(context: Context, wanted: Wanted) -> Iterator[bytes]:
     import pyarrow.parquet as pq  # noqa: PLC0415
 
     names, blocks = _table(context, wanted)
-    types = {"bool": pa.bool_(), "int": pa.int64(), "text": pa.string(), "number": pa.float64()}
+    types = {"bool": pa.bool_(), "int": pa.int64(), "text": pa.string(), "names": pa.string(), "number": pa.float64()}
     schema = pa.schema([(name, types[_KINDS.get(name, "number")]) for name in names])
     sink = io.BytesIO()
     with pq.ParquetWriter(sink, schema) as writer:
@@ -73,6 +74,7 @@ def _blocks(context: Context, wanted: Wanted, parameters: Sequence[tuple[str, st
 def _row(one: repository.FoundSet, parameters: Sequence[tuple[str, str]]) -> list[Any]:
     values = {(value.name, value.unit): (value.value, value.std_error) for value in one.values}
     cells = [getattr(one, "fit" if name == "id" else name) for name in _KINDS]
+    cells = [", ".join(cell) if kind == "names" else cell for cell, kind in zip(cells, _KINDS.values(), strict=True)]
     return cells + [cell for parameter in parameters for cell in values.get(parameter, (None, None))]
 
 

@@ -11,13 +11,16 @@ from sqlalchemy.orm import Session
 
 from app.tables import ApprovalRow, SetRow, ValueRow
 
-ERRORS = {"error.fit": SetRow.error_fit, "error.verify": SetRow.error_verify}
-"""What is judged like a parameter; without a unit, and without a standard error."""
+ERRORS = {
+    "error.fit": (SetRow.error_fit, SetRow.unstable_fit),
+    "error.verify": (SetRow.error_verify, SetRow.unstable_verify),
+}
+"""What is judged like a parameter, with the runs on which it is no number; without a unit and a standard error."""
 
 
 @dataclass(frozen=True)
 class Point:
-    """The value of a parameter in a set."""
+    """The value of a parameter in a set; of an error, which is no number where the model is `unstable` on runs."""
 
     number: int
     fit: str
@@ -27,6 +30,7 @@ class Point:
     value: float
     std_error: float | None
     unit: str
+    unstable: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -42,8 +46,8 @@ def points(session: Session, parameter: str, chosen: Chosen, most: int) -> Seque
     """The newest of these sets that have the parameter, in the order in which they were made."""
     query: Select[*tuple[Any, ...]] = select(SetRow.number, SetRow.fit, SetRow.serial, SetRow.model, SetRow.created_at)
     if parameter in ERRORS:
-        error = ERRORS[parameter]
-        query = query.add_columns(error, null(), literal("1")).where(error.is_not(None))
+        error, unstable = ERRORS[parameter]
+        query = query.add_columns(error, null(), literal("1"), unstable).where(error.is_not(None))
     else:
         query = query.add_columns(ValueRow.value, ValueRow.std_error, ValueRow.unit)
         query = query.join(ValueRow, ValueRow.number == SetRow.number).where(ValueRow.name == parameter)

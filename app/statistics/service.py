@@ -46,6 +46,10 @@ def statistics(
         points = repository.points(session, parameter, Chosen(batch, serial, model), MOST + 1)
         points, left_out = points[-MOST:], len(points) > MOST
         _check(points, parameter, Chosen(batch, serial, model), lambda: repository.batches(session))
+        unstable, points = sum(bool(one.unstable) for one in points), [one for one in points if not one.unstable]
+        if not points:
+            raise Failure(409, "too-few", "the model of every set here is unstable on a run", "parameter",
+                          "approve a fit whose model is stable")  # fmt: skip
         limit = in_batch(session, points[0].model, batch or EVERY).get(parameter)
     lower, upper = (limit.lower, limit.upper) if limit else (None, None)
     values = [point.value for point in points]
@@ -56,8 +60,8 @@ def statistics(
         percentiles={str(share): value for share, value in found.percentiles.items()},
         control_chart=_chart(chart), capability=_capability(capability(values, lower, upper), lower, upper),
         outliers=_outliers(points), drift=_drift(points) if serial is not None else None,
-        points=_points(points, chart), left_out=left_out, limits=_limits(values, lower, upper),
-        no_capability=withheld(values, lower, upper),
+        points=_points(points, chart), left_out=left_out, limits=_limits(values, lower, upper, unstable),
+        no_capability=withheld(values, lower, upper), unstable=unstable,
     )  # fmt: skip
 
 
@@ -99,10 +103,14 @@ def _capability(found: Capability | None, lower: float | None, upper: float | No
     return None if found is None else CapabilityView(lower=lower, upper=upper, **vars(found))
 
 
-def _limits(values: Sequence[float], lower: float | None, upper: float | None) -> ProductLimitsView | None:
+def _limits(
+    values: Sequence[float], lower: float | None, upper: float | None, unstable: int
+) -> ProductLimitsView | None:
+    """What lies outside; an error whose model is unstable is above any upper limit."""
     if lower is None and upper is None:
         return None
-    return ProductLimitsView(lower=lower, upper=upper, outside=outside(values, lower, upper))
+    above = 0 if upper is None else unstable
+    return ProductLimitsView(lower=lower, upper=upper, outside=outside(values, lower, upper) + above)
 
 
 def _outliers(points: Sequence[Point]) -> list[OutlierView]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ident.words.engineering import quantity
-from ident.words.number import plain
+from ident.words.number import count, plain
 from schemas.statistics import StatisticsView
 
 
@@ -31,6 +31,8 @@ def _numbers(found: StatisticsView) -> Iterator[tuple[str, str]]:
         return "–" if value is None else quantity(value, found.unit)
 
     yield "Sets", f"{found.n}{', the newest' if found.left_out else ''}, of model {found.model}"
+    if found.unstable:
+        yield "Unstable on a run", f"{count(found.unstable, 'set')}, in no number here"
     yield "Mean", of(found.mean)
     yield "Standard deviation", of(found.deviation)
     yield "Smallest, largest", f"{of(found.minimum)}, {of(found.maximum)}"

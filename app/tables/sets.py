@@ -32,7 +32,8 @@ class FitRow(Base):
 class SetRow(Base):
     """The parameter set of a fit, in a narrow row: what a production line asks for, and where the set comes from.
 
-    Sets are numbered as they come, so that the newest are found, and paged through, by number.
+    Sets are numbered as they come, so that the newest are found, and paged through, by number. `unstable_fit` and
+    `unstable_verify` are the ids of the runs of either use on which the model is unstable.
     """
 
     __tablename__ = "parameter_sets"
@@ -49,6 +50,10 @@ class SetRow(Base):
     created_at: Mapped[str] = mapped_column(String(40), default=now)
     error_fit: Mapped[float | None] = mapped_column(Float)
     error_verify: Mapped[float | None] = mapped_column(Float)
+    error_with_mean_fit: Mapped[float | None] = mapped_column(Float)
+    error_with_mean_verify: Mapped[float | None] = mapped_column(Float)
+    unstable_fit: Mapped[list[Any]] = mapped_column(default=list)
+    unstable_verify: Mapped[list[Any]] = mapped_column(default=list)
     effects: Mapped[list[Any]] = mapped_column(default=list)
     data_hash: Mapped[str] = mapped_column(String(64), default="")
     seed: Mapped[int | None] = mapped_column(Integer)

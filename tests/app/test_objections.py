@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from app.approvals.objections import FAR, objections
+from app.approvals.objections import FAR, Errors, objections
 from app.tables import ActuatorRow, DiagnosisRow, FitRow, MatrixRow, SetRow
-from ident.words.error import UNSTABLE
+from ident.words.error import UNSTABLE, ErrorOf
 
 API = "/api/v1"
 FLOOR = {"fit": 0.005, "verify": 0.006}
@@ -29,19 +29,24 @@ UNKNOWN = {"fit": None, "verify": None}
          ["the error on the verify runs is 5.00 %, 2.5 times the error on the runs of the fit of 2.00 %"]),
         (0.02, 0.02, UNKNOWN, []),
         (None, None, {}, []),
-        (UNSTABLE, None, FLOOR, ["the error is that of a model that is unstable on a run"]),
+        (ErrorOf(12.0, unstable=["k24"]), None, FLOOR,
+         ["the error is that of a model that is unstable on run k24"]),
+        (UNSTABLE, None, FLOOR, ["the error is that of a model that is unstable"]),
+        (ErrorOf(0.12, 0.9), None, FLOOR,
+         ["the error is 12.0 % (with the mean 90.0 %), 24 times the noise floor of 0.500 %"]),
     ],
 )  # fmt: skip
 def test_what_speaks_against_an_approval_follows_from_errors_and_floors(
-    fit: float | None, verify: float | None, floor: dict[str, float | None], said: list[str]
+    fit: float | ErrorOf | None, verify: float | None, floor: dict[str, float | None], said: list[str]
 ) -> None:
     """At 1.5 times the floor nothing does, above it the first clause; verify runs have a floor of their own."""
-    assert list(objections({"fit": fit, "verify": verify}, floor, (), ())) == said
+    error = fit if isinstance(fit, ErrorOf) else ErrorOf(fit)
+    assert list(objections({"fit": error, "verify": ErrorOf(verify)}, floor, (), ())) == said
 
 
 def test_an_effect_that_verify_runs_contradict_speaks_against_the_fit_that_has_it() -> None:
     """Another effect that they contradict does not."""
-    sound = {"fit": 0.005, "verify": 0.006}
+    sound: Errors = {"fit": ErrorOf(0.005), "verify": ErrorOf(0.006)}
     assert objections(sound, FLOOR, ("lead",), ("dead_zone",)) == ()
     assert objections(sound, FLOOR, ("lead", "dead_zone"), ("dead_zone",)) == (
         "with dead zone the error rises on the verify runs",

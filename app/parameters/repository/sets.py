@@ -28,6 +28,10 @@ class FoundSet(NamedTuple):
     created_at: str
     error_fit: float | None
     error_verify: float | None
+    error_with_mean_fit: float | None
+    error_with_mean_verify: float | None
+    unstable_fit: list[Any]
+    unstable_verify: list[Any]
     effects: list[Any]
     data_hash: str
     seed: int | None

@@ -8,8 +8,9 @@ import pytest
 
 from app.diagnoses.service import Search
 from app.fits.service import Yardstick
-from app.pages.next_view import Next, next_step
+from app.pages.next_view import Next, fit_step, next_step
 from ident.diagnosis.result import Suspect, Verdict
+from ident.words.error import ErrorOf
 from schemas.fit import JobView, ProgressView
 from schemas.parameters import ActuatorView, ParameterSetView
 
@@ -40,7 +41,7 @@ def verdict(*effects: str, suspects: int = 0) -> Search:
 MISSING = "/fits/f#missing"
 COMPARED = "/compare?fits=c,f"
 FAR = Yardstick(floor=NOISE)
-FELL = Yardstick(parent="p", before=0.12, floor=NOISE)
+FELL = Yardstick(parent="p", before=ErrorOf(0.12), floor=NOISE)
 
 
 @pytest.mark.parametrize(
@@ -106,3 +107,23 @@ def test_an_approved_actuator_is_judged_by_its_approved_set(found, words, deed, 
     assert words in found.words
     assert "times the noise" not in found.words
     assert (found.deed, found.at, found.main) == (deed, at, main)
+
+
+def test_the_line_says_an_unstable_run_by_name_and_the_mean_where_it_counts():
+    """Of the fit before, of the set in force and of the newer fit; an error that fell from a huge number is none."""
+    fell = Yardstick(parent="p", before=ErrorOf(12.0, unstable=["k24"]), floor=NOISE)
+    assert step(NOISE, yardstick=fell).words == (
+        "Its model is no longer unstable on run k24; the error is 0.500 %, which is noise."
+    )
+    fit = ParameterSetView(
+        id="f", serial="S", batch="", model="qian2014", created_at="2026-01-04", approved_at=None, current=False,
+        error_fit=NOISE, error_verify=12.0, parameters={}, error_with_mean_fit=45.0, unstable_verify=["k24"],
+    )  # fmt: skip
+    assert fit_step(fit, FAR).words == "The model explains all but the noise, 0.500 % (with the mean 45.0 times)."
+    made = fit.model_copy(update={"id": "c", "approved_at": "2026-01-03", "current": True})
+    actuator = ActuatorView(
+        serial="S", name="", batch="", piston_area=None, created_at="", matrices=1, fits=2, current=made
+    )
+    assert next_step(actuator, fit, None).words == (
+        "Its parameters are in force, but its model is unstable on run k24. A newer fit is unstable on run k24."
+    )

@@ -43,3 +43,11 @@ def test_the_error_is_that_on_verify_runs_where_there_are_some(error, said):
 def test_one_set_or_an_unknown_name_has_no_drift():
     assert drift(approved(1.0), "tau", "τ") is None
     assert drift(approved(1.0, 2.0), "Z0", "Z0") is None
+
+
+def test_the_drift_of_an_error_names_the_run_on_which_a_model_was_unstable():
+    """From there to a sound model is no change that a number could tell."""
+    lost, sound = approved(1.0, 2.0)
+    lost = lost.model_copy(update={"error_verify": 12.0, "unstable_verify": ["k24"]})
+    found = drift([lost, sound], ERROR, "error")
+    assert found.says == "error over 2 approved sets, from unstable on run k24 to 1.00 %, –"
