@@ -32,6 +32,7 @@ from ident.effects.effect import Effect
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.choices import Choices, settings_of
 from ident.fit.continued import ContinuedIdentification
+from ident.fit.given import Bounds, with_candidates_given
 from ident.fit.identification import Identification, StepwiseFit, check_settings, completed
 from ident.fit.regressed import RegressedIdentification
 from ident.fit.result import FitResult
@@ -157,6 +158,7 @@ def diagnose(
     matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None, most: int = USUAL,
     custom: Sequence[Effect | Mapping[str, Any] | str] = (), report: Report = silent, seconds: float | None = None,
     found: Callable[[Diagnosis], None] | None = None, propose: bool | None = None, budget: TimeBudget | None = None,
+    bounds: Bounds | None = None,
 ) -> Diagnosis:  # fmt: skip
     """Rank what the fitted model lacks, add what helps beyond chance, and say what is left.
 
@@ -165,8 +167,9 @@ def diagnose(
     included, no simulation is begun any more, and what was found is told with what was not looked at; a time `budget`
     in their place has begun before. `found` is told of the diagnosis as it stands after each effect, and of the
     catalogue's verdict before terms are searched for. Terms that no list holds are searched for where the catalogue
-    leaves the error unexplained; with `propose` true also where nobody knows the noise, with false never. Raises
-    Unusable where matrix, fit or settings do not go together.
+    leaves the error unexplained; with `propose` true also where nobody knows the noise, with false never. `bounds` are
+    of parameters of effects that may be added, as ``{"presliding_friction.displacement": ("1 um", "1 mm")}``; those
+    in the settings hold as well. Raises Unusable where matrix, fit or settings do not go together.
     """
     if not 0 <= most <= MOST:
         raise Unusable("bad-option", f"{most} effects", "max-effects", f"give 0 to {MOST}")
@@ -184,6 +187,7 @@ def diagnose(
         raise Unusable("bad-option", f"the model {fit.model} has no signals inside that a term could be of", "propose",
                        "leave it out")  # fmt: skip
     own = tuple(one if isinstance(one, Effect) else read_effect(one, model=fit.model) for one in custom)
+    fit = with_candidates_given(fit, bounds or {}, own=own)
     return replace(served.diagnoser(matrix, fit, own, course), matrix=matrix)
 
 

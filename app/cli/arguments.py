@@ -59,6 +59,11 @@ def values(texts: Sequence[str], model: Preset) -> dict[str, float]:
     return {name: in_si(value, name, model, f"--set {name}") for name, value in pairs}
 
 
+def names_of(texts: Sequence[str]) -> list[str]:
+    """The NAME of each `NAME=…`."""
+    return [text.partition("=")[0].strip() for text in texts]
+
+
 def in_si(text: str, name: str, model: Preset, where: str) -> float:
     """A value of the model's parameter `name` in SI; the printed unit of Z0 is converted with a notice."""
     from ident.presets import angles

@@ -32,7 +32,6 @@ from ident.errors import Cancelled, TimeIsUp, Unusable
 if TYPE_CHECKING:
     from ident.diagnosis.result import Diagnosis
     from ident.fit.result import FitResult
-    from ident.fit.settings import Settings
 
 
 Limit = Annotated[
@@ -87,6 +86,7 @@ def diagnose(
     from ident.custom.definition import read_effect, together
     from ident.diagnosis.stepwise import USUAL
     from ident.diagnosis.unfitted import unfitted
+    from ident.fit.given import with_candidates_given
     from ident.fit.settings import Settings
     from ident.readers import read_matrix
     from ident.time_budget import TimeBudget
@@ -95,14 +95,15 @@ def diagnose(
     check_target(json)
     budget = TimeBudget(time)
     records = read_matrix(matrix)
+    given = None if fit is None else given_fit(fit, any((model, effect, option, method != "ga", load != "none")))
     try:
         with shown() as report, budget.running():
-            named, choice = modelled(records, model if fit is None else model or Settings().model, report)
+            named, choice = modelled(records, model if given is None else given.model, report)
     except TimeIsUp:
         _tell(unfitted(records, replace(Settings(), model="", seed=seed), budget.taken), json)
         return
-    chosen = settings(named, effect, method, bounds, set_, load, seed, option)
-    given = choice.made(chosen) if fit is None else given_fit(fit, chosen)
+    chosen = settings(named, effect, method, bounds, set_, load, seed, option, candidates=True)
+    given = choice.made(chosen) if given is None else with_candidates_given(given, chosen.bounds, chosen.fixed)
     defined = together((), definitions(custom or []))
     if given is not None:
         named, defined = given.model, together(given.settings.get("custom", ()), defined)
@@ -148,11 +149,9 @@ def followed(target: Path | None) -> Iterator[Callable[[Diagnosis], None] | None
         raise Cancelled(f"{target} holds what was found until then") from None
 
 
-def given_fit(path: Path, chosen: Settings) -> FitResult:
-    """The fit of a file, which brings its own settings. Raises Unusable where others are given beside it."""
-    from ident.fit.settings import Settings
-
-    if replace(chosen, seed=0) != Settings():
+def given_fit(path: Path, other: bool) -> FitResult:
+    """The fit of a file, which brings its own settings. Raises Unusable where options of an `other` one are given."""
+    if other:
         what = "a fit is given, and options for another one beside it"
         raise Unusable("bad-option", what, "--fit", "give --fit, or --model and what belongs to it, not both")
     return read_fit(path)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.cli.arguments import additions, method_options
+from app.cli.arguments import additions, method_options, names_of
 from app.cli.arguments import bounds as read_bounds
 from app.cli.arguments import values as read_values
 from ident.fit.settings import METHODS
@@ -128,12 +128,16 @@ def _named(model: str) -> str:
 def settings(
     model: str, effect: list[str] | None, method: str, bounds: list[str] | None, set_: list[str] | None, load: str,
     seed: int, option: list[str] | None, custom: list[Path] | None = None, budget: float | None = None,
-    terms: int | None = None,
+    terms: int | None = None, candidates: bool = False,
 ) -> Settings:  # fmt: skip
-    """The library's settings from what the command line gives. Raises Unusable."""
+    """The library's settings from what the command line gives. Raises Unusable.
+
+    With `candidates` bounds and values may be of effects, too, that a diagnosis may add to the model.
+    """
     from app.cli.kept_here import defined_here
     from ident.custom.definition import preset_with
     from ident.diagnosis.named import with_named
+    from ident.fit.given import with_candidates
     from ident.fit.settings import Settings
 
     own, found = additions(custom or [], terms)
@@ -142,4 +146,6 @@ def settings(
     named = dict.fromkeys((*(effect or []), *own.effects))
     chosen = with_named(base, tuple(named), own.custom, found, defined_here)
     preset = preset_with(model, chosen.effects, chosen.custom)
+    if candidates:
+        preset = with_candidates(preset, names_of((*(bounds or []), *(set_ or []))), chosen.custom)
     return replace(chosen, bounds=read_bounds(bounds or [], preset), fixed=read_values(set_ or [], preset))

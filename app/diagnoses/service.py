@@ -20,13 +20,14 @@ from ident.diagnosis.named import named
 from ident.diagnosis.result import Diagnosis, Verdict
 from ident.diagnosis.stepwise import MOST, USUAL
 from ident.errors import Unusable
+from ident.fit.given import with_candidates_given
 from ident.fit.identification import check_settings
 from ident.fit.result import Estimate, FitResult
 from ident.plain import read, written
 from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView
 from schemas.fit import Chosen, JobView
 
-_BESIDE_A_FIT = {"fit", "seed", "max_effects", "time", "custom", "own", "propose"}
+_BESIDE_A_FIT = {"fit", "seed", "max_effects", "time", "custom", "own", "propose", "bounds", "set"}
 
 
 @dataclass(frozen=True)
@@ -75,17 +76,21 @@ def _wanted(context: Context, request: DiagnosisRequest) -> tuple[str, dict[str,
     if request.matrix is None:
         raise Failure(422, "bad-request", "neither a fit nor a matrix is given", "fit", "give one of them")
     matrix = matrices.view(matrices.find(context, request.matrix))
-    settings = replace(fits.settings_of(request, matrix), effects=tuple(request.effects))
+    settings = replace(fits.settings_of(request, matrix, candidates=True), effects=tuple(request.effects))
     check_settings(settings)
     return request.matrix, settings.to_json()
 
 
 def _with_own(fit: FitResult, request: DiagnosisRequest) -> dict[str, object]:
-    """The settings of a fit, with the definitions that are to be ranked. Raises Unusable where one cannot be."""
+    """The settings of a fit, with the definitions that are to be ranked and what is given of effects' parameters.
+
+    Raises Unusable where one cannot be ranked, and for a parameter of the fitted model.
+    """
     more = [definition_of(definition) for definition in request.custom]
     for definition in more:
         read_effect(definition, model=fit.model)
-    return dict(fit.with_custom(together(fit.settings.get("custom", ()), more)).settings)
+    wider = fit.with_custom(together(fit.settings.get("custom", ()), more))
+    return dict(with_candidates_given(wider, request.bounds, request.set).settings)
 
 
 def get(context: Context, diagnosis_id: str) -> DiagnosisView:

@@ -45,7 +45,7 @@ class DiagnosisWork(Work):
             settings = Settings.from_json({name: value for name, value in chosen.items() if name not in OWN})
             fit = _fitted(matrix, settings, report, budget)
         else:
-            given = given.with_custom(chosen.get("custom", ()))
+            given = _with_asked(given, chosen)
             fit = given if chosen["reseed"] is None else _reseeded(given, chosen["reseed"])
         made, fit = fit, _beside_the_lab_s(fit, chosen.get("own", ()))
         own = tuple(read_effect(definition, model=fit.model) for definition in fit.settings.get("custom", ()))
@@ -60,6 +60,13 @@ class DiagnosisWork(Work):
             propose=chosen.get("propose", False),
         )  # fmt: skip
         return {"diagnosis": found.to_json(), "fit": with_fit}
+
+
+def _with_asked(fit: FitResult, chosen: Mapping[str, Any]) -> FitResult:
+    """The given fit with the definitions to be ranked, and with what was asked of parameters of effects."""
+    known = fit.with_custom(chosen.get("custom", ()))
+    asked = {name: chosen[name] for name in ("bounds", "fixed") if name in chosen}
+    return replace(known, settings={**known.settings, **asked})
 
 
 def _fitted(matrix: Matrix, settings: Settings, report: Report, budget: TimeBudget) -> FitResult:

@@ -80,8 +80,11 @@ def queue(context: Context, job: str, matrix: str, settings: Settings, parent: s
     return jobs.record(context, job, matrix, settings.to_json(), parent, "fit", who)
 
 
-def settings_of(request: Chosen, matrix: MatrixView | None) -> Settings:
-    """The library's settings: numbers are SI, text may carry a unit. Raises Unusable."""
+def settings_of(request: Chosen, matrix: MatrixView | None, candidates: bool = False) -> Settings:
+    """The library's settings: numbers are SI, text may carry a unit. Raises Unusable.
+
+    With `candidates` bounds and values may be of effects, too, that a diagnosis may add to the model.
+    """
     named = request.model or _model(request, matrix)
     if not named:
         return Settings(model="", method=request.method, seed=request.seed, load=request.load, options=request.options,
@@ -89,7 +92,7 @@ def settings_of(request: Chosen, matrix: MatrixView | None) -> Settings:
     return chosen_settings(Choices(
         model=named, effects=request.effects, custom=request.custom, method=request.method, seed=request.seed,
         bounds=request.bounds, fixed=request.set, load=request.load, options=request.options, budget=request.budget,
-    ))  # fmt: skip
+    ), candidates=candidates)  # fmt: skip
 
 
 def _model(request: Chosen, matrix: MatrixView | None) -> str:

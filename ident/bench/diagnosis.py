@@ -13,6 +13,7 @@ from ident.bench.missing import Candidate, Refit, Refitter
 from ident.bench.outputs import errors_of, model_of, noise_floor
 from ident.bench.records import Record, bench_set
 from ident.comparison.compare import fitted
+from ident.custom.definition import preset_with
 from ident.diagnosis.course import Course
 from ident.diagnosis.estimate import Found
 from ident.diagnosis.result import Baseline, Diagnosis, Ranked, Rung, Verdict
@@ -22,8 +23,10 @@ from ident.diagnosis.standing import standing
 from ident.diagnosis.unfitted import unranked
 from ident.diagnosis.words import verdict_text, why_of_gain
 from ident.effects.effect import Effect
-from ident.errors import TimeIsUp
+from ident.errors import TimeIsUp, Unusable
+from ident.fit.given import of_model
 from ident.fit.result import FitResult
+from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.presets import preset
 from ident.progress import Expected, Progress
@@ -35,11 +38,22 @@ _NEAR_FLOOR = 1.25
 
 def diagnose_bench(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], course: Course) -> Diagnosis:
     """Rank the effects of a bench and the user's own, add what helps beyond chance, and say what is left."""
+    _refuse_candidates_given(fit)
     with course.budget.running():
         try:
             return BenchDiagnoser(matrix, fit, tuple(custom), course).diagnosis()
         except TimeIsUp:
             return unranked(matrix, fit, course.taken)
+
+
+def _refuse_candidates_given(fit: FitResult) -> None:
+    """Raise Unusable for bounds and values of effects that the fit does not have: here they are fitted without."""
+    given = Settings.from_json(dict(fit.settings)) if fit.settings else Settings(fit.model)
+    own = of_model(given, preset_with(fit.model, fit.effects, given.custom))
+    for name in (*given.bounds, *given.fixed):
+        if name not in own.bounds and name not in own.fixed:
+            raise Unusable("bad-option", f"{name} is given, and effects of a bench are tried without bounds",
+                           "bounds or values", "leave it out")  # fmt: skip
 
 
 class BenchDiagnoser:

@@ -27,6 +27,7 @@ from ident.custom.definition import preset_with
 from ident.effects.effect import off_values
 from ident.fit.ends import distinct
 from ident.fit.far_bounds import far_from
+from ident.fit.given import of_model
 from ident.fit.result import Estimate, FitResult, RunError, Undetermined
 from ident.fit.run_errors import rmse_of
 from ident.fit.search import Search, State, evolution, options_of
@@ -67,10 +68,11 @@ class BenchIdentification:
 
     def _space(self) -> Space:
         """The parameters' bounds, or the user's; every quantity in SI. Shapes are held where no bounds are given."""
-        given = {self.preset.parameter(name).in_equations: bounds for name, bounds in self.settings.bounds.items()}
+        stated = of_model(self.settings, self.preset)
+        given = {self.preset.parameter(name).in_equations: bounds for name, bounds in stated.bounds.items()}
         shapes = {p.in_equations: p.value for effect in self.preset.effects for p in effect.added[1:]}
         held = {name: value for name, value in centred(shapes, self.bench.records).items() if name not in given}
-        fixed = held | {self.preset.parameter(name).in_equations: v for name, v in self.settings.fixed.items()}
+        fixed = held | {self.preset.parameter(name).in_equations: v for name, v in stated.fixed.items()}
         axes = []
         for parameter, scale in zip(self.preset.parameters, self.preset.scales, strict=True):
             name = parameter.in_equations

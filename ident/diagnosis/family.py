@@ -16,6 +16,7 @@ from ident.diagnosis.ties import first_least, in_order
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect, off_values
 from ident.errors import Unusable
+from ident.fit.given import of_model
 from ident.fit.levenberg_marquardt import Way
 from ident.fit.reduction import excited_band
 from ident.fit.settings import Settings
@@ -172,9 +173,7 @@ class ModelFamily:
         key = (effects, samples)
         if key not in self._known:
             model = self.model(effects)
-            out = self.effects.keys() - set(effects)
-            bounds = {name: of for name, of in self.given.bounds.items() if name.partition(".")[0] not in out}
-            given = replace(self.given, bounds=bounds)
+            given = of_model(self.given, model, self.effects.keys())
             space = search_space(model, self.matrix, given, self.band)
             runs = self._shortened(samples) if samples else self.runs
             self._known[key] = SimulatedFitness(

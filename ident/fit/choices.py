@@ -8,12 +8,9 @@ from typing import Any, TypedDict, cast
 from ident.custom.definition import definition_of, preset_with
 from ident.errors import Unusable
 from ident.fit.extended import extended
+from ident.fit.given import Value, bounds_in_si, values_in_si, with_candidates
 from ident.fit.settings import Settings
-from ident.presets.angles import in_si
 from ident.words.nearest import did_you_mean
-
-Value = float | str
-"""A plain number, SI, or text that carries a unit, as "1 ms"."""
 
 
 class Choices(TypedDict, total=False):
@@ -34,8 +31,11 @@ class Choices(TypedDict, total=False):
     budget: float | None
 
 
-def settings_of(choices: Choices, usual: Settings | None = None) -> Settings:
-    """The settings, `usual` where nothing is chosen. Raises Unusable for what the model does not know."""
+def settings_of(choices: Choices, usual: Settings | None = None, candidates: bool = False) -> Settings:
+    """The settings, `usual` where nothing is chosen. Raises Unusable for what the model does not know.
+
+    With `candidates` bounds and values may be of effects, too, that a diagnosis may add to the model.
+    """
     given = cast(dict[str, Any], choices)
     unknown = [name for name in given if name not in Choices.__annotations__]
     if unknown:
@@ -45,12 +45,7 @@ def settings_of(choices: Choices, usual: Settings | None = None) -> Settings:
     custom = tuple(definition_of(one) for one in chosen["custom"])
     named = extended(Settings(model=chosen["model"]), chosen["effects"], custom)
     model = preset_with(named.model or Settings().model, named.effects, named.custom)
-
-    def si(name: str, value: Value) -> float:
-        return in_si(value, model.parameter(name).unit, name)
-
-    bounds = {name: (si(name, lower), si(name, upper)) for name, (lower, upper) in chosen["bounds"].items()}
-    for name, (lower, upper) in bounds.items():
-        model.parameter(name).within(lower, upper)
-    fixed = {name: si(name, value) for name, value in chosen["fixed"].items()}
+    if candidates:
+        model = with_candidates(model, (*chosen["bounds"], *chosen["fixed"]), named.custom)
+    bounds, fixed = bounds_in_si(chosen["bounds"], model), values_in_si(chosen["fixed"], model)
     return Settings(**{**chosen, "effects": named.effects, "custom": named.custom, "bounds": bounds, "fixed": fixed})

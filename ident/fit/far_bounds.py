@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ident.fit.given import of_model
 from ident.fit.settings import Settings
 from ident.fit.space import search_space
 from ident.matrix import Matrix
@@ -43,6 +44,7 @@ def far_bounds(settings: Settings, preset: Preset, matrix: Matrix, band: float) 
 
 def far_from(settings: Settings, preset: Preset, ranges: Mapping[str, Range]) -> Iterator[str]:
     """The same, beside known `ranges` by the equations' names; where there is none a parameter's own bounds hold."""
+    settings = of_model(settings, preset)
     given: dict[str, Range] = {**settings.bounds, **{name: (value, value) for name, value in settings.fixed.items()}}
     for name, stated in given.items():
         parameter = preset.parameter(name)

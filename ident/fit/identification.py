@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from ident.fit import genetic
 from ident.fit.bulk_modulus import with_bulk_modulus
 from ident.fit.ends import distinct
 from ident.fit.fitness import Fitness
+from ident.fit.given import of_model, with_candidates
 from ident.fit.linear_fitness import LinearFitness
 from ident.fit.multistart import Optimum, multistart
 from ident.fit.reduction import Basis, excited_band
@@ -115,14 +116,9 @@ class Identification:
 
     def _linear_fit(self) -> FitResult:
         """What the model without effects finds."""
-
-        def own(given: Mapping[str, Any]) -> dict[str, Any]:
-            return {name: value for name, value in given.items() if not self.preset.parameter(name).of}
-
-        settings = replace(
-            self.settings, effects=(), custom=(), method="ga", load="none", options={}, budget=None,
-            bounds=own(self.settings.bounds), fixed=own(self.settings.fixed),
-        )  # fmt: skip
+        linear = preset_with(self.settings.model)
+        settings = replace(of_model(self.settings, linear), effects=(), custom=(), method="ga", load="none",
+                           options={}, budget=None)  # fmt: skip
         return completed(Identification(self.matrix, settings, self.report))
 
     def _take_up(self, state: State) -> None:
@@ -222,8 +218,10 @@ def check_settings(settings: Settings) -> None:
         raise Unusable("unknown-load", f"load {settings.load!r} is not known", "load", remedy)
     if settings.load == "force":
         preset.refuse_without_specimen()
-    for name in (*settings.bounds, *settings.fixed):
-        preset.parameter(name)
+    given = (*settings.bounds, *settings.fixed)
+    named = with_candidates(preset, given, settings.custom)
+    for name in given:
+        named.parameter(name)
     options_of(settings, preset)
 
 

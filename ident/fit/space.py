@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ident.equations.equation import Equation
 from ident.errors import Unusable
+from ident.fit.given import of_model
 from ident.fit.settings import Settings
 from ident.fit.typical import measured_by
 from ident.fit.typical import typical as sizes_of
@@ -117,8 +118,10 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
 
     The bounds of the preset hold for the machine they were stated for: the same piston area, with gain and specimen
     of every run known. Any other machine is searched over scale-free ratios, without modes so fast for the sample time
-    that they could not be followed. Bounds and values of the user come first.
+    that they could not be followed. Bounds and values of the user come first, those of effects that the preset does
+    not have are left out.
     """
+    settings = of_model(settings, preset)
     runs = matrix.of_use("fit")
     given = {preset.parameter(name).in_equations: bounds for name, bounds in settings.bounds.items()}
     fixed = {preset.parameter(name).in_equations: value for name, value in settings.fixed.items()}

@@ -220,14 +220,31 @@ def test_an_effect_that_cannot_be_added_is_refused(service, mended, body, status
         ({"fit": "FIT", "model": "first_order"}, 422, "bad-request"),
         ({"fit": "FIT", "max_effects": 99}, 422, "bad-option"),
         ({"matrix": "MATRIX", "model": "magic"}, 422, "unknown-model"),
+        ({"fit": "FIT", "bounds": {"tau": ["1 ms", "5 ms"]}}, 422, "bad-option"),
+        ({"fit": "FIT", "bounds": {"dead_zone.width": ["1 um", "1 mm"]}}, 422, "unknown-parameter"),
+        ({"matrix": "MATRIX", "bounds": {"dead_zone": ["1 mm", "1 um"]}}, 422, "empty-bounds"),
         ({"fit": "none"}, 404, "no-such-fit"),
         ({"matrix": "none"}, 404, "no-such-matrix"),
     ],
 )
 def test_a_diagnosis_that_cannot_be_is_refused(service, linear, matrix, body, status, code):
     named = {"FIT": linear, "MATRIX": matrix}
-    answer = service.post(f"{API}/diagnoses", json={key: named.get(value, value) for key, value in body.items()})
+    asked = {key: named.get(value, value) if isinstance(value, str) else value for key, value in body.items()}
+    answer = service.post(f"{API}/diagnoses", json=asked)
     assert (answer.status_code, answer.json()["code"]) == (status, code)
+
+
+@pytest.mark.parametrize("of", ["fit", "matrix"])
+def test_bounds_of_an_effect_that_may_be_added_are_kept_with_the_job(service, linear, matrix, of):
+    """Beside a fit as with a matrix; a fit alone refuses them, for its model does not have the effect."""
+    bounds = {"dead_zone.half_width": ["1 um", "0.4 mm"], "presliding_friction.displacement": [1e-6, 1e-3]}
+    given = {"fit": linear, "matrix": matrix}[of]
+    job = service.post(f"{API}/diagnoses", json={of: given, "bounds": bounds, "seed": 11}).json()
+    service.delete(f"{API}/jobs/{job['id']}")
+    assert job["settings"]["bounds"]["dead_zone.half_width"] == pytest.approx([1e-6, 4e-4])
+    assert job["settings"]["bounds"]["presliding_friction.displacement"] == [1e-6, 1e-3]
+    refused = service.post(f"{API}/fits", json={"matrix": matrix, "bounds": bounds})
+    assert (refused.status_code, refused.json()["code"]) == (422, "unknown-parameter")
 
 
 def test_a_running_diagnosis_is_cancelled_and_leaves_nothing(service, linear):

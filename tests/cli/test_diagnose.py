@@ -105,11 +105,13 @@ def test_a_fit_from_a_file_is_diagnosed_as_it_is(servoident, matrix, tmp_path):
     """Its errors are the baseline, --max-effects is obeyed, and only JSON goes to standard output."""
     file = tmp_path / "fit.json"
     assert servoident("fit", matrix, "--seed", 4, "--json", file).returncode == 0
-    done = servoident("diagnose", matrix, "--fit", file, "--max-effects", 0, "--json", "-")
+    bounds = ("--bounds", "dead_zone=1 um:0.4 mm")
+    done = servoident("diagnose", matrix, "--fit", file, "--max-effects", 0, *bounds, "--json", "-")
     assert done.returncode == 0, done.stderr
     found, fit = json.loads(done.stdout), json.loads(file.read_text())
     assert found["baseline"]["error"]["verify"] == pytest.approx(fit["error"]["verify"], rel=1e-3)
     assert (found["seed"], len(found["ladder"])) == (4, 1)
+    assert found["settings"]["bounds"] == {"dead_zone": pytest.approx([1e-6, 4e-4])}
 
 
 @pytest.mark.usefixtures("few_effects")

@@ -1,0 +1,65 @@
+"""Dampers moved by a sine, from equations of their own: what the searches of shapes are tried on.
+
+The motion is given as a function of time and advanced in 64 steps a sample, so that a reversal between two samples is
+met where it is. Every number of a trial is drawn by its seed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.matrix import Actuator, Matrix, Run
+
+Array = NDArray[np.float64]
+FINE = 64  # steps a sample
+
+
+@dataclass(frozen=True)
+class Damper:
+    """A damper and a spring in parallel with Dahl's friction, SI; moved by a sine, its force recorded with noise."""
+
+    damping: float = 700.0
+    stiffness: float = 900.0
+    friction: float = 45.0
+    displacement: float = 1.5e-4
+    amplitude: float = 0.03
+    frequency: float = 0.8
+    rate: float = 100.0
+    noise: float = 0.02
+    cycles: float = 8.0
+    seed: int = 1
+
+    def force(self) -> tuple[Array, Array]:
+        """The speed and the force without noise, at the samples."""
+        steps = int(self.cycles / self.frequency * self.rate) * FINE
+        t = np.arange(steps + 1) / (self.rate * FINE)
+        w = 2 * np.pi * self.frequency
+        phase = np.random.default_rng([7, self.seed]).uniform(0, 2 * np.pi)
+        x, v = self.amplitude * np.sin(w * t + phase), self.amplitude * w * np.cos(w * t + phase)
+        z = dahl(x, self.displacement)
+        return v[::FINE], (self.damping * v + self.stiffness * (x - x[0]) + self.friction * z)[::FINE]
+
+    def matrix(self) -> Matrix:
+        """A run to fit and one to verify, one after the other of one test."""
+        v, clean = self.force()
+        rng = np.random.default_rng([8, self.seed])
+        noisy = clean + self.noise * clean.std() * rng.standard_normal(len(clean))
+        cut = 2 * len(v) // 3
+        parts = {"fit": slice(0, cut), "verify": slice(cut, None)}
+        units = {"velocity": "m/s", "force": "N"}
+        return Matrix(Actuator("DAMPER"), tuple(
+            Run(use, "", self.rate, {"velocity": v[part], "force": noisy[part]}, units, output="force", use=use)
+            for use, part in parts.items()
+        ))  # fmt: skip
+
+
+def dahl(x: Array, displacement: float) -> Array:
+    """z of z' = (v − |v| z)/xs along a way, exact from one step to the next, from z = 0."""
+    z, moved = np.zeros(len(x)), np.diff(x)
+    kept, towards = np.exp(-np.abs(moved) / displacement), np.sign(moved)
+    for i in range(len(moved)):
+        z[i + 1] = towards[i] + (z[i] - towards[i]) * kept[i]
+    return z
