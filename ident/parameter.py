@@ -1,10 +1,35 @@
-"""A quantity that a fit may find: symbol, unit, bounds, off value, meaning."""
+"""A quantity that a fit may find: symbol, unit, bounds, off value, meaning, and where its search begins."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from enum import Enum
 
 from ident.errors import Unusable
+
+
+class Starts(Enum):
+    """From where the search of a parameter begins. The value is what a user's definition calls it.
+
+    A sensitivity at one value leads to the nearest optimum alone. What each of these needs is another set of values.
+    """
+
+    ALONG_RANGE = "along the range"
+    """Places along its axis between the bounds."""
+    PHASE = "phase"
+    """An angle, rad: all around."""
+    SPECTRAL_LINES = "spectral lines"
+    """A frequency, 1/s: where the residual's rate beats with the motion's."""
+    STROKE_END = "end of the stroke"
+    """The inverse of a way, 1/m: of the largest way that was covered, where a stop that was hit stands."""
+    STROKE_MIDDLE = "middle of the stroke"
+    """A place, m: held at the middle of the stroke, to both sides of which the effect acts."""
+    TIME = "time"
+    """A time, s: as long as the model's own lag, which becomes as much shorter."""
+    FRICTION = "friction"
+    """A pressure, Pa: a share of the pressure difference that dry friction takes."""
+    FRICTION_GRADIENT = "friction gradient"
+    """A pressure over a way, Pa/m: a share of the dry friction's over a tenth of a metre."""
 
 
 @dataclass(frozen=True)
@@ -15,8 +40,9 @@ class Parameter:
     effect that it belongs to, none for a model's own. `lower` and `upper` are the physical bounds of the search;
     `value` is the default (for a strength: 0, off), `relative` that of a way on a machine of unknown size, in standard
     deviations of its motion. `searched`: of a shape without which the effect could not be found, free wherever the
-    effect is; other shapes are held at their default. A range of more than two decades is searched on a logarithmic
-    scale, any other on a linear one.
+    effect is; other shapes are held at their default. `start` is from where its search begins. `of_motion`: a way, or
+    the inverse of one, of the machine's motion, by which it is measured, and not by the drive signal. A range of more
+    than two decades is searched on a logarithmic scale, any other on a linear one.
     """
 
     name: str
@@ -30,6 +56,8 @@ class Parameter:
     of: str = ""
     relative: float = 0.0
     searched: bool = False
+    start: Starts = Starts.ALONG_RANGE
+    of_motion: bool = False
 
     def __post_init__(self) -> None:
         if not self.lower < self.upper:

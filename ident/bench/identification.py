@@ -37,7 +37,7 @@ from ident.fit.summary import HARDLY
 from ident.fit.typical import typical
 from ident.matrix import BENCH, Matrix
 from ident.parallel import each
-from ident.parameter import Parameter
+from ident.parameter import Parameter, Starts
 from ident.progress import Progress, Report, silent
 from ident.words.percent import percent
 
@@ -212,7 +212,7 @@ class BenchIdentification:
     @property
     def _doubts(self) -> list[str]:
         """What the procedures say; a delay that they ask for is no news where the fit has it, or a lag in its place."""
-        late = any(effect.strength.unit == "s" for effect in self.preset.effects)
+        late = any(effect.strength.start is Starts.TIME for effect in self.preset.effects)
         delay = self.analysis.delay.doubt if self.analysis.delay is not None and late else None
         return [note for note in self.analysis.notes if note != delay]
 

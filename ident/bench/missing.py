@@ -27,6 +27,7 @@ from ident.effects.spring_load import SPRING_LOAD
 from ident.fit.bounded_step import bounded_step
 from ident.noise.effective_sample_size import independent_samples
 from ident.parallel import each
+from ident.parameter import Starts
 from ident.presets import Preset
 
 Array = NDArray[np.float64]
@@ -208,11 +209,12 @@ def centred(values: Mapping[str, float], records: Sequence[Record]) -> dict[str,
 def _starts(model: Model, effect: Effect) -> list[Model]:
     """Models with some of an effect, the lag made shorter by what a second lag or a delay takes over."""
     strength = effect.added[0]
-    if strength.unit == "s":
+    if strength.start is Starts.TIME:
         return [
             replace(model.with_values({strength.in_equations: share * model.T}), T=max(1.0 - share, 0.2) * model.T)
             for share in _TRIED
         ]
-    size = {"Pa": model.dPfr, "Pa/m": 10.0 * model.dPfr}.get(strength.unit, strength.upper)
+    sizes = {Starts.FRICTION: model.dPfr, Starts.FRICTION_GRADIENT: 10.0 * model.dPfr}
+    size = sizes.get(strength.start, strength.upper)
     signs = (1.0,) if strength.lower >= 0 else (1.0, -1.0)
     return [model.with_values({strength.in_equations: sign * share * size}) for share in _TRIED for sign in signs]

@@ -19,6 +19,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -31,6 +32,7 @@ from ident.effects.effect import Effect
 from ident.equations.equation import Equation
 from ident.equations.grammar import parsed, refused
 from ident.errors import Unusable
+from ident.parameter import Starts
 from ident.presets import PRESETS, Preset, preset
 from ident.readers.fields import Fields
 from ident.readers.strict_yaml import read_yaml
@@ -93,6 +95,8 @@ def _read(text: str, model: str) -> Effect:
     place = fields.choice("place", PLACES, str(fields.need("place", f"choose from {', '.join(PLACES)}")))
     strength, shapes = strength_of(fields), shapes_of(fields)
     lines = tuple(_lines(fields, place))
+    if strength.start is Starts.ALONG_RANGE and _is_time(strength.symbol, lines):
+        strength = replace(strength, start=Starts.TIME)
     own = {"strength": strength.symbol, **{f"shape {p.name}": p.symbol for p in shapes}}
     if curve := curve_of(fields):
         lines, shapes = (curve[0], *lines), (*shapes, *curve[1])
@@ -107,6 +111,12 @@ def _read(text: str, model: str) -> Effect:
     )  # fmt: skip
     refuse_unless_off(effect, chosen)
     return effect
+
+
+def _is_time(symbol: str, lines: Sequence[Line]) -> bool:
+    """Whether a symbol is by itself the time of a lag or a delay."""
+    calls = (call for line in lines for call in re.finditer(r"\b(?:lag2?|delay)\(", line.right))
+    return any(re.search(rf",\s*{symbol}\s*[,)]", call.string[call.end() :]) for call in calls)
 
 
 def together(known: Sequence[Definition], more: Sequence[Definition]) -> tuple[Definition, ...]:

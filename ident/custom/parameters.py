@@ -8,11 +8,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from ident.errors import Unusable
-from ident.parameter import Parameter
+from ident.parameter import Parameter, Starts
 from ident.readers.fields import Fields
 from ident.units.quantity import quantity, shown, si_scale, split
 
-_KEYS = ("name", "symbol", "unit", "lower", "upper", "value", "meaning")
+_KEYS = ("name", "symbol", "unit", "lower", "upper", "value", "meaning", "start")
+_STARTS = {start.value: start for start in Starts}
 _MOST = 6  # shapes
 _ROUNDING = 1e-12  # relative, by which arithmetic of some steps may write a value beyond its bound
 _WIDE = 10.0  # by which factor a shape that is given as one value may be searched to either side
@@ -72,7 +73,10 @@ def _on_bounds(value: float, lower: float, upper: float) -> float:
 
 
 def parameter_of(entry: Fields, symbol: str, default: float | None = None, name: str = "") -> Parameter:
-    """A parameter from an entry with unit, bounds and value; without a value in the middle. Raises Unusable."""
+    """A parameter from an entry with unit, bounds and value; without a value in the middle. Raises Unusable.
+
+    A shape whose `start` is stated is searched with the strength.
+    """
     unit = entry.text("unit")
     if not unit:
         raise Unusable("missing-unit", "no unit", entry.where, "write unit: mm, or unit: 1 for a plain number")
@@ -90,4 +94,7 @@ def parameter_of(entry: Fields, symbol: str, default: float | None = None, name:
     if not lower <= value <= upper:
         raise Unusable("outside-bounds", f"{value:g} {scale.unit} is outside its bounds", entry.where, "widen them")
     own = symbol_of(entry, entry.text("name") or name or symbol)
-    return Parameter(own, symbol, scale.unit, lower, upper, value, entry.text("meaning", f"{entry.where} {symbol}"))
+    start = _STARTS[entry.choice("start", tuple(_STARTS), Starts.ALONG_RANGE.value)]
+    searched = "start" in entry and default is None and start is not Starts.STROKE_MIDDLE
+    meaning = entry.text("meaning", f"{entry.where} {symbol}")
+    return Parameter(own, symbol, scale.unit, lower, upper, value, meaning, searched=searched, start=start)

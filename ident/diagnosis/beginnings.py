@@ -13,8 +13,7 @@ from ident.diagnosis.refit import Refit
 from ident.effects.effect import Effect
 from ident.fit.space import Space
 from ident.matrix import Run
-from ident.parameter import Parameter
-from ident.presets.middle import MIDDLE
+from ident.parameter import Parameter, Starts
 
 Array = NDArray[np.float64]
 _LINES = 6  # frequencies
@@ -39,19 +38,19 @@ def shown(base: Refit, effect: Effect) -> float | None:
 
     A stop that was hit stands at the end of the way that was covered, to both sides of the middle of the stroke.
     """
-    middle = next((p.value for p in effect.shape if p.name == MIDDLE), None)
-    if middle is None or effect.strength.unit != "1/m":
+    if effect.strength.start is not Starts.STROKE_END:
         return None
+    middle = next((p.value for p in effect.shape if p.start is Starts.STROKE_MIDDLE), 0.0)
     moved = [run.channels["displacement"] for run in base.fitness.runs if "displacement" in run.channels]
     way = max((float(np.max(np.abs(x - middle))) for x in moved), default=0.0)
     return 1.0 / way if way > 0 else None
 
 
 def _values(base: Refit, parameter: Parameter, space: Space, known: Mapping[str, float]) -> tuple[float, ...]:
-    """A frequency begins where the residual has lines, an angle all around, all else along its range."""
-    if parameter.unit == "1":
+    """Where its effect says that its search begins."""
+    if parameter.start is Starts.PHASE:
         return _ANGLES
-    if parameter.unit == "1/s":
+    if parameter.start is Starts.SPECTRAL_LINES:
         return lines(base, *space.bounds(known)[parameter.in_equations])
     axis = space.names.index(parameter.in_equations)
     points = space.point(known) + np.zeros((len(_ALONG), 1))

@@ -21,7 +21,7 @@ from ident.fit.levenberg_marquardt import Way
 from ident.fit.result import Combination
 from ident.fit.slow_answer import is_late
 from ident.parallel import each
-from ident.parameter import Parameter
+from ident.parameter import Parameter, Starts
 
 _NEAR = 1.05  # times the model's error: what cannot come below it does not as well
 _PROMISING = 1.01  # times the error on the beginnings of the records: what leaves more is not alike
@@ -74,7 +74,7 @@ def lateness(models: ModelFamily, base: Refit, refit: Refit) -> Lateness | None:
 def _time_constants(models: ModelFamily, refit: Refit) -> Iterator[Parameter]:
     """Those of the machine itself that a search moves."""
     for parameter in models.preset.parameters:
-        if parameter.unit == "s" and parameter.in_equations in refit.space.names:
+        if parameter.start is Starts.TIME and parameter.in_equations in refit.space.names:
             yield parameter
 
 
@@ -83,7 +83,9 @@ def undecided_pairs(models: ModelFamily, refit: Refit, added: Sequence[str]) -> 
 
     Only where there are such others: each by itself may be told from every other while the second one stays.
     """
-    times = [name for name, effect in models.effects.items() if is_late(effect) and effect.strength.unit == "s"]
+    times = [
+        name for name, effect in models.effects.items() if is_late(effect) and effect.strength.start is Starts.TIME
+    ]
     free, found = [name for name in times if name not in refit.effects], []
     pairs = list(combinations([name for name in added if name in times], 2))
     asked = _PROMISING * models.tried(refit) if pairs else 0.0

@@ -12,6 +12,7 @@ from ident.diagnosis.significance import Improvement
 from ident.diagnosis.standing import Contradiction
 from ident.effects.effect import Effect
 from ident.fit.result import Combination
+from ident.presets.record_units import SAMPLE
 from ident.words.error import error_said, unstable_on
 from ident.words.percent import percent
 from ident.words.titles import title
@@ -182,7 +183,7 @@ def told_late(late: Lateness, spoken: Callable[[str], str] = title, without: Seq
 
 
 def _seconds(of: Combination) -> str:
-    return f"{of.value:.3g} ± {of.std_error:.2g} {'s' if of.unit == 's' else 'samples'}"
+    return f"{of.value:.3g} ± {of.std_error:.2g} {'samples' if of.unit == SAMPLE else 's'}"
 
 
 def _told(one: Explanation) -> str:

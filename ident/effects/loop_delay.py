@@ -1,13 +1,15 @@
 """The controller sees the position late."""
 
 from ident.effects.effect import Effect
-from ident.parameter import Parameter
+from ident.parameter import Parameter, Starts
 
 LOOP_DELAY = Effect(
     name="loop_delay",
     place="controller",
     meaning="the controller sees the position late",
-    strength=Parameter("delay", "T", "s", 0.0, 3e-3, 0.0, "time by which the controller's position is late"),
+    strength=Parameter(
+        "delay", "T", "s", 0.0, 3e-3, 0.0, "time by which the controller's position is late", start=Starts.TIME
+    ),
     texts=(
         "y_in = delay(y_in, T)",
         "v_in = delay(v_in, T)",

@@ -8,7 +8,7 @@ SPECIMEN_FREE_PLAY = Effect(
     place="load",
     meaning="the specimen's spring has play",
     does="a spring with play",
-    strength=Parameter("half_width", "g", "m", 0.0, 2e-3, 0.0, "half of the play"),
+    strength=Parameter("half_width", "g", "m", 0.0, 2e-3, 0.0, "half of the play", of_motion=True),
     texts=("xk = xk - clip(xk, -g, g)",),
     units={"xk": "m"},
     looks="no stiffness at small displacements, full stiffness beyond; only with springs",

@@ -1,15 +1,24 @@
 """A load on the link grows with its position."""
 
 from ident.effects.effect import Effect
-from ident.parameter import Parameter
+from ident.parameter import Parameter, Starts
 
 SPRING_LOAD = Effect(
     name="spring_load",
     place="load",
     meaning="a load that grows with the position, so that the speed depends on it",
-    strength=Parameter("rate", "cF", "Pa/m", -1e9, 1e9, 0.0, "pressure difference that a metre of position asks for"),
+    strength=Parameter(
+        "rate",
+        "cF",
+        "Pa/m",
+        -1e9,
+        1e9,
+        0.0,
+        "pressure difference that a metre of position asks for",
+        start=Starts.FRICTION_GRADIENT,
+    ),
     texts=("Pn = Pn + s * cF * (x - x0)",),
-    shape=(Parameter("centre", "x0", "m", -1.0, 1.0, 0.0, "position at which the load is zero"),),
+    shape=(Parameter("centre", "x0", "m", -1.0, 1.0, 0.0, "position at which the load is zero", of_motion=True),),
     units={"Pn": "Pa"},
     looks="speeds that differ from place to place, and a zero shift of each range of positions",
     source="hinge moment of a control surface; a spring that loads the link",

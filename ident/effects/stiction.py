@@ -1,13 +1,22 @@
 """A link that rests needs more pressure to break loose than to go on moving."""
 
 from ident.effects.effect import Effect
-from ident.parameter import Parameter
+from ident.parameter import Parameter, Starts
 
 STICTION = Effect(
     name="stiction",
     place="load",
     meaning="pressure above friction that breaks a resting link loose",
-    strength=Parameter("pressure", "Pst", "Pa", 0.0, 5e6, 0.0, "pressure difference above friction that breaks loose"),
+    strength=Parameter(
+        "pressure",
+        "Pst",
+        "Pa",
+        0.0,
+        5e6,
+        0.0,
+        "pressure difference above friction that breaks loose",
+        start=Starts.FRICTION,
+    ),
     texts=(
         "g := where(Pa > Pn + Pst * (1 - g), 1, 0)",
         "Pn = Pn + Pst * (1 - g)",

@@ -1,7 +1,7 @@
 """The pump's pulsation modulates the flow."""
 
 from ident.effects.effect import Effect
-from ident.parameter import Parameter
+from ident.parameter import Parameter, Starts
 
 SUPPLY_RIPPLE = Effect(
     name="supply_ripple",
@@ -12,8 +12,20 @@ SUPPLY_RIPPLE = Effect(
     texts=("Q = Q * (1 + r * sin(2 * pi * f * t + phi))",),
     units={"Q": "m^3/s"},
     shape=(
-        Parameter("frequency", "f", "1/s", 3.0, 300.0, 25.0, "frequency of the pulsation", searched=True),
-        Parameter("phase", "phi", "1", -6.3, 6.3, 0.0, "its phase where the record begins", searched=True),
+        Parameter(
+            "frequency",
+            "f",
+            "1/s",
+            3.0,
+            300.0,
+            25.0,
+            "frequency of the pulsation",
+            searched=True,
+            start=Starts.SPECTRAL_LINES,
+        ),
+        Parameter(
+            "phase", "phi", "1", -6.3, 6.3, 0.0, "its phase where the record begins", searched=True, start=Starts.PHASE
+        ),
     ),
     looks="every line of the motion has two neighbours, as far from it as the pump's frequency",
     source="pump without accumulator; one phase for all runs, so runs begun at one angle of the pump or a single run",

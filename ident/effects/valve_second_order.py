@@ -1,14 +1,16 @@
 """The valve has two more poles behind its lag."""
 
 from ident.effects.effect import Effect
-from ident.parameter import Parameter
+from ident.parameter import Parameter, Starts
 
 VALVE_SECOND_ORDER = Effect(
     name="valve_second_order",
     place="valve",
     meaning="the valve has two more poles behind its lag",
     does="two more poles behind the lag",
-    strength=Parameter("inverse_frequency", "Tn", "s", 0.0, 3e-3, 0.0, "inverse of the natural frequency, 1/ωn"),
+    strength=Parameter(
+        "inverse_frequency", "Tn", "s", 0.0, 3e-3, 0.0, "inverse of the natural frequency, 1/ωn", start=Starts.TIME
+    ),
     texts=("q = lag2(q, 2 * zeta * Tn, Tn**2)",),
     units={"q": "m"},
     shape=(Parameter("damping", "zeta", "1", 0.05, 2.0, 0.7, "damping ratio"),),

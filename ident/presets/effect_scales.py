@@ -24,6 +24,9 @@ through, T for the time of an answer; L and V, as W, are typical of the runs: th
 `_OWN`: within its own bounds.
 """
 
+_OF_MOTION = {"m": ("L", 0.5), "1/m": ("1/L", 1.0)}
+"""The same of what belongs to the motion, which would else be measured by the drive signal."""
+
 
 def scale_of(effect: Effect, parameter: Parameter, sizes: Mapping[str, str]) -> Scale:
     """How to search an effect's parameter for a machine of another size than its bounds were stated for.
@@ -31,10 +34,8 @@ def scale_of(effect: Effect, parameter: Parameter, sizes: Mapping[str, str]) -> 
     A user's effect states its own bounds, which hold. So they do where the model has no force.
     """
     text, reach = _SCALES.get(parameter.unit, _OWN)
-    if effect.place not in ("valve", "spool") and parameter.unit == "m":
-        text, reach = "L", 0.5
-    if effect.place == "load" and parameter.unit == "1/m":
-        text, reach = "1/L", 1.0
+    if parameter.of_motion:
+        text, reach = _OF_MOTION[parameter.unit]
     if effect.own or reach is None or ("F" in text and not sizes["F"]):
         return Scale.by_bounds(parameter, logarithmic=False)
     text = re.sub(r"\b[DZFT]\b", lambda found: f"({sizes[found[0]]})", text)

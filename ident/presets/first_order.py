@@ -1,7 +1,7 @@
 """The first-order closed-loop model k / (τ s + 1) of the hybrid-simulation paper: what a tracking filter follows."""
 
 from ident.chain.chain import Chain
-from ident.parameter import Parameter
+from ident.parameter import Parameter, Starts
 from ident.presets.preset import Preset
 from ident.stages import IDEAL_SENSOR, INSTANT_VALVE, OPENED_BY_COMMAND, RIGID_SPOOL, Quantity, Scale
 from ident.stages.stage import stage
@@ -18,7 +18,7 @@ TRACKING_LAG = stage(
     ("X = x", "the transducer's frame is rigid"),
     parameters=(
         Parameter("gain", "kyr", "1", 1e-2, 1e2, 1.0, "static gain from command to output"),
-        Parameter("tau", "τyr", "s", 1e-4, 1e1, 1e-2, "time constant of the closed loop"),
+        Parameter("tau", "τyr", "s", 1e-4, 1e1, 1e-2, "time constant of the closed loop", start=Starts.TIME),
     ),
     scales=(Scale("gain", "X / U", -3e1, 3e1, logarithmic=False), Scale("tau", "1 / W", 1e-3, 1e3)),
 )

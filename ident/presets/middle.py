@@ -10,10 +10,7 @@ import numpy as np
 from ident.chain.chain import Chain, integrates
 from ident.effects.effect import Effect
 from ident.matrix import Matrix, Run
-
-MIDDLE = "middle"
-"""The shape of an effect that it acts to both sides of."""
-
+from ident.parameter import Starts
 
 _AT_END = 0.01  # of the way: so near to its end
 _PUSHED = 0.1  # of the largest command: so much of it goes on towards the end
@@ -62,7 +59,7 @@ def about(effect: Effect, middle: float) -> Effect:
     reach = 2.0 * abs(middle)
     shape = tuple(
         replace(one, value=middle, lower=min(one.lower, -reach), upper=max(one.upper, reach))
-        if one.name == MIDDLE
+        if one.start is Starts.STROKE_MIDDLE
         else one
         for one in effect.shape
     )

@@ -1,7 +1,7 @@
 """The linear servo-hydraulic actuator of Qian et al. (2014), section 2.1, Tables 2 and 4."""
 
 from ident.chain.chain import Chain
-from ident.parameter import Parameter
+from ident.parameter import Parameter, Starts
 from ident.presets.preset import Combined, Preset
 from ident.stages import (
     COMPRESSIBLE,
@@ -37,7 +37,7 @@ QIAN2014 = Preset(
     ),
     stated=(
         Parameter("Z0", "Z₀", "m^4/s", 1.751e-6, 3.503e-6, 2.592e-6, "gain of valve, spool and piston", TABLE_2),
-        Parameter("tau", "τ", "s", 1e-3, 6e-3, 3.6e-3, "time constant of the servo-valve", TABLE_2),
+        Parameter("tau", "τ", "s", 1e-3, 6e-3, 3.6e-3, "time constant of the servo-valve", TABLE_2, start=Starts.TIME),
         Parameter("Cl", "Cₗ", "m^3/(s*Pa)", 2e-12, 2e-11, 1e-11, "leakage across the piston", TABLE_2),
         Parameter("c0", "c₀", "N*s/m", 800.0, 5000.0, 3200.0, "viscous damping of the actuator", TABLE_2),
         Parameter("m0", "m₀", "kg", 1.0, 10.0, 4.25, "mass of rod, piston and what moves with them", TABLE_2),

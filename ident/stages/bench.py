@@ -2,7 +2,7 @@
 
 from functools import lru_cache
 
-from ident.parameter import Parameter
+from ident.parameter import Parameter, Starts
 from ident.stages.scale import Scale
 from ident.stages.stage import Quantity, stage
 
@@ -29,7 +29,9 @@ OPEN_LOOP = stage(
     ("e = r / Ir", "it is counted in rated currents"),
 )
 
-LAG_TIME = Parameter("T", "T", "s", 2e-3, 2e-1, 2e-2, "time constant of amplifier and electronics together", SOURCE)
+LAG_TIME = Parameter(
+    "T", "T", "s", 2e-3, 2e-1, 2e-2, "time constant of amplifier and electronics together", SOURCE, start=Starts.TIME
+)
 
 LAG = stage(
     "valve",

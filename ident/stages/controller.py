@@ -1,6 +1,6 @@
 """Controller: from command and fed-back position to the valve's drive signal."""
 
-from ident.parameter import Parameter
+from ident.parameter import Parameter, Starts
 from ident.stages.scale import ORDER_OF_MAGNITUDE, Scale
 from ident.stages.stage import Quantity, Stage, stage
 
@@ -33,10 +33,14 @@ OPENED_BY_COMMAND = stage(
 )
 
 _INTEGRAL = Parameter("KI", "K_I", "1/s", 0.0, 1e6, 0.0, "integral gain, in the unit of the dial", ORDER_OF_MAGNITUDE)
-_DERIVATIVE = Parameter("KD", "K_D", "s", 0.0, 1e6, 0.0, "derivative gain, in the unit of the dial", ORDER_OF_MAGNITUDE)
-_FILTER = Parameter("Tf", "T_f", "s", 1e-6, 1e2, 1e-3, "time constant of the derivative's filter", ORDER_OF_MAGNITUDE)
+_DERIVATIVE = Parameter(
+    "KD", "K_D", "s", 0.0, 1e6, 0.0, "derivative gain, in the unit of the dial", ORDER_OF_MAGNITUDE, start=Starts.TIME
+)
+_FILTER = Parameter(
+    "Tf", "T_f", "s", 1e-6, 1e2, 1e-3, "time constant of the derivative's filter", ORDER_OF_MAGNITUDE, start=Starts.TIME
+)
 _OF_SPEED = Parameter("Tv", "T_v", "s", 1e-5, 1e2, 1e-2, "gain of the speed loop over that of the position loop",
-                      ORDER_OF_MAGNITUDE)  # fmt: skip
+                      ORDER_OF_MAGNITUDE, start=Starts.TIME)  # fmt: skip
 
 
 def _law(

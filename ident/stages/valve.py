@@ -1,6 +1,6 @@
 """Valve: from the drive signal to the flow of the pilot stage."""
 
-from ident.parameter import Parameter
+from ident.parameter import Parameter, Starts
 from ident.stages.scale import ORDER_OF_MAGNITUDE, Scale
 from ident.stages.stage import Quantity, stage
 
@@ -14,7 +14,11 @@ FIRST_ORDER_VALVE = stage(
     ("dq = (e - q1) / tau", "first-order lag of the pilot stage, gain moved into Z0 (Qian et al. 2014, eq. 1)"),
     ("q1' = dq", "the pilot stage integrates its rate"),
     ("q = q1", "nothing behind the lag"),
-    parameters=(Parameter("tau", "τ", "s", 1e-5, 1e2, 1e-2, "time constant of the valve", ORDER_OF_MAGNITUDE),),
+    parameters=(
+        Parameter(
+            "tau", "τ", "s", 1e-5, 1e2, 1e-2, "time constant of the valve", ORDER_OF_MAGNITUDE, start=Starts.TIME
+        ),
+    ),
     scales=(Scale("tau", "1 / W", 1e-3, 3e1),),
 )
 
