@@ -20,8 +20,9 @@ from ident.effects import EFFECTS
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import search_space
-from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.matrix import Actuator, Matrix
 from ident.presets import Preset, preset
+from ident.run import Run, Specimen
 from ident.simulation.simulate import Simulation
 from tests.reference import nonlinear_reference, qian_reference
 

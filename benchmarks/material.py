@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.matrix import Actuator, Matrix
+from ident.run import Run, Specimen
 from tests.reference import qian_reference as reference
 
 CHANNELS = ("command", "displacement")

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.signal import cont2discrete, lfilter
 from threadpoolctl import threadpool_limits
 
-from ident.matrix import Run
+from ident.run import Run
 
 AREA = 497e-6
 _METHOD = {"linear": "foh", "zoh": "zoh"}

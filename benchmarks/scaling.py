@@ -15,9 +15,10 @@ from ident.chain.conditions import conditions
 from ident.effects import EFFECTS
 from ident.figures.look import LOOKS, Look
 from ident.figures.render import Chart, Panel, render
-from ident.matrix import Actuator, Run, Specimen
+from ident.matrix import Actuator
 from ident.parallel import cores, each
 from ident.presets import preset
+from ident.run import Run, Specimen
 from ident.simulation.simulate import responses
 from tests.reference import qian_reference as reference
 

@@ -8,8 +8,8 @@ from scipy.signal import cont2discrete, lfilter
 from benchmarks import material, plain_scipy
 from benchmarks.table import Table, seconds_of
 from ident.chain.conditions import conditions
-from ident.matrix import Run
 from ident.presets import PRESETS
+from ident.run import Run
 from ident.simulation.recursion import discretise, respond
 from tests.reference import qian_reference as reference
 

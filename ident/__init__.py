@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ident.errors import Unusable
     from ident.fit.settings import Settings
     from ident.matrix import Matrix
-    from ident.readers import read_matrix
+    from ident.readers import from_arrays, from_table, read_matrix
     from ident.workflows import (
         compare,
         diagnose,
@@ -36,9 +36,10 @@ if TYPE_CHECKING:
 _ROOMS = {
     "Matrix": "ident.matrix", "Settings": "ident.fit.settings", "Unusable": "ident.errors",
     "check": "ident.checks.check", "compare": "ident.workflows", "diagnose": "ident.workflows",
-    "figure": "ident.workflows", "identify": "ident.workflows", "load": "ident.workflows",
-    "next_run": "ident.workflows", "propose": "ident.workflows", "read_matrix": "ident.readers",
-    "save": "ident.workflows", "simulate": "ident.workflows",
+    "figure": "ident.workflows", "from_arrays": "ident.readers", "from_table": "ident.readers",
+    "identify": "ident.workflows", "load": "ident.workflows", "next_run": "ident.workflows",
+    "propose": "ident.workflows", "read_matrix": "ident.readers", "save": "ident.workflows",
+    "simulate": "ident.workflows",
 }  # fmt: skip
 
 __all__ = [
@@ -49,6 +50,8 @@ __all__ = [
     "compare",
     "diagnose",
     "figure",
+    "from_arrays",
+    "from_table",
     "identify",
     "load",
     "next_run",
@@ -62,7 +65,11 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     if name not in _ROOMS:
         raise AttributeError(f"the library has no {name!r}: it has {', '.join(__all__)}")
-    return getattr(import_module(_ROOMS[name]), name)
+    found = getattr(import_module(_ROOMS[name]), name)
+    if name == "Matrix":
+        for maker in ("from_arrays", "from_table"):  # where they stood in earlier versions: notebooks call them there
+            setattr(found, maker, staticmethod(getattr(import_module("ident.readers"), maker)))
+    return found
 
 
 def __dir__() -> list[str]:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Literal, Protocol
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,91 +13,51 @@ ROUNDING = 1e-9  # of a command's largest value: it is held but for rounding
 _LEAST = 16  # samples that a command is held
 
 
-class Recorded(Protocol):
-    """What is asked of a run."""
-
-    @property
-    def channels(self) -> Mapping[str, Samples]:
-        """Its samples, (n,), by channel."""
-        ...
-
-    @property
-    def command(self) -> Samples:
-        """Its command, (n,)."""
-        ...
-
-    @property
-    def measured(self) -> Samples:
-        """Its output, (n,)."""
-        ...
-
-    @property
-    def stepped(self) -> bool:
-        """Whether its command is one step."""
-        ...
-
-    @property
-    def sample_rate(self) -> float:
-        """In Hz."""
-        ...
-
-    @property
-    def record(self) -> str:
-        """The record that it is one output of; empty where it is the only one."""
-        ...
-
-
-def beginning(run: Recorded) -> Beginning:
-    """How the measured output of a run begins: what of its first state a model has to find.
+def beginning(x: Samples, command: Samples | None, sample_rate: float, stepped: bool = False) -> Beginning:
+    """How an output x (n,) begins under a command (n,), or none: what of its first state a model has to find.
 
     "at rest": it stands still at zero. "standing": it stands still elsewhere, under a command that is held there.
     "moving": what acted before the record still shows.
 
     A line is fitted to the first millisecond (at least 4 samples): a servo-hydraulic machine needs longer than
-    that to follow a jump of its command; of few samples a second two say it. Of many outputs the position, where
-    it was recorded, says it for all. Still: speed below 5 % of the typical speed; at zero: value below 2 % of the
+    that to follow a jump of its command; of few samples a second two say it. A command is `stepped` that is held from
+    the first sample to the last. Still: speed below 5 % of the typical speed; at zero: value below 2 % of the
     record's deviation; or either within 4 standard errors of zero. About one moving record in a thousand passes.
     """
-    n, x = _first(run), _seen(run)
+    n = _first(x, sample_rate)
     size, speed = float(np.std(x)), float(np.std(x[n:] - x[:-n])) / n
     slope, value = np.polyfit(np.arange(n), x[:n], 1)
     # Differences of fourth order leave the noise of a well sampled record (their gain on white noise is √70).
     noise = min(float(np.std(np.diff(x, 4))) / np.sqrt(70.0), 0.03 * size) if len(x) > 8 else 0.0
-    if "command" in run.channels and abs(run.command[0]) > 0.05 * np.std(run.command):
+    if command is not None and abs(command[0]) > 0.05 * np.std(command):
         few = abs(x[0]) <= 0.02 * size and abs(x[1] - x[0]) <= 0.05 * speed
-        if few or (run.stepped and abs(x[0]) <= max(0.05 * size, 4 * noise)):
+        if few or (stepped and abs(x[0]) <= max(0.05 * size, 4 * noise)):
             return "at rest"  # the step comes with the first sample, and what follows it is its answer
     slope_error = noise * np.sqrt(12.0 / (n * (n**2 - 1)))
     value_error = np.hypot(noise / np.sqrt(n), slope_error * (n - 1) / 2)
     still = abs(slope) <= max(0.05 * speed, 4 * slope_error)
     if still and abs(value) <= max(0.02 * size, 4 * value_error):
         return "at rest"
-    return "standing" if still and standing_for(run) else "moving"
+    return "standing" if still and standing_for(x, command, sample_rate) else "moving"
 
 
-def standing_for(run: Recorded) -> int:
-    """For how many samples the command is held first while the output stands; 0 where it is not, or moves.
+def standing_for(x: Samples, command: Samples | None, sample_rate: float) -> int:
+    """For how many samples the command is held first while the output x stands; 0 where it is not, or moves.
 
     Standing: the means of the quarters of this time lie, from each other and from the first samples, within 2 %
     of the record's standard deviation or four standard errors. Fewer samples than 16 may be a step that has not
     arrived yet.
     """
-    x = _seen(run)
-    command = run.channels.get("command", x)
+    command = x if command is None else command
     changes = np.flatnonzero(np.abs(command - command[0]) > ROUNDING * np.abs(command).max())
     count = int(changes[0]) if len(changes) else 0
     if count < _LEAST:
         return 0
-    parts = (x[: _first(run)], *np.array_split(x[:count], 4))
+    parts = (x[: _first(x, sample_rate)], *np.array_split(x[:count], 4))
     means, errors = [part.mean() for part in parts], [part.std() / np.sqrt(len(part)) for part in parts]
     return count if np.ptp(means) <= 0.02 * np.std(x) + 4.0 * max(errors) else 0
 
 
-def _seen(run: Recorded) -> Samples:
-    """The channel by which the beginning is told."""
-    return run.channels.get("displacement", run.measured) if run.record else run.measured
-
-
-def _first(run: Recorded) -> int:
+def _first(x: Samples, sample_rate: float) -> int:
     """The samples by which it is told."""
-    return min(len(run.measured), max(4, round(0.001 * run.sample_rate)))
+    return min(len(x), max(4, round(0.001 * sample_rate)))

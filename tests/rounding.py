@@ -19,7 +19,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
+from ident.run import Run
 
 VARIABLE = "SERVOIDENT_ROUNDING"
 SIZE = 1e-12  # relative: a rounding is 1e-16, and what a sum of many loses a few thousand of them

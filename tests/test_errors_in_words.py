@@ -22,8 +22,9 @@ from ident.figures.ladder import ladder
 from ident.figures.side_by_side import side_by_side
 from ident.fit.result import FitResult
 from ident.fit.run_errors import rmse_of, run_error
-from ident.matrix import USES, Matrix, over_runs
+from ident.matrix import Matrix
 from ident.residuals.survey import survey
+from ident.run import USES, over_runs
 from ident.words.error import UNSTABLE
 from ident.workflows import study
 from schemas.fit import ComparisonView

@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 import ident
@@ -28,6 +29,16 @@ def test_the_face_says_what_it_has():
 def test_nothing_is_imported_before_it_is_used():
     code = "import ident, sys; assert 'numpy' not in sys.modules; ident.identify; assert 'numpy' in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT)
+
+
+def test_a_notebook_may_still_call_the_makers_of_a_matrix_by_the_class():
+    """As earlier versions had it; the class itself knows no reader, the face puts both together."""
+    t = np.arange(64.0)
+    given = {"sample_rate": "1 kHz", "units": {"command": "mm", "displacement": "mm"}}
+    columns = {"command": t % 7, "displacement": t % 5}
+    old, new = ident.Matrix.from_arrays(columns, **given), ident.from_arrays(columns, **given)
+    assert old.data_hash == new.data_hash
+    assert ident.Matrix.from_table is ident.from_table
 
 
 READ = """

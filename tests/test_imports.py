@@ -19,15 +19,50 @@ STANDARD = set(sys.stdlib_module_names) | {"__future__"}
 
 
 def imports(file: Path) -> set[str]:
-    """Every module that a file imports anywhere, in full."""
+    """Every module that a file imports anywhere, in full; also one that it asks for by its name as a text."""
+    return imported(file.read_text(encoding="utf-8"), str(file))
+
+
+def imported(source: str, file: str = "") -> set[str]:
+    """The modules that a source text imports."""
     found = set()
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+    for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{file}:{node.lineno}: relative import"
             found |= {f"{node.module}.{alias.name}" for alias in node.names}
+        elif isinstance(node, ast.Call) and (name := by_text(node)):
+            found.add(name)
     return found
+
+
+def by_text(call: ast.Call) -> str:
+    """The module of `import_module("a.b")`; of `import_module(f"a.{b}")` the package a; "" of any other call."""
+    called = call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
+    given = [*call.args[:1], *(one.value for one in call.keywords if one.arg == "name")]
+    if called not in ("import_module", "__import__") or not given:
+        return ""
+    text = given[0].values[0] if isinstance(given[0], ast.JoinedStr) else given[0]
+    found = text.value if isinstance(text, ast.Constant) and isinstance(text.value, str) else ""
+    return found if text is given[0] else found.rpartition(".")[0]
+
+
+@pytest.mark.parametrize(
+    ("source", "module"),
+    [
+        ('import_module("ident.readers.stated")', "ident.readers.stated"),
+        ('importlib.import_module("ident.readers").read_matrix(path)', "ident.readers"),
+        ('getattr(import_module(name="ident.readers.stated"), "of_table")', "ident.readers.stated"),
+        ('import_module(f"ident.readers.{kind}")', "ident.readers"),
+        ('import_module(f"ident.readers.read_{kind}")', "ident.readers"),
+        ('__import__("ident.readers")', "ident.readers"),
+    ],
+)
+def test_an_import_by_a_text_is_seen(source, module):
+    """A file that asks for a module by a text depends on it as one that imports it at its head."""
+    assert imported(source) == {module}
+    assert not imported('import_module(ROOMS[name])\nread("ident.readers")')
 
 
 def files(*patterns: str) -> list[Path]:
@@ -73,7 +108,8 @@ def test_what_a_benchmark_or_a_picture_imports_is_there(file):
 
 
 ROOMS = (
-    "errors", "plain", "cached", "progress", "time_budget", "parallel", "words", "beginning", "matrix", "parameter",
+    "errors", "plain", "cached", "progress", "time_budget", "parallel", "words", "beginning", "run", "responding",
+    "matrix", "parameter",
     "linear", "statistics", "equations", "units", "stages", "effects", "chain", "presets", "foreign", "readers",
     "custom", "noise", "checks", "drafts", "simulation", "fit", "comparison", "residuals", "design", "diagnosis",
     "bench", "hybrid", "export", "figures", "synthesis", "workflows",
@@ -162,8 +198,8 @@ def test_there_is_no_loose_file_but_the_basic_words_and_the_workflows():
     """What belongs together stands in a folder."""
     loose = {file.stem for file in files("ident/*.py")} - {"__init__"}
     assert loose == {
-        "errors", "plain", "cached", "progress", "time_budget", "parallel", "beginning", "matrix", "parameter",
-        "linear", "workflows",
+        "errors", "plain", "cached", "progress", "time_budget", "parallel", "beginning", "run", "responding", "matrix",
+        "parameter", "linear", "workflows",
     }  # fmt: skip
 
 

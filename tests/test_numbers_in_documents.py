@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from app.pages import next_view
+from ident import responding
 from ident.bench import acceptance, time_constant
 from ident.diagnosis import (
     candidate,
@@ -51,7 +52,7 @@ from ident.hybrid import (
     what_if,
 )
 from ident.noise import autoregression
-from ident.readers import run, still
+from ident.readers import run
 from ident.statistics import FEWEST_SETS
 from ident.statistics.control_chart import D2
 from ident.statistics.outliers import FAR
@@ -160,7 +161,7 @@ def of_others() -> Iterator[Tie]:
 
     M = "matrix-format.md"
     yield M, "({} % of the deviation that the output has in the others, under more than {} of their command", (
-        per_cent(still._STILL), PARTS[still._DRIVEN],
+        per_cent(responding._STILL), PARTS[responding._DRIVEN],
     )  # fmt: skip
     yield M, "of at least {} samples, all finite", (run.SHORTEST,)
     yield M, "so one of it is 0.0254 m × 6.894757 kPa = {:.6f} m⁴/s", (PRINTED_Z0_FACTOR,)

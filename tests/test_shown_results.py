@@ -24,8 +24,9 @@ from ident.hybrid.rig import simulate_hybrid
 from ident.hybrid.share_map import share_map
 from ident.hybrid.tracked_run import track
 from ident.hybrid.what_if import what_if
-from ident.matrix import Actuator, Specimen
+from ident.matrix import Actuator
 from ident.residuals.survey import survey
+from ident.run import Specimen
 from ident.words.shown import MOST_ROWS, Listing, Shown, html, text
 from tests.hybrid.cases import fitted, of_qian
 

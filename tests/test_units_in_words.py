@@ -20,6 +20,7 @@ from ident.fit.result import FitResult
 from ident.matrix import Matrix
 from ident.presets import preset
 from ident.presets.record_units import RecordUnits, written
+from ident.readers import from_arrays
 from ident.units.grammar import powers_of
 from ident.words import conditions as lab
 from ident.workflows import study
@@ -67,7 +68,7 @@ def recorded(name: str) -> Matrix:
     command *= 2.0 / np.std(command)
     output = lfilter([1 / 20], [1, -19 / 20], command)
     output += 0.01 * np.std(output) * random.standard_normal(len(output))
-    return Matrix.from_arrays(
+    return from_arrays(
         {"command": command, kind.output: output}, units={"command": kind.command, kind.output: kind.unit},
         sample_rate=kind.rate, output=kind.output, amplitude=f"2 {kind.command}", kind="blwn",
     )  # fmt: skip

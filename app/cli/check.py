@@ -11,7 +11,8 @@ from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from ident.words.number import count
 
 if TYPE_CHECKING:
-    from ident.matrix import Actuator, Matrix, Run
+    from ident.matrix import Actuator, Matrix
+    from ident.run import Run
 
 
 def check(

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ident.hybrid.changed_machine import Change
     from ident.hybrid.peak_problem import PeakTarget
     from ident.hybrid.what_if import WhatIf
-    from ident.matrix import Specimen
+    from ident.run import Specimen
 
 _OF_SPECIMEN = {"mass": "mass", "stiffness": "stiffness", "damping": "damping"}
 _NEAR = 2 / 45  # of the frequency: the usual tolerance, 2 Hz at 45 Hz
@@ -112,7 +112,7 @@ def _change(fit: FitResult, set_: list[str], fitted: list[str], specimen: str | 
 def specimen_of(text: str | None) -> Specimen:
     """A specimen from `mass=2.06 kg, stiffness=30.65 kN/m`. Raises Unusable."""
     from ident.errors import Unusable
-    from ident.matrix import Specimen
+    from ident.run import Specimen
     from ident.units.quantity import quantity
 
     form, found = "mass=…,stiffness=…,damping=…", {}

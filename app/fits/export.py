@@ -9,7 +9,7 @@ from app.errors import Failure
 from app.fits import service
 from ident.export import FORMATS, USUAL_RATE, exported
 from ident.fit.result import FitResult
-from ident.matrix import Specimen
+from ident.run import Specimen
 from ident.units.quantity import parameter_value, quantity
 
 MEDIA = {form.ending: form.media for form in FORMATS.values()}

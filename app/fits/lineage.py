@@ -14,7 +14,7 @@ from ident.custom.definition import definition_of
 from ident.diagnosis.named import with_named
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
-from ident.matrix import USES
+from ident.run import USES
 from schemas.fit import EffectsRequest, JobView, LadderRung, LadderView
 from schemas.result import EstimateView
 

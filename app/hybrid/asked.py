@@ -13,8 +13,8 @@ from ident.hybrid.case import BUILT_IN, NAMES, Case, case_of
 from ident.hybrid.changed_machine import SIZES, Change
 from ident.hybrid.ground import ground_of
 from ident.hybrid.peak_problem import Axes, PeakTarget
-from ident.matrix import Specimen
 from ident.presets import preset
+from ident.run import Specimen
 from ident.units.quantity import parameter_value, shown
 from ident.words.nearest import did_you_mean
 from schemas.hybrid import GroundRequest, HybridRequest, SpecimenRequest, WhatIfRequest

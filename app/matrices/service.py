@@ -22,10 +22,11 @@ from app.storage import Storage
 from app.tables import MatrixRow
 from ident.checks.check import check
 from ident.errors import Unusable
-from ident.matrix import Actuator, Matrix, Run, output_id
+from ident.matrix import Actuator, Matrix
 from ident.readers.limits import LIMITS
 from ident.readers.source import DESCRIPTION, inside
 from ident.readers.strict_yaml import read_yaml
+from ident.run import Run, output_id
 from ident.words.nearest import did_you_mean
 from schemas.matrix import FindingView, MatrixPage, MatrixView, Revision, RunView
 

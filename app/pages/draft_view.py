@@ -11,7 +11,7 @@ from app.drafts import service
 from app.errors import missing
 from app.pages.thumbnails import curve
 from ident.drafts.draft import OUTPUTS
-from ident.matrix import CHANNELS
+from ident.run import CHANNELS
 from schemas.draft import AnswersRequest, DraftView, RawFileView
 
 PICTURED = 4

@@ -26,8 +26,8 @@ from ident.custom.definition import HANDED_ON, preset_with
 from ident.equations.equation import Equation
 from ident.equations.mathml import mathml
 from ident.fit.result import FitResult, Undetermined
-from ident.matrix import USES
 from ident.presets import Preset, preset
+from ident.run import USES
 from ident.words.engineering import quantity
 from ident.words.error import ErrorOf, error_in_print, errors_line
 from ident.words.percent import percent_in_print

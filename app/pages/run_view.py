@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ident.figures import words
-from ident.matrix import Specimen
+from ident.run import Specimen
 from ident.words.conditions import of_rated
 from ident.words.engineering import quantity
 from ident.words.number import count

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from app.context import Context
 from app.errors import missing
 from app.matrices import service as matrices
-from ident.matrix import Run
+from ident.run import Run
 
 WIDTH, HEIGHT = 160, 34  # px
 _COLUMNS = 80

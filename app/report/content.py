@@ -15,9 +15,10 @@ from ident.diagnosis.words import not_told
 from ident.errors import Unusable
 from ident.figures import figure, ladder, look
 from ident.fit.result import FitResult
-from ident.matrix import USES, Matrix
+from ident.matrix import Matrix
 from ident.residuals.budget import Budget
 from ident.residuals.survey import Survey, survey
+from ident.run import USES
 from ident.words.engineering import printed_unit, quantity
 from ident.words.error import error_in_print, errors_line
 from ident.words.percent import percent_in_print

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from ident.chain.chain import Chain
 from ident.chain.conditions import conditions
-from ident.matrix import Actuator, Run
+from ident.matrix import Actuator
+from ident.run import Run
 from ident.simulation.simulate import responses
 from ident.simulation.steps import fastest_mode, steps_needed
 

@@ -35,10 +35,11 @@ from ident.fit.settings import Settings
 from ident.fit.space import Axis, Space
 from ident.fit.summary import HARDLY
 from ident.fit.typical import typical
-from ident.matrix import BENCH, Matrix
+from ident.matrix import Matrix
 from ident.parallel import each
 from ident.parameter import Parameter, Starts
 from ident.progress import Progress, Report, silent
+from ident.run import BENCH
 from ident.words.percent import percent
 
 Array = NDArray[np.float64]

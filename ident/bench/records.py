@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from ident.bench.sine_fit import dominant
 from ident.cached import cached_property
 from ident.errors import Unusable
-from ident.matrix import BENCH, Matrix, Run
+from ident.matrix import Matrix
+from ident.run import BENCH, Run
 
 Array = NDArray[np.float64]
 _END = 0.02  # s at the same extreme reading: the actuator or its transducer is at its end

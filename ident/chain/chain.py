@@ -30,7 +30,8 @@ from ident.equations.equation import Equation
 from ident.equations.grammar import FUNCTIONS, TIME
 from ident.errors import Unusable
 from ident.linear import LinearModel
-from ident.matrix import Actuator, Run
+from ident.matrix import Actuator
+from ident.run import Run
 from ident.stages import Stage
 from ident.words.nearest import did_you_mean
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ident.equations.equation import Equation
 from ident.errors import Unusable
-from ident.matrix import CHANNELS, Run
+from ident.run import CHANNELS, Run
 
 _MOTION = ("command", "displacement", "velocity")  # a model has its own
 READABLE = tuple(channel for channel in CHANNELS if channel not in _MOTION)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from ident.chain.channels import means
-from ident.matrix import Actuator, Run, Specimen
+from ident.matrix import Actuator
+from ident.run import Run, Specimen
 from ident.stages import Quantity
 
 CONDITIONS = {

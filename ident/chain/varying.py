@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from ident.chain.chain import SUPPLY, VERTICAL, Chain
-from ident.matrix import Run
+from ident.run import Run
 from ident.stages import Stage
 
 MEASURED_CONDITIONS = {"Ps": (SUPPLY, "supply_pressure", "Pa"), "Nv": (VERTICAL, "vertical_load", "N")}

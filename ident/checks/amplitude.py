@@ -9,7 +9,7 @@ import numpy as np
 
 from ident.checks.finding import Finding
 from ident.checks.gain import FACTORS
-from ident.matrix import Run
+from ident.run import Run
 
 TOLERANCE = 0.1  # 2 s of noise of 0-80 Hz scatter by 4 %, 30 s by 1 %
 NEAR = 1.12  # either way, for a factor to be named

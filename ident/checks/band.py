@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from ident.checks.finding import Finding
 from ident.checks.response import Response
-from ident.matrix import Run
+from ident.run import Run
 
 POWER = 0.95
 LOWEST, HIGHEST = 60.0, 100.0  # Hz; white noise of 0-80 Hz has 95 % of its power below 76 Hz, filtered or not

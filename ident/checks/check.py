@@ -23,7 +23,8 @@ from ident.checks.statements import statements
 from ident.checks.summary import RunSummary, Summary, describe
 from ident.checks.timing import timing
 from ident.checks.unit_factor import unit_factor
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 
 __all__ = ["Finding", "Findings", "RunSummary", "Summary", "check", "describe"]
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ident.beginning import ROUNDING
 from ident.checks.finding import Finding
-from ident.matrix import Run, Samples
+from ident.run import Run, Samples
 
 PLATEAU = 4  # equal samples; three may be chance in a record of few bits
 PLATEAUS = 3  # peaks that end at the very same value

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ident.checks.finding import Finding
-from ident.matrix import Run
+from ident.run import Run
 
 EXACT = 1e-6
 """Of the output's deviation, what no gain and no offset of the command explains: any recorder's noise is larger."""

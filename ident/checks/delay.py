@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ident.checks.finding import Finding
 from ident.checks.local_response import LocalResponse, local_response
 from ident.checks.response import Response
-from ident.matrix import Run, Samples
+from ident.run import Run, Samples
 
 POLES = 4  # of the chain: valve, pressure, mass
 SEARCHED = 24.0  # samples either way

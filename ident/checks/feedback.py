@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.checks.finding import Finding
-from ident.matrix import Run, Samples
+from ident.run import Run, Samples
 from ident.words.percent import percent
 
 OWN, OTHER = 40, 12  # lags of the command's past, and of the output's beside as many more of the command's

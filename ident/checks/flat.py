@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ident.checks.finding import Finding
-from ident.matrix import Run, Samples
+from ident.run import Run, Samples
 
 SECONDS = 0.05  # longer than any rest of a rounded signal in a band of tens of Hz
 SAMPLES = 32

@@ -9,7 +9,7 @@ import numpy as np
 
 from ident.checks.finding import Finding
 from ident.checks.response import RELATED, Response, response
-from ident.matrix import Run
+from ident.run import Run
 
 BAND = (0.0, 0.1)  # of the command's power
 TURNED = 120.0  # degrees; the loop lags by less than 90 there

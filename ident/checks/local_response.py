@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.matrix import Samples
+from ident.run import Samples
 
 POINTS = 80  # frequencies at which the response is wanted
 HALF_WIDTH = 8  # spectral lines either side of each

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from ident.checks.finding import Finding
 from ident.checks.response import rests
-from ident.matrix import Run
+from ident.run import Run
 
 SMALL = 0.05  # of the displacement's standard deviation; as large as the error that a good model leaves
 LARGE = 1.0

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ident.checks.finding import Finding
-from ident.matrix import Run
 from ident.presets.passivity import gives_work_back, work
+from ident.run import Run
 
 
 def turned_sign(run: Run) -> Iterator[Finding]:

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from ident.checks.finding import Finding
-from ident.matrix import Actuator, Run
+from ident.matrix import Actuator
+from ident.run import Run
 
 PRESSURES = ("load_pressure", "pressure_a", "pressure_b")
 MARGIN = 1.1  # pressure peaks above the supply; a stroke is printed with its cushions

@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from itertools import groupby
 
 from ident.checks.finding import Finding
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
 from ident.noise.repeats import groups, repeated, unlabelled
+from ident.run import Run
 
 
 def repeats(matrix: Matrix) -> Iterator[Finding]:

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
-from ident.matrix import Run, Samples
 from ident.noise.power_density import hann
+from ident.run import Run, Samples
 
 LONGEST_FRAME = 8192
 FRAMES = 8  # at least: with fewer, chance alone makes a coherence of 0.4

@@ -10,7 +10,7 @@ import numpy as np
 from ident.checks.finding import Finding
 from ident.checks.gain import FACTORS
 from ident.checks.response import RELATED, Response
-from ident.matrix import Run
+from ident.run import Run
 
 LEAST = 10.0  # a dead zone or dry friction makes small and large commands differ by less
 NEAR = 1.3  # either way, for a factor to be that of a wrong unit

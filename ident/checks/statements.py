@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ident.checks.finding import Finding
-from ident.matrix import BENCH, Matrix, Run
+from ident.matrix import Matrix
+from ident.run import BENCH, Run
 from ident.words.listed import first_of
 
 _TURNING = ("rad", "rad/s", "N*m")  # units of an output

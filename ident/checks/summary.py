@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
+from ident.run import Run
 
 
 @dataclass(frozen=True)

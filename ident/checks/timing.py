@@ -8,8 +8,8 @@ import numpy as np
 
 from ident.checks.finding import Finding
 from ident.checks.response import Response
-from ident.matrix import Run
 from ident.readers.clock import STRAY
+from ident.run import Run
 
 JITTER = 0.5  # samples; a time printed with too few digits stays below, a real clock that errs more does not
 SAMPLES_A_CYCLE = 10.0  # of the highest excited frequency; below, the command between samples decides the fit

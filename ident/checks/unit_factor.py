@@ -16,7 +16,7 @@ import numpy as np
 from ident.cached import cached_property
 from ident.checks.finding import Finding
 from ident.checks.response import RELATED, Response, respond, response, rests
-from ident.matrix import Run
+from ident.run import Run
 from ident.words.listed import first_of
 
 NEAR = 0.02  # a clock is right to 1e-4 and a repeated RMS to 1 %; by chance one ratio in 40 is so near to a factor

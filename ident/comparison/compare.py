@@ -20,9 +20,10 @@ from ident.fit.normal_matrices import output
 from ident.fit.result import FitResult
 from ident.fit.simulated_runs import every_run, is_simulated
 from ident.linear import LinearModel
-from ident.matrix import USES, Actuator, Matrix, Run, over_runs
+from ident.matrix import Actuator, Matrix
 from ident.parallel import each
 from ident.presets import Preset
+from ident.run import USES, Run, over_runs
 from ident.words.engineering import quantity
 from ident.words.error import UNSTABLE, ErrorOf, bounded, first_line
 from ident.words.percent import percent

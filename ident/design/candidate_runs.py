@@ -10,8 +10,9 @@ import numpy as np
 
 from ident.design.excitation import PERIODIC, SIGNALS
 from ident.design.experiment import Experiment
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
 from ident.noise.repeats import at_rest
+from ident.run import Run
 
 _LARGER = 1.5  # times the largest amplitude of the matrix is the most that is proposed
 _STROKE = 0.45  # of the stroke, to either side, is the most that a command may reach

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.design.excitation import KINDS, PERIODIC, excitation
-from ident.matrix import Specimen
+from ident.run import Specimen
 from ident.words.conditions import amplitude
 from ident.words.percent import percent
 from ident.words.shown import Listing, Shown

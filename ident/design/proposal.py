@@ -27,8 +27,9 @@ from ident.errors import Unusable
 from ident.fit.bounded_step import bounded_step
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.reduction import excited_band
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
 from ident.parallel import each
+from ident.run import Run
 
 Array = NDArray[np.float64]
 _TRIAL = 4096  # samples on which runs are judged

@@ -14,9 +14,10 @@ from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.space import search_space
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
 from ident.noise.floor import by_spectrum, like_transducer
 from ident.presets import Preset
+from ident.run import Run
 
 Array = NDArray[np.float64]
 Deviation = Callable[[float], float]

@@ -12,8 +12,8 @@ from scipy.fft import next_fast_len
 from ident.diagnosis.refit import Refit
 from ident.effects.effect import Effect
 from ident.fit.space import Space
-from ident.matrix import Run
 from ident.parameter import Parameter, Starts
+from ident.run import Run
 
 Array = NDArray[np.float64]
 _LINES = 6  # frequencies

@@ -23,12 +23,13 @@ from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.fit.space import search_space
-from ident.matrix import MOTIONS, Matrix, Run
+from ident.matrix import Matrix
 from ident.noise.floor import Floors, noise_floors
 from ident.parallel import each
 from ident.presets import Preset
 from ident.presets import preset as preset_named
 from ident.presets.middle import about
+from ident.run import MOTIONS, Run
 from ident.words.titles import title
 
 Array = NDArray[np.float64]

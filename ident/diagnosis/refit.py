@@ -19,9 +19,9 @@ from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.slow_answer import slow_lag
 from ident.fit.space import Space
 from ident.fit.uncertainty import DETERMINED, Covariance, covariance
-from ident.matrix import Run, over_runs
 from ident.noise.autoregression import prediction_errors
 from ident.noise.effective_sample_size import independent_samples
+from ident.run import Run, over_runs
 from ident.time_budget import in_time
 from ident.words.error import UNSTABLE
 from ident.words.plus_minus import NOT_DETERMINED

@@ -11,9 +11,10 @@ from ident.diagnosis.listings import listings
 from ident.diagnosis.proposals.proposal import Proposal, from_json
 from ident.diagnosis.standing import Standing
 from ident.errors import Unusable
-from ident.matrix import USES, Matrix, Specimen
+from ident.matrix import Matrix
 from ident.plain import UNWRITTEN, WHERE_KNOWN, Misfit, read, written
 from ident.residuals.budget import Budget
+from ident.run import USES, Specimen
 from ident.words.error import ErrorOf, first_line
 from ident.words.shown import Listing, Shown
 

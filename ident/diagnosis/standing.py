@@ -13,9 +13,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.matrix import Run, over_runs
 from ident.noise.effective_sample_size import independent_samples
 from ident.plain import WHERE_KNOWN
+from ident.run import Run, over_runs
 from ident.words.error import UNSTABLE, error_said, unstable_on
 from ident.words.titles import title
 

@@ -16,8 +16,8 @@ from ident.chain.conditions import conditions
 from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.refit import Refit
 from ident.diagnosis.result import LabelErrors, Suspect
-from ident.matrix import Run
 from ident.parallel import each
+from ident.run import Run
 from ident.simulation.simulate import Simulation
 from ident.words.error import error_said
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ident.errors import Unusable
-from ident.matrix import CHANNELS
+from ident.run import CHANNELS
 from ident.units.quantity import shown
 from ident.words.nearest import did_you_mean
 

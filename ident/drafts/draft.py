@@ -12,10 +12,10 @@ from ident.drafts.names import suggested, unit_of
 from ident.drafts.raw import Column, RawFile
 from ident.drafts.steps import moves_in_steps
 from ident.errors import Unusable
-from ident.matrix import CHANNELS
 from ident.readers import PACKED
 from ident.readers.column_names import is_time
 from ident.readers.table import MINUS, some_of
+from ident.run import CHANNELS
 from ident.units.quantity import shown
 from ident.words.listed import first_of
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from ident.drafts.raw import Column, RawFile, read_whole
 from ident.errors import Unusable
-from ident.matrix import Samples
 from ident.readers.column_names import is_time
 from ident.readers.limits import LIMITS, Limits
+from ident.run import Samples
 
 
 def joined(contents: Mapping[str, bytes], limits: Limits = LIMITS) -> str:

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.errors import Unusable
-from ident.matrix import Samples
 from ident.readers import PACKED, TEXT, ending_of, read_table
 from ident.readers.column_names import bracketed, is_time, is_unit, measures_time, suffix
 from ident.readers.controldesk import is_controldesk
@@ -22,6 +21,7 @@ from ident.readers.limits import LIMITS, Limits
 from ident.readers.suggestion import unit_in
 from ident.readers.table import MINUS, NUMERIC, Table
 from ident.readers.text import as_utf8
+from ident.run import Samples
 from ident.units.quantity import unit_scale
 
 _OF_TABLES = (".json",)

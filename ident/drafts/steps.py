@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ident.matrix import Samples
+from ident.run import Samples
 
 _SELDOM = 0.2  # of the samples at which a held command changes, at most
 _IN_A_ROW = 0.1  # of its changes that follow at once upon another

@@ -14,8 +14,9 @@ from ident.custom.definition import preset_with
 from ident.effects.effect import off_values
 from ident.errors import Unusable
 from ident.fit.result import FitResult
-from ident.matrix import MOTIONS, Actuator, Run, Specimen
+from ident.matrix import Actuator
 from ident.presets import Preset
+from ident.run import MOTIONS, Run, Specimen
 from ident.simulation.stepper import PackedKernel, packed_kernel
 from ident.simulation.steps import fastest_mode, steps_needed
 

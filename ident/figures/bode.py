@@ -25,7 +25,8 @@ from ident.figures.selection import BAND, HIGH, LOW, OPEN, Band, band_of, band_p
 from ident.figures.study import Study
 from ident.figures.thin import decade_ticks, fine_ticks
 from ident.fit.result import FitResult
-from ident.matrix import Actuator, Run
+from ident.matrix import Actuator
+from ident.run import Run
 from ident.words.nearest import did_you_mean
 
 FACETS = 4

@@ -11,7 +11,8 @@ import numpy as np
 
 from ident.errors import Unusable
 from ident.figures import words
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
+from ident.run import Run
 
 CONDITIONS = ("kp", "amplitude", "specimen", "use")
 RUNS = ("run", *CONDITIONS)

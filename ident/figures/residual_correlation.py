@@ -16,8 +16,9 @@ from ident.figures.selection import number
 from ident.figures.study import Study
 from ident.figures.time import typical
 from ident.fit.result import FitResult
-from ident.matrix import Actuator, Run
+from ident.matrix import Actuator
 from ident.residuals.correlation import SURE, Correlation, correlation
+from ident.run import Run
 from ident.words.percent import percent
 
 

@@ -19,8 +19,9 @@ from ident.figures.selection import BAND, HIGH, LOW, OPEN, RUN, Band, band_of, b
 from ident.figures.study import Study
 from ident.figures.thin import decade_ticks
 from ident.fit.result import FitResult
-from ident.matrix import Actuator, Run
+from ident.matrix import Actuator
 from ident.residuals.breakdown import Breakdown, breakdown, stated_amplitude
+from ident.run import Run
 
 MOST = 100  # rows
 _ROW = 9  # pixels

@@ -13,7 +13,7 @@ from ident.cached import cached_property
 from ident.comparison.compare import RunComparison
 from ident.figures import words
 from ident.figures.thin import Places, excited_band, significant, spread
-from ident.matrix import Run
+from ident.run import Run
 
 MOST_ROWS = 2200  # inline data stay below 300 kB
 RELIABLE = 0.5  # coherence under which a point does not count for the limits of an axis

@@ -23,7 +23,8 @@ from ident.figures.render import Panel
 from ident.figures.study import Study
 from ident.figures.thin import decade_ticks, excited_band, significant
 from ident.fit.result import FitResult
-from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.matrix import Actuator, Matrix
+from ident.run import Run, Specimen
 
 MULTIPLES = tuple(float(value) for value in np.geomspace(0.1, 10, 11))
 POINTS = 90

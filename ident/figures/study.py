@@ -11,10 +11,11 @@ from ident.cached import cached_property
 from ident.comparison.compare import Comparison, RunComparison, Simulator, compare, modelled
 from ident.figures.selection import Band
 from ident.fit.result import FitResult
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
 from ident.residuals.curve_fit import CurveFit
 from ident.residuals.curves import Curve, curve_fits, curves, curves_of, traced
 from ident.residuals.traces import Traces
+from ident.run import Run
 
 _MOST = 64  # sets of curves, some kB each
 

@@ -22,7 +22,8 @@ from ident.figures.study import Study
 from ident.figures.thin import Real, envelope, significant
 from ident.fit.reduction import within
 from ident.fit.result import FitResult
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 from ident.words.titles import title
 
 BINS = 350  # stretches of which smallest and largest sample are kept

@@ -6,7 +6,8 @@ from collections.abc import Iterable
 
 from ident.comparison.compare import RunComparison
 from ident.fit.result import FitResult
-from ident.matrix import USES, Actuator, Run, Specimen
+from ident.matrix import Actuator
+from ident.run import USES, Run, Specimen
 from ident.words import conditions
 from ident.words.engineering import power_of, printed_unit, scaled_unit
 from ident.words.error import ErrorOf

@@ -26,9 +26,10 @@ from ident.fit.search import State
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.start import Start
-from ident.matrix import Matrix, Run, over_runs
+from ident.matrix import Matrix
 from ident.noise.floor import noise_floors
 from ident.progress import Progress, Report, silent
+from ident.run import Run, over_runs
 from ident.words.percent import percent
 
 Array = NDArray[np.float64]

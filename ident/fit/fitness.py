@@ -19,8 +19,9 @@ from ident.cached import cached_property
 from ident.fit.levenberg_marquardt import Way
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.space import Space
-from ident.matrix import Matrix, Run, over_runs
+from ident.matrix import Matrix
 from ident.presets import Preset
+from ident.run import Run, over_runs
 
 Array = NDArray[np.float64]
 STEP = 1e-5  # of an axis, for sensitivities by differences

@@ -31,10 +31,11 @@ from ident.fit.simulated_runs import is_simulated
 from ident.fit.space import search_space
 from ident.fit.summary import noticed, summarise
 from ident.fit.windows import in_longer_windows, in_windows
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
 from ident.noise.floor import noise_floors
 from ident.presets import PRESETS, Preset
 from ident.progress import Progress, Report, silent
+from ident.run import Run
 from ident.words.error import UNSTABLE
 from ident.words.nearest import did_you_mean
 

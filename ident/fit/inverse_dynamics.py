@@ -22,7 +22,8 @@ import scipy  # signal, which takes most of a second to load, is loaded where it
 from numpy.typing import NDArray
 
 from ident.errors import Unusable
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
+from ident.run import Run
 
 Array = NDArray[np.float64]
 CUTOFF = 20.0  # Hz

@@ -24,9 +24,10 @@ from ident.fit.reduction import Basis, ReducedRun, reduced
 from ident.fit.space import Space
 from ident.fit.transfer import Pattern, values_at
 from ident.linear import LinearModel
-from ident.matrix import Matrix, Run, over_runs
+from ident.matrix import Matrix
 from ident.parallel import cores, each
 from ident.presets import Preset
+from ident.run import Run, over_runs
 from ident.words.error import UNSTABLE
 
 Array = NDArray[np.float64]

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from ident.chain.chain import Chain
 from ident.chain.conditions import conditions
-from ident.matrix import Actuator, Run
+from ident.matrix import Actuator
+from ident.run import Run
 from ident.simulation.steps import MOST, Modes, fastest_mode
 
 Array = NDArray[np.float64]

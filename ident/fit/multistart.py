@@ -13,8 +13,8 @@ from ident.fit.fitness import Fitness, Local
 from ident.fit.levenberg_marquardt import STEPS
 from ident.fit.result import Starts
 from ident.fit.simulated_fitness import SimulatedFitness
-from ident.matrix import Run
 from ident.progress import Progress, Report
+from ident.run import Run
 
 Array = NDArray[np.float64]
 _RIVALS = 2  # ends that are followed to the last sample, beside the best

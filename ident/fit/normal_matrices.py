@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ident.cached import cached_property
 from ident.fit.products import add_products, completed, removal, without
 from ident.linear import LinearModel
-from ident.matrix import Run
+from ident.run import Run
 from ident.simulation.recursion import Recursion, discretise, respond, responses
 
 Array = NDArray[np.float64]

@@ -22,9 +22,9 @@ from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.linear import LinearModel
-from ident.matrix import Run
 from ident.noise.power_density import power_density
 from ident.parallel import each
+from ident.run import Run
 from ident.simulation.recursion import Recursion, discretise, responses
 
 Array = NDArray[np.float64]

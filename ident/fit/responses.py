@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from ident.fit.fitness import STEP
 from ident.fit.products import CHUNK, removal, shares_of, without
 from ident.fit.simulated_fitness import SimulatedFitness
-from ident.matrix import Run
 from ident.parallel import each
+from ident.run import Run
 
 Array = NDArray[np.float64]
 _LANES = 1024  # simulated in one go: what all of them share is worked out once

@@ -9,10 +9,11 @@ from typing import Any
 
 from ident.errors import Unusable
 from ident.fit.listings import listings
-from ident.matrix import USES, Actuator, Matrix
+from ident.matrix import Actuator, Matrix
 from ident.plain import UNWRITTEN, WHERE_KNOWN, Misfit, read, written
 from ident.presets.description import description
 from ident.presets.record_units import SAMPLE
+from ident.run import USES
 from ident.words.engineering import quantity
 from ident.words.error import UNSTABLE, ErrorOf, first_line
 from ident.words.shown import Listing, Shown

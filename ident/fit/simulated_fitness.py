@@ -15,8 +15,8 @@ from ident.fit.fitness import STEP, Local, Steps, Worth, local
 from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.fit.space import Space
-from ident.matrix import Run, over_runs
 from ident.parallel import each
+from ident.run import Run, over_runs
 from ident.words.error import UNSTABLE
 
 Array = NDArray[np.float64]

@@ -25,9 +25,10 @@ from ident.fit.normal_matrices import NormalMatrices, first_state, normal_matric
 from ident.fit.products import add_block_products, completed
 from ident.fit.reduction import excited_band
 from ident.fit.settling import ROUNDS, Least, Settling, better
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
 from ident.parallel import cores, each
 from ident.presets import Preset
+from ident.run import Run
 from ident.simulation.equilibrium import equilibrium
 from ident.simulation.simulate import Simulation
 from ident.simulation.steps import Modes, steps_needed

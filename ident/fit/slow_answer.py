@@ -23,7 +23,7 @@ from ident.equations.equation import Equation
 from ident.fit.fitness import Fitness
 from ident.fit.result import Combination
 from ident.fit.uncertainty import DETERMINED, Covariance
-from ident.matrix import MOTIONS, Run
+from ident.run import MOTIONS, Run
 
 Array = NDArray[np.float64]
 NAME = "lag to a slow command"

@@ -15,9 +15,10 @@ from ident.fit.given import of_model
 from ident.fit.settings import Settings
 from ident.fit.typical import measured_by
 from ident.fit.typical import typical as sizes_of
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
 from ident.presets import Preset
 from ident.presets.convention import Convention, of_runs
+from ident.run import Run
 from ident.simulation.steps import FASTEST
 
 Array = NDArray[np.float64]

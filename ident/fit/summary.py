@@ -25,10 +25,10 @@ from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.slow_answer import slow_lag
 from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
-from ident.matrix import Run, over_runs
 from ident.noise.floor import Floors
 from ident.presets.preset import Combined
 from ident.presets.record_units import SAMPLE
+from ident.run import Run, over_runs
 from ident.simulation.steps import FASTEST, MOST
 from ident.words.error import UNSTABLE, error_said
 from ident.words.plus_minus import determined

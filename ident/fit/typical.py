@@ -7,7 +7,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ident.chain.conditions import conditions
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
+from ident.run import Run
 
 
 def typical(matrix: Matrix, runs: Sequence[Run], band: float) -> dict[str, float]:

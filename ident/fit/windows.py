@@ -24,8 +24,8 @@ from ident.fit.ends import End
 from ident.fit.levenberg_marquardt import STEPS
 from ident.fit.multistart import Optimum
 from ident.fit.simulated_fitness import SimulatedFitness
-from ident.matrix import Run
 from ident.progress import Progress, Report
+from ident.run import Run
 
 Array = NDArray[np.float64]
 _TIMES = (1.0, 3.0, 10.0)  # of the slowest time constant that does not integrate

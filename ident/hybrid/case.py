@@ -27,10 +27,10 @@ from numpy.typing import NDArray
 
 from ident.errors import Unusable
 from ident.hybrid.ground import Ground, ground_of
-from ident.matrix import Specimen
 from ident.readers.fields import Fields
 from ident.readers.loop_settings import loop_gain, sample_rate
 from ident.readers.strict_yaml import read_yaml
+from ident.run import Specimen
 from ident.units.quantity import quantity, shown, split
 from ident.words.nearest import did_you_mean
 

@@ -21,8 +21,9 @@ from ident.errors import Unusable
 from ident.fit.bulk_modulus import COMPRESSIBILITY
 from ident.fit.result import FitResult
 from ident.linear import LinearModel
-from ident.matrix import Actuator, Run, Specimen
+from ident.matrix import Actuator
 from ident.presets.preset import Preset
+from ident.run import Run, Specimen
 from ident.words.nearest import did_you_mean
 
 Array = NDArray[np.float64]

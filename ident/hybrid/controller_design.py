@@ -20,7 +20,7 @@ from ident.hybrid.robustness import (
     undetermined,
 )
 from ident.hybrid.target import QIAN2014_TARGET, Target
-from ident.matrix import Specimen
+from ident.run import Specimen
 from ident.words.shown import Listing, Shown
 
 LITTLE_MARGIN = 2.5

@@ -19,8 +19,9 @@ from ident.chain.conditions import conditions
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.inverse import Inverse
-from ident.matrix import Actuator, Run, Specimen
+from ident.matrix import Actuator
 from ident.presets.strano import STRANO
+from ident.run import Run, Specimen
 from ident.simulation.simulate import responses
 from ident.simulation.steps import fastest_mode, steps_needed
 

@@ -22,8 +22,9 @@ from ident.fit.settings import Settings
 from ident.hybrid import kalman
 from ident.hybrid.tracked_run import Track, track
 from ident.hybrid.tracking import Noise, Tracker
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
 from ident.progress import Progress, Report, silent
+from ident.run import Run
 
 NAME = "ekf"
 _MOST = 0.2  # of the output's deviation: as noise is taken what a loop that does not hold leaves

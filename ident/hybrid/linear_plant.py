@@ -15,8 +15,8 @@ from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.lags_as_states import with_states
 from ident.linear import LinearModel
-from ident.matrix import Specimen
 from ident.presets import Preset
+from ident.run import Specimen
 
 Array = NDArray[np.float64]
 OUTPUT = "displacement"

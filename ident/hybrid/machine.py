@@ -15,8 +15,9 @@ from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
-from ident.matrix import Actuator, Run
+from ident.matrix import Actuator
 from ident.presets import Preset
+from ident.run import Run
 from ident.simulation.steps import fastest_mode, steps_needed
 from ident.stages import MASS_SPRING_DAMPER, Quantity
 from ident.stages.stage import Stage, stage

@@ -10,7 +10,7 @@ from ident.hybrid.case import Case
 from ident.hybrid.controller import SampledController
 from ident.hybrid.machine import DISPLACEMENT, FORCE, Machine
 from ident.hybrid.substructure import numerical
-from ident.matrix import Specimen
+from ident.run import Specimen
 
 Array = NDArray[np.float64]
 _REAL = 1e-6  # imaginary part of a frequency, over its magnitude, up to which it is a crossing

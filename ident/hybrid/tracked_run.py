@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from ident.errors import Unusable
 from ident.hybrid.tracking import GAIN, TAU, Noise, Tracker
 from ident.hybrid.verdict import Verdict
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
+from ident.run import Run
 from ident.words.engineering import quantity
 from ident.words.nearest import did_you_mean
 from ident.words.number import plain, trimmed

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from ident.errors import Unusable
 from ident.hybrid import kalman
 from ident.hybrid.verdict import Verdict, verdict
-from ident.matrix import HOLDS
+from ident.run import HOLDS
 
 Array = NDArray[np.float64]
 Sample = tuple[float, float, float, float, float, float]

@@ -18,9 +18,10 @@ from ident.hybrid.fig_19 import said_of_fig_19
 from ident.hybrid.oil_column import PeakSearch, find_peak
 from ident.hybrid.peak_problem import PeakTarget
 from ident.hybrid.peaks import Peak, peaks
-from ident.matrix import Actuator, Specimen
+from ident.matrix import Actuator
 from ident.plain import written
 from ident.progress import Report, silent
+from ident.run import Specimen
 from ident.words.number import trimmed
 from ident.words.shown import Listing, Shown
 

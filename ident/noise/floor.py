@@ -12,11 +12,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.matrix import USES, Matrix, Run, over_runs
+from ident.matrix import Matrix
 from ident.noise.effective_sample_size import independent_samples
 from ident.noise.power_density import power_density
 from ident.noise.repeats import Repeat, repeated
 from ident.parallel import each
+from ident.run import USES, Run, over_runs
 
 Array = NDArray[np.float64]
 _CLEAR = 1.6  # times the band edge: beyond it a Hann window lets less than 1e-6 of the band's power through

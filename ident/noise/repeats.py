@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.beginning import ROUNDING
-from ident.matrix import BENCH, DISTURBANCES, MOTIONS, Run
+from ident.run import BENCH, DISTURBANCES, MOTIONS, Run
 
 Array = NDArray[np.float64]
 

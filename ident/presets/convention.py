@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from ident.matrix import Run
+from ident.run import Run
 
 _STEADY = 0.02  # of the mean: what varies by less does not vary
 Where = Literal["not shown", "not measured", "steady"]

@@ -9,8 +9,9 @@ import numpy as np
 
 from ident.chain.chain import Chain, integrates
 from ident.effects.effect import Effect
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
 from ident.parameter import Starts
+from ident.run import Run
 
 _AT_END = 0.01  # of the way: so near to its end
 _PUSHED = 0.1  # of the largest command: so much of it goes on towards the end

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
+from ident.run import Run
 
 _SURE = -0.1  # of the deviations: a spring or a mass alone takes no work in the mean, and noise neither
 

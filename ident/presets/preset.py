@@ -16,7 +16,7 @@ from ident.chain.varying import varying
 from ident.effects.effect import Effect
 from ident.equations.equation import Equation
 from ident.errors import Unusable
-from ident.matrix import DISTURBANCES, MOTIONS, Matrix
+from ident.matrix import Matrix
 from ident.parameter import Parameter
 from ident.presets.convention import Convention
 from ident.presets.effect_scales import scale_of
@@ -25,6 +25,7 @@ from ident.presets.neutral import from_neutral
 from ident.presets.passivity import passive
 from ident.presets.record_units import RecordUnits
 from ident.presets.stated import refuse_unstated
+from ident.run import DISTURBANCES, MOTIONS
 from ident.stages import MASS_SPRING_DAMPER, MEASURED_LOAD, OPENED_BY_COMMAND, Scale
 from ident.stages.scale import OF_THE_RUNS, in_reading_order
 from ident.words.nearest import did_you_mean

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from ident.matrix import MOTIONS, Run
+from ident.run import MOTIONS, Run
 from ident.units.grammar import Powers, powers_of
 
 _ANGLES = {"m": "rad", "N": "N*m", "kg": "kg*m^2"}

@@ -9,8 +9,8 @@ import numpy as np
 
 from ident.chain.disturbance import can_be_disturbed
 from ident.errors import Unusable
-from ident.matrix import BENCH, DISTURBANCES, MOTIONS, Run
 from ident.presets import PRESETS, Preset, preset
+from ident.run import BENCH, DISTURBANCES, MOTIONS, Run
 from ident.stages import OPENED_BY_COMMAND
 
 _OPEN, _UNLIKELY = 2, 5  # ranks: a command in open loop; a motion that something else may drive

@@ -9,7 +9,7 @@ from pathlib import Path, PurePosixPath
 from typing import Unpack
 
 from ident.errors import Unusable
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
 from ident.readers.archive import Archive
 from ident.readers.controldesk import read_controldesk
 from ident.readers.dat import read_dat
@@ -19,12 +19,15 @@ from ident.readers.limits import LIMITS, Limits, check_size
 from ident.readers.run import read_run
 from ident.readers.run_description import RunDescription
 from ident.readers.source import DESCRIPTION, Beside, Folder, Source, alone, beside
-from ident.readers.stated import of_file
-from ident.readers.still import still_apart
+from ident.readers.stated import from_arrays, from_table, of_file
 from ident.readers.table import Table
 from ident.readers.text import read_text
+from ident.responding import still_apart
+from ident.run import Run
 from ident.words.number import count
 from ident.words.stated import Stated
+
+__all__ = ["Limits", "from_arrays", "from_table", "read_matrix", "read_source"]
 
 Reader = Callable[[bytes, str, Limits], Table]
 

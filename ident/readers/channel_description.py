@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from ident.errors import Unusable
-from ident.matrix import CHANNELS, DISTURBANCES
 from ident.readers.fields import Fields
+from ident.run import CHANNELS, DISTURBANCES
 from ident.units.quantity import DIMENSIONS, Scale, parameter_value, shown, split, unit_scale
 
 PRESSURE, WAY, SPEED, FORCE = ("pressure",), ("length", "angle"), ("velocity", "angular velocity"), ("force", "torque")

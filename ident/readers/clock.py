@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ident.errors import Unusable
-from ident.matrix import Samples
+from ident.run import Samples
 
 STEP_OF_A_GAP = 1.5  # steps of the clock: nearer to two than to one
 UNEVEN = 0.05  # of a step, scatter of the steps: beyond, the clock is told by a busy computer

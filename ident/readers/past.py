@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from ident.errors import Unusable
-from ident.matrix import Run, Samples
 from ident.readers.clock import evened
 from ident.readers.run_description import RunDescription
 from ident.readers.table import Array
+from ident.run import Run, Samples
 
 
 def with_past(run: Run, raw: Mapping[str, Array], described: RunDescription, largest: float) -> Run:

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from ident.errors import Unusable
-from ident.matrix import Run, Samples
 from ident.readers.clock import evened, read_clock
 from ident.readers.past import with_past
 from ident.readers.run_description import RunDescription, TimeColumn
 from ident.readers.table import Array, Table, numeric
+from ident.run import Run, Samples
 from ident.units.quantity import Scale, shown
 
 SHORTEST = 8  # samples; below, not even the straight line of the clock and a mean leave anything to fit

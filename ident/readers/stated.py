@@ -9,7 +9,7 @@ import hashlib
 import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -64,8 +64,13 @@ def of_file(
     return _matrix(run, read(run), stated, parts)
 
 
-def of_arrays(arrays: Mapping[str, ArrayLike], stated: Mapping[str, Any]) -> Matrix:
-    """The matrix of one record in arrays (n,) by the name of their columns."""
+def from_arrays(arrays: Mapping[str, ArrayLike], **stated: Unpack[Stated]) -> Matrix:
+    """The matrix of one record: arrays (n,) by name, and what is known of them, in the words of matrix.yaml.
+
+    Units are always stated: ``from_arrays({"command": u, "displacement": x}, sample_rate="4096 Hz",
+    units={"command": "mm", "displacement": "mm"}, gain=7)``. Records of one actuator add up: ``first + second``.
+    Raises Unusable as reading a file does.
+    """
     columns = {name: np.asarray(values) for name, values in arrays.items()}
 
     def load(numbers: Sequence[int]) -> list[Array]:
@@ -79,8 +84,11 @@ def of_arrays(arrays: Mapping[str, ArrayLike], stated: Mapping[str, Any]) -> Mat
     return _matrix(described(stated, "arrays", "run"), Table(tuple(columns), load), stated)
 
 
-def of_table(table: Any, stated: Mapping[str, Any]) -> Matrix:
-    """The matrix of one record in a table that speaks ``__arrow_c_stream__``, as those of pandas, polars, pyarrow."""
+def from_table(table: Any, **stated: Unpack[Stated]) -> Matrix:
+    """The matrix of one record in a table that speaks ``__arrow_c_stream__``, as those of pandas, polars, pyarrow.
+
+    All else as :func:`from_arrays`.
+    """
     import pyarrow as pa  # noqa: PLC0415
 
     if not hasattr(table, "__arrow_c_stream__"):

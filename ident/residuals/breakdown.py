@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ident.comparison.compare import Comparison, RunComparison
 from ident.fit.reduction import excited_band
-from ident.matrix import Run
+from ident.run import Run
 from ident.words import conditions
 
 Array = NDArray[np.float64]

@@ -22,10 +22,10 @@ from numpy.typing import NDArray
 from ident.comparison.compare import Comparison, RunComparison
 from ident.errors import Unusable
 from ident.fit.reduction import excited_band
-from ident.matrix import Run
 from ident.noise.floor import noise_floors
 from ident.parallel import each
 from ident.residuals.decimation import averaged, stride
+from ident.run import Run
 from ident.words.percent import percent
 from ident.words.shown import Listing, Shown
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ident.fit.reduction import excited_band
 from ident.linear import LinearModel
-from ident.matrix import Run
+from ident.run import Run
 from ident.simulation.recursion import discretise
 
 Array = NDArray[np.float64]

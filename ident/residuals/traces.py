@@ -16,11 +16,12 @@ from ident.errors import Unusable
 from ident.fit.normal_matrices import first_state
 from ident.fit.simulated_runs import SimulatedRuns, every_run
 from ident.linear import LinearModel
-from ident.matrix import Actuator, Run
+from ident.matrix import Actuator
 from ident.parallel import each
 from ident.presets import Preset
 from ident.residuals.decimation import Response, averaged, stride
 from ident.residuals.views import View, injected, showing
+from ident.run import Run
 from ident.simulation.simulate import Simulation
 
 Array = NDArray[np.float64]

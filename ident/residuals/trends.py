@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.matrix import Run
 from ident.residuals.breakdown import stated_amplitude
 from ident.residuals.traces import Trace, Traces
+from ident.run import Run
 
 Array = NDArray[np.float64]
 _PERMUTATIONS = 1999

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ident.chain.chain import DISTURBANCE, FORCE, INPUT
 from ident.chain.channels import BESIDE_MEAN, means
 from ident.chain.varying import MEASURED_CONDITIONS, is_measured
-from ident.matrix import DISTURBANCES, Run
+from ident.run import DISTURBANCES, Run
 
 Array = NDArray[np.float64]
 _KEPT = 4  # of a run: a search has models that differ by their steps side by side

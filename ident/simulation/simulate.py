@@ -13,8 +13,8 @@ from ident.cached import cached_property
 from ident.chain.chain import INPUT, MEASURED, STEP, Chain
 from ident.chain.channels import READABLE
 from ident.equations.grammar import TIME
-from ident.matrix import Run
 from ident.parallel import cores, each
+from ident.run import Run
 from ident.simulation.filters import pack_filter
 from ident.simulation.inputs import fine, jump_share
 from ident.simulation.kernel import HELD, LANES, SHARE, WIDE, Kernel, constant, kernel

@@ -20,10 +20,11 @@ from ident.chain.chain import linear_model
 from ident.comparison.compare import modelled
 from ident.errors import Unusable
 from ident.fit.normal_matrices import output
-from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.matrix import Actuator, Matrix
 from ident.presets import PRESETS, Preset
 from ident.presets import preset as preset_called
 from ident.progress import Progress, Report, silent
+from ident.run import Run, Specimen
 
 Array = NDArray[np.float64]
 SAMPLE_RATE, BAND = 4096.0, 80.0  # Hz (Qian et al. 2014, section 3)

@@ -7,7 +7,8 @@ from functools import lru_cache
 
 from threadpoolctl import threadpool_limits
 
-from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.matrix import Actuator, Matrix
+from ident.run import Run, Specimen
 from tests.reference import qian_reference as reference
 
 NOISE = 0.005

@@ -12,8 +12,9 @@ import pytest
 from ident.comparison.compare import compare
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.matrix import Actuator, Matrix
 from ident.presets import PRESETS
+from ident.run import Run, Specimen
 from ident.words.percent import percent
 from ident.workflows import diagnose, identify
 from tests.conftest import FEW

@@ -10,8 +10,9 @@ import pytest
 from ident.comparison.compare import modelled
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Controller, Matrix, Run, Specimen
+from ident.matrix import Actuator, Controller, Matrix
 from ident.presets import PRESETS
+from ident.run import Run, Specimen
 from ident.workflows import identify
 from tests.bench import sets
 from tests.fit.recovery import matrix as with_hidden

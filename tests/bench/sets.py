@@ -13,7 +13,8 @@ from ident.bench import synthesis
 from ident.bench.model import Model
 from ident.bench.records import BenchSet, bench_set
 from ident.bench.speed_table import FRACTIONS, SpeedTable
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 from tests.reference import kononykhin_reference as reference
 
 

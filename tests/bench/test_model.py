@@ -16,9 +16,10 @@ from ident.equations.equation import Equation
 from ident.equations.interpolation import interpolated
 from ident.equations.mathml import mathml
 from ident.errors import Unusable
-from ident.matrix import Actuator, Run, Specimen
+from ident.matrix import Actuator
 from ident.presets import PRESETS, preset
 from ident.presets.kononykhin import KONONYKHIN
+from ident.run import Run, Specimen
 from ident.simulation.simulate import responses
 from ident.stages import IDEAL_SENSOR, Quantity
 from ident.stages.bench import node_names

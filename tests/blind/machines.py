@@ -12,7 +12,8 @@ import numpy as np
 
 from ident.effects import effect
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.matrix import Actuator, Matrix
+from ident.run import Run, Specimen
 from ident.workflows import identify
 from tests.reference import nonlinear_reference as reference
 from tests.reference import qian_reference as linear

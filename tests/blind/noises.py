@@ -9,7 +9,8 @@ import numpy as np
 import scipy.signal
 from numpy.typing import NDArray
 
-from ident.matrix import Matrix, Run
+from ident.matrix import Matrix
+from ident.run import Run
 
 Array = NDArray[np.float64]
 Noise = Callable[[np.random.Generator, Run, float], Array]

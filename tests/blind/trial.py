@@ -13,7 +13,8 @@ from ident.diagnosis.stepwise import USUAL
 from ident.effects import EFFECTS
 from ident.effects.effect import Effect
 from ident.fit.settings import Settings
-from ident.matrix import Matrix, Run, Specimen
+from ident.matrix import Matrix
+from ident.run import Run, Specimen
 from ident.workflows import diagnose, identify
 from tests.blind.machines import (
     OFFSET,

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from ident.chain.exact_lags import with_exact_lags
-from ident.matrix import Run
 from ident.presets import PRESETS, preset
+from ident.run import Run
 from ident.simulation.simulate import Simulation
 
 

@@ -9,7 +9,8 @@ import pytest
 from scipy import signal
 
 from ident.checks.check import check
-from ident.matrix import Actuator, Matrix, Run, Samples, Specimen
+from ident.matrix import Actuator, Matrix
+from ident.run import Run, Samples, Specimen
 
 RATE = 4096.0
 SECONDS = 2

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.signal import cont2discrete, lfilter
 
 from ident.matrix import Matrix
+from ident.readers import from_arrays
 
 Array = np.ndarray
 Rng = np.random.Generator
@@ -166,5 +167,5 @@ def measured(draw: Draw, seed: list[int]) -> Matrix:
     parts = []
     for use in ("fit", "verify"):
         columns, stated = draw(np.random.default_rng(seed), np.random.default_rng([*seed, 1 + (use == "verify")]))
-        parts.append(Matrix.from_arrays(columns, **stated, id=use, use=use, actuator={"serial": "SOUND"}))
+        parts.append(from_arrays(columns, **stated, id=use, use=use, actuator={"serial": "SOUND"}))
     return parts[0] + parts[1]

@@ -11,8 +11,9 @@ from scipy.signal import TransferFunction, lsim
 from ident.checks.check import check, describe
 from ident.checks.delay import Delay, delay, delays
 from ident.checks.response import respond
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
 from ident.readers import read_matrix
+from ident.run import Run
 
 from .conftest import SPECIMENS, displacement_of, noise_of
 

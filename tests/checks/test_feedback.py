@@ -13,8 +13,9 @@ from ident.checks.feedback import closed_loop, shares
 from ident.errors import Unusable
 from ident.fit import identification
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
 from ident.readers import read_matrix
+from ident.run import Run
 from ident.workflows import identify
 from tests.blind.any_machine import Lab
 

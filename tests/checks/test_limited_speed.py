@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from ident.checks.check import check
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 
 RATE, LIMIT, GAIN = 50.0, 1.5, 9.0  # Hz, rad/s, 1/s
 

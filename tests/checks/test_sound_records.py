@@ -11,7 +11,8 @@ import pytest
 from ident.checks.check import check
 from ident.checks.local_response import local_response
 from ident.checks.response import respond
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 
 from .sound_records import (
     KINDS,

@@ -15,8 +15,9 @@ from ident.drafts.draft import Draft
 from ident.drafts.raw import read_raw
 from ident.drafts.text import drafted, gathered
 from ident.fit.settings import Settings
-from ident.matrix import Matrix, Run, Specimen
+from ident.matrix import Matrix
 from ident.readers import read_matrix
+from ident.run import Run, Specimen
 from ident.synthesis.matrix import Simulation, simulate_matrix, simulated
 from ident.workflows import identify
 from tests.blind.any_machine import Lab

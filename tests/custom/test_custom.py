@@ -15,8 +15,9 @@ from ident.effects.effect import Effect
 from ident.equations.equation import Equation
 from ident.equations.grammar import parsed
 from ident.errors import Unusable
-from ident.matrix import Actuator, Run
+from ident.matrix import Actuator
 from ident.presets import PRESETS
+from ident.run import Run
 from ident.simulation.simulate import responses
 
 GOOD = {

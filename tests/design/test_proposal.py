@@ -23,8 +23,9 @@ from ident.fit.reduction import excited_band
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import search_space
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
 from ident.presets import Preset, preset
+from ident.run import Run
 from ident.workflows import identify
 from tests.fit.recovery import NOISE, matrix
 from tests.reference import nonlinear_reference as reference

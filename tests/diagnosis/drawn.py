@@ -16,7 +16,8 @@ import numpy as np
 from ident.diagnosis import family
 from ident.diagnosis.result import Diagnosis
 from ident.fit.settings import Settings
-from ident.matrix import Matrix, Specimen
+from ident.matrix import Matrix
+from ident.run import Specimen
 from ident.workflows import diagnose, identify, simulate
 from tests.bench.sets import as_matrix
 from tests.blind.any_machine import Lab

@@ -19,8 +19,8 @@ from ident.diagnosis.refit import carries_over, helps
 from ident.diagnosis.significance import improvement
 from ident.fit.fitness import Local, local
 from ident.fit.normal_matrices import NormalMatrices, normal_matrices_of
-from ident.matrix import Run
 from ident.noise.effective_sample_size import independent_samples
+from ident.run import Run
 
 N, BLOCKS = 512, 32
 

@@ -6,7 +6,8 @@ import numpy as np
 
 from ident.diagnosis.result import Diagnosis
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 from ident.workflows import diagnose, identify
 
 RATE, SPEED, WIDTH = 400.0, 30.0, 0.4

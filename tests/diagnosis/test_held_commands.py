@@ -7,7 +7,8 @@ import pytest
 
 from ident.diagnosis.family import ModelFamily
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 from ident.workflows import diagnose
 
 RATE, HELD, LAG = 100.0, 50, 4.0

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from ident.diagnosis.beginnings import lines
-from ident.matrix import Run
+from ident.run import Run
 
 SECONDS, BAND = 8.0, 2 * np.pi * 40.0  # rad/s
 

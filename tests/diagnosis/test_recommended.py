@@ -17,7 +17,8 @@ from ident.diagnosis.result import Diagnosis, Rung
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
-from ident.matrix import Matrix, over_runs
+from ident.matrix import Matrix
+from ident.run import over_runs
 from ident.workflows import identify
 from tests.diagnosis.drawn import BENCH, KINDS, diagnosed, matrix
 

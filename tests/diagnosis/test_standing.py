@@ -12,7 +12,7 @@ from ident.diagnosis.result import Diagnosis
 from ident.diagnosis.standing import contradiction, standing
 from ident.errors import Unusable
 from ident.fit.settings import Settings
-from ident.matrix import Run
+from ident.run import Run
 from ident.words.percent import percent
 from ident.workflows import diagnose
 from tests.presets.test_machines import motor

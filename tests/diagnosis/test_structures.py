@@ -15,7 +15,8 @@ from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.structures import _better, structures
 from ident.fit.result import FitResult, Structure
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 from ident.workflows import identify
 from tests.blind.any_machine import Lab, sound
 from tests.fit.test_windows import cylinder

@@ -16,7 +16,8 @@ from ident.diagnosis.standing import Contradiction
 from ident.diagnosis.words import proposed_text, verdict_text, why_of_gain
 from ident.effects import EFFECTS
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.matrix import Actuator, Matrix
+from ident.run import Run, Specimen
 
 
 def matrix(actuator: Actuator, **labels: object) -> Matrix:

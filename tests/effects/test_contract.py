@@ -11,9 +11,10 @@ import pytest
 from ident.chain.conditions import conditions
 from ident.effects import EFFECTS
 from ident.effects.effect import Effect
-from ident.matrix import Actuator, Run, Specimen
+from ident.matrix import Actuator
 from ident.parameter import Parameter
 from ident.presets import PRESETS, Preset, preset
+from ident.run import Run, Specimen
 from ident.simulation.recursion import discretise, respond
 from ident.simulation.simulate import responses
 from ident.simulation.steps import steps_needed

@@ -22,8 +22,9 @@ from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
-from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.matrix import Actuator, Matrix
 from ident.presets import PRESETS, preset
+from ident.run import Run, Specimen
 from ident.words.error import UNSTABLE
 from ident.workflows import identification, identify
 from tests.bench.sets import as_matrix

@@ -9,9 +9,10 @@ import pytest
 
 from ident.chain.conditions import conditions
 from ident.effects import EFFECTS
-from ident.matrix import Actuator, Run, Specimen
+from ident.matrix import Actuator
 from ident.parallel import each
 from ident.presets import preset
+from ident.run import Run, Specimen
 from ident.simulation.simulate import responses
 from tests.effects.test_contract import CELLS, PLANT, STICKS, command, strength
 from tests.reference import nonlinear_reference as reference

@@ -13,8 +13,8 @@ import pytest
 from ident.effects import EFFECTS
 from ident.export import ExportedMachine, as_header, exported
 from ident.fit.result import FitResult
-from ident.matrix import Run, Specimen
 from ident.presets import preset
+from ident.run import Run, Specimen
 from ident.simulation.simulate import responses
 
 FIT = Path(__file__).resolve().parents[1] / "stored" / "fit.json"

@@ -10,7 +10,7 @@ import pytest
 from ident.effects import EFFECTS
 from ident.errors import Unusable
 from ident.export import as_header, exported
-from ident.matrix import Specimen
+from ident.run import Specimen
 from tests.export.machines import RATE, command, compiled, compiler, fitted, largest_error, simulated, with_effects
 
 SMOOTH = ("pressure_flow", "loop_delay", "quadratic_damping", "cubic_stiffness", "sensor_lag", "valve_second_order")

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from ident.fit.result import Estimate, FitResult, Generation, RunError, Starts
-from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.matrix import Actuator, Matrix
+from ident.run import Run, Specimen
 from ident.words.error import ErrorOf
 
 SPECIMENS = ((0.0, 0.0), (0.87, 36.3e3), (2.1, 17.5e3), (4.25, 17.5e3), (4.25, 67.6e3), (8.5, 36.3e3), (10.2, 67.6e3))

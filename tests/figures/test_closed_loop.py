@@ -14,7 +14,7 @@ from ident.figures import MEDIA, look, render
 from ident.figures.closed_loop import closed_loop
 from ident.fit.result import FitResult
 from ident.hybrid.controller_design import design_controller
-from ident.matrix import Specimen
+from ident.run import Specimen
 
 FIT = Path(__file__).resolve().parents[1] / "stored" / "fit.json"
 

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 from tests.reference import strano_reference as reference
 
 GAIN = 60.0  # V/m

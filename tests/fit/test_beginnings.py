@@ -21,7 +21,8 @@ from ident.fit.settling import Least, better
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.simulated_runs import SimulatedRuns, every_run
 from ident.linear import LinearModel
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 from ident.simulation.steps import FASTEST
 from ident.workflows import compare, diagnose, identify
 from tests.rounding import perturbed_run

@@ -15,7 +15,8 @@ from ident.errors import Unusable
 from ident.fit.identification import Identification
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.matrix import Actuator, Matrix
+from ident.run import Run, Specimen
 from ident.workflows import identify
 from tests.fit.recovery import NOISE, matrix
 from tests.reference import drifting_reference, qian_reference

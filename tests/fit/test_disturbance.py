@@ -11,8 +11,9 @@ import yaml
 
 from ident.errors import Unusable
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
 from ident.readers import read_matrix
+from ident.run import Run
 from ident.workflows import compare, diagnose, identify
 
 RATE, MASS, DRAG, GAIN = 200.0, 12.0, 90.0, 40.0

@@ -10,7 +10,8 @@ from ident.fit import identification
 from ident.fit.anchoring import Anchoring, gains
 from ident.fit.result import Combination, FitResult
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 from ident.workflows import identify
 
 RATE, GAIN = 20.0, 2.0

@@ -14,9 +14,10 @@ from ident.fit.identification import Identification
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import search_space
-from ident.matrix import Matrix, Specimen
+from ident.matrix import Matrix
 from ident.parameter import Parameter
 from ident.presets import PRESETS
+from ident.run import Specimen
 from ident.workflows import compare, identify
 from tests.fit.recovery import NOISE, matrix
 

@@ -11,8 +11,9 @@ from ident.diagnosis.screening import predict
 from ident.effects import effect
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
 from ident.presets import preset
+from ident.run import Run
 from ident.workflows import compare, diagnose, identify
 
 RATE, GAIN, LAG = 100.0, 0.5, 0.08

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 from ident.workflows import identify
 from tests.reference import measured_load_reference as reference
 from tests.reference.qian_reference import Plant

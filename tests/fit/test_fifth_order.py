@@ -12,8 +12,9 @@ import pytest
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
 from ident.readers import read_matrix
+from ident.run import Run
 from ident.workflows import compare, identify
 from tests.fit import rig
 from tests.reference import strano_reference as reference

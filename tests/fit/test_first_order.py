@@ -8,7 +8,8 @@ from scipy.signal import lfilter
 
 from ident.fit import linear_fitness
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 from ident.workflows import identify
 from tests.reference.qian_reference import SAMPLE_RATE, band_limited_noise
 

@@ -11,8 +11,9 @@ import scipy.signal
 
 from ident.errors import Unusable
 from ident.fit.inverse_dynamics import UNITS, regress
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
 from ident.readers import read_matrix
+from ident.run import Run
 
 EMPS = Path(__file__).parents[3] / "shared" / "data" / "emps"
 PUBLISHED = {"mass": 95.0, "viscous": 203.0, "coulomb": 20.4, "offset": -3.2}

@@ -11,9 +11,10 @@ import pytest
 from ident.comparison.compare import compare, modelled
 from ident.errors import Unusable
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.matrix import Actuator, Matrix
 from ident.presets import PRESETS
 from ident.readers import read_matrix
+from ident.run import Run, Specimen
 from ident.workflows import identify
 from tests.reference import nonlinear_reference as reference
 from tests.reference import qian_reference as linear

@@ -8,8 +8,9 @@ import pytest
 from ident.fit.identification import Identification
 from ident.fit.modes import FOLLOWED, extreme, fastest
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Run, Specimen
+from ident.matrix import Actuator
 from ident.presets import preset
+from ident.run import Run, Specimen
 from ident.workflows import diagnose, identify
 from tests.blind.any_machine import Lab
 

@@ -12,9 +12,10 @@ import yaml
 from ident.checks.check import check
 from ident.errors import Unusable
 from ident.fit.settings import Settings
-from ident.matrix import Matrix, over_runs
+from ident.matrix import Matrix
 from ident.presets import PRESETS
 from ident.readers import read_matrix
+from ident.run import over_runs
 from ident.workflows import compare, diagnose, identify
 from tests.reference import nonlinear_reference as reference
 from tests.reference import qian_reference as linear

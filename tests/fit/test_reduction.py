@@ -9,8 +9,8 @@ import pytest
 import scipy.signal
 
 from ident.fit.reduction import Basis, reduced
-from ident.matrix import Run
 from ident.noise.power_density import power_density
+from ident.run import Run
 from ident.simulation.recursion import discretise, respond, responses
 
 RATE = 1000.0

@@ -8,7 +8,8 @@ import pytest
 from ident.fit.identification import Identification
 from ident.fit.settings import Settings
 from ident.fit.slow_answer import NAME, lags
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 from ident.workflows import identify
 
 RATE = 50.0

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
 from ident.presets.description import described
+from ident.run import Run
 from ident.workflows import diagnose, identify
 
 RATE, GAIN, LAG, DEAD = 100.0, 3.5, 0.3, 0.5

@@ -13,7 +13,8 @@ from ident.fit.levenberg_marquardt import Way
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.settings import Settings
 from ident.fit.windows import unforeseen
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 from ident.workflows import diagnose, identify
 
 RATE, GAIN, LAG = 20.0, 0.05, 0.15

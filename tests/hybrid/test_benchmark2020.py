@@ -18,7 +18,8 @@ from ident.hybrid.case import Case, benchmark2020
 from ident.hybrid.controller_design import design_controller
 from ident.hybrid.linear_plant import linear_plant
 from ident.hybrid.rig import simulate_hybrid
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 from ident.workflows import diagnose, identify
 from tests.hybrid.cases import el_centro, fitted
 from tests.reference import controlled_loop_reference as reference

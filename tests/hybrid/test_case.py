@@ -12,7 +12,7 @@ from ident.errors import Unusable
 from ident.hybrid.case import BUILT_IN, benchmark2020, case_of, modal_damping, qian, read_case
 from ident.hybrid.ground import GRAVITY, Ground, read_record
 from ident.hybrid.scores import delay, peak, rms, scores
-from ident.matrix import Specimen
+from ident.run import Specimen
 
 ONE = {
     "structure": {"mass": "87.5 kg", "stiffness": "87.5 kN/m", "damping": "3.5 kN*s/m"},

@@ -27,7 +27,8 @@ from ident.hybrid.feedforward import (
 )
 from ident.hybrid.followed import Followed
 from ident.hybrid.inverse import Inverse
-from ident.matrix import Actuator, Specimen
+from ident.matrix import Actuator
+from ident.run import Specimen
 from ident.workflows import identify
 from tests.fit import rig
 from tests.reference import strano_reference as reference

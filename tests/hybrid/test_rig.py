@@ -21,8 +21,8 @@ from ident.hybrid.perfect import perfect_machine
 from ident.hybrid.rig import simulate_hybrid, simulate_machine
 from ident.hybrid.share_map import share_map
 from ident.hybrid.stability import critical_delay
-from ident.matrix import Run, Specimen
 from ident.presets import preset
+from ident.run import Run, Specimen
 from ident.simulation.simulate import responses
 from tests.hybrid.cases import el_centro, fitted, noise, of_qian
 from tests.reference import hybrid_reference as reference

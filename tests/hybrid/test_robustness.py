@@ -13,7 +13,7 @@ from ident.fit.settings import Settings
 from ident.hybrid.controller_design import design_controller
 from ident.hybrid.draws import drawn_parameters
 from ident.hybrid.linear_plant import linear_plant
-from ident.matrix import Specimen
+from ident.run import Specimen
 from ident.workflows import identify
 from tests.acceptance.matrices import as_matrix, records_of
 from tests.hybrid.designs import RATE, decibel, degrees, matrices

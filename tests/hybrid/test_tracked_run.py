@@ -14,8 +14,9 @@ from ident.figures import look, render
 from ident.figures.tracking import tracking
 from ident.fit.settings import Settings
 from ident.hybrid.tracked_run import ROWS, sensor_noise, track
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
 from ident.readers import read_matrix
+from ident.run import Run
 from ident.workflows import identify
 from tests.reference import first_order_reference as reference
 from tests.reference import qian_reference

@@ -18,7 +18,8 @@ from ident.hybrid.changed_machine import Change, changed_machine
 from ident.hybrid.fig_19 import PRINTED
 from ident.hybrid.oil_column import AS_GOOD, find_peak
 from ident.hybrid.what_if import what_if
-from ident.matrix import Actuator, Specimen
+from ident.matrix import Actuator
+from ident.run import Specimen
 from tests.reference import oil_column_reference as reference
 
 UNITS = {"Z0": "m^4/s", "tau": "s", "Cl": "m^3/(s*Pa)", "c0": "N*s/m", "m0": "kg", "Ka": "m^3/Pa"}

@@ -17,7 +17,7 @@ ESTIMATION = (
              "a factor of 1.02 in what eq. (17) divides by, 1.01 in the error", _FITNESS),
     Mutation("mean-over-runs", "ident/fit/linear_fitness.py", "over_runs(by_run, self.runs)",
              "np.median(by_run, axis=0)", "eq. (17) averaged by the median", _FITNESS),
-    Mutation("exact-error", "ident/matrix.py", "np.sum(self.centred**2)",
+    Mutation("exact-error", "ident/run.py", "np.sum(self.centred**2)",
              "np.sum((self.measured - 0.99 * self.mean) ** 2)", "the record's mean left in its power",
              ("tests/acceptance/test_fitness.py", "tests/acceptance/test_identification.py")),
     Mutation("scatter-of-the-score", "ident/fit/fitness.py", "-w * term.scores for",

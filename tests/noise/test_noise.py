@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from ident.fit.reduction import excited_band
-from ident.matrix import Run
 from ident.noise.floor import noise_floors
 from ident.noise.repeats import repeated
+from ident.run import Run
 from tests.blind.machines import Machine
 from tests.blind.noises import with_noise
 from tests.reference import qian_reference as linear

@@ -11,9 +11,10 @@ from scipy.signal import butter, lfilter
 
 from ident.checks.check import check
 from ident.fit.reduction import excited_band
-from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.matrix import Actuator, Matrix
 from ident.noise.floor import noise_floors
 from ident.noise.repeats import MOST_SHIFT, recording_noise, repeated
+from ident.run import Run, Specimen
 
 RATE, LENGTH = 1000.0, 4000
 NOISE = 0.01  # of the output's standard deviation

@@ -14,12 +14,13 @@ from ident.comparison.compare import compare, modelled
 from ident.errors import Unusable
 from ident.fit.identification import Identification
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
 from ident.presets import PRESETS, preset
 from ident.presets.description import CHOICES, SHOWN, described
 from ident.presets.machine import machine
 from ident.presets.suited import in_question
 from ident.readers import read_matrix
+from ident.run import Run
 from ident.workflows import diagnose, identify
 
 RATE = 200.0

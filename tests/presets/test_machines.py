@@ -15,9 +15,10 @@ from ident.checks.check import check
 from ident.diagnosis.structures import chosen
 from ident.errors import Unusable
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
 from ident.presets.suited import in_question, suited
 from ident.readers import read_matrix
+from ident.run import Run
 from ident.workflows import compare, diagnose, identify
 
 RATE = 200.0

@@ -12,9 +12,9 @@ from ident.drafts.draft import Draft
 from ident.drafts.raw import RawFile, read_raw
 from ident.drafts.text import drafted, gathered
 from ident.errors import Unusable
-from ident.matrix import Run
 from ident.readers import read_matrix
 from ident.readers.column_names import channel_of
+from ident.run import Run
 from ident.units.quantity import si_scale
 from tests.readers.random_tables import Written, drawn
 

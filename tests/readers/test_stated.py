@@ -7,8 +7,7 @@ import pyarrow as pa
 import pytest
 
 from ident.errors import Unusable
-from ident.matrix import Matrix
-from ident.readers import read_matrix
+from ident.readers import from_arrays, from_table, read_matrix
 
 N = 64
 U, X = np.sin(np.arange(N)), np.sin(np.arange(N) - 0.5)
@@ -33,8 +32,8 @@ def test_file_arrays_and_table_of_one_record_are_one_run(file):
     read = [
         read_matrix(file, **stated),
         read_matrix(str(file), **stated),
-        Matrix.from_arrays(columns, **stated),
-        Matrix.from_table(pa.table(columns), **stated),
+        from_arrays(columns, **stated),
+        from_table(pa.table(columns), **stated),
     ]
     for matrix in read:
         (run,) = matrix.runs
@@ -54,10 +53,10 @@ class Stream:
 
 def test_whatever_speaks_arrow_is_a_table():
     table = pa.table({"command": U, "displacement": X})
-    matrix = Matrix.from_table(Stream(table), units=UNITS, sample_rate="1 kHz")
+    matrix = from_table(Stream(table), units=UNITS, sample_rate="1 kHz")
     np.testing.assert_array_equal(matrix.runs[0].command, 1e-3 * U)
     with pytest.raises(Unusable, match=r"dict does not speak __arrow_c_stream__.*from_arrays"):
-        Matrix.from_table({"command": U}, units=UNITS, sample_rate="1 kHz")
+        from_table({"command": U}, units=UNITS, sample_rate="1 kHz")
 
 
 @pytest.mark.parametrize(
@@ -81,7 +80,7 @@ def test_what_is_missing_or_wrong_is_said_with_its_remedy(file, stated, said):
 def test_an_array_of_two_dimensions_and_one_of_words_are_refused():
     for wrong, said in ((np.ones((N, 2)), "has the shape"), (np.array(["a"] * N), "not numbers")):
         with pytest.raises(Unusable, match=said):
-            Matrix.from_arrays({"command": wrong, "displacement": X}, units=UNITS, sample_rate="1 kHz")
+            from_arrays({"command": wrong, "displacement": X}, units=UNITS, sample_rate="1 kHz")
 
 
 def test_records_of_one_actuator_add_up(file):

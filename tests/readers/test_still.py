@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ident.matrix import Matrix, Run
-from ident.readers import read_matrix
-from ident.readers.still import still_apart
+from ident.readers import from_arrays, read_matrix
+from ident.responding import still_apart
+from ident.run import Run
 from ident.workflows import compare, identify
 
 RATE = 100.0
@@ -88,9 +88,7 @@ def test_a_run_below_the_dead_zone_spoils_no_error(tmp_path):
 
 def test_records_that_are_added_up_are_told_apart_alike():
     made = [
-        Matrix.from_arrays(
-            dict(one.channels), sample_rate="100 Hz", units={"command": "V", "displacement": "m"}, id=one.id
-        )
+        from_arrays(dict(one.channels), sample_rate="100 Hz", units={"command": "V", "displacement": "m"}, id=one.id)
         for one in (run("a", 1.0), run("b", 0.9), run("c", 0.004))
     ]
     whole = made[0] + made[1] + made[2]

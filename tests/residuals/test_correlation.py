@@ -7,8 +7,8 @@ import pytest
 
 from ident.comparison.compare import RunComparison
 from ident.errors import Unusable
-from ident.matrix import Run
 from ident.residuals.correlation import correlation
+from ident.run import Run
 
 N, LAGS = 2000, 20
 

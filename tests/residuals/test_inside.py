@@ -7,9 +7,10 @@ import pytest
 import scipy.signal
 
 from ident.fit.simulated_runs import every_run
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
 from ident.presets import preset
 from ident.residuals.traces import inside
+from ident.run import Run
 
 RATE = 50.0
 VALUES = {"m0": 1.0, "Z0": 1.7, "c0": 4.0, "Ka": 0.011, "Cl": 0.016}

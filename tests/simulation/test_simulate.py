@@ -15,8 +15,9 @@ from ident.chain.conditions import conditions
 from ident.fit import simulated_runs
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import Space
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
 from ident.presets import Preset, preset
+from ident.run import Run
 from ident.simulation.kernel import Kernel
 from ident.simulation.simulate import Simulation
 from tests.reference import measured_load_reference as reference

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from ident.chain.conditions import conditions
-from ident.matrix import Actuator, Run, Specimen
+from ident.matrix import Actuator
 from ident.presets import preset
+from ident.run import Run, Specimen
 from ident.simulation.simulate import Simulation
 from ident.simulation.steps import MOST, steps_needed
 from tests.reference import qian_reference as linear

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ident.diagnosis.proposals.columns import WIDE
 from ident.diagnosis.significance import WORTHWHILE
 from ident.fit.windows import unforeseen
-from ident.matrix import Run
+from ident.run import Run
 
 Array = NDArray[np.float64]
 _SMOOTH = 16  # frequencies that are averaged

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from ident.diagnosis.proposals.proposal import Errors, Proposal
 from ident.diagnosis.refit import Refit
 from ident.diagnosis.standing import contradiction
-from ident.matrix import Run
+from ident.run import Run
 from ident.words.error import error_said
 from ident.words.titles import title
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ident.chain.channels import READABLE, unmeasured
 from ident.diagnosis.family import ModelFamily
-from ident.matrix import MOTIONS, Run
+from ident.run import MOTIONS, Run
 
 _SURROUNDS = ("supply_pressure", "vertical_load", "temperature")
 _FORCES = ("force", "drive_force")

@@ -14,12 +14,13 @@ from ident.diagnosis.proposals.recorded import of_run
 from ident.diagnosis.refit import Refit
 from ident.fit.anchoring import Anchoring
 from ident.fit.responses import Sensitivities
-from ident.matrix import Actuator, Run
+from ident.matrix import Actuator
 from ident.parallel import each
 from ident.presets import Preset
 from ident.residuals.decimation import Response, averaged, stride
 from ident.residuals.traces import inside
 from ident.residuals.views import injected
+from ident.run import Run
 
 Array = NDArray[np.float64]
 _MOST = 60_000  # coarse samples of all runs together: records are cut to their beginnings

@@ -34,9 +34,9 @@ from ident.diagnosis.ties import first_least, in_order
 from ident.equations.mathml import mathml
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.levenberg_marquardt import Way
-from ident.matrix import Run, over_runs
 from ident.parallel import each
 from ident.progress import Progress, Report
+from ident.run import Run, over_runs
 
 Array = NDArray[np.float64]
 MOST = 3  # terms

@@ -21,10 +21,11 @@ from ident.errors import Unusable
 from ident.fit.anchoring import Anchoring
 from ident.fit.settings import Settings
 from ident.fit.simulated_runs import every_run
-from ident.matrix import Actuator, Matrix, Run, Specimen
+from ident.matrix import Actuator, Matrix
 from ident.presets import PRESETS, preset
 from ident.presets.description import described
 from ident.presets.machine import machine
+from ident.run import Run, Specimen
 
 Array = NDArray[np.float64]
 RATE, SAMPLES = 200.0, 100

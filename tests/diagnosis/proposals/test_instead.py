@@ -14,7 +14,7 @@ from ident.diagnosis.refit import Refit
 from ident.diagnosis.result import Verdict
 from ident.diagnosis.standing import Contradiction
 from ident.diagnosis.words import proposed_text, told_needless
-from ident.matrix import Run
+from ident.run import Run
 
 TIMES = np.arange(2000) / 1000.0
 

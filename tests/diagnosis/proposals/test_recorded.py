@@ -17,7 +17,8 @@ from ident.diagnosis.proposals.recorded import recorded_beside
 from ident.diagnosis.result import Diagnosis
 from ident.fit.identification import Identification
 from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 from ident.workflows import diagnose, identify
 
 RATE, DAMPING, LEAST, BY_PRESSURE, NOISE = 100.0, 300.0, 2.0, 1e-5, 0.05

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ident.matrix import BENCH, STILL, Run
+from ident.run import BENCH, STILL, Run
 from ident.words.percent import percent
 
 _STILL = 0.02  # of the typical standard deviation of the output

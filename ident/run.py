@@ -1,0 +1,225 @@
+"""One measured record in SI: its samples by channel, what was set when it was taken, and what it is used for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ident.beginning import ROUNDING, Beginning, beginning, standing_for
+from ident.cached import cached_property
+from ident.words.shown import Listing, Shown
+
+Samples = NDArray[np.float64]
+
+KINDS = (
+    "blwn", "sweep", "sine", "multisine", "static", "frequency", "speed-levels", "speed-continuous", "other",
+)  # fmt: skip
+BENCH = ("static", "frequency", "speed-levels", "speed-continuous")
+"""Kinds of records of a bench, whose input is a current."""
+HOLDS = ("linear", "zoh")
+USES, STILL = ("fit", "verify"), "still"
+MOTIONS = ("displacement", "velocity")
+"""Channels that may be imposed on a machine that answers with a force, such as a damper."""
+CHANNELS = (
+    "command", "displacement", "velocity", "force", "drive_force", "load_pressure", "pressure_a", "pressure_b",
+    "supply_pressure", "vertical_load", "spool", "current", "temperature",
+)  # fmt: skip
+DISTURBANCES = {"flow_disturbance": "flow", "load_disturbance": "load", "sensor_disturbance": "sensor"}
+"""What acts on a machine beside its command, measured: the channel, and the place where it adds."""
+
+
+@dataclass(frozen=True)
+class Specimen:
+    """What the actuator moves: mass mL in kg, stiffness k in N/m, damping cL in N·s/m."""
+
+    mass: float = 0.0
+    stiffness: float = 0.0
+    damping: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Run(Shown):
+    """One measured record in SI (or in the record's own units where the matrix says ``1``).
+
+    `channels` maps a channel's name to its samples, all of one length; `sample_rate` is in Hz, or in 1/sample where
+    `time_unit` is "sample". `units` holds the SI unit of each channel ("m", "N", "Pa", or "1"). Of a record with many
+    outputs each is a run of its own, called ``record.output``: `record` is the id that all of them came under, and
+    `share` what each counts in a mean over runs.
+    """
+
+    id: str
+    file: str
+    sample_rate: float
+    channels: Mapping[str, Samples]
+    units: Mapping[str, str] = field(default_factory=dict)
+    time_unit: str = "s"
+    specimen: Specimen | None = None
+    gain: float | None = None
+    amplitude: float | None = None
+    kind: str = "other"
+    hold: str = "linear"
+    output: str = "displacement"
+    use: str = "fit"
+    position_range: tuple[float, float] | None = None
+    frequency: float | None = None
+    rated_current: float | None = None
+    clock_jitter: float = 0.0  # largest deviation of the time column from an even clock, in samples
+    gaps: int = 0  # samples missing from the time column
+    evened: bool = False  # brought from the uneven clock of its time column to an even one
+    past: Samples | None = None  # the command up to the first sample, where the record is cut out of a longer file
+    record: str = ""
+    share: float = 1.0
+    closed_loop: bool | None = None  # whether a controller made the command of the output; None: nobody said
+
+    @property
+    def command(self) -> Samples:
+        """The command u (m), shape (n,)."""
+        return self.channels["command"]
+
+    @cached_property
+    def stepped(self) -> bool:
+        """Whether the command is held from the first sample to the last: a step from nothing, before the record."""
+        return bool(np.ptp(self.command) <= ROUNDING * np.abs(self.command).max())
+
+    @cached_property
+    def dwell(self) -> float:
+        """The lower quartile of the times between changes of the command, s; 0 of one that changes less than thrice."""
+        changes = np.flatnonzero(np.abs(np.diff(self.command)) > ROUNDING * np.abs(self.command).max())
+        return float(np.quantile(np.diff(changes), 0.25)) / self.sample_rate if len(changes) > 2 else 0.0
+
+    @cached_property
+    def drive(self) -> float:
+        """The size of the command: its standard deviation, of a step its height."""
+        return abs(float(self.command[0])) if self.stepped else float(np.std(self.command))
+
+    @property
+    def measured(self) -> Samples:
+        """The channel that a model must reproduce, shape (n,)."""
+        return self.channels[self.output]
+
+    @property
+    def length(self) -> int:
+        """Number of samples n."""
+        return len(self.measured)
+
+    @property
+    def duration(self) -> float:
+        """Length of the record in s (or in samples)."""
+        return self.length / self.sample_rate
+
+    @property
+    def Kp(self) -> float:
+        """The loop gain; 1 where the matrix states none."""
+        return 1.0 if self.gain is None else self.gain
+
+    def listings(self) -> Sequence[Listing | str]:
+        """What was recorded, a row a channel: between which values it lies, in its SI unit."""
+        rows = [
+            (name, *(f"{of(samples):.4g}" for of in (np.min, np.max, np.std)), self.units.get(name, "?"))
+            for name, samples in self.channels.items()
+        ]
+        numbers = ("least", "largest", "std")
+        title = f"Run {self.id}: {self.use}, {self.kind}, {self.duration:.4g} {self.time_unit}, {self.length} samples"
+        return [Listing(title, ("channel", *numbers, "unit"), rows, numbers)]
+
+    def of_outputs(self, outputs: Sequence[str]) -> tuple[Run, ...]:
+        """The run for each of several outputs; itself where it has one."""
+        if len(outputs) == 1:
+            return (self,)
+        share = 1.0 / len(outputs)
+        return tuple(
+            replace(self, id=output_id(self.id, name), output=name, record=self.id, share=share) for name in outputs
+        )
+
+    def driven_by(self, channel: str) -> Run:
+        """The run with a channel in the place of its command; unchanged where it has none of that name.
+
+        A speed that was not recorded is the rate of the position.
+        """
+        samples = self.channels.get(channel)
+        if samples is None and channel == "velocity" and "displacement" in self.channels:
+            samples = np.gradient(self.channels["displacement"]) * self.sample_rate
+        return self if samples is None else replace(self, channels={**self.channels, "command": samples}, past=None)
+
+    @cached_property
+    def motion(self) -> float:
+        """The standard deviation of the position, m: as recorded, else of the integral of the speed without its drift.
+
+        Of a run that records neither it is that of its output.
+        """
+        if "displacement" in self.channels:
+            return float(np.std(self.channels["displacement"]))
+        if "velocity" not in self.channels:
+            return float(np.std(self.measured))
+        way = np.cumsum(self.channels["velocity"]) / self.sample_rate
+        k = np.arange(len(way))
+        return float(np.std(way - np.polyval(np.polyfit(k, way, 1), k)))
+
+    def turned(self, channel: str) -> Run:
+        """The run with the sign of a channel turned."""
+        past = -self.past if channel == "command" and self.past is not None else self.past
+        return replace(self, channels={**self.channels, channel: -self.channels[channel]}, past=past)
+
+    def part(self, first: int, last: int) -> Run:
+        """The samples first to last − 1 as a run of their own, whose past is what was commanded before."""
+        past = self.past
+        if first and "command" in self.channels:
+            before = self.command[:first]
+            past = before if past is None else np.concatenate([past, before])
+        return replace(self, channels={name: samples[first:last] for name, samples in self.channels.items()}, past=past)
+
+    @cached_property
+    def begins(self) -> Beginning:
+        """How the measured output begins: a model may start at rest, in its equilibrium, or in a state to be found."""
+        command = self.channels.get("command")
+        return beginning(self._shown_by, command, self.sample_rate, command is not None and self.stepped)
+
+    @property
+    def stands(self) -> int:
+        """For how many samples the command is held first while the output stands; 0 where it is not, or moves."""
+        return standing_for(self._shown_by, self.channels.get("command"), self.sample_rate)
+
+    @property
+    def _shown_by(self) -> Samples:
+        """The channel by which the beginning is told: of many outputs the position, where it was recorded."""
+        return self.channels.get("displacement", self.measured) if self.record else self.measured
+
+    @cached_property
+    def mean(self) -> float:
+        """The mean of what a model must reproduce."""
+        return float(self.measured.mean())
+
+    @cached_property
+    def centred(self) -> Samples:
+        """What a model must reproduce less its mean, which eq. (17) does not see, (n,)."""
+        return self.measured - self.mean
+
+    @cached_property
+    def power(self) -> float:
+        """Σ (x_m − mean)²: what a model that explains nothing leaves."""
+        return float(np.sum(self.centred**2))
+
+
+def output_id(record: str, output: str) -> str:
+    """The id of one of several outputs of a record."""
+    return f"{record}.{output}"
+
+
+class Shared(Protocol):
+    """A run, or what is known of one."""
+
+    @property
+    def share(self) -> float:
+        """What it counts in a mean over runs."""
+        ...
+
+
+def over_runs(values: ArrayLike, runs: Sequence[Shared]) -> Samples:
+    """The mean over outputs, then over runs, along the first axis: each output counts as its share of a run."""
+    found, shares = np.asarray(values, dtype=np.float64), [run.share for run in runs]
+    alike = all(share == shares[0] for share in shares)
+    return np.asarray(found.mean(axis=0) if alike else np.average(found, axis=0, weights=shares))
