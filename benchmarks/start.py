@@ -18,7 +18,8 @@ import numba, numpy, scipy.linalg
 begun = time.perf_counter()
 from ident.chain.conditions import conditions
 from ident.effects import EFFECTS
-from ident.matrix import Actuator, Run, Specimen
+from ident.matrix import Actuator
+from ident.run import Run, Specimen
 from ident.presets import preset
 from ident.simulation.simulate import responses
 imported = time.perf_counter()

@@ -13,7 +13,7 @@ from app.fits.history import read, taken_apart
 from app.storage import Storage
 from app.tables import EvolutionRow, FitRow, JobRow, MatrixRow, SetRow, ValueRow
 from ident.fit.result import FitResult
-from ident.matrix import USES
+from ident.run import USES
 
 
 def fit(session: Session, fit_id: str) -> FitRow | None:

@@ -21,7 +21,7 @@ from app.database import MIGRATIONS, connect, sessions
 from app.fits.repository import add_fit
 from app.tables import ActuatorRow, ApprovalRow, FitRow, JobRow, MatrixRow, SetRow
 from ident.fit.result import FitResult
-from ident.matrix import USES
+from ident.run import USES
 from ident.words.error import ErrorOf
 from tests.conftest import ROOT
 from tests.running_postgresql import MISSING, SERVERS, postgresql

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.matrix import Actuator, Matrix, Run
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 
 Array = NDArray[np.float64]
 FINE = 64  # steps a sample

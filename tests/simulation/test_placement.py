@@ -15,7 +15,8 @@ import itertools
 import numpy as np
 from ident.chain.conditions import conditions
 from ident.linear import LinearModel
-from ident.matrix import Actuator, Run, Specimen
+from ident.matrix import Actuator
+from ident.run import Run, Specimen
 from ident.presets import PRESETS, preset
 from ident.simulation.recursion import LANES, advance, discretise
 from ident.simulation.simulate import Simulation
