@@ -51,14 +51,14 @@ SCREENING = """
 import json, os, time
 if hasattr(os, "sched_setaffinity"):
     os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
-from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.screening import predict
 from ident.fit.settings import Settings
 from ident.simulation.simulate import Simulation
 from tests.blind.machines import Machine
 from tests.reference.qian_reference import Plant
 
-models = ModelFamily.of(Machine(Plant(), {"dead_zone": 1e-4}, 0.01, seed=1).measured(), Settings())
+models = CandidateModels.of(Machine(Plant(), {"dead_zone": 1e-4}, 0.01, seed=1).measured(), Settings())
 base = models.refit((), {one.in_equations: one.value for one in models.preset.parameters})
 counted, outputs = [0], Simulation.outputs
 

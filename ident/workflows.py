@@ -21,12 +21,12 @@ from ident.custom.definition import preset_with, read_effect
 from ident.design import proposal as design
 from ident.design.experiment import Experiment
 from ident.diagnosis import diagnose as diagnosis
-from ident.diagnosis.course import Course
+from ident.diagnosis.budget import SearchBudget
+from ident.diagnosis.competing_models import competing_models
 from ident.diagnosis.recommended import settings_after
 from ident.diagnosis.result import Diagnosis
-from ident.diagnosis.rivals import rivals
-from ident.diagnosis.stepwise import MOST, USUAL
-from ident.diagnosis.structures import ChosenFit, Made, chosen
+from ident.diagnosis.selection import MOST, USUAL
+from ident.diagnosis.structure_selection import CompletedFit, FitWithAlternatives, choose_structure
 from ident.diagnosis.unfitted import unfitted
 from ident.effects.effect import Effect
 from ident.errors import TimeIsUp, Unusable
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from ident.figures import AltairChart, Study
 
 Fitter = Callable[[Matrix, Settings, Report], StepwiseFit]
-Diagnoser = Callable[[Matrix, FitResult, Sequence[Effect], Course], Diagnosis]
+Diagnoser = Callable[[Matrix, FitResult, Sequence[Effect], SearchBudget], Diagnosis]
 
 
 @dataclass(frozen=True)
@@ -92,10 +92,12 @@ def identification(matrix: Matrix, settings: Settings, report: Report = silent) 
     """
     check_settings(settings)
     if not settings.model:
-        choice = chosen(matrix, report)
+        choice = choose_structure(matrix, report)
         named = replace(settings, model=choice.structures[0].machine)
         made = choice.made(named)
-        return ChosenFit(Made(made) if made else identification(choice.matrix, named, report), choice.structures)
+        return FitWithAlternatives(
+            CompletedFit(made) if made else identification(choice.matrix, named, report), choice.structures
+        )
     served = _served(settings.model)
     if settings.start is not None:
         return served.continued(matrix, settings, report)
@@ -176,7 +178,7 @@ def diagnose(
     if seconds is not None and not seconds > 0:
         raise Unusable("bad-option", f"{seconds:g} s", "time", "give the seconds that it may take")
     budget = budget or TimeBudget(seconds)
-    course = Course(most, budget, report, found, propose=propose)
+    course = SearchBudget(most, budget, report, found, propose=propose)
     try:
         with budget.running():
             fit = fit or identify(matrix, settings, report)
@@ -212,7 +214,7 @@ def next_run(found: Diagnosis, matrix: Matrix | None = None, seed: int = 0) -> E
     if matrix is None:
         raise Unusable("no-data", "the diagnosis does not hold the data that it was made of", "next run",
                        "give matrix=read_matrix(…)")  # fmt: skip
-    return design.propose(rivals(found), matrix, seed)
+    return design.propose(competing_models(found), matrix, seed)
 
 
 def simulate(

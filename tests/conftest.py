@@ -33,15 +33,15 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 LONGEST = (
     "diagnosis/test_diagnose", "bench/test_procedures", "bench/test_recovery", "bench/test_calibration",
     "browser/test_workbench", "browser/test_linked", "browser/test_pages",
-    "diagnosis/proposals/test_free_curves", "test_project", "faults/test_workers", "cli/test_postgresql",
+    "diagnosis/discovery/test_free_curves", "test_project", "faults/test_workers", "cli/test_postgresql",
     "app/test_hybrid", "app/test_own_effects", "test_site", "app/test_contract", "fit/test_fifth_order",
     "app/test_older_database", "cli/test_service_commands", "test_wheel", "test_windows", "test_additions",
-    "bench/test_diagnosis", "bench/test_acceptance", "bench/test_continued", "diagnosis/test_late",
+    "bench/test_diagnosis", "bench/test_acceptance", "bench/test_continued", "diagnosis/test_total_delay",
     "diagnosis/test_time_budget", "test_readme", "app/test_adding", "readers/test_random_tables",
-    "effects/test_every_pair", "acceptance/test_any_lab", "presets/test_composed", "diagnosis/test_structures",
+    "effects/test_every_pair", "acceptance/test_any_lab", "presets/test_composed", "diagnosis/test_structure_selection",
     "browser/test_proposals", "browser/test_matrix_page", "diagnosis/test_far_starts", "fit/test_disturbance",
     "fit/test_beginnings", "cli/test_any_machine", "presets/test_machines", "app/test_diagnoses",
-    "diagnosis/test_measured", "diagnosis/proposals/test_search", "cli/test_diagnose",
+    "diagnosis/test_measured", "diagnosis/discovery/test_search", "cli/test_diagnose",
     "acceptance/test_identification", "bench/test_model", "effects/test_contract", "app/test_bench",
     "bench/test_figures", "cli/test_commands", "fit/test_recovery", "bench/test_identification",
     "residuals/test_curves", "faults/test_kill", "fit/test_nonlinear_core", "fit/test_outputs",
@@ -120,10 +120,12 @@ def few_effects(full: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     For a chain or an output of one test alone, the kernels of the whole catalogue take half a minute to compile.
     """
     if not full:
-        from ident.diagnosis import family
+        from ident.diagnosis import candidate_models
 
-        monkeypatch.setattr(family, "CATALOGUE", tuple(effect for effect in family.CATALOGUE if effect.name in FEW))
-        assert len(family.CATALOGUE) == len(FEW)
+        monkeypatch.setattr(
+            candidate_models, "CATALOGUE", tuple(effect for effect in candidate_models.CATALOGUE if effect.name in FEW)
+        )
+        assert len(candidate_models.CATALOGUE) == len(FEW)
 
 
 @pytest.fixture(scope="session")

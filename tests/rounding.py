@@ -62,10 +62,10 @@ def rounded_otherwise() -> Iterator[None]:
 
 def _move_all(patch: pytest.MonkeyPatch, seed: int) -> None:
     from ident.bench import records
-    from ident.diagnosis.family import ModelFamily
+    from ident.diagnosis.candidate_models import CandidateModels
     from ident.fit.identification import Identification
 
-    make, begin, of = records._record, Identification.__init__, ModelFamily.of.__func__
+    make, begin, of = records._record, Identification.__init__, CandidateModels.of.__func__
 
     def of_moved(cls: Any, matrix: Matrix, *rest: Any, **named: Any) -> Any:
         return of(cls, perturbed(matrix, seed), *rest, **named)
@@ -75,7 +75,7 @@ def _move_all(patch: pytest.MonkeyPatch, seed: int) -> None:
 
     patch.setattr(records, "_record", lambda run, rated: make(perturbed_run(run, seed), rated))
     patch.setattr(Identification, "__init__", begin_moved)
-    patch.setattr(ModelFamily, "of", classmethod(of_moved))
+    patch.setattr(CandidateModels, "of", classmethod(of_moved))
 
 
 if __name__ == "__main__":

@@ -16,19 +16,19 @@ from ident import responding
 from ident.bench import acceptance, time_constant
 from ident.diagnosis import (
     candidate,
+    candidate_models,
     cross_validation,
-    family,
+    fitted_model,
     ranking,
-    refit,
     screening,
+    selection,
     significance,
-    standing,
-    stepwise,
-    structures,
-    ties,
+    structure_selection,
+    tie_breaking,
+    verification,
 )
-from ident.diagnosis.proposals import candidate as proposed
-from ident.diagnosis.proposals import free_curves, regression, search
+from ident.diagnosis.discovery import free_curves, regression, search
+from ident.diagnosis.discovery import term_candidate as proposed
 from ident.effects import EFFECTS
 from ident.fit import genetic, windows
 from ident.fit.search import Search
@@ -102,22 +102,30 @@ def of_diagnosis() -> Iterator[Tie]:
     yield D, "all {} effects in about a second", (len(EFFECTS),)
     yield D, "The first {} are told at once", (word(ranking._SIGHT),)
     yield D, "at {} strengths over its range", (word(len(screening._LADDER)),)
-    yield D, "leaves more than {} times what that promises is no result", (plain(refit._FOLLOWED),)
+    yield D, "leaves more than {} times what that promises is no result", (plain(fitted_model._FOLLOWED),)
     yield D, "takes at least {} per cent off the error of the fitted records", (word(100 * significance.WORTHWHILE),)
     yield D, "{} of it on held-out chunks, too", (PARTS[significance._HELD],)
-    yield D, "the {} that promised most are begun anew from {} points", (word(stepwise._SCATTERED), family._SCATTERED)
-    yield D, "The {} best points of each take three steps", (word(family._LEADING),)
+    yield (
+        D,
+        "the {} that promised most are begun anew from {} points",
+        (word(selection._SCATTERED), candidate_models._SCATTERED),
+    )
+    yield D, "The {} best points of each take three steps", (word(candidate_models._LEADING),)
     yield D, "differ by less than {} standard errors, and whose outputs", (word(significance.ALIKE),)
     yield D, "white noise could not tell apart by {}, are its group", (word(significance.ALIKE),)
     yield D, "beside the best stands what takes {} of what it takes", (PARTS[candidate._AS_MUCH],)
     yield D, "no more than {} of the unexplained rest", (PARTS[candidate._OF_REST],)
-    yield D, "Then {} others of the first ranking, two at a time", (word(stepwise._PAIRED),)
-    yield D, "If the error stays more than {} % above the noise floor", (per_cent(family._AT_FLOOR),)
-    yield D, "rises with an effect by more than {} of its standard errors", (word(standing._SURE),)
-    yield D, "a bootstrap over chunks of {} correlation times", (word(standing._MEMORY),)
-    yield D, "What differs by less than {} % of an error is a tie", (per_cent(ties.TIE),)
-    yield D, "whose errors differ by less than {} %, since one in a flat valley", (beyond(ties.AS_GOOD),)
-    yield D, "But one that leaves {} more than another, beyond chance, of whole", (PARTS[refit._OUTDONE],)
+    yield D, "Then {} others of the first ranking, two at a time", (word(selection._PAIRED),)
+    yield D, "If the error stays more than {} % above the noise floor", (per_cent(candidate_models._AT_FLOOR),)
+    yield D, "rises with an effect by more than {} of its standard errors", (word(verification._SURE),)
+    yield D, "a bootstrap over chunks of {} correlation times", (word(verification._MEMORY),)
+    yield D, "What differs by less than {} % of an error is a tie", (per_cent(tie_breaking.RELATIVE_TOLERANCE),)
+    yield (
+        D,
+        "whose errors differ by less than {} %, since one in a flat valley",
+        (beyond(tie_breaking.PRACTICALLY_EQUAL),),
+    )
+    yield D, "But one that leaves {} more than another, beyond chance, of whole", (PARTS[fitted_model._OUTDONE],)
     yield D, "Terms that explain the same (cosine above {})", (plain(regression.ALIKE),)
     yield D, "the best {} classes and {} pairs", (word(proposed._TRIED), word(proposed._PAIRS))
     yield D, "the leading {}, with {} that have no shapes", (word(search._MOST_CLOSE), word(search._PLAIN))
@@ -141,7 +149,7 @@ def of_diagnosis() -> Iterator[Tie]:
 
 def of_others() -> Iterator[Tie]:
     """What decides elsewhere."""
-    yield "which-machine.md", "leaves less than {} of what the other leaves", (plain(structures._MUCH_LESS),)
+    yield "which-machine.md", "leaves less than {} of what the other leaves", (plain(structure_selection._MUCH_LESS),)
     yield "which-machine.md", "[{} effects](models.md#effects)", ({41: "Forty-one"}[len(EFFECTS)],)
     yield "lab.md", "within {} of it there is nothing left to find", (plain(next_view.NEAR),)
 

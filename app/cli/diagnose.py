@@ -84,7 +84,7 @@ def diagnose(
     from app.cli.arguments import definitions
     from app.cli.kept_here import beside
     from ident.custom.definition import read_effect, together
-    from ident.diagnosis.stepwise import USUAL
+    from ident.diagnosis.selection import USUAL
     from ident.diagnosis.unfitted import unfitted
     from ident.fit.given import with_candidates_given
     from ident.fit.settings import Settings

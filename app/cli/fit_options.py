@@ -14,7 +14,7 @@ from app.cli.arguments import values as read_values
 from ident.fit.settings import METHODS
 
 if TYPE_CHECKING:
-    from ident.diagnosis.structures import Choice
+    from ident.diagnosis.structure_selection import StructureChoice
     from ident.fit.settings import Settings
     from ident.matrix import Matrix
     from ident.progress import Report
@@ -98,16 +98,16 @@ Options = Annotated[
 ]
 
 
-def modelled(matrix: Matrix, model: str | None, report: Report) -> tuple[str, Choice]:
+def modelled(matrix: Matrix, model: str | None, report: Report) -> tuple[str, StructureChoice]:
     """The model that was named; else the one that fits, and what was found on the way to it.
 
     Raises Unusable where the channels allow none.
     """
-    from ident.diagnosis.structures import Choice, chosen
+    from ident.diagnosis.structure_selection import StructureChoice, choose_structure
 
     if model is not None:
-        return _named(model), Choice(matrix)
-    choice = chosen(matrix, report)
+        return _named(model), StructureChoice(matrix)
+    choice = choose_structure(matrix, report)
     return choice.structures[0].machine, choice
 
 

@@ -20,11 +20,11 @@ def next_(
 ) -> None:
     """Propose the next run. It is the one that best tells apart the effects that a diagnosis leaves in question."""
     from ident.design.proposal import propose
-    from ident.diagnosis.rivals import rivals
+    from ident.diagnosis.competing_models import competing_models
     from ident.readers import read_matrix
 
     check_target(json)
-    in_question = rivals(read_diagnosis(diagnosis))
+    in_question = competing_models(read_diagnosis(diagnosis))
     proposal = propose(in_question, read_matrix(matrix), seed)
     proposal.write(out)
     if json is not None:

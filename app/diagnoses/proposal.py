@@ -13,7 +13,7 @@ from app.lru import LRU
 from app.matrices import service as matrices
 from ident.design.experiment import Experiment
 from ident.design.proposal import propose
-from ident.diagnosis.rivals import rivals
+from ident.diagnosis.competing_models import competing_models
 from schemas.diagnosis_result import ProposalView
 
 _MOST = 32  # proposals in memory
@@ -41,6 +41,6 @@ def _experiment(context: Context, diagnosis: str, seed: int) -> Experiment:
 
     def made() -> Experiment:
         stored = service.stored(context, diagnosis)
-        return propose(rivals(stored.found), matrices.load(context, stored.matrix), seed)
+        return propose(competing_models(stored.found), matrices.load(context, stored.matrix), seed)
 
     return _proposed.get((str(context.storage.folder), diagnosis, seed), made)

@@ -18,7 +18,7 @@ from app.tables import DiagnosisRow
 from ident.custom.definition import definition_of, read_effect, together
 from ident.diagnosis.named import named
 from ident.diagnosis.result import Diagnosis, Verdict
-from ident.diagnosis.stepwise import MOST, USUAL
+from ident.diagnosis.selection import MOST, USUAL
 from ident.errors import Unusable
 from ident.fit.given import with_candidates_given
 from ident.fit.identification import check_settings

@@ -12,7 +12,7 @@ from app.pages.effect_view import Member, member
 from app.pages.evidence_view import evidence, known_effect
 from app.pages.job_view import JobPageView, job_page
 from app.pages.proposed_view import ProposedCard, proposed
-from ident.diagnosis.proposals.choice import Choice, choices
+from ident.diagnosis.discovery.term_count_curve import TermCount, term_count_curve
 from ident.diagnosis.result import Diagnosis, Ranked, Suspect
 from ident.words.engineering import quantity
 from ident.words.error import ErrorOf
@@ -100,7 +100,7 @@ class MissingView:
     ladder: tuple[Rung, ...] = ()
     left: str = ""
     proposed: tuple[ProposedCard, ...] = ()
-    choices: tuple[Choice, ...] = ()
+    choices: tuple[TermCount, ...] = ()
     refused: tuple[str, ...] = ()
 
 
@@ -126,7 +126,7 @@ def missing(stored: Stored | None, job: JobView | None, run: RunView | None = No
         ladder=tuple(_ladder(found)),
         left=_left(found) if found.verdict.unexplained else "",
         proposed=tuple(proposed(stored, run)),
-        choices=choices(found.proposals or (), found.ladder),
+        choices=term_count_curve(found.proposals or (), found.ladder),
         refused=found.notes,
     )
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from ident.diagnosis.estimate import Found
+from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.effects.effect import Effect
 from ident.equations.mathml import mathml
 from ident.fit.result import Estimate
@@ -17,7 +17,7 @@ from ident.words.plus_minus import UNDETERMINED, determined, plus_minus
 from ident.words.titles import title
 from schemas.result import EstimateView
 
-Valued = Estimate | Found | EstimateView
+Valued = Estimate | ParameterEstimate | EstimateView
 """A parameter with its standard error: of a fit, of a refit, of a step of the ladder."""
 
 

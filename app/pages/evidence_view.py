@@ -8,7 +8,7 @@ from urllib.parse import urlencode
 
 from app.diagnoses.service import Stored
 from ident.custom.definition import read_effect
-from ident.diagnosis.proposals.proposal import Proposal
+from ident.diagnosis.discovery.proposal import Proposal
 from ident.diagnosis.result import Ranked
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect

@@ -10,9 +10,9 @@ from markupsafe import Markup
 
 from app.diagnoses.service import Stored
 from app.pages.evidence_view import proposal_evidence
+from ident.diagnosis.discovery.proposal import Proposal
+from ident.diagnosis.discovery.term_to_effect import curves
 from ident.diagnosis.named import Named, named
-from ident.diagnosis.proposals.own import curves
-from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.result import Rung
 from ident.equations.mathml import mathml
 from ident.words.error import ErrorOf

@@ -10,8 +10,8 @@ from app.report.rows import budget_rows, candidate_rows, curve_rows, group_table
 from ident.checks.check import check
 from ident.custom.definition import preset_with
 from ident.diagnosis.recommended import next_command
+from ident.diagnosis.report import cannot_distinguish
 from ident.diagnosis.result import Diagnosis
-from ident.diagnosis.words import not_told
 from ident.errors import Unusable
 from ident.figures import figure, ladder, look
 from ident.fit.result import FitResult
@@ -126,7 +126,7 @@ def _missing(diagnosis: Diagnosis, matrix: Matrix) -> Iterator[Block]:
     if verdict.unexplained:
         yield Text("No listed effect brings the error near the noise floor.")
     for group in verdict.indistinguishable:
-        yield Text(f"These data {not_told(group, verdict.effects)}.")
+        yield Text(f"These data {cannot_distinguish(group, verdict.effects)}.")
     for suspect in verdict.suspects:
         yield Text(f"Doubtful: run {suspect.run}: {suspect.what}")
     if command := next_command(diagnosis):

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from ident.bench.effect_ranking import finely
 from ident.bench.identification import BenchIdentification
 from ident.bench.least_squares import Solution, solve
-from ident.bench.missing import finely
 from ident.bench.model import Model
 from ident.bench.outputs import errors_of, model_of
 from ident.bench.residual import Residual

@@ -9,19 +9,19 @@ from typing import Any
 
 import numpy as np
 
-from ident.bench.missing import Candidate, Refit, Refitter
+from ident.bench.effect_ranking import Candidate, Refit, Refitter
 from ident.bench.outputs import errors_of, model_of, noise_floor
 from ident.bench.records import Record, bench_set
 from ident.comparison.compare import fitted
 from ident.custom.definition import preset_with
-from ident.diagnosis.course import Course
-from ident.diagnosis.estimate import Found
+from ident.diagnosis.budget import SearchBudget
+from ident.diagnosis.parameter_estimate import ParameterEstimate
+from ident.diagnosis.report import verdict_text, why_of_gain
 from ident.diagnosis.result import Baseline, Diagnosis, Ranked, Rung, Verdict
 from ident.diagnosis.significance import Improvement, improvement
 from ident.diagnosis.stages import FURTHER, not_looked_at
-from ident.diagnosis.standing import standing
 from ident.diagnosis.unfitted import unranked
-from ident.diagnosis.words import verdict_text, why_of_gain
+from ident.diagnosis.verification import standing
 from ident.effects.effect import Effect
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.given import of_model
@@ -36,7 +36,7 @@ _NEAR_FLOOR = 1.25
 """Times the converter's part of the error, up to which an error is its noise: a reading that rests is off for long."""
 
 
-def diagnose_bench(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], course: Course) -> Diagnosis:
+def diagnose_bench(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], course: SearchBudget) -> Diagnosis:
     """Rank the effects of a bench and the user's own, add what helps beyond chance, and say what is left."""
     _refuse_candidates_given(fit)
     with course.budget.running():
@@ -59,7 +59,7 @@ def _refuse_candidates_given(fit: FitResult) -> None:
 class BenchDiagnoser:
     """One diagnosis of bench records."""
 
-    def __init__(self, matrix: Matrix, fit: FitResult, custom: tuple[Effect, ...], course: Course) -> None:
+    def __init__(self, matrix: Matrix, fit: FitResult, custom: tuple[Effect, ...], course: SearchBudget) -> None:
         self.matrix, self.fit, self.course = matrix, fit, course
         self.complete = False
         self._known_errors: dict[int, dict[str, float | None]] = {}
@@ -153,12 +153,12 @@ class BenchDiagnoser:
     def _offset(self, refit: Refit) -> float | None:
         return self._mean(refit, self.records["fit"], "offset")
 
-    def _parameters(self, refit: Refit) -> dict[str, Found]:
+    def _parameters(self, refit: Refit) -> dict[str, ParameterEstimate]:
         effects = tuple(self.refitter.effects[name] for name in refit.effects)
         known = {p.in_equations: p for p in self.refitter.bare.with_effects(effects).parameters}
         deviations = refit.solution.deviations
         found = {
-            known[name].name: Found(value, known[name].unit, deviations[name], known[name].symbol)
+            known[name].name: ParameterEstimate(value, known[name].unit, deviations[name], known[name].symbol)
             for name, value in refit.solution.values.items()
         }
         return dict(sorted(found.items(), key=lambda entry: "." not in entry[0]))

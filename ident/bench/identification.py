@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.bench.analysis import Analysis, analyse
+from ident.bench.effect_ranking import centred, finely, with_effect
 from ident.bench.least_squares import Solution, solve
-from ident.bench.missing import centred, finely, with_effect
 from ident.bench.model import CONSTANTS, Model, Models
 from ident.bench.observed import Observed, observe
 from ident.bench.outputs import errors_of, model_of, noise_floor

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 from itertools import groupby
 
 from ident.cached import cached_property
-from ident.diagnosis.family import ModelFamily
-from ident.diagnosis.refit import Refit, alike, carries_over, outdone
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.fitted_model import FittedModel, dominated, generalises, indistinguishable
 from ident.diagnosis.screening import Prediction
 from ident.diagnosis.significance import Improvement, improvement
-from ident.diagnosis.ties import AS_GOOD, in_order
+from ident.diagnosis.tie_breaking import PRACTICALLY_EQUAL, stable_ranking
 from ident.parallel import each
 
 _ENDS = 1.05  # times the error: so far apart end refits with what acts in jumps
@@ -24,10 +24,10 @@ class Candidate:
     """An effect, what it promises, its refit on all records where it came that far, and what that gains over a base."""
 
     prediction: Prediction
-    trial: Refit | None = None
-    refit: Refit | None = None
+    trial: FittedModel | None = None
+    refit: FittedModel | None = None
     gain: Improvement | None = None
-    base: Refit | None = None
+    base: FittedModel | None = None
 
     @property
     def effect(self) -> str:
@@ -42,7 +42,7 @@ class Candidate:
     @cached_property
     def carries_over(self) -> bool:
         """Whether it does no harm on whole runs that were left out; where there is no refit nothing is known of it."""
-        return self.refit is None or self.base is None or carries_over(self.base, self.refit)
+        return self.refit is None or self.base is None or generalises(self.base, self.refit)
 
     @property
     def between_runs(self) -> tuple[float, ...]:
@@ -62,36 +62,42 @@ class Candidate:
             return self.refit.held_out.score
         return self.trial.here.error if self.trial is not None else self.prediction.after.score
 
-    def refitted(self, base: Refit, refit: Refit) -> Candidate:
+    def refitted(self, base: FittedModel, refit: FittedModel) -> Candidate:
         """The candidate with a refit on all records, and what that gains over the model without the effect."""
         return replace(self, refit=refit, gain=improvement(base.held_out, refit.held_out), base=base)
 
 
-def ranked(models: ModelFamily, candidates: Iterable[Candidate]) -> list[Candidate]:
+def in_rank_order(models: CandidateModels, candidates: Iterable[Candidate]) -> list[Candidate]:
     """Best first: by how far they came, then by their score; of those that tie the simplest, then as listed.
 
     Of these those last that another of them outdoes on whole runs.
     """
     listed = sorted(candidates, key=lambda candidate: (candidate.stage, *models.simplicity(candidate.effect)))
     by_stage = groupby(listed, key=lambda candidate: candidate.stage)
-    return [one for _, group in by_stage for one in in_order(list(group), lambda one: one.score, _alike, _outdone_last)]
+    return [
+        one
+        for _, group in by_stage
+        for one in stable_ranking(list(group), lambda one: one.score, _ties, _dominated_last)
+    ]
 
 
-def _outdone_last(tied: Sequence[Candidate]) -> list[Candidate]:
+def _dominated_last(tied: Sequence[Candidate]) -> list[Candidate]:
     """Candidates that tie in the order of their own, but those last that others of them outdo on whole runs."""
-    left = {one.effect for one in not_outdone(tied)}
+    left = {one.effect for one in not_dominated(tied)}
     return sorted(tied, key=lambda one: one.effect not in left)
 
 
-def not_outdone(tied: Sequence[Candidate]) -> list[Candidate]:
+def not_dominated(tied: Sequence[Candidate]) -> list[Candidate]:
     """Those of candidates that none of the others outdoes on whole runs that were left out."""
     refits = [one.refit for one in tied if one.refit is not None]
     if len(refits) > 1:
         each(lambda refit: refit.between_runs, refits)  # side by side, not one by one below
-    return [one for one in tied if one.refit is None or not any(outdone(one.refit, by) for by in refits)]
+    return [one for one in tied if one.refit is None or not any(dominated(one.refit, by) for by in refits)]
 
 
-def group(name: str, here: Refit, ranking: Sequence[Candidate], noise: float) -> list[Candidate]:
+def indistinguishable_group(
+    name: str, here: FittedModel, ranking: Sequence[Candidate], noise: float
+) -> list[Candidate]:
     """The effect itself, and the candidates that are no worse than the best but by chance, or by what is missing.
 
     Where more than the `noise` is left, eq. (17), something acts that no effect stands for, which one candidate may
@@ -100,11 +106,15 @@ def group(name: str, here: Refit, ranking: Sequence[Candidate], noise: float) ->
     """
     refits = [c for c in ranking if c.refit is not None]
     best = min([here, *(c.refit for c in refits if c.refit)], key=lambda refit: refit.held_out.score)
-    as_good = [c for c in refits if c.refit and (alike(best, c.refit, c.base) or _nearly(best, c, noise))]
-    return [*(c for c in refits if c.effect == name), *(c for c in not_outdone(as_good) if c.effect != name)]
+    as_good = [
+        c
+        for c in refits
+        if c.refit and (indistinguishable(best, c.refit, c.base) or _explains_nearly_as_much(best, c, noise))
+    ]
+    return [*(c for c in refits if c.effect == name), *(c for c in not_dominated(as_good) if c.effect != name)]
 
 
-def _nearly(best: Refit, other: Candidate, noise: float) -> bool:
+def _explains_nearly_as_much(best: FittedModel, other: Candidate, noise: float) -> bool:
     """Whether a candidate takes nearly as much as the best refit, beside what neither explains."""
     if other.base is None or other.refit is None:
         return False
@@ -113,14 +123,14 @@ def _nearly(best: Refit, other: Candidate, noise: float) -> bool:
     return takes_as_much and here - least < _OF_REST * (least - noise**2)
 
 
-def _alike(best: Candidate, other: Candidate) -> bool:
+def _ties(best: Candidate, other: Candidate) -> bool:
     """Whether of two refits the better one is better by no more than chance, nor by much on the data of the fit.
 
     Errors on held-out data hang on where the fits without them ended, which in a flat valley rounding decides.
     """
     if best.refit is None or other.refit is None:
         return False
-    most = AS_GOOD if best.refit.jumping == other.refit.jumping else _ENDS
+    most = PRACTICALLY_EQUAL if best.refit.jumping == other.refit.jumping else _ENDS
     if other.refit.error > most * best.refit.error:
         return False
-    return alike(best.refit, other.refit, other.base)
+    return indistinguishable(best.refit, other.refit, other.base)

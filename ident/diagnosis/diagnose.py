@@ -12,16 +12,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.advice import error_budget, next_run
+from ident.diagnosis.alternative_structures import AlternativeModel, alternative_explanations, alternative_models
+from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.candidate import Candidate
-from ident.diagnosis.course import Course
-from ident.diagnosis.elsewhere import Other, elsewhere, others
-from ident.diagnosis.family import ModelFamily
-from ident.diagnosis.late import lateness, undecided_pairs
-from ident.diagnosis.longer import over_longer
-from ident.diagnosis.proposals.outcome import Proposals
-from ident.diagnosis.proposals.search import Search
-from ident.diagnosis.refit import Refit
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.discovery.discovery_result import DiscoveryResult
+from ident.diagnosis.discovery.search import TermSearch
+from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.follow_up import error_budget, next_run
+from ident.diagnosis.label_checks import label_suspects
+from ident.diagnosis.prediction_horizon import longer_horizon
+from ident.diagnosis.report import (
+    alternative_sentences,
+    delay_sentence,
+    dispensable_sentence,
+    horizon_sentence,
+    verdict_text,
+    why,
+)
 from ident.diagnosis.result import (
     NO_ERRORS,
     Baseline,
@@ -34,6 +42,7 @@ from ident.diagnosis.result import (
     Suspect,
     Verdict,
 )
+from ident.diagnosis.selection import USUAL, StepwiseSelection
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.stages import (
     EFFECTS,
@@ -50,12 +59,10 @@ from ident.diagnosis.stages import (
     Stages,
     not_looked_at,
 )
-from ident.diagnosis.standing import Contradiction, contradiction, standing
-from ident.diagnosis.stepwise import USUAL, StepwiseSelection
-from ident.diagnosis.suspects import suspects
-from ident.diagnosis.ties import TIE
+from ident.diagnosis.tie_breaking import RELATIVE_TOLERANCE
+from ident.diagnosis.total_delay import lag_ambiguities, total_delay
 from ident.diagnosis.unfitted import unranked
-from ident.diagnosis.words import as_well, told_late, told_longer, told_needless, verdict_text, why
+from ident.diagnosis.verification import Contradiction, contradiction, standing
 from ident.effects.effect import Effect
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.result import FitResult
@@ -69,11 +76,11 @@ from ident.time_budget import in_time
 _SIMPLER = 1.05  # times the error that terms may leave without what was found, and still come before those beside it
 _RISES = 1.1  # times the least error on verify runs on the way: from there on it is told
 _LATE = 2  # models, the last one first, of which it is asked how late they answer
-Steps = Sequence[tuple[str | None, Refit]]
+Steps = Sequence[tuple[str | None, FittedModel]]
 """From the fitted model to the last, what each step added."""
 
 
-def diagnose(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], course: Course) -> Diagnosis:
+def diagnose(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], course: SearchBudget) -> Diagnosis:
     """Rank what the fitted model lacks, add what helps beyond chance, and say what is left.
 
     `custom` are effects beside the catalogue's. Verify runs only report. Raises Unusable where matrix and fit do not
@@ -85,8 +92,8 @@ def diagnose(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], course: C
     over = (fit.window.horizon, fit.window.memory) if fit.window else (None, None)
     with course.budget.running():
         try:
-            models = ModelFamily.of(matrix, given, custom, *over).without(begun_without)
-            found = Diagnoser(models, fit, course, others(matrix, fit, custom)).diagnosis(matrix, custom)
+            models = CandidateModels.of(matrix, given, custom, *over).without(begun_without)
+            found = Diagnoser(models, fit, course, alternative_models(matrix, fit, custom)).diagnosis(matrix, custom)
         except TimeIsUp:
             found = unranked(matrix, fit, course.taken)
     return replace(found, seconds=course.taken)
@@ -95,7 +102,9 @@ def diagnose(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], course: C
 class Diagnoser:
     """One diagnosis: the additions, the suspects, and what is said of them."""
 
-    def __init__(self, models: ModelFamily, fit: FitResult, course: Course, known: Sequence[Other] = ()) -> None:
+    def __init__(
+        self, models: CandidateModels, fit: FitResult, course: SearchBudget, known: Sequence[AlternativeModel] = ()
+    ) -> None:
         self.models, self.fit, self.course, self.known = models, fit, course, known
         self.stages = Stages(course)
 
@@ -109,14 +118,16 @@ class Diagnoser:
         late: Sequence[str] = self.stages.attempt(LAGS, partial(self._late, selection), [])
         pairs: Sequence[tuple[str, ...]] = self.stages.attempt(LAGS, partial(self._pairs, selection), [])
         found = self._said(selection, doubted, pairs)
-        over = () if found.horizon == self.models.horizon else tuple(told_longer(self.models.horizon, found.horizon))
-        after = (*over, *late, *as_well(told))
+        over = (
+            () if found.horizon == self.models.horizon else tuple(horizon_sentence(self.models.horizon, found.horizon))
+        )
+        after = (*over, *late, *alternative_sentences(told))
         found = replace(found, verdict=replace(found.verdict, elsewhere=told))
         found = replace(found, budget=self._budget(matrix), next_experiment=self._next_run(matrix, found, custom))
-        proposed = Proposals()
+        proposed = DiscoveryResult()
         if self._may_propose(selection) and self.stages.attempt(TERMS, lambda: self._is_proposing(selection), False):
-            self.course.conclude(self._told(found, found, after, Proposals(complete=False), going_on=True))
-            proposed = self.stages.attempt(TERMS, lambda: self._proposed(selection), Proposals(complete=False))
+            self.course.conclude(self._told(found, found, after, DiscoveryResult(complete=False), going_on=True))
+            proposed = self.stages.attempt(TERMS, lambda: self._proposed(selection), DiscoveryResult(complete=False))
             if not proposed.complete:
                 self.stages.miss(TERMS)
         needless = proposed.needless(selection.added)
@@ -126,8 +137,13 @@ class Diagnoser:
         return self._told(named, found, after, proposed)
 
     def _told(
-        self, named: Diagnosis, found: Diagnosis, after: Sequence[str], proposed: Proposals, going_on: bool = False
-    ) -> Diagnosis:  # fmt: skip
+        self,
+        named: Diagnosis,
+        found: Diagnosis,
+        after: Sequence[str],
+        proposed: DiscoveryResult,
+        going_on: bool = False,
+    ) -> Diagnosis:
         """The diagnosis with all that is said of it; `found` is it before the terms took anything from what is named.
 
         While the search for terms is `going_on` that is what is missing.
@@ -135,7 +151,7 @@ class Diagnoser:
         missing = self.stages.not_looked_at
         if not proposed.complete and TERMS not in missing:
             missing = (*missing, TERMS)  # they are looked for now
-        needless = told_needless(named.verdict.stood_in)
+        needless = dispensable_sentence(named.verdict.stood_in)
         text = " ".join([found.verdict.text, *needless, *after, *not_looked_at(missing)])
         return replace(
             named,
@@ -183,7 +199,9 @@ class Diagnoser:
         """What other models explain as well, where there are others."""
         if not self.known or not selection.added or selection.base.effects:
             return ()
-        return self.stages.attempt(OTHERS, lambda: elsewhere(self.known, selection, self.course.tell), ())
+        return self.stages.attempt(
+            OTHERS, lambda: alternative_explanations(self.known, selection, self.course.tell), ()
+        )
 
     def _late(self, selection: StepwiseSelection) -> Sequence[str]:
         """How late the machine answers, where the data do not tell by which lag or delay.
@@ -194,15 +212,15 @@ class Diagnoser:
         self.course.tell(Progress(LAGS, 0, 1))
         models, steps = selection.models, [refit for _, refit in selection.ladder() if refit.stable][::-1]
         for refit in steps[: _LATE if models.something_left(selection.found) else 1]:
-            if late := lateness(models, selection.base, refit):
+            if late := total_delay(models, selection.base, refit):
                 without = tuple(name for name in selection.added if name not in refit.effects)
-                return (told_late(late, models.spoken, without),)
+                return (delay_sentence(late, models.spoken, without),)
         return ()
 
     def _pairs(self, selection: StepwiseSelection) -> Sequence[tuple[str, ...]]:
         """Lags and delays of which no two can be told from two others."""
         self.course.tell(Progress(LAGS, 0, 1))
-        return undecided_pairs(selection.models, selection.found, selection.added)
+        return lag_ambiguities(selection.models, selection.found, selection.added)
 
     def _may_propose(self, selection: StepwiseSelection) -> bool:
         """Whether terms that no list holds are wanted where something is left.
@@ -216,7 +234,7 @@ class Diagnoser:
         """Whether they are to be searched for, being wanted: where something is left, or they were asked for."""
         return self.course.propose is True or selection.models.something_left(selection.found)
 
-    def _proposed(self, selection: StepwiseSelection) -> Proposals:
+    def _proposed(self, selection: StepwiseSelection) -> DiscoveryResult:
         """What no list holds: beside the fitted model as it was and, where that is not all, beside what was found.
 
         What was found may stand for something else: with the term itself it is not needed. The terms of the first
@@ -228,7 +246,7 @@ class Diagnoser:
         both = in_time(lambda: self._of_both_searches(selection, alone))
         return replace(alone, complete=False) if both is None else both
 
-    def _of_both_searches(self, selection: StepwiseSelection, alone: Proposals) -> Proposals:
+    def _of_both_searches(self, selection: StepwiseSelection, alone: DiscoveryResult) -> DiscoveryResult:
         """The terms `alone`, or those in addition to the effects that were found: what leaves less, or is simpler."""
         alone = alone.instead(selection.found, selection.added, self.models.matrix.of_use("verify"))
         if not alone.complete or self.models.is_noise(alone.left(selection.base.error)):
@@ -239,10 +257,10 @@ class Diagnoser:
         simpler = alone.left(before, "held_out") < min(with_both * _SIMPLER, found) and not _repeated(alone, selection)
         return replace(alone if simpler else further.or_refused(alone), complete=further.complete)
 
-    def _terms_of(self, selection: StepwiseSelection, refit: Refit) -> Proposals:
+    def _terms_of(self, selection: StepwiseSelection, refit: FittedModel) -> DiscoveryResult:
         """The terms that a search adds to a refit."""
         asked = self.course.propose is True
-        return Search(selection.models, refit, self.course.tell, selection.base.effects, asked).run()
+        return TermSearch(selection.models, refit, self.course.tell, selection.base.effects, asked).run()
 
     def _said(
         self, selection: StepwiseSelection, doubted: Sequence[Suspect], pairs: Sequence[tuple[str, ...]] = ()
@@ -297,19 +315,19 @@ class Diagnoser:
         against_by = tuple(one.effect for one in against)
         return Verdict(added, stands, against_by, groups, tuple(doubted), unexplained, text, bounded)
 
-    def _added(self, models: ModelFamily) -> StepwiseSelection:
+    def _added(self, models: CandidateModels) -> StepwiseSelection:
         """The search over these models, or over longer windows where with an effect these are the more likely ones."""
         selection = self._begun(models)
         longer = None
         with suppress(TimeIsUp):  # the search ends as it is told so again, with the first of what was found
-            longer = over_longer(selection, self.course.tell)
+            longer = longer_horizon(selection, self.course.tell)
         if longer is not None:
             found = self._begun(longer.models, longer.better).run()
             if found.added:
                 return found
         return selection.run()
 
-    def _begun(self, models: ModelFamily, known: Refit | None = None) -> StepwiseSelection:
+    def _begun(self, models: CandidateModels, known: FittedModel | None = None) -> StepwiseSelection:
         preset = models.model(self.fit.effects)
         start = {preset.parameter(name).in_equations: value for name, value in self.fit.values.items()}
         base = models.refit(tuple(self.fit.effects), start)
@@ -332,7 +350,7 @@ class Diagnoser:
 
         def doubted() -> list[Suspect]:
             self.course.tell(Progress("labels", 0, 1))
-            return suspects(selection.models, selection.found, selection.models.floors.by_run)
+            return label_suspects(selection.models, selection.found, selection.models.floors.by_run)
 
         return self.stages.attempt(LABELS, doubted, [])
 
@@ -370,14 +388,14 @@ class Diagnoser:
         """The rungs, and without figures those of what was `added` that there was no time to refit."""
         added = [name for name, _ in steps if name] if added is None else added
         known, rungs = dict(steps), [self._rung(None, None, steps[0][1])]
-        before: Refit | None = steps[0][1]
+        before: FittedModel | None = steps[0][1]
         for name in added:
             refit = known.get(name)
             rungs.append(Rung(added=name, error=dict(NO_ERRORS)) if refit is None else self._rung(name, before, refit))
             before = refit
         return rungs
 
-    def _rung(self, added: str | None, before: Refit | None, refit: Refit) -> Rung:
+    def _rung(self, added: str | None, before: FittedModel | None, refit: FittedModel) -> Rung:
         """One rung, on top of the one `before` where that is known."""
         compared = before is not None and before.stable and refit.stable
         return Rung(
@@ -390,7 +408,7 @@ class Diagnoser:
             unstable=refit.unstable,
         )
 
-    def _contradictions(self, models: ModelFamily, steps: Steps) -> Iterator[Contradiction]:
+    def _contradictions(self, models: CandidateModels, steps: Steps) -> Iterator[Contradiction]:
         """The effects of the ladder with which the error rises on verify runs."""
         runs = models.matrix.of_use("verify")
         if not runs:
@@ -414,11 +432,11 @@ def _better_with_fewer(steps: Steps) -> tuple[float, tuple[str, ...]] | None:
     return least, tuple(name for name, _ in steps[errors.index(least) + 1 :] if name)
 
 
-def _repeated(alone: Proposals, selection: StepwiseSelection) -> bool:
+def _repeated(alone: DiscoveryResult, selection: StepwiseSelection) -> bool:
     """Whether the first of some terms leaves what an effect that was named leaves alone: it is that, in other words."""
     named = (c.refit.error for c in selection.ranking if c.refit is not None and c.effect in selection.added)
     first = alone.found[0].error["fit"] if alone.found else None
-    return first is not None and any(abs(first - error) <= TIE * error for error in named)
+    return first is not None and any(abs(first - error) <= RELATIVE_TOLERANCE * error for error in named)
 
 
 def _judged(candidate: Candidate, weighed: bool) -> tuple[object, object]:

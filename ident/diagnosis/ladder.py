@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ident.diagnosis.family import ModelFamily
-from ident.diagnosis.refit import Refit
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.fitted_model import FittedModel
 from ident.time_budget import in_time
 
-Rungs = list[tuple[str | None, Refit]]
+Rungs = list[tuple[str | None, FittedModel]]
 """What each step added, and the refit; the fitted model first."""
 
 
@@ -19,10 +19,10 @@ Rungs = list[tuple[str | None, Refit]]
 class Ladder:
     """The rungs of a search; `between` are those that were no step of it."""
 
-    models: ModelFamily
-    between: dict[frozenset[str], Refit] = field(default_factory=dict)
+    models: CandidateModels
+    between: dict[frozenset[str], FittedModel] = field(default_factory=dict)
 
-    def rungs(self, steps: Sequence[Refit], base: Refit) -> Rungs:
+    def rungs(self, steps: Sequence[FittedModel], base: FittedModel) -> Rungs:
         """From `base` to the last of the steps: of those with the same effects the best, else a refit."""
         found = steps[-1]
         added = [name for name in found.effects if name not in base.effects]
@@ -34,12 +34,12 @@ class Ladder:
             if step is None:
                 values = dict(found.values)
                 for other in added[i + 1 :]:
-                    values = without(values, other)
+                    values = without_effect(values, other)
                 step = self.between[frozenset(effects)] = self.models.refit(effects, values)
             rungs.append((name, step))
         return rungs
 
-    def known(self, steps: Sequence[Refit], base: Refit) -> Rungs:
+    def known(self, steps: Sequence[FittedModel], base: FittedModel) -> Rungs:
         """The same without a refit: of those that were met."""
         met = in_time(lambda: self._met(steps))
         known = met or {frozenset(step.effects): step for step in steps}
@@ -47,9 +47,9 @@ class Ladder:
         sets = [frozenset((*base.effects, *added[: i + 1])) for i in range(len(added))]
         return [(None, base), *((name, known[of]) for name, of in zip(added, sets, strict=True) if of in known)]
 
-    def _met(self, steps: Sequence[Refit]) -> dict[frozenset[str], Refit]:
+    def _met(self, steps: Sequence[FittedModel]) -> dict[frozenset[str], FittedModel]:
         """Of the refits that were steps, or stand in the ladder, the best with the same effects."""
-        best: dict[frozenset[str], Refit] = {}
+        best: dict[frozenset[str], FittedModel] = {}
         for refit in (*self.between.values(), *steps):
             effects = frozenset(refit.effects)
             if effects not in best or score(refit) <= score(best[effects]):
@@ -57,11 +57,11 @@ class Ladder:
         return best
 
 
-def score(refit: Refit) -> float:
+def score(refit: FittedModel) -> float:
     """What is least for the best: the held-out score; without end where the model is of no use."""
     return refit.held_out.score if refit.finite else np.inf
 
 
-def without(values: Mapping[str, float], effect: str) -> dict[str, float]:
+def without_effect(values: Mapping[str, float], effect: str) -> dict[str, float]:
     """The values by the equations' names, less those of an effect."""
     return {name: value for name, value in values.items() if not name.startswith(f"{effect}__")}

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ident.custom.definition import Definition
-from ident.diagnosis.estimate import Found
+from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.diagnosis.result import Diagnosis
 from ident.effects import CATALOGUE, unknown
 from ident.fit.extended import extended
@@ -22,7 +22,7 @@ class Named:
 
     effects: tuple[str, ...] = ()
     custom: tuple[Definition, ...] = ()
-    parameters: Mapping[str, Found] = field(default_factory=dict)
+    parameters: Mapping[str, ParameterEstimate] = field(default_factory=dict)
 
 
 def named(found: Diagnosis, name: str) -> Named | None:

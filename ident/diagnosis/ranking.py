@@ -10,12 +10,12 @@ from typing import TypeVar
 
 import numpy as np
 
-from ident.diagnosis.candidate import Candidate, ranked
-from ident.diagnosis.family import ModelFamily
-from ident.diagnosis.refit import Refit
+from ident.diagnosis.candidate import Candidate, in_rank_order
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.screening import Prediction, predict
 from ident.diagnosis.significance import VISIBLE, WORTHWHILE
-from ident.diagnosis.ties import AS_GOOD, first_least, in_order
+from ident.diagnosis.tie_breaking import PRACTICALLY_EQUAL, stable_minimum, stable_ranking
 from ident.parallel import each
 from ident.progress import Expected, Progress, Report
 
@@ -34,7 +34,7 @@ _PROMISING = 0.3 * WORTHWHILE  # relative fall of the score that is worth a refi
 _NATS = 3.0  # of the offsets, too
 _SIGHT = 5  # effects that are told at first sight
 
-Base = tuple[Refit, Sequence[str]]
+Base = tuple[FittedModel, Sequence[str]]
 """A model, and the effects that could be added to it."""
 
 
@@ -47,8 +47,8 @@ def _unheard(_candidates: list[Candidate]) -> None:
 
 
 def rank(
-    models: ModelFamily, base: Refit, names: Sequence[str], report: Report, thorough: bool = True, strong: bool = False,
-    heard: Heard = _unheard,
+    models: CandidateModels, base: FittedModel, names: Sequence[str], report: Report, thorough: bool = True,
+    strong: bool = False, heard: Heard = _unheard,
 ) -> list[Candidate]:  # fmt: skip
     """The candidates, best first.
 
@@ -59,8 +59,8 @@ def rank(
 
 
 def rank_each(
-    models: ModelFamily, bases: Sequence[Base], report: Report, thorough: bool = True, strong: bool = False,
-    beside: Refit | None = None, heard: Heard = _unheard,
+    models: CandidateModels, bases: Sequence[Base], report: Report, thorough: bool = True, strong: bool = False,
+    beside: FittedModel | None = None, heard: Heard = _unheard,
 ) -> list[list[Candidate]]:  # fmt: skip
     """The same for several models, with what is refitted for all of them side by side.
 
@@ -77,7 +77,7 @@ def rank_each(
     asked = {base.effects: _asked(models, base, beside) for base in models_of}
     anew = _ANEW * models.tried(beside) if beside is not None else np.inf
 
-    def trial(base: Refit, prediction: Prediction) -> Candidate:
+    def trial(base: FittedModel, prediction: Prediction) -> Candidate:
         nonlocal done
         aim = anew if _is(base, prediction, beside) else asked[base.effects]
         candidate = _tried(models, base, prediction, aim, strong)
@@ -86,20 +86,20 @@ def rank_each(
         return candidate
 
     tried = [
-        ranked(models, [one for one in ones if not _is(base, one.prediction, beside) or _comes_below(one, anew)])
+        in_rank_order(models, [one for one in ones if not _is(base, one.prediction, beside) or _comes_below(one, anew)])
         for base, ones in zip(models_of, _in_turn(models, models_of, promised, contenders, trial), strict=True)
     ]
     heard(_so_far(promised[0], tried[0]))
     finalists = [_finalists(models, base, ones, sure) for base, ones in zip(models_of, tried, strict=True)]
 
-    def final(base: Refit, candidate: Candidate) -> Candidate:
+    def final(base: FittedModel, candidate: Candidate) -> Candidate:
         nonlocal done
         confirmed = _confirmed(models, base, candidate)
         done += 1
         report(Progress("confirming", done, sum(map(len, contenders)) + sum(map(len, finalists))))
         return confirmed
 
-    found = [ranked(models, ones) for ones in _side_by_side(final, models_of, finalists)]
+    found = [in_rank_order(models, ones) for ones in _side_by_side(final, models_of, finalists)]
     heard(_so_far(promised[0], tried[0], found[0]))
     report(Progress("confirming", done, done + 1))
     deeper = _DEEPER if thorough else 1
@@ -119,8 +119,8 @@ def _so_far(promised: Sequence[Prediction], *stages: Sequence[Candidate]) -> lis
 
 
 def _in_turn(
-    models: ModelFamily, bases: Sequence[Refit], promised: Sequence[Sequence[Prediction]],
-    contenders: list[list[Prediction]], trial: Callable[[Refit, Prediction], Candidate],
+    models: CandidateModels, bases: Sequence[FittedModel], promised: Sequence[Sequence[Prediction]],
+    contenders: list[list[Prediction]], trial: Callable[[FittedModel, Prediction], Candidate],
 ) -> list[list[Candidate]]:  # fmt: skip
     """A trial of each base's contenders, to which what they pass over is added, and then of that."""
     first = _side_by_side(trial, bases, contenders)
@@ -131,34 +131,34 @@ def _in_turn(
 
 
 def _joined(
-    models: ModelFamily, base: Refit, promised: Sequence[Prediction], stages: Sequence[Sequence[Candidate]],
-    beside: Refit | None,
+    models: CandidateModels, base: FittedModel, promised: Sequence[Prediction], stages: Sequence[Sequence[Candidate]],
+    beside: FittedModel | None,
 ) -> list[Candidate]:  # fmt: skip
     """The candidates as far as each came; the model `beside` the base as it is, unless it was found anew and better."""
     came = {one.effect: one for one in chain(*stages)}
     came |= {one.effect: one for one in _met(base, promised, beside) if not _is_better(came.get(one.effect), one)}
-    return ranked(models, [came.get(one.effect, Candidate(one)) for one in promised])
+    return in_rank_order(models, [came.get(one.effect, Candidate(one)) for one in promised])
 
 
-def deepened(models: ModelFamily, base: Refit, ranking: Sequence[Candidate]) -> list[Candidate]:
+def deepened(models: CandidateModels, base: FittedModel, ranking: Sequence[Candidate]) -> list[Candidate]:
     """The ranking of a small matrix, once all its finalists are looked for elsewhere; as it is of a large one."""
     if not _is_quick(models, base):
         return list(ranking)
     finalists, rest = ranking[:_FINALISTS], ranking[_FINALISTS:]
     farther = each(partial(_elsewhere, models, {}, base), finalists[_DEEPER:])
-    return ranked(models, [*finalists[:_DEEPER], *farther, *rest])
+    return in_rank_order(models, [*finalists[:_DEEPER], *farther, *rest])
 
 
-def _tried(models: ModelFamily, base: Refit, prediction: Prediction, aim: float, strong: bool) -> Candidate:
+def _tried(models: CandidateModels, base: FittedModel, prediction: Prediction, aim: float, strong: bool) -> Candidate:
     """A candidate after its first refit, which has to come below `aim`; from strong effects, too, where asked."""
     refit = models.trial((*base.effects, prediction.effect), prediction.starts, aim)
     if strong:
         other = models.searched(refit, _strong(models, base, refit), min(aim, refit.here.error))
-        refit = first_least([refit, other], lambda r: r.here.error)
+        refit = stable_minimum([refit, other], lambda r: r.here.error)
     return Candidate(prediction, refit if refit.finite else None)
 
 
-def _confirmed(models: ModelFamily, base: Refit, candidate: Candidate) -> Candidate:
+def _confirmed(models: CandidateModels, base: FittedModel, candidate: Candidate) -> Candidate:
     """A candidate refitted to every sample."""
     assert candidate.trial is not None
     refit = models.refit((*base.effects, candidate.effect), candidate.trial.values)
@@ -166,7 +166,7 @@ def _confirmed(models: ModelFamily, base: Refit, candidate: Candidate) -> Candid
 
 
 def _side_by_side(
-    function: Callable[[Refit, Item], Candidate], bases: Sequence[Refit], items: Sequence[Sequence[Item]]
+    function: Callable[[FittedModel, Item], Candidate], bases: Sequence[FittedModel], items: Sequence[Sequence[Item]]
 ) -> list[list[Candidate]]:
     """`function` of each base and each of its items, all of them at once."""
     todo = [(number, base, item) for number, base in enumerate(bases) for item in items[number]]
@@ -174,27 +174,27 @@ def _side_by_side(
     return [[made for (of, _, _), made in zip(todo, done, strict=True) if of == number] for number in range(len(bases))]
 
 
-def _promised(models: ModelFamily, base: Refit, names: Sequence[str], report: Report) -> list[Prediction]:
+def _promised(models: CandidateModels, base: FittedModel, names: Sequence[str], report: Report) -> list[Prediction]:
     """What every effect promises, the best first."""
     report(Progress("predicting", 0, 1))
-    found = in_order(predict(models, base, sorted(names, key=models.simplicity)), lambda one: one.after.score)
+    found = stable_ranking(predict(models, base, sorted(names, key=models.simplicity)), lambda one: one.after.score)
     first = tuple(Expected(one.effect, base.error * one.share) for one in found[:_SIGHT])
     report(Progress("predicting", 1, 1, base.error, first))
     return found
 
 
-def _finalists(models: ModelFamily, base: Refit, tried: Sequence[Candidate], sure: int) -> list[Candidate]:
+def _finalists(models: CandidateModels, base: FittedModel, tried: Sequence[Candidate], sure: int) -> list[Candidate]:
     """Those of the trials that are refitted to every sample: the first, and what is as good and promises anything.
 
     As good as the best of them or, in a small matrix, as the last: rounding does not choose between these.
     """
     best = tried[0].score if tried else 0.0
-    as_last = AS_GOOD * tried[sure - 1].score if len(tried) > sure and _is_quick(models, base) else 0.0
+    as_last = PRACTICALLY_EQUAL * tried[sure - 1].score if len(tried) > sure and _is_quick(models, base) else 0.0
     good = min(max(_CLOSE * best, as_last), (1.0 - _PROMISING) * models.tried(base))
     return [one for i, one in enumerate(tried) if one.trial and (i < sure or one.score < good)]
 
 
-def _met(base: Refit, predictions: Sequence[Prediction], beside: Refit | None) -> list[Candidate]:
+def _met(base: FittedModel, predictions: Sequence[Prediction], beside: FittedModel | None) -> list[Candidate]:
     """The candidate, if any, with which a base is the model that stands beside it."""
     found = []
     for one in predictions:
@@ -204,7 +204,7 @@ def _met(base: Refit, predictions: Sequence[Prediction], beside: Refit | None) -
     return found
 
 
-def _is(base: Refit, prediction: Prediction, beside: Refit | None) -> bool:
+def _is(base: FittedModel, prediction: Prediction, beside: FittedModel | None) -> bool:
     """Whether a base with a predicted effect is the model that stands beside it."""
     return beside is not None and {*base.effects, prediction.effect} == set(beside.effects)
 
@@ -220,19 +220,19 @@ def _is_better(anew: Candidate | None, known: Candidate) -> bool:
     return anew is not None and anew.refit is not None and anew.refit.error < _ANEW * known.refit.error
 
 
-def _asked(models: ModelFamily, base: Refit, beside: Refit | None) -> float:
+def _asked(models: CandidateModels, base: FittedModel, beside: FittedModel | None) -> float:
     """The error below which a trial has to come to be of use, on the beginnings of the records."""
     return (1.0 - _PROMISING) * models.tried(base) if beside is None else _CLOSE * models.tried(beside)
 
 
-def _near(models: ModelFamily, base: Refit, predictions: Sequence[Prediction]) -> list[Prediction]:
+def _near(models: CandidateModels, base: FittedModel, predictions: Sequence[Prediction]) -> list[Prediction]:
     """The contenders for a further effect: those that promise anything near what the best promises."""
     near = _NEAR * predictions[0].after.error
     return [p for p in predictions if _promises(p) and p.after.error < near][: _few(models, base)]
 
 
 def _passed_over(
-    models: ModelFamily, base: Refit, predictions: Sequence[Prediction], tried: Sequence[Candidate]
+    models: CandidateModels, base: FittedModel, predictions: Sequence[Prediction], tried: Sequence[Candidate]
 ) -> list[Prediction]:  # fmt: skip
     """What promises anything near what was found, where those that promised most found less than that."""
     found = min((one.trial.here.error for one in tried if one.trial is not None), default=np.inf)
@@ -241,19 +241,19 @@ def _passed_over(
     return [p for p in predictions[: _few(models, base)] if _promises(p) and p.share < near and p.effect not in done]
 
 
-def _few(models: ModelFamily, base: Refit) -> int:
+def _few(models: CandidateModels, base: FittedModel) -> int:
     """How many contenders for a further effect there may be."""
     return _CONTENDERS if _is_quick(models, base) else max(_FEW - 2 * len(base.effects), _FINALISTS)
 
 
-def _is_quick(models: ModelFamily, base: Refit) -> bool:
+def _is_quick(models: CandidateModels, base: FittedModel) -> bool:
     """Whether a matrix is so small that refits take next to nothing."""
     steps = int(base.fitness.steps(base.fitness.space.values(base.point[None])).max())
     return steps * sum(run.length for run in models.runs) < _QUICK
 
 
 def _elsewhere(
-    models: ModelFamily, asked: Mapping[tuple[str, ...], float], base: Refit, candidate: Candidate
+    models: CandidateModels, asked: Mapping[tuple[str, ...], float], base: FittedModel, candidate: Candidate
 ) -> Candidate:  # fmt: skip
     """The candidate, refitted from other strengths too where its error stays above the noise: there are local optima.
 
@@ -271,7 +271,7 @@ def _elsewhere(
     return candidate if refit is candidate.refit else candidate.refitted(base, refit)
 
 
-def _strong(models: ModelFamily, base: Refit, refit: Refit) -> list[dict[str, float]]:
+def _strong(models: CandidateModels, base: FittedModel, refit: FittedModel) -> list[dict[str, float]]:
     """The model without the effect that a refit added, and that effect at large strengths of the refit's sign."""
     symbol = models.strength(refit.effects[-1])
     lower, upper = refit.fitness.space.bounds({**refit.values, **base.values})[symbol]
@@ -281,7 +281,7 @@ def _strong(models: ModelFamily, base: Refit, refit: Refit) -> list[dict[str, fl
     return [{**base.values, **shape, symbol: share * end} for share in _STRONG]
 
 
-def _shaken(models: ModelFamily, refit: Refit) -> list[dict[str, float]]:
+def _shaken(models: CandidateModels, refit: FittedModel) -> list[dict[str, float]]:
     """The model of a refit, with the effect that it added weaker and stronger: what plays or sticks has optima nearby.
 
     Between two of them lies where one more reversal of the way shows in the record.

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ident.custom.definition import Definition, together
-from ident.diagnosis.estimate import Found
-from ident.diagnosis.proposals.proposal import Errors, Proposal
+from ident.diagnosis.discovery.proposal import Errors, Proposal
+from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.diagnosis.result import Diagnosis
 from ident.errors import Unusable
 from ident.fit.continued import settings_from
@@ -25,7 +25,7 @@ class End:
     """Where a refit of a diagnosis ended: what its model has beyond the fitted one, with definitions."""
 
     added: tuple[str, ...]
-    parameters: Mapping[str, Found]
+    parameters: Mapping[str, ParameterEstimate]
     error: Errors
     custom: tuple[Definition, ...] = ()
 
@@ -132,7 +132,7 @@ def _with_terms(terms: Sequence[Proposal]) -> End:
     return End((*last.beside, *(str(one["name"]) for one in custom)), last.parameters, last.error, custom)
 
 
-def _as_refitted(own: Mapping[str, Any], parameters: Mapping[str, Found]) -> dict[str, Any]:
+def _as_refitted(own: Mapping[str, Any], parameters: Mapping[str, ParameterEstimate]) -> dict[str, Any]:
     """The definition of a term with its shapes and its curve as a refit found them: a fit holds them there."""
 
     def value(symbol: str, otherwise: Any) -> Any:

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from ident.diagnosis.estimate import Found
-from ident.diagnosis.listings import listings
-from ident.diagnosis.proposals.proposal import Proposal, from_json
-from ident.diagnosis.standing import Standing
+from ident.diagnosis.discovery.proposal import Proposal, from_json
+from ident.diagnosis.parameter_estimate import ParameterEstimate
+from ident.diagnosis.tables import listings
+from ident.diagnosis.verification import Standing
 from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.plain import UNWRITTEN, WHERE_KNOWN, Misfit, read, written
@@ -59,7 +59,7 @@ class Ranked(Judged):
     error: Errors = field(default_factory=dict)
     offset: float | None = None
     predicted_error: float | None = None
-    parameters: Mapping[str, Found] = field(default_factory=dict)
+    parameters: Mapping[str, ParameterEstimate] = field(default_factory=dict)
     group: tuple[str, ...] = ()
     evidence: Mapping[str, float | str | bool | None] = field(default_factory=dict)
     why: str = ""
@@ -67,7 +67,7 @@ class Ranked(Judged):
     unstable: Mapping[str, tuple[str, ...]] = field(default_factory=dict, metadata=WHERE_KNOWN)
 
     @property
-    def strength(self) -> Found | None:
+    def strength(self) -> ParameterEstimate | None:
         """What the refit found of its strength, the first of its parameters."""
         return next((found for name, found in self.parameters.items() if name.startswith(f"{self.effect}.")), None)
 
@@ -84,7 +84,7 @@ class Rung(Judged):
     error: Errors = field(default_factory=dict)
     offset: float | None = None
     nats: float | None = None
-    parameters: Mapping[str, Found] = field(default_factory=dict)
+    parameters: Mapping[str, ParameterEstimate] = field(default_factory=dict)
     error_with_mean: Errors = field(default_factory=dict, metadata=WHERE_KNOWN)
     unstable: Mapping[str, tuple[str, ...]] = field(default_factory=dict, metadata=WHERE_KNOWN)
 
@@ -128,7 +128,7 @@ class Explanation:
 class Verdict:
     """What to add, what the data cannot tell apart, whose label is doubted, and whether something is left.
 
-    `standing` says how sure the effects are, see :data:`ident.diagnosis.standing.Standing`; None where it was not
+    `standing` says how sure the effects are, see :data:`ident.diagnosis.verification.Standing`; None where it was not
     asked. `contradicted_by` are those with which the error rises on runs to verify, `at_bound` those whose strength
     ended at a bound that the search set, `elsewhere` what other models explain as well. `stood_in` are effects of the
     ladder that are not named: beside terms that a search proposes the model does as well without them.

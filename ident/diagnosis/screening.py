@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
-from ident.diagnosis.beginnings import beginnings, shown
+from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.cross_validation import scored, weight_of_offsets
-from ident.diagnosis.family import ModelFamily
-from ident.diagnosis.refit import Refit
+from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.initial_guesses import initial_guesses, strength_in_records
 from ident.fit.bounded_step import bounded_steps
 from ident.fit.responses import Responses, Sensitivities
 from ident.fit.simulated_fitness import SimulatedFitness
@@ -43,7 +43,7 @@ _TOGETHER = 64  # trials whose sums of products lie side by side in memory
 
 
 @dataclass(frozen=True)
-class Outlook:
+class PredictedFit:
     """Eq. (17) averaged over the runs, the root mean square of their offsets, and the score of both together."""
 
     error: float
@@ -62,8 +62,8 @@ class Prediction:
     """
 
     effect: str
-    after: Outlook
-    before: Outlook
+    after: PredictedFit
+    before: PredictedFit
     runs: int
     starts: tuple[Mapping[str, float], ...]
 
@@ -83,14 +83,14 @@ class Prediction:
         return self.runs * float(np.log(self.before.offset / self.after.offset))
 
 
-def predict(models: ModelFamily, base: Refit, names: Sequence[str]) -> list[Prediction]:
+def predict(models: CandidateModels, base: FittedModel, names: Sequence[str]) -> list[Prediction]:
     """What adding each effect to the refitted model promises, in the order of the names."""
     sight = _Sensitivities.of(models, base)
     found = each(lambda group: _predicted(sight, base, group), models.groups(base.effects, names))
     return sorted(chain.from_iterable(found), key=lambda prediction: names.index(prediction.effect))
 
 
-def _predicted(sight: _Sensitivities, base: Refit, names: Sequence[str]) -> list[Prediction]:
+def _predicted(sight: _Sensitivities, base: FittedModel, names: Sequence[str]) -> list[Prediction]:
     """The predictions of effects that one chain holds; strengths are added where a threshold was jumped over."""
     models, fitness = sight.models, sight.models.fitness((*base.effects, *names), SAMPLES)
     off = {symbol: value for symbol, value in models.off.items() if symbol not in base.values}
@@ -110,7 +110,7 @@ def _predicted(sight: _Sensitivities, base: Refit, names: Sequence[str]) -> list
             after,
             before,
             len(sight.gram),
-            (*_starts(models, base, trial, step), *_as_shown(models, base, fitness.space, name, known)),
+            (*_refit_starts(models, base, trial, step), *_from_records(models, base, fitness.space, name, known)),
         )
         for name, (after, step, trial) in ((name, best[name]) for name in names)
     ]
@@ -132,7 +132,7 @@ class _Sensitivities:
     `gram` (runs, p+1, p+1) and `means` (runs, p+1) are of the p parameters and the residual.
     """
 
-    models: ModelFamily
+    models: CandidateModels
     point: Array
     sensitivities: Sensitivities
     gram: Array
@@ -140,7 +140,7 @@ class _Sensitivities:
     records: _Records
 
     @classmethod
-    def of(cls, models: ModelFamily, base: Refit) -> _Sensitivities:
+    def of(cls, models: CandidateModels, base: FittedModel) -> _Sensitivities:
         """Simulate the model with each parameter moved."""
         fitness = models.fitness(base.effects, SAMPLES)
         found = Sensitivities.of(fitness, base.point)
@@ -148,31 +148,31 @@ class _Sensitivities:
         records = _Records(totals, np.array([r.length for r in fitness.runs]))
         return cls(models, base.point, found, *found.products(), records)
 
-    def at(self, fitness: SimulatedFitness, known: Mapping[str, float], trials: list[_Trial]) -> _Seen:
+    def at(self, fitness: SimulatedFitness, known: Mapping[str, float], trials: list[_Trial]) -> _EffectResponses:
         """The model with each effect at its strength alone; `known` are its values without, by the equations' names."""
         values = {name: np.full(len(trials), value) for name, value in known.items()}
         for i, trial in enumerate(trials):
             values[self.models.strength(trial.effect)][i] = trial.strength
             for name, value in trial.shape.items():
                 values[name][i] = value
-        return _Seen(self, trials, self.sensitivities.beside(fitness, known, values))
+        return _EffectResponses(self, trials, self.sensitivities.beside(fitness, known, values))
 
     @cached_property
-    def before(self) -> Outlook:
+    def before(self) -> PredictedFit:
         """Without any effect."""
         ((outlook, _),) = _after(self.gram[None], self.means[None], self.records, self.point, len(self.point))
         return outlook
 
 
 @dataclass(frozen=True)
-class _Seen:
+class _EffectResponses:
     """The responses of a fitted model to effects of some strengths."""
 
     sight: _Sensitivities
     trials: list[_Trial]
     responses: Responses
 
-    def outlooks(self) -> Iterator[tuple[_Trial, Outlook, Array]]:
+    def outlooks(self) -> Iterator[tuple[_Trial, PredictedFit, Array]]:
         """What was simulated, what is left with a share of its response, and the step to there."""
         shown = [i for i in range(len(self.trials)) if self._power(i) > 0]
         for few in (shown[first : first + _TOGETHER] for first in range(0, len(shown), _TOGETHER)):
@@ -192,7 +192,7 @@ class _Seen:
     def _power(self, trial: int) -> float:
         return float(self.responses.power[:, trial].sum())
 
-    def _after(self, trials: Sequence[int]) -> Iterator[tuple[Outlook, Array]]:
+    def _after(self, trials: Sequence[int]) -> Iterator[tuple[PredictedFit, Array]]:
         p, sight, responses = len(self.sight.point), self.sight, self.responses
         old = [*range(p), p + 1]  # the effect's share stands behind the parameters, the residual last
         gram = np.empty((len(trials), len(sight.gram), p + 2, p + 2))
@@ -204,7 +204,9 @@ class _Seen:
         return _after(gram, means, sight.records, sight.point, p)
 
 
-def _starts(models: ModelFamily, base: Refit, trial: _Trial, step: Array) -> tuple[dict[str, float], ...]:
+def _refit_starts(
+    models: CandidateModels, base: FittedModel, trial: _Trial, step: Array
+) -> tuple[dict[str, float], ...]:
     """The values from which to refit with the effect: parts of the way to the prediction, and of the way back."""
     p, symbol = len(base.point), models.strength(trial.effect)
     moved = np.clip(step[:p], -_FAR, _FAR)
@@ -219,21 +221,23 @@ def _starts(models: ModelFamily, base: Refit, trial: _Trial, step: Array) -> tup
     return (*parts, *(at(1.0, scaled**share * trial.strength) for share in _BACK)) if scaled else tuple(parts)
 
 
-def _as_shown(
-    models: ModelFamily, base: Refit, space: Space, name: str, known: Mapping[str, float]
+def _from_records(
+    models: CandidateModels, base: FittedModel, space: Space, name: str, known: Mapping[str, float]
 ) -> Iterator[dict[str, float]]:
     """The fitted model with an effect as strong as the records show by themselves, where they do."""
     effect = models.effects[name]
-    strength = shown(base, effect)
+    strength = strength_in_records(base, effect)
     if strength is not None:
-        for shape in beginnings(base, effect, space, known):
+        for shape in initial_guesses(base, effect, space, known):
             yield {**base.values, **shape, models.strength(name): strength}
 
 
-def _trials(models: ModelFamily, base: Refit, space: Space, name: str, known: Mapping[str, float]) -> Iterator[_Trial]:
+def _trials(
+    models: CandidateModels, base: FittedModel, space: Space, name: str, known: Mapping[str, float]
+) -> Iterator[_Trial]:
     """The strengths to try, SI: shares of the way from off to each bound, from wherever the shapes may begin."""
     lower, upper = space.bounds(known)[models.strength(name)]
-    shapes = beginnings(base, models.effects[name], space, known)
+    shapes = initial_guesses(base, models.effects[name], space, known)
     shares = _AMONG_MANY if len(shapes) > _MANY else (*_FINER, *_LADDER) if space.scale_free else _LADDER
     for shape in shapes:
         for end in (upper, lower):
@@ -248,7 +252,9 @@ class _Records:
     lengths: Array
 
 
-def _after(gram: Array, means: Array, records: _Records, point: Array, fitted: int) -> Iterator[tuple[Outlook, Array]]:
+def _after(
+    gram: Array, means: Array, records: _Records, point: Array, fitted: int
+) -> Iterator[tuple[PredictedFit, Array]]:
     """What is left after the best step of the `fitted` parameters and, where there is one, the strength's share.
 
     Of n problems side by side: `gram` (n, runs, p+1, p+1), `means` (n, runs, p+1); the residual is last.
@@ -274,7 +280,7 @@ def _after(gram: Array, means: Array, records: _Records, point: Array, fitted: i
     error = np.mean(np.sqrt(left / records.totals), axis=1)
     offset = np.sqrt(np.maximum(_along(of_offsets[:, None], direction)[:, 0], 1e-18 * runs) / runs)
     for one, other, found in zip(error.tolist(), offset.tolist(), step, strict=True):
-        yield Outlook(one, other, scored(one, other, share)), found
+        yield PredictedFit(one, other, scored(one, other, share)), found
 
 
 def _along(products: Array, direction: Array) -> Array:

@@ -136,7 +136,7 @@ def improvement(before: CrossValidation, after: CrossValidation) -> Improvement:
     """What `after` gains over `before`."""
     weights = 1.0 / (np.maximum(np.minimum(before.errors, after.errors), 1e-12) * before.totals)
     difference = (before.squares - after.squares) * weights[:, None]
-    best = _foremost(difference)
+    best = _largest_gain(difference)
     n = len(before.means)
     offset = n * float(np.log(max(before.offset, 1e-12) / max(after.offset, 1e-12))) if n > 2 else 0.0
     share = 1.0 - after.error / before.error if before.error > 0 else 0.0
@@ -144,34 +144,34 @@ def improvement(before: CrossValidation, after: CrossValidation) -> Improvement:
     everything = np.zeros(difference.shape, dtype=bool)
     return Improvement(
         share,
-        _nats(before, after, everything),
-        _nats(before, after, best),
+        _log_likelihood_gain(before, after, everything),
+        _log_likelihood_gain(before, after, best),
         _deviations(difference),
         _deviations(difference[~best]),
         _deviations(difference.sum(axis=1)[~best.any(axis=1)] if len(difference) >= _SEVERAL else difference),
-        _lost(difference[~best]),
+        _loss_ratio(difference[~best]),
         offset,
         visible,
-        *_likelier(before, after),
-        _new(after),
+        *_innovation_likelihood_gain(before, after),
+        _innovation_share(after),
         before.in_windows,
-        _fall(before.fitted, after.fitted),
+        _relative_reduction(before.fitted, after.fitted),
     )
 
 
-def _fall(before: float | None, after: float | None) -> float | None:
+def _relative_reduction(before: float | None, after: float | None) -> float | None:
     """The relative fall of an error, where both are known."""
     return None if before is None or after is None or not before > 0 else 1.0 - after / before
 
 
-def _new(after: CrossValidation) -> float:
+def _innovation_share(after: CrossValidation) -> float:
     """The share of what is left that its own past does not foretell, averaged over the runs."""
     if after.unforetold is None:
         return 0.0
     return float(np.mean(after.unforetold.sum(axis=1) / np.maximum(after.squares.sum(axis=1), 1e-300)))
 
 
-def _likelier(before: CrossValidation, after: CrossValidation) -> tuple[float | None, float | None]:
+def _innovation_likelihood_gain(before: CrossValidation, after: CrossValidation) -> tuple[float | None, float | None]:
     """The nats of what is unforetold, ½ Σ n ln(ν² before / ν² after) over runs; without the chunk that gains most.
 
     Of three runs or more without the run.
@@ -182,7 +182,7 @@ def _likelier(before: CrossValidation, after: CrossValidation) -> tuple[float | 
     length = before.samples / known[0].size
     sums = [np.maximum(one, 1e-300) for one in known]
     power = np.minimum(*(side.mean(axis=1, keepdims=True) for side in sums))
-    best = _foremost((sums[0] - sums[1]) / power)
+    best = _largest_gain((sums[0] - sums[1]) / power)
 
     def nats(but: NDArray[np.bool_]) -> float:
         left = [np.maximum(np.where(but, 0.0, side).sum(axis=1), 1e-300) for side in sums]
@@ -191,7 +191,7 @@ def _likelier(before: CrossValidation, after: CrossValidation) -> tuple[float | 
     return nats(np.zeros_like(best)), nats(best)
 
 
-def _foremost(gains: Array) -> NDArray[np.bool_]:
+def _largest_gain(gains: Array) -> NDArray[np.bool_]:
     """Of the gains (runs, chunks) those of the run that gains most; of two runs or one those of the chunk."""
     best = np.zeros(gains.shape, dtype=bool)
     if len(gains) > 2:
@@ -201,7 +201,7 @@ def _foremost(gains: Array) -> NDArray[np.bool_]:
     return best
 
 
-def _nats(before: CrossValidation, after: CrossValidation, but: NDArray[np.bool_]) -> float:
+def _log_likelihood_gain(before: CrossValidation, after: CrossValidation, but: NDArray[np.bool_]) -> float:
     """By how much the held-out data, without some chunks, become more likely."""
     errors = [
         float(np.mean(np.sqrt(np.where(but, 0.0, side.squares).sum(axis=1) / side.totals))) for side in (before, after)
@@ -209,7 +209,7 @@ def _nats(before: CrossValidation, after: CrossValidation, but: NDArray[np.bool_
     return before.independent * float(np.log(max(errors[0], 1e-12) / max(errors[1], 1e-12)))
 
 
-def _lost(differences: Array) -> float:
+def _loss_ratio(differences: Array) -> float:
     """The losses over the gains."""
     gains = float(np.maximum(differences, 0.0).sum())
     return float(np.maximum(-differences, 0.0).sum()) / gains if gains > 0 else np.inf

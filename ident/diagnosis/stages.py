@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from ident.diagnosis.course import Course
+from ident.diagnosis.budget import SearchBudget
 from ident.errors import TimeIsUp, Unusable
 
 EFFECTS, FURTHER = "effects of the catalogue", "further effects"
@@ -32,7 +32,7 @@ _log.addHandler(logging.NullHandler())  # a user reads the note
 class Stages:
     """The stages of one diagnosis, and `notes` for the reader on those that there was no time for, or that failed."""
 
-    course: Course
+    course: SearchBudget
     notes: list[str] = field(default_factory=list)
     _missed: set[str] = field(default_factory=set)
 

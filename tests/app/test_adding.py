@@ -20,8 +20,8 @@ from app.diagnoses import repository as diagnoses
 from app.jobs import repository as jobs
 from ident.bench.synthesis import write_bench
 from ident.custom.definition import read_effect
-from ident.diagnosis.estimate import Found
-from ident.diagnosis.proposals.proposal import Proposal
+from ident.diagnosis.discovery.proposal import Proposal
+from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.diagnosis.result import Baseline, Diagnosis, Ranked, Rung, Verdict
 from ident.effects.effect import Effect
 from ident.presets import PRESETS
@@ -95,7 +95,7 @@ def ended(service: TestClient, answer: Any) -> dict[str, Any]:
 
 def ranked(name: str, parameter: str, unit: str) -> Ranked:
     """A candidate that helps."""
-    found = {f"{name}.{parameter}": Found(1e-4, unit, 1e-6)}
+    found = {f"{name}.{parameter}": ParameterEstimate(1e-4, unit, 1e-6)}
     return Ranked(effect=name, error=ERRORS, parameters=found, evidence={"beyond_chance": True})
 
 

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from ident.diagnosis.estimate import Found
+from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.diagnosis.result import Diagnosis, Rung, Verdict
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
@@ -33,7 +33,9 @@ def fitted(matrix) -> FitResult:
 
 def promised(fit: FitResult) -> Diagnosis:
     """A diagnosis of the model without the spring whose last refit is this fit."""
-    values = {name: Found(one.value, one.unit, one.std_error, one.symbol) for name, one in fit.parameters.items()}
+    values = {
+        name: ParameterEstimate(one.value, one.unit, one.std_error, one.symbol) for name, one in fit.parameters.items()
+    }
     rung = Rung(added="spring_load", error=fit.error, parameters=values)
     settings = Settings(model="kononykhin", method="gradient").to_json()
     return Diagnosis(model="kononykhin", candidates=(), verdict=Verdict(("spring_load",)), ladder=(rung,),

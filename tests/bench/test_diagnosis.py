@@ -7,9 +7,9 @@ from functools import cache
 
 import pytest
 
-from ident.bench.missing import _longer_first
+from ident.bench.effect_ranking import _longer_first
+from ident.diagnosis.competing_models import competing_models
 from ident.diagnosis.result import Diagnosis, Verdict
-from ident.diagnosis.rivals import rivals
 from ident.effects.second_lag import SECOND_LAG
 from ident.errors import Unusable
 from ident.fit.result import FitResult
@@ -116,7 +116,7 @@ def test_runs_to_verify_report_only(full):
 
 def test_no_run_is_proposed_for_a_bench():
     with pytest.raises(Unusable, match="bench"):
-        rivals(Diagnosis(model="kononykhin", candidates=(), verdict=Verdict()))
+        competing_models(Diagnosis(model="kononykhin", candidates=(), verdict=Verdict()))
 
 
 @pytest.mark.parametrize(("T", "second"), [(0.003, 0.005), (0.005, 0.003)])

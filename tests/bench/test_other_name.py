@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from ident.diagnosis.competing_models import competing_models
 from ident.diagnosis.result import Diagnosis, Verdict
-from ident.diagnosis.rivals import rivals
 from ident.errors import Unusable
 from ident.figures import figures_of
 from ident.fit.settings import Settings
@@ -41,7 +41,7 @@ def test_under_another_name_the_model_is_fitted_compared_drawn_and_diagnosed_ali
     found = [diagnose(matrix, fit, most=0).candidates for fit in fits]
     assert found[0] == found[1]
     with pytest.raises(Unusable, match="bench"):
-        rivals(Diagnosis(model=renamed, candidates=(), verdict=Verdict()))
+        competing_models(Diagnosis(model=renamed, candidates=(), verdict=Verdict()))
 
 
 def test_under_another_name_the_preset_passes_its_tests(tmp_path, full):

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ident.diagnosis.stepwise import MOST
+from ident.diagnosis.selection import MOST
 from ident.effects import effect
 from ident.fit.settings import Settings
 from ident.matrix import Matrix

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from ident.diagnosis import family
+from ident.diagnosis import candidate_models
 from ident.effects import effect
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
@@ -91,12 +91,12 @@ def _oracle(secret: Secret, name: str) -> float:
 @contextmanager
 def without(name: str) -> Iterator[None]:
     """Until the block ends no diagnosis knows the effect of that name."""
-    every = family.CATALOGUE
-    family.CATALOGUE = tuple(one for one in every if one.name != name)  # type: ignore[misc]
+    every = candidate_models.CATALOGUE
+    candidate_models.CATALOGUE = tuple(one for one in every if one.name != name)  # type: ignore[misc]
     try:
         yield
     finally:
-        family.CATALOGUE = every  # type: ignore[misc]
+        candidate_models.CATALOGUE = every  # type: ignore[misc]
 
 
 def show(row: Row) -> None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.candidate_models import CandidateModels
 from ident.fit.settings import Settings
 from tests.blind.clutter import OUTSIDE, Cluttered, said
 from tests.blind.left_out import Secret, without
@@ -56,5 +56,5 @@ def test_an_effect_that_is_left_out_is_in_no_model_and_comes_back():
     linear_ones = Secret(replace(machine, hidden={})).measured(machine.trials[:2], 0.0)
     assert not np.allclose(matrix.runs[0].measured, linear_ones.runs[0].measured, atol=1e-7)
     with without("backlash"):
-        assert "backlash" not in ModelFamily.of(matrix, Settings()).effects
-    assert "backlash" in ModelFamily.of(matrix, Settings()).effects
+        assert "backlash" not in CandidateModels.of(matrix, Settings()).effects
+    assert "backlash" in CandidateModels.of(matrix, Settings()).effects

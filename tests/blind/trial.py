@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ident.diagnosis.result import Diagnosis
-from ident.diagnosis.stepwise import USUAL
+from ident.diagnosis.selection import USUAL
 from ident.effects import EFFECTS
 from ident.effects.effect import Effect
 from ident.fit.settings import Settings

@@ -20,7 +20,7 @@ import numpy as np
 from ident.comparison.compare import modelled
 from ident.custom.definition import preset_with
 from ident.diagnosis.result import Diagnosis
-from ident.diagnosis.stepwise import USUAL
+from ident.diagnosis.selection import USUAL
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.workflows import diagnose, identify

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.candidate_models import CandidateModels
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.fit.windows import unforeseen
@@ -43,7 +43,7 @@ def _left(sound: Matrix, fit: FitResult) -> NDArray[np.float64]:
     Without noise windows take what the model lacks for a disturbance, and begin anew to be rid of it.
     """
     last = compare(sound, fit).runs[-1]
-    models = ModelFamily.of(sound, Settings(model=fit.model))
+    models = CandidateModels.of(sound, Settings(model=fit.model))
     known = {models.preset.parameter(name).in_equations: value for name, value in fit.values.items()}
     whole = models.settled(models.refit((), known))
     run = models.matrix.runs[-1]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
-from tests.diagnosis.test_structures import RATE, lag
+from tests.diagnosis.test_structure_selection import RATE, lag
 
 
 @pytest.fixture(scope="module")

@@ -10,8 +10,8 @@ import pytest
 
 from app.cli.diagnosis_tables import show_diagnosis
 from app.cli.fit_options import settings
-from ident.diagnosis.estimate import Found
-from ident.diagnosis.proposals.proposal import Proposal
+from ident.diagnosis.discovery.proposal import Proposal
+from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.diagnosis.result import Diagnosis, Rung, Verdict
 
 STRENGTH = {"symbol": "s", "lower": -1e-10, "upper": 1e-10}
@@ -47,7 +47,7 @@ def test_what_is_printed_ends_with_the_command_that_makes_the_recommended_fit(ca
         show_diagnosis(Diagnosis(candidates=(), verdict=Verdict(), **found), "out/found.json")
         return " ".join(capsys.readouterr().out.split())
 
-    values = {"Z0": Found(3e-6, "m^4/s", None, "Z0")}
+    values = {"Z0": ParameterEstimate(3e-6, "m^4/s", None, "Z0")}
     first = Rung(error={"fit": 0.2}, parameters=values)
     ladder = (first, Rung(added="dead_zone", error={"fit": 0.0463}, parameters=values))
     command = "`servoident fit MATRIX --start out/found.json` makes the recommended fit, with "

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from ident.diagnosis.proposals.proposal import Proposal
+from ident.diagnosis.discovery.proposal import Proposal
 from ident.diagnosis.result import Diagnosis, Verdict
 from tests.running import Service, process
 

@@ -15,8 +15,8 @@ from ident.design.experiment import Experiment
 from ident.design.proposal import propose, ranked
 from ident.design.rival import Rival
 from ident.design.rivals import Rivals
+from ident.diagnosis.competing_models import competing_models
 from ident.diagnosis.result import Diagnosis
-from ident.diagnosis.rivals import rivals
 from ident.errors import Unusable
 from ident.fit.levenberg_marquardt import Way
 from ident.fit.reduction import excited_band
@@ -154,7 +154,7 @@ def diagnosis() -> dict:
 
 def test_a_diagnosis_says_what_is_in_question(diagnosis):
     """The group that it cannot tell apart, with its values; its noise floor."""
-    again = rivals(Diagnosis.from_json(json.loads(json.dumps(diagnosis))))
+    again = competing_models(Diagnosis.from_json(json.loads(json.dumps(diagnosis))))
     _, models = confused()
     assert [(m.effects, v) for m, v in again.models] == [(m.effects, v) for m, v in models]
     assert again.noise == NOISE
@@ -164,7 +164,7 @@ def test_what_a_diagnosis_settled_on_is_not_in_question(diagnosis):
     """Then the next run is to teach the parameters of the last step."""
     step = {"added": diagnosis["candidates"][0]["effect"], "parameters": diagnosis["candidates"][0]["parameters"]}
     verdict = {"effects": [step["added"]], "indistinguishable": [], "unexplained": False}
-    again = rivals(Diagnosis.from_json(diagnosis | {"ladder": [step], "verdict": verdict}))
+    again = competing_models(Diagnosis.from_json(diagnosis | {"ladder": [step], "verdict": verdict}))
     assert [model.effects[0].name for model, _ in again.models] == [step["added"]]
 
 
@@ -192,7 +192,7 @@ def test_a_run_with_a_doubted_label_does_not_say_what_the_bench_can_do():
 
     def trusted(*doubted: str) -> list[str]:
         said = {"candidates": [], "verdict": {"suspects": [{"run": run} for run in doubted]}}
-        return [run.id for run in rivals(Diagnosis.from_json(said)).trusted(few).runs]
+        return [run.id for run in competing_models(Diagnosis.from_json(said)).trusted(few).runs]
 
     assert trusted(names[0]) == names[1:]
     assert trusted(*names) == names

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ident.diagnosis import family
+from ident.diagnosis import candidate_models
 from ident.diagnosis.result import Diagnosis
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
@@ -85,7 +85,7 @@ def _mislabelled(of: Matrix, rng: np.random.Generator) -> Matrix:
 
 
 if __name__ == "__main__":
-    family.CATALOGUE = tuple(effect for effect in family.CATALOGUE if effect.name in RANKED)
+    candidate_models.CATALOGUE = tuple(effect for effect in candidate_models.CATALOGUE if effect.name in RANKED)
     folder, kind, *seeds = sys.argv[1:]
     for seed in map(int, seeds):
         found = diagnosed(matrix(kind, seed), kind)

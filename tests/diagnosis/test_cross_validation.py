@@ -15,7 +15,7 @@ from ident.diagnosis.cross_validation import (
     cross_validated,
     not_held_out,
 )
-from ident.diagnosis.refit import carries_over, helps
+from ident.diagnosis.fitted_model import generalises, improves
 from ident.diagnosis.significance import improvement
 from ident.fit.fitness import Local, local
 from ident.fit.normal_matrices import NormalMatrices, normal_matrices_of
@@ -134,7 +134,7 @@ def test_what_only_tells_runs_apart_does_not_carry_over(rng, lawful):
 
     less, more = refitted(1), refitted(4)
     assert improvement(less.held_out, more.held_out).beyond_chance
-    assert carries_over(less, more) is helps(less, more) is lawful
+    assert generalises(less, more) is improves(less, more) is lawful
 
 
 def test_at_the_edge_of_what_is_stable_the_linearisation_judges(rng):

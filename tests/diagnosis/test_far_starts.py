@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.ranking import _strong
 from ident.fit.levenberg_marquardt import Way
 from ident.fit.settings import Settings
@@ -47,7 +47,7 @@ def test_a_drag_is_measured_by_the_speed_that_was_recorded():
 def test_strong_starts_lie_within_the_bounds_of_the_model_that_they_begin_from():
     """The bounds of a strength hang on other values: by those of a refit two strengths of three began as one."""
     lab = Lab.drawn(316, hidden=True)
-    models, still = ModelFamily.of(lab.measured(), Settings(model="qian2014")), Way(most=0)
+    models, still = CandidateModels.of(lab.measured(), Settings(model="qian2014")), Way(most=0)
     base = models.refit((), {p.in_equations: p.value for p in models.preset.parameters}, way=still)
     refit = models.refit(("coulomb_friction",), base.values | {"c0": 9.0 * base.values["c0"]}, way=still)
     starts, symbol = _strong(models, base, refit), models.strength("coulomb_friction")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from ident.diagnosis import family
-from ident.diagnosis.family import ModelFamily
+from ident.diagnosis import candidate_models
+from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.screening import predict
 from ident.fit.settings import Settings
 from tests.diagnosis.test_diagnose import measured
@@ -13,11 +13,11 @@ from tests.fit.test_windows import cylinder
 
 
 def test_what_an_effect_promises_hangs_on_none_beside_it(monkeypatch):
-    models = ModelFamily.of(measured(dead_zone=2.5e-4), Settings())
+    models = CandidateModels.of(measured(dead_zone=2.5e-4), Settings())
     base = models.refit((), {p.in_equations: p.value for p in models.preset.parameters})
     names = list(models.effects)[::3]
     together = predict(models, base, names)
-    monkeypatch.setattr(family, "_SIDE_BY_SIDE", 1)
+    monkeypatch.setattr(candidate_models, "_SIDE_BY_SIDE", 1)
     for one, alone in zip(together, predict(models, base, names), strict=True):
         assert one.effect == alone.effect
         assert one.after.score == pytest.approx(alone.after.score, rel=1e-3)
@@ -27,7 +27,7 @@ def test_every_effect_is_in_one_group_and_no_group_closes_a_circle():
     """In a drive without a valve some effects read each other; those with shapes to search stand alone."""
     matrix = cylinder(2, wander=1e-3)
     for model in ("motor", "open_valve"):
-        models = ModelFamily.of(matrix, Settings(model=model))
+        models = CandidateModels.of(matrix, Settings(model=model))
         names = list(models.effects)
         groups = models.groups((), names)
         assert sorted(name for group in groups for name in group) == sorted(names)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.candidate_models import CandidateModels
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
@@ -50,7 +50,7 @@ def test_a_delay_of_a_part_of_a_step_is_found():
 def test_a_strength_at_the_bound_of_its_search_is_not_called_found():
     """Of a delay of more than half a step nobody can say where it would end, though it looks like noise."""
     matrix = late(27, noise=0.3)
-    assert ModelFamily.of(matrix, Settings(model="motor")).floor is None
+    assert CandidateModels.of(matrix, Settings(model="motor")).floor is None
     found = diagnose(matrix, settings=Settings(model="motor"), most=1, propose=False)
     assert found.verdict.at_bound == ("command_delay",)
     assert found.verdict.standing == "stand_in"

@@ -7,10 +7,11 @@ from typing import Any
 
 import pytest
 
-from ident.diagnosis import candidate, ranking, stepwise
+from ident.diagnosis import candidate, ranking
+from ident.diagnosis import selection as selecting
 from ident.diagnosis.candidate import Candidate
 from ident.diagnosis.ranking import rank_each
-from ident.diagnosis.stepwise import StepwiseSelection
+from ident.diagnosis.selection import StepwiseSelection
 
 
 def refit(*effects: str, error: float) -> Any:
@@ -50,7 +51,7 @@ def test_a_model_that_is_known_is_found_anew_where_that_leads_to_a_better_optimu
     }.items():  # fmt: skip
         monkeypatch.setattr(ranking, name, made)
     monkeypatch.setattr(candidate, "improvement", lambda *_: None)
-    monkeypatch.setattr(candidate, "alike", lambda *_: False)
+    monkeypatch.setattr(candidate, "indistinguishable", lambda *_: False)
     found = refit("saturation", "stiction", error=1.0)
     (ranked,) = rank_each(
         models, [(refit("stiction", error=2.0), ("saturation", "other"))], lambda _: None, thorough=False, beside=found
@@ -65,8 +66,8 @@ def in_place(selection: StepwiseSelection, rankings: list[list[list[Any]]], monk
     rounds = iter(rankings)
     monkeypatch.setattr(selection, "_in_place_of_each", lambda _added: next(rounds))
     monkeypatch.setattr(selection, "_backward", lambda _latest: False)
-    monkeypatch.setattr(stepwise, "helps", lambda less, more: more.error < 0.99 * less.error)
-    monkeypatch.setattr(stepwise, "group", lambda name, _here, _ranking, _noise: [name])
+    monkeypatch.setattr(selecting, "improves", lambda less, more: more.error < 0.99 * less.error)
+    monkeypatch.setattr(selecting, "indistinguishable_group", lambda name, _here, _ranking, _noise: [name])
 
 
 def test_what_replaces_an_effect_stands_on_its_rung_and_is_weighed_until_nothing_is_replaced(models, monkeypatch):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from ident.diagnosis.discovery.proposal import Proposal
 from ident.diagnosis.named import names, with_named
-from ident.diagnosis.proposals.proposal import Proposal
 from ident.diagnosis.result import Diagnosis, Ranked, Verdict
 from ident.errors import Unusable
 from ident.fit.settings import Settings

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ident.diagnosis.candidate import Candidate, group, ranked
+from ident.diagnosis.candidate import Candidate, in_rank_order, indistinguishable_group
 from ident.diagnosis.cross_validation import CrossValidation
 from ident.diagnosis.ranking import _finalists, rank_each
 
@@ -44,17 +44,17 @@ def candidate(effect: str, held_out: float, between_runs: float | None) -> Candi
 )
 def test_what_ties_on_blocks_is_told_apart_by_whole_runs(of_friction, of_stop, first):
     friction, stop = candidate("friction", 0.2, of_friction), candidate("stop", 0.2001, of_stop)
-    in_order = [one.effect for one in ranked(MODELS, [stop, friction])]
+    in_order = [one.effect for one in in_rank_order(MODELS, [stop, friction])]
     assert in_order[0] == first
     named: Any = {"friction": friction, "stop": stop}[first]
-    as_good = [one.effect for one in group(first, named.refit, [friction, stop], 0.2)]
+    as_good = [one.effect for one in indistinguishable_group(first, named.refit, [friction, stop], 0.2)]
     assert as_good == (["stop"] if first == "stop" else ["friction", "stop"])
 
 
 def test_what_nothing_replaced_is_in_its_group():
     """By rounding it stands first, and just beyond chance behind the best."""
     delay, lag = candidate("delay", 0.2, 0.2), candidate("lag", 0.1, 0.1)
-    assert [one.effect for one in group("delay", delay.refit, [delay, lag], 0.1)] == ["delay", "lag"]  # type: ignore[arg-type]
+    assert [one.effect for one in indistinguishable_group("delay", delay.refit, [delay, lag], 0.1)] == ["delay", "lag"]  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -79,13 +79,16 @@ def test_what_is_missing_tells_no_two_effects_apart(of_leak, noise, beside):
         Candidate(SimpleNamespace(effect=name), refit=refit(error), base=without)  # type: ignore[arg-type]
         for name, error in (("asymmetry", 0.2), ("leak", of_leak))
     )
-    found = group("asymmetry", asymmetry.refit, [asymmetry, leak], noise or 0.1)  # type: ignore[arg-type]
+    found = indistinguishable_group("asymmetry", asymmetry.refit, [asymmetry, leak], noise or 0.1)  # type: ignore[arg-type]
     assert ("leak" in [one.effect for one in found]) is beside
 
 
 def test_what_is_better_on_blocks_comes_first_whatever_whole_runs_say():
     """Whether it does harm there is asked where it is added."""
-    assert [one.effect for one in ranked(MODELS, [candidate("a", 0.2, 0.2), candidate("b", 0.1, 0.3)])] == ["b", "a"]
+    assert [one.effect for one in in_rank_order(MODELS, [candidate("a", 0.2, 0.2), candidate("b", 0.1, 0.3)])] == [
+        "b",
+        "a",
+    ]
 
 
 @pytest.mark.parametrize(("kept", "tried"), [(0.8, {"friction", "dead zone"}), (0.3, {"friction"})])

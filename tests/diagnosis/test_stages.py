@@ -9,8 +9,8 @@ from types import SimpleNamespace
 import pytest
 
 from ident.diagnosis import diagnose as diagnosing
-from ident.diagnosis.course import Course
-from ident.diagnosis.proposals.outcome import Proposals
+from ident.diagnosis.budget import SearchBudget
+from ident.diagnosis.discovery.discovery_result import DiscoveryResult
 from ident.diagnosis.result import Diagnosis, Verdict
 from ident.diagnosis.stages import ERROR_BUDGET, LAGS, NEXT_RUN, TERMS, Stages
 from ident.errors import Cancelled, TimeIsUp, Unusable
@@ -36,9 +36,9 @@ def failing(*_given, **_named):
 @pytest.mark.usefixtures("few_effects", "survives")
 def test_the_catalogues_verdict_stands_whatever_fails_later(monkeypatch, caplog):
     """Lags, error budget, next run and terms at once: each has its note, and its traceback in the log."""
-    for name in ("lateness", "error_budget", "next_run"):
+    for name in ("total_delay", "error_budget", "next_run"):
         monkeypatch.setattr(diagnosing, name, failing)
-    monkeypatch.setattr(diagnosing.Search, "run", failing)
+    monkeypatch.setattr(diagnosing.TermSearch, "run", failing)
     heard: list[Diagnosis] = []
     found = diagnose(matrix(), most=1, propose=True, found=heard.append)
     assert found.verdict.effects == ("dead_zone",)
@@ -60,7 +60,7 @@ def test_the_catalogues_verdict_stands_whatever_fails_later(monkeypatch, caplog)
 def test_a_test_sees_what_a_user_is_spared():
     """Where nobody asks for it to survive, a stage that fails fails the test."""
     with pytest.raises(ZeroDivisionError):
-        Stages(Course(most=1)).attempt(TERMS, failing, None)
+        Stages(SearchBudget(most=1)).attempt(TERMS, failing, None)
 
 
 @pytest.mark.usefixtures("survives")
@@ -74,7 +74,7 @@ def test_a_test_sees_what_a_user_is_spared():
 )
 def test_a_note_says_what_failed_in_plain_words(error, told, caplog):
     """Only a defect is for the developers' log."""
-    stages = Stages(Course(most=1))
+    stages = Stages(SearchBudget(most=1))
 
     def fails() -> int:
         raise error
@@ -91,7 +91,7 @@ def test_what_the_caller_stops_the_work_by_is_no_failure():
     def report(progress: Progress) -> None:
         raise Cancelled if progress.stage == "labels" else TimeIsUp
 
-    course = Course(most=1, report=report)
+    course = SearchBudget(most=1, report=report)
     stages = Stages(course)
     with pytest.raises(Cancelled):
         stages.attempt(NEXT_RUN, lambda: course.tell(Progress("labels", 0, 1)), None)
@@ -118,7 +118,7 @@ def test_a_defect_is_kept_in_the_error_log_of_the_command_line(tmp_path, monkeyp
         log.removeHandler(handler)
     try:
         with logged():
-            Stages(Course(most=1)).attempt(TERMS, failing, None)
+            Stages(SearchBudget(most=1)).attempt(TERMS, failing, None)
     finally:
         for handler in handlers:
             log.addHandler(handler)
@@ -129,16 +129,16 @@ def test_a_defect_is_kept_in_the_error_log_of_the_command_line(tmp_path, monkeyp
 def test_terms_of_the_first_search_stay_where_there_is_no_time_for_the_second(monkeypatch, second):
     """And the search is not called complete."""
     term = SimpleNamespace(error={"fit": 0.1, "held_out": 0.1})
-    searches = iter([Proposals(found=(term,)), Proposals(complete=False)])
+    searches = iter([DiscoveryResult(found=(term,)), DiscoveryResult(complete=False)])
 
     def search(*_given):
         try:
             return SimpleNamespace(run=lambda: next(searches))
         finally:
             if second == "not begun":
-                monkeypatch.setattr(diagnosing, "Search", no_time_left)
+                monkeypatch.setattr(diagnosing, "TermSearch", no_time_left)
 
-    monkeypatch.setattr(diagnosing, "Search", search)
+    monkeypatch.setattr(diagnosing, "TermSearch", search)
     monkeypatch.setattr(diagnosing, "_repeated", lambda *_: False)
     errors = [SimpleNamespace(held_out=SimpleNamespace(error=error), error=error, effects=()) for error in (0.5, 0.4)]
     selection = SimpleNamespace(base=errors[0], found=errors[1], added=("lead",), models=None)

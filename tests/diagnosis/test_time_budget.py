@@ -11,10 +11,10 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from ident.diagnosis import family
-from ident.diagnosis.proposals import candidate
-from ident.diagnosis.proposals.search import Search
-from ident.diagnosis.proposals.terms import Library
+from ident.diagnosis import candidate_models
+from ident.diagnosis.discovery import term_candidate
+from ident.diagnosis.discovery.search import TermSearch
+from ident.diagnosis.discovery.term_library import TermLibrary
 from ident.diagnosis.result import Diagnosis
 from ident.errors import TimeIsUp
 from ident.fit.simulated_runs import every_run
@@ -69,14 +69,16 @@ def counted(monkeypatch) -> Callable[..., tuple[Diagnosis, Events]]:
     """A diagnosis on one core, whose batches are counted where the compiled code is called."""
     here: list[Events] = []
     monkeypatch.setattr("ident.parallel._idle", lambda: threading.Semaphore(0))
-    monkeypatch.setattr(family, "CATALOGUE", tuple(one for one in family.CATALOGUE if one.name in FEW))
+    monkeypatch.setattr(
+        candidate_models, "CATALOGUE", tuple(one for one in candidate_models.CATALOGUE if one.name in FEW)
+    )
 
     # Of the search for terms a few steps: it is the same loop for many.
-    every = Library.terms
-    monkeypatch.setattr(Library, "terms", lambda of: islice(every(of), 60))
-    monkeypatch.setattr(candidate, "_TRIED", 1)
-    monkeypatch.setattr(candidate, "_PAIRS", 0)
-    monkeypatch.setattr(Search, "_drawn", lambda *_: None)
+    every = TermLibrary.terms
+    monkeypatch.setattr(TermLibrary, "terms", lambda of: islice(every(of), 60))
+    monkeypatch.setattr(term_candidate, "_TRIED", 1)
+    monkeypatch.setattr(term_candidate, "_PAIRS", 0)
+    monkeypatch.setattr(TermSearch, "_drawn", lambda *_: None)
 
     def telling(function):
         def called(*given):

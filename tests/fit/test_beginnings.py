@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.candidate_models import CandidateModels
 from ident.fit.identification import Identification, completed
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.result import FitResult
@@ -135,7 +135,7 @@ def test_search_fit_comparison_and_diagnosis_have_one_error(first):
         state = work.advance(state, 50)
     fit = work.finish(state)
     assert fit.error["fit"] <= min(state["history"][-1]["errors"]) * 1.001
-    family = ModelFamily.of(matrix, settings)
+    family = CandidateModels.of(matrix, settings)
     start = {family.preset.parameter(name).in_equations: value for name, value in fit.values.items()}
     assert family.refit((), start).error == pytest.approx(fit.error["fit"], rel=1e-6)
     compared = {run.run.id: run.error for run in compare(matrix, fit).runs}
@@ -262,7 +262,7 @@ def test_few_samples_a_second_show_that_a_machine_stood_before_its_command_jumpe
 def test_first_states_are_followed_where_what_they_promise_is_worth_it(saturated):
     """From a place off, where the model is not straight: what is left falls only where they are followed."""
     matrix, _ = saturated
-    fitness = ModelFamily.of(matrix, SATURATED).fitness(("command_limit",))
+    fitness = CandidateModels.of(matrix, SATURATED).fitness(("command_limit",))
     known = {p.in_equations: p.value for p in fitness.preset.parameters}
     found = {fitness.preset.parameter(name).in_equations: value for name, value in SERVO.items()}
     point = fitness.space.point({**known, **found, **fitness.space.fixed})

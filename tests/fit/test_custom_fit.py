@@ -10,7 +10,7 @@ import pytest
 
 from ident.comparison.compare import compare
 from ident.custom.definition import definition_of, read_effect
-from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.candidate_models import CandidateModels
 from ident.errors import Unusable
 from ident.fit.identification import Identification
 from ident.fit.result import FitResult
@@ -175,6 +175,7 @@ def test_a_run_without_the_channel_is_refused_and_a_diagnosis_ranks_what_it_can(
         Identification(replace(data, runs=(shown, *others)), settings(SUPPLIED))
     effect = read_effect(SUPPLIED)
     ranked = [
-        ModelFamily.of(replace(data, runs=runs), Settings(), (effect,)).effects for runs in (data.runs, (bare, *others))
+        CandidateModels.of(replace(data, runs=runs), Settings(), (effect,)).effects
+        for runs in (data.runs, (bare, *others))
     ]
     assert [effect.name in known for known in ranked] == [True, False]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ident.diagnosis.beginnings import shown
-from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.initial_guesses import strength_in_records
 from ident.diagnosis.screening import predict
 from ident.effects import effect
 from ident.fit.result import FitResult
@@ -83,17 +83,17 @@ def test_the_middle_of_a_stroke_is_that_of_the_way_between_stops_wherever_the_ze
     model, _ = preset("motor").with_effects((effect("end_stop"),)).for_matrix(cylinder(low, high))
     found = model.parameter("end_stop.middle")
     assert found.value == pytest.approx(middle, abs=2e-3)
-    family = ModelFamily.of(cylinder(low, high), Settings(model="motor"))
+    family = CandidateModels.of(cylinder(low, high), Settings(model="motor"))
     assert family.model(("end_stop",)).parameter("end_stop.middle").value == found.value
 
 
 def test_a_diagnosis_begins_with_stops_where_the_way_ended():
     """Of strengths along the range none was near: a motor was left with what sticks in their place."""
-    models = ModelFamily.of(cylinder(), Settings(model="motor"))
+    models = CandidateModels.of(cylinder(), Settings(model="motor"))
     base = models.refit((), {p.in_equations: p.value for p in models.preset.parameters})
     stop, lag = (models.effects[name] for name in ("end_stop", "sensor_lag"))
-    assert shown(base, stop) == pytest.approx(2 / (HIGH - LOW), rel=0.01)
-    assert shown(base, lag) is None
+    assert strength_in_records(base, stop) == pytest.approx(2 / (HIGH - LOW), rel=0.01)
+    assert strength_in_records(base, lag) is None
     (promise,) = predict(models, base, ["end_stop"])
     begun = {round(start["end_stop__inverse_way"] * (HIGH - LOW) / 2, 2) for start in promise.starts}
     assert 1.0 in begun

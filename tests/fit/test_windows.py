@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import scipy.signal
 
-from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.candidate_models import CandidateModels
 from ident.fit.levenberg_marquardt import Way
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.settings import Settings
@@ -143,7 +143,7 @@ def test_windows_over_which_a_record_but_goes_on_are_none(seed):
 def test_the_error_over_windows_is_counted_from_where_each_was_measured():
     matrix = cylinder(5, wander=1e-3)
     fit = identify(matrix, Settings(model="motor"))
-    family = ModelFamily.of(matrix, Settings(model="motor"), horizon=fit.window.horizon)
+    family = CandidateModels.of(matrix, Settings(model="motor"), horizon=fit.window.horizon)
     start = {family.preset.parameter(name).in_equations: value for name, value in fit.values.items()}
     refit = family.refit((), start)
     assert refit.error == pytest.approx(fit.window.error["fit"], rel=1e-3)
@@ -198,12 +198,12 @@ def test_the_noise_floor_over_windows_has_the_noise_with_which_each_begins():
     x += 2e-4 * np.random.default_rng(1).standard_normal(len(x))
     channels, units = {"command": u, "displacement": x}, {"command": "V", "displacement": "m"}
     matrix = Matrix(Actuator("CYLINDER"), (Run("r", "", RATE, channels, units, hold="zoh"),))
-    family = ModelFamily.of(matrix, Settings(model="motor"), horizon=1.0)
+    family = CandidateModels.of(matrix, Settings(model="motor"), horizon=1.0)
     assert family.floor is not None
     refit = family.refit((), {"m0": 1.0, "c0": 1 / LAG, "Kt": GAIN / LAG})
     assert refit.error == pytest.approx(family.floor, rel=0.03)
     assert family.at_floor(refit)
-    whole = ModelFamily.of(matrix, Settings(model="motor"))
+    whole = CandidateModels.of(matrix, Settings(model="motor"))
     assert whole.floor == pytest.approx(2e-4 / np.std(x), rel=0.05)
     assert whole.at_floor(whole.refit((), refit.values))
 
@@ -213,7 +213,7 @@ def test_a_first_position_that_no_window_sees_stays_in_the_record_and_the_object
     matrix = cylinder(1, wander=1e-3)
     runs = tuple(run.part(75, run.length) for run in matrix.runs)
     assert {run.begins for run in runs} == {"moving"}
-    family = ModelFamily.of(replace(matrix, runs=runs), Settings(model="open_valve"), horizon=1.0)
+    family = CandidateModels.of(replace(matrix, runs=runs), Settings(model="open_valve"), horizon=1.0)
     fitness = family.fitness(())
     point = fitness.space.point({"m0": 1.0, "tau": 0.05, "c0": 8.0, "Ka": 1e-3, "Cl": 1e-3, "Z0": GAIN, "A": 1.0})
     for _ in range(8):

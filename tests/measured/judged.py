@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ident.diagnosis.result import Diagnosis
-from ident.diagnosis.structures import chosen
+from ident.diagnosis.structure_selection import choose_structure
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.readers import read_matrix
@@ -68,7 +68,7 @@ class Judged:
 def judged(folder: Path) -> Judged:
     """What `fit` and `diagnose` make of a matrix where nothing else is said."""
     begun = time.monotonic()
-    choice = chosen(read_matrix(folder))
+    choice = choose_structure(read_matrix(folder))
     settings = Settings(model=choice.structures[0].machine)
     fit = choice.made(settings) or identify(choice.matrix, settings)
     found = diagnose(choice.matrix, fit)

@@ -12,7 +12,7 @@ import pytest
 import scipy.signal
 
 from ident.checks.check import check
-from ident.diagnosis.structures import chosen
+from ident.diagnosis.structure_selection import choose_structure
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
@@ -254,7 +254,7 @@ def test_in_unknown_units_a_loop_is_known_by_where_its_output_is(seed):
     matrix = lagging(seed)
     assert [model.name for model in in_question(matrix.runs)] == ["qian2014"]
     said = "No model was named: qian2014, a loop that compares both, since what was recorded is where the command is."
-    assert said in chosen(matrix).matrix.notices
+    assert said in choose_structure(matrix).matrix.notices
     of_force = replace(matrix.runs[0], output="force", units={"command": "1", "force": "1"},
                        channels={"command": matrix.runs[0].command, "force": matrix.runs[0].measured})  # fmt: skip
     assert [model.name for model in in_question([of_force])] == ["force_loop"]

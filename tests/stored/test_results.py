@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from app.cli.given import read_diagnosis, read_fit
+from ident.diagnosis.competing_models import competing_models
 from ident.diagnosis.result import Diagnosis, LabelErrors, Verdict
-from ident.diagnosis.rivals import rivals
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from schemas.diagnosis import DiagnosisView
@@ -111,13 +111,13 @@ def test_a_fit_with_a_value_that_is_no_number_is_refused(tmp_path):
 
 def test_a_stored_diagnosis_says_which_models_are_in_question_and_whose_label_is_doubted():
     found = Diagnosis.from_json(stored("diagnosis"))
-    asked = rivals(found)
+    asked = competing_models(found)
     assert asked.models
     assert asked.noise == found.noise_floor["fit"]
     assert asked.doubted == {suspect["run"] for suspect in stored("diagnosis")["verdict"]["suspects"]}
     with pytest.raises(Unusable, match="bench"):
-        rivals(Diagnosis.from_json(stored("bench-diagnosis")))
-    assert rivals(Diagnosis(candidates=(), verdict=Verdict())).models == ()
+        competing_models(Diagnosis.from_json(stored("bench-diagnosis")))
+    assert competing_models(Diagnosis(candidates=(), verdict=Verdict())).models == ()
 
 
 def anything(schema: Any, path: str = "") -> Iterator[str]:

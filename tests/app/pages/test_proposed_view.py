@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from app.pages.proposed_view import proposed
-from ident.diagnosis.proposals.proposal import Proposal
-from ident.diagnosis.standing import Contradiction
+from ident.diagnosis.discovery.proposal import Proposal
+from ident.diagnosis.verification import Contradiction
 from tests.app.pages.test_diagnosis_view import found
 
 EFFECT = {"name": "proposed_1", "place": "load", "equation": ["R = R + s * (v**3)"]}

@@ -1,0 +1,76 @@
+"""What another structure explains as well: groups reach across the models that the channels allow.
+
+Where the moving mass is negligible, K w = c v + F sgn v is the dead zone F/K of what drives it, whatever model it is
+told in. The other models that were compared are searched for one effect in the place of what was found; what the data
+cannot tell from it by the measure of a group is told, and what is better beyond chance: models were compared before
+anything was added, and one that lacks much may then look worse than it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.ranking import rank
+from ident.diagnosis.result import Explanation
+from ident.diagnosis.selection import StepwiseSelection
+from ident.diagnosis.significance import improvement
+from ident.effects.effect import Effect
+from ident.fit.result import FitResult
+from ident.fit.settings import Settings
+from ident.matrix import Matrix
+from ident.progress import Progress, Report
+
+_MOST = 3  # effects of one other model that are told
+
+
+@dataclass(frozen=True)
+class AlternativeModel:
+    """Another model of the same machine, and its values without effects, by the equations' names."""
+
+    models: CandidateModels
+    values: Mapping[str, float]
+
+    def explanations(self, found: FittedModel, without: frozenset[str], report: Report) -> Iterator[Explanation]:
+        """What explains as well as what was found over its windows: nothing or one effect, `without` doubted runs."""
+        models = self.models.without(without).over(found.fitness.horizon, found.fitness.memory)
+        base = models.refit((), self.values)
+        if not base.finite:
+            return
+        alone = improvement(base.held_out, found.held_out)
+        if alone.within_chance and not alone.beyond_chance:
+            yield Explanation(models.given.model, (), base.errors)
+            return
+        ranking = rank(models, base, list(models.effects), report, thorough=False)
+        refits = [one.refit for one in ranking if one.refit is not None and one.helps]
+        alike = [refit for refit in refits if improvement(refit.held_out, found.held_out).within_chance]
+        better = [refit for refit in alike if improvement(found.held_out, refit.held_out).beyond_chance]
+        for refit in (better or alike)[:_MOST]:
+            yield Explanation(models.given.model, refit.effects, refit.errors, bool(better))
+
+
+def alternative_models(matrix: Matrix, fit: FitResult, custom: Iterable[Effect]) -> tuple[AlternativeModel, ...]:
+    """The models that were compared with the one of a fit, where it tells their values."""
+    found = []
+    for one in fit.structures:
+        if one.machine != fit.model and one.values:
+            family = CandidateModels.of(matrix, Settings(model=one.machine), custom)
+            values = {family.preset.parameter(name).in_equations: value for name, value in one.values.items()}
+            found.append(AlternativeModel(family, values))
+    return tuple(found)
+
+
+def alternative_explanations(
+    known: Iterable[AlternativeModel], selection: StepwiseSelection, tell: Callable[[Progress], None]
+) -> tuple[Explanation, ...]:
+    """What other models explain with one effect as well as the fitted one with what was added, or better."""
+    if not selection.added or selection.base.effects:
+        return ()
+    doubted = selection.models.left_out
+
+    def report(progress: Progress) -> None:
+        tell(replace(progress, stage="other models", expected=()))
+
+    return tuple(told for one in known for told in one.explanations(selection.found, doubted, report))

@@ -1,0 +1,326 @@
+"""The models that a diagnosis compares: one machine's, each with another set of effects, refitted to the same runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import scipy  # stats, which takes half a second to load, is loaded where it is first used
+from numpy.typing import NDArray
+
+from ident.cached import cached_property
+from ident.chain.channels import unmeasured
+from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
+from ident.effects import CATALOGUE
+from ident.effects.effect import Effect, off_values
+from ident.errors import Unusable
+from ident.fit.given import of_model
+from ident.fit.levenberg_marquardt import Way
+from ident.fit.reduction import excited_band
+from ident.fit.settings import Settings
+from ident.fit.simulated_fitness import SimulatedFitness, shortened
+from ident.fit.simulated_runs import SimulatedRuns
+from ident.fit.space import search_space
+from ident.matrix import Matrix
+from ident.noise.floor import Floors, noise_floors
+from ident.parallel import each
+from ident.presets import Preset
+from ident.presets import preset as preset_named
+from ident.presets.middle import about
+from ident.run import MOTIONS, Run
+from ident.words.titles import title
+
+Array = NDArray[np.float64]
+_TRIAL = 131_072  # samples of a first refit; the finalists take every sample
+FITTING, TRYING = Way(1e-7, 20, rough=1e-5), Way(1e-5, 10, rough=1e-4)  # of a refit, a first one
+_SETTING_OUT, _SEARCHING = TRYING, Way(1e-5, 20, rough=1e-4)  # of one far off, and where it is ahead of others
+_SCATTERED, _LEADING = 128, 4  # points of a whole search space, and those of them from which a refit begins
+FIRST_STEPS, _AHEAD = Way(1e-5, 3), 8  # of it, and how many go on
+_SIGHT = 32_768  # samples that they are judged by
+_SIDE_BY_SIDE = 8  # effects of a chain of which each lane carries one
+_OFF = 0.01  # of the largest strength
+_BETTER = 0.99  # times the error: a new optimum, not the same one
+_ROUNDS = 5  # of going on with a refit
+_AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be noise, beside
+_SHARES = (1.0, 0.3, 0.03)  # of the strength alone of the second of two effects
+_CHANCE = 3.0  # standard deviations
+_NOISE_LIKE = 0.5  # correlation of neighbouring residuals that noise may have, where there is no floor
+
+
+@dataclass
+class CandidateModels:
+    """The models of a preset for the fit runs of a matrix, with effects of the catalogue and of the user.
+
+    `given` are what the user holds fixed or bounds; `left_out` the ids of runs that are not fitted; `horizon` (s) the
+    length of the windows over which a machine that integrates is fitted, None for whole runs, `memory` (s) as there.
+    """
+
+    preset: Preset
+    matrix: Matrix
+    given: Settings
+    band: float
+    effects: Mapping[str, Effect]
+    left_out: frozenset[str] = frozenset()
+    horizon: float | None = None
+    memory: float | None = None
+    _known: dict[tuple[tuple[str, ...], int], SimulatedFitness] = field(default_factory=dict)
+    _records: dict[int, tuple[Run, ...]] = field(default_factory=dict)
+
+    @classmethod
+    def of(
+        cls, matrix: Matrix, given: Settings, custom: Iterable[Effect] = (), horizon: float | None = None,
+        memory: float | None = None,
+    ) -> CandidateModels:  # fmt: skip
+        """The models of the settings' preset with every effect that it has a place for."""
+        preset, matrix = preset_named(given.model).for_matrix(matrix, given.load)
+        there = preset.driven_by in MOTIONS or any(run.specimen or "force" in run.channels for run in matrix.runs)
+        listed = (*(effect for effect in CATALOGUE if there or not effect.of_specimen), *custom)
+        known = {
+            effect.name: about(effect, preset.middle)
+            for effect in listed
+            if preset.takes(effect) and not unmeasured(preset.with_effects((effect,)).chain.symbols, matrix.runs)
+        }
+        return cls(preset, matrix, given, excited_band(matrix.of_use("fit")), known, horizon=horizon, memory=memory)
+
+    def spoken(self, name: str) -> str:
+        """An effect in words; of one of a part that nobody described also what it does, and where."""
+        effect = self.effects[name]
+        of, runs = self.matrix.actuator, self.matrix.runs
+        if effect.place == "load":
+            described = any(run.specimen for run in runs)
+        else:
+            described = bool(of.piston_area or of.servo_valve or of.supply_pressure or any(run.gain for run in runs))
+        return title(name) if described or not effect.does else f"{title(name)} ({effect.does}, at the {effect.place})"
+
+    @property
+    def runs(self) -> tuple[Run, ...]:
+        """The runs that are fitted."""
+        return tuple(run for run in self.matrix.of_use("fit") if run.id not in self.left_out)
+
+    def without(self, runs: Iterable[str]) -> CandidateModels:
+        """The same models, fitted to fewer runs."""
+        return replace(self, left_out=self.left_out | frozenset(runs), _known={}, _records={})
+
+    def over(self, horizon: float | None, memory: float | None) -> CandidateModels:
+        """The same models, fitted over other windows."""
+        return replace(self, horizon=horizon, memory=memory, _known={})
+
+    def model(self, effects: Iterable[str]) -> Preset:
+        """The preset with these effects, in the order of the catalogue."""
+        on = set(effects)
+        return self.preset.with_effects(tuple(effect for name, effect in self.effects.items() if name in on))
+
+    @cached_property
+    def off(self) -> dict[str, float]:
+        """The values of all effects' parameters where they are off, by the equations' names."""
+        return off_values(self.effects.values())
+
+    def groups(self, base: tuple[str, ...], names: Sequence[str]) -> list[list[str]]:
+        """Effects that one chain beside those of `base` can hold side by side, few enough that none waits for many.
+
+        Apart stand those that are looked at for themselves, and in a drive without a valve those that together close
+        a circle of signals.
+        """
+        apart = [name for name in names if self.effects[name].has_searched_shapes]
+        rest = [name for name in names if name not in apart]
+        found = [[name] for name in apart]
+        for first in range(0, len(rest), _SIDE_BY_SIDE):
+            group = rest[first : first + _SIDE_BY_SIDE]
+            found += [group] if self.fit_together((*base, *group)) else [[name] for name in group]
+        return found
+
+    def fit_together(self, effects: Iterable[str]) -> bool:
+        """Whether one chain can hold these effects: some close a circle of signals together."""
+        try:
+            _ = self.model(effects).chain.signals
+        except Unusable:
+            return False
+        return True
+
+    def simplicity(self, effect: str) -> tuple[int, int]:
+        """What of two effects that explain as much comes first: fewer numbers to search, then as they are listed."""
+        searched = 1 + sum(parameter.searched for parameter in self.effects[effect].added[1:])
+        return searched, list(self.effects).index(effect)
+
+    def strength(self, effect: str) -> str:
+        """The name of an effect's strength in the equations."""
+        return self.effects[effect].added[0].in_equations
+
+    def doubtful(self, refit: FittedModel, effect: str) -> bool:
+        """Whether an effect of a refit may be but the way to a better optimum without it.
+
+        So it may where it is as good as off, or is tried with many shapes of its own.
+        """
+        if self.effects[effect].has_searched_shapes:
+            return True
+        strength = self.strength(effect)
+        lower, upper = refit.space.bounds(refit.values)[strength]
+        return abs(refit.values[strength]) < _OFF * max(-lower, upper)
+
+    def at_bound(self, refit: FittedModel, effect: str) -> bool:
+        """Whether the strength of an effect ended at a bound that the search set, and no user."""
+        strength, preset = self.strength(effect), refit.fitness.preset
+        own = [name for name in self.given.bounds if name.partition(".")[0] == effect]
+        if self.effects[effect].own or strength not in refit.space.names:
+            return False
+        if strength in {preset.parameter(name).in_equations for name in own}:
+            return False
+        return refit.values[strength] != 0 and refit.space.at_bound(strength, refit.point)
+
+    def fitness(self, effects: tuple[str, ...], samples: int = 0) -> SimulatedFitness:
+        """The objective of the model with these effects, on records of at most `samples` in all where that is given."""
+        key = (effects, samples)
+        if key not in self._known:
+            model = self.model(effects)
+            given = of_model(self.given, model, self.effects.keys())
+            space = search_space(model, self.matrix, given, self.band)
+            runs = self._shortened(samples) if samples else self.runs
+            self._known[key] = SimulatedFitness(
+                model, self.matrix, runs, self.band, space, horizon=self.horizon, memory=self.memory, trusting=True
+            )
+        known = self._known[key]
+        return known.fresh(known.runs)  # no search goes on from the first states in which another one ended
+
+    def _shortened(self, samples: int) -> tuple[Run, ...]:
+        """The records at that length, the same ones for every model: what is known of a record is found once."""
+        return self._records.setdefault(samples, self._records.get(samples) or shortened(self.runs, samples))
+
+    @cached_property
+    def floors(self) -> Floors:
+        """The noise floors of all runs of the matrix; over windows with what the noise adds where each begins."""
+        floors = noise_floors(self.matrix.runs, self.band, self.left_out)
+        if self.horizon is None or floors.measured:
+            return floors
+        begun = SimulatedRuns(self.preset, self.matrix, (), self.band, horizon=self.horizon, memory=self.memory)
+        return floors.times({run.id: float(np.sqrt(begun.anchoring(run).noise)) for run in self.matrix.runs})
+
+    @property
+    def floor(self) -> float | None:
+        """The noise floor averaged over the runs that are fitted; None where it cannot be told of every run."""
+        return self.floors.mean(self.runs)
+
+    def at_floor(self, refit: FittedModel) -> bool:
+        """Whether the error of a refit is noise alone, as far as the floor is known; never where it cannot be told."""
+        return self.is_noise(refit.error)
+
+    def is_noise(self, error: float) -> bool:
+        """Whether an error, eq. (17) over the fitted runs, is noise alone."""
+        if self.floor is None:
+            return False
+        chance = _CHANCE * self.floors.spread(sum(run.length for run in self.runs))
+        return error < (1.0 + _AT_FLOOR + chance) * self.floor
+
+    def something_left(self, refit: FittedModel) -> bool:
+        """Whether the error is still above the noise: its floor, or where that is not known, its lack of memory."""
+        if self.floor is not None:
+            return not self.at_floor(refit)
+        outputs = refit.fitness.outputs(refit.point)
+        residuals = [refit.fitness.left(run, outputs[run.id]) for run in self.runs]
+        memory = [float(np.corrcoef(r[1:], r[:-1])[0, 1]) for r in residuals]
+        return bool(np.median(memory) > _NOISE_LIKE)
+
+    def best_of(
+        self, refit: FittedModel, starts: Sequence[Mapping[str, float]], aim: float = np.inf
+    ) -> FittedModel | None:  # fmt: skip
+        """The best refit of the same model from other starts, where one is better than `refit` and comes below `aim`.
+
+        Both are judged on the beginnings of the records.
+        """
+        asked = min(_BETTER * self.tried(refit), aim)
+        best = self.searched(refit, starts, asked)
+        if best.here.error > asked:
+            return None
+        found = self.refit(refit.effects, best.values)
+        return found if found.here.error < refit.here.error else None
+
+    def searched(self, refit: FittedModel, starts: Sequence[Mapping[str, float]], aim: float = np.inf) -> FittedModel:
+        """The best first refit of the same model from other starts, far off: on the beginnings of the records.
+
+        All set out, and the one that is ahead goes on, as long as it may come below `aim`.
+        """
+        setting_out = replace(_SETTING_OUT, aim=aim)
+        tried = each(lambda start: self.refit(refit.effects, start, _TRIAL, setting_out), starts)
+        ahead = stable_minimum(tried, lambda one: one.here.error)
+        return self.gone_on(ahead, replace(_SEARCHING, aim=aim), _TRIAL) if ahead.finite else ahead
+
+    def scattered(self, effects: tuple[str, ...]) -> list[FittedModel]:
+        """First steps of a model from where in its whole search space the error is least, on the records' beginnings.
+
+        Where the fitted model went far astray for want of the effect, no start near it leads back.
+        """
+        fitness = self.fitness(effects, _SIGHT)
+        points = scipy.stats.qmc.Sobol(len(fitness.space.axes), rng=0).random(_SCATTERED)
+        best = points[np.argsort(fitness.errors(points), kind="stable")[:_LEADING]]
+        starts = [{name: float(v[0]) for name, v in fitness.space.values(point[None]).items()} for point in best]
+        return [self.refit(effects, start, _TRIAL, FIRST_STEPS) for start in starts]
+
+    def ahead(self, refits: Iterable[FittedModel], aim: float) -> list[FittedModel]:
+        """Those of first steps that left least, as first refits that have to come below `aim`: others cannot win."""
+        rest = stable_ranking([one for one in refits if one.stable], lambda one: one.here.error)
+        leading: list[FittedModel] = []
+        while rest and len(leading) < _AHEAD:  # only of those that lead it is asked whether they keep their promise
+            asked, rest = rest[: _AHEAD - len(leading)], rest[_AHEAD - len(leading) :]
+            leading += [one for one, kept in zip(asked, each(lambda one: one.finite, asked), strict=True) if kept]
+        on = replace(TRYING, aim=aim)
+        return each(lambda one: self.gone_on(one, on, _TRIAL), leading)
+
+    def refit(
+        self,
+        effects: tuple[str, ...],
+        start: Mapping[str, float],
+        samples: int = 0,
+        way: Way | None = None,
+    ) -> FittedModel:
+        """The optimum near `start`, on shortened records where `samples` is given."""
+        fitness = self.fitness(effects, samples)
+        known = {p.in_equations: p.value for p in fitness.preset.parameters} | dict(start)
+        point = fitness.space.point({**known, **fitness.space.fixed})
+        way = way or (TRYING if samples else FITTING)
+        point, here = fitness.optimum(point, way)
+        off = {p.in_equations for name, e in self.effects.items() if name not in effects for p in e.added}
+        values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}
+        return FittedModel(effects, values, fitness.space, point, here, fitness)
+
+    def gone_on(self, refit: FittedModel, way: Way, samples: int = 0) -> FittedModel:
+        """First steps that are gone on with; as they are, where they came to an end too far off."""
+        if way.leads_nowhere(refit.point, refit.here):
+            return refit
+        return self.refit(refit.effects, refit.values, samples, way)
+
+    def settled(self, refit: FittedModel) -> FittedModel:
+        """A refit on all records, gone on with until it stays: in a long narrow valley one is stopped on its way."""
+        for _ in range(_ROUNDS):
+            further = self.refit(refit.effects, refit.values)
+            if not further.finite or further.here.error > _BETTER * refit.here.error:
+                break
+            refit = further
+        return refit
+
+    def tried(self, refit: FittedModel) -> float:
+        """What a first refit has to beat: the error of a refit on the beginnings of the records."""
+        return self.fitness(refit.effects, _TRIAL).exact(refit.point, sensitivities=False).error
+
+    def trial(
+        self, effects: tuple[str, ...], starts: Sequence[Mapping[str, float]], aim: float = np.inf
+    ) -> FittedModel:  # fmt: skip
+        """A first refit on the beginnings of the records, from the one of the starts where the error is least.
+
+        It is given up where it cannot come below `aim`.
+        """
+        fitness = self.fitness(effects, _TRIAL)
+        errors = fitness.errors(
+            np.array([fitness.space.point({**self.off, **s, **fitness.space.fixed}) for s in starts])
+        )
+        start, _ = stable_minimum(list(zip(starts, errors.tolist(), strict=True)), lambda one: one[1])
+        return self.refit(effects, start, _TRIAL, replace(TRYING, aim=aim))
+
+    def both(self, first: FittedModel, second: FittedModel, aim: float) -> FittedModel:
+        """A first refit with the last effects of two that has to come below `aim`, from either and from halfway."""
+        starts = []
+        for alone, other in ((first, second), (second, first)):
+            here, there = (self.strength(refit.effects[-1]) for refit in (alone, other))
+            starts += [{**alone.values, there: share * other.values[there]} for share in _SHARES]
+            starts.append({**alone.values, here: 0.5 * alone.values[here], there: 0.5 * other.values[there]})
+        return self.trial((*first.effects, second.effects[-1]), starts, aim)

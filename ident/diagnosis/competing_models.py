@@ -1,0 +1,62 @@
+"""The models that a diagnosis leaves in question."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from ident.custom.definition import read_effect
+from ident.design.rivals import NOISE, Model, Rivals
+from ident.diagnosis.parameter_estimate import ParameterEstimate
+from ident.diagnosis.result import Diagnosis, bad_diagnosis
+from ident.effects import CATALOGUE
+from ident.effects.effect import Effect, usual_shapes
+from ident.errors import Unusable
+from ident.presets import PRESETS, preset
+
+MOST = 3
+Values = Mapping[str, ParameterEstimate]
+
+
+def competing_models(found: Diagnosis, custom: Sequence[Effect] = ()) -> Rivals:
+    """What the verdict cannot tell apart, else what it settled on; where it settled on nothing, the best candidates.
+
+    `custom` are effects of one's own that the diagnosis does not define. Raises Unusable where it is of a bench, or
+    says too little to put its models together.
+    """
+    if found.model in PRESETS and PRESETS[found.model].kind == "bench":
+        raise Unusable("no-experiment", "no run is proposed for the records of a bench", f"model {found.model}",
+                       "repeat the records on which the effects differ")  # fmt: skip
+    models = tuple(_model(found, values, custom) for values in _chosen(found))
+    floor = found.noise_floor.get("fit") or 0.0
+    doubted = frozenset(suspect.run for suspect in found.verdict.suspects)
+    return Rivals(models, floor if 0 < floor < math.inf else NOISE, doubted)
+
+
+def _chosen(found: Diagnosis) -> list[Values]:
+    """The parameters of each model in question."""
+    refitted = {candidate.effect: candidate.parameters for candidate in found.candidates if candidate.parameters}
+    for group in found.verdict.indistinguishable:
+        known = [refitted[name] for name in group if name in refitted]
+        if len(known) > 1:
+            return known[:MOST]
+    ladder = [rung.parameters for rung in found.ladder if rung.parameters]
+    settled = bool(found.verdict.effects) or not found.verdict.unexplained
+    if settled and ladder:  # nothing is in question but how well the parameters are known
+        return ladder[-1:]
+    return list(refitted.values())[:MOST] or ladder[-1:]
+
+
+def _model(found: Diagnosis, parameters: Values, custom: Sequence[Effect]) -> Model:
+    """The preset with the effects that the parameters belong to, and their values."""
+    defined = (read_effect(entry, model=found.model) for entry in found.settings.get("custom") or ())
+    own = {effect.name: effect for effect in (*custom, *defined)}
+    known = [*(effect.name for effect in CATALOGUE), *own]
+    effects = tuple(name for name in known if any(parameter.startswith(f"{name}.") for parameter in parameters))
+    model = preset(found.model, effects, tuple(effect for effect in own.values() if effect.name in effects))
+    values = usual_shapes(model.effects)
+    values |= {model.parameter(name).in_equations: entry.value for name, entry in parameters.items()}
+    missing = [parameter.name for parameter in model.parameters if parameter.in_equations not in values]
+    if missing or not all(map(math.isfinite, values.values())):
+        raise bad_diagnosis(f"no value of {missing[0]}" if missing else "a value is not finite")
+    return model, values

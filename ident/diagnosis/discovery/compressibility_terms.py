@@ -1,0 +1,49 @@
+"""Terms of the oil's compressibility: what makes it softer, or stiffer, with pressure, place and direction.
+
+With Ke P' = Q − L − A v a small change Ke φ of the compressibility takes Ke φ P' off the flow: so much of it is seen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.diagnosis.discovery.term import Shape, Signals, Term
+from ident.equations.equation import Equation
+
+if TYPE_CHECKING:
+    from ident.diagnosis.discovery.term_library import TermLibrary
+
+Array = NDArray[np.float64]
+OIL = "Ke"
+"""The signal that the compressibility is."""
+_SOFT = (0.3, 0.7, 0.95)  # quantiles of the size of the pressure: where half of what air adds is gone
+_OF = (("P", "abs({a})", "size"), ("P", "{a}", "side"), ("x", "{a}", "side"), ("x", "abs({a})", "size"))
+
+
+def compressibility_terms(library: TermLibrary) -> Iterator[Term]:
+    """Terms that the compressibility may have beside its constant."""
+    if OIL not in library.typical or "P" not in library.typical:
+        return
+    for a, text, kind in _OF:
+        if a in library.typical:
+            powers = library.unit((OIL, 1), (a, 1))
+            yield _softer(text.format(a=a), f"softer with {kind}", (a,), powers, ())
+    for share in _SOFT:
+        h = Shape("h", float(np.quantile(np.abs(library.typical["P"]), share)), library.units["P"])
+        if h.value > 0:
+            yield _softer("1 / (1 + (P / h)**2)", "softer near rest", ("P",), library.unit((OIL, 1)), (h,))
+
+
+def _softer(share: str, kind: str, of: tuple[str, ...], unit: dict[str, float], shapes: tuple[Shape, ...]) -> Term:
+    factor = Equation(f"d = {share}")
+
+    def taken(signals: Signals, rate: float) -> Array:
+        known = {**signals, **{shape.symbol: shape.value for shape in shapes}}
+        return np.asarray(-factor.value(known) * signals[OIL] * np.gradient(signals["P"]) * rate)
+
+    return Term("pressure", OIL, f"{OIL} * ({share})", kind, of, unit, shapes, in_time=True, worked_out=taken,
+                through="Q")  # fmt: skip

@@ -1,0 +1,106 @@
+"""What a search for missing terms came to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from ident.diagnosis.discovery.proposal import Errors, Proposal
+from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.verification import contradiction
+from ident.run import Run
+from ident.words.error import error_said
+from ident.words.titles import title
+
+
+@dataclass(frozen=True, kw_only=True)
+class RejectedTerm:
+    """The best term that stayed below the bar, beside which effects, and the errors that it would leave."""
+
+    equation: str
+    nats: float
+    bar: float
+    beside: tuple[str, ...]
+    error: Errors
+
+    def told(self, looked_at: int) -> str:
+        """In sentences."""
+        beside = f" beside {', '.join(map(title, self.beside))}" if self.beside else ""
+        verify = self.error["verify"]
+        of_verify = "" if verify is None else f" ({error_said(verify)} on verify runs)"
+        but = ", but not from run to run: some lose by it" if self.nats > self.bar else ""
+        return (
+            f"Of {looked_at} terms that were looked at the best that was refused is {self.equation}{beside}: "
+            f"{self.nats:.3g} nats on data that it was not fitted to, {self.bar:.3g} are asked for{but}. "
+            f"It would leave {error_said(self.error['fit'])}{of_verify}."
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class DiscoveryResult:
+    """What was found, one term on top of the other, the best that was refused, and how many were looked at.
+
+    `refit` is the model with all of it. So many terms were `left_out`, for no model can hold them or what they add is
+    not finite. Not `complete`, the time was over.
+    """
+
+    found: tuple[Proposal, ...] = ()
+    refit: FittedModel | None = None
+    refused: RejectedTerm | None = None
+    looked_at: int = 0
+    left_out: int = 0
+    complete: bool = True
+
+    def or_refused(self, other: DiscoveryResult) -> DiscoveryResult:
+        """The same where something was found; else with what would leave less of what two searches refused.
+
+        Their nats count from different models.
+        """
+        if self.found or other.refused is None:
+            return self
+        refused = (one.refused for one in (self, other) if one.refused is not None)
+        best = min(refused, key=lambda one: one.error["fit"] or 0.0)
+        looked_at, left_out = self.looked_at + other.looked_at, self.left_out + other.left_out
+        return replace(self, refused=best, looked_at=looked_at, left_out=left_out)
+
+    def notes(self, asked: bool | None) -> Iterator[str]:
+        """What is said of a search that was stopped, left terms out, or ended below its bar; `asked`: it was wanted."""
+        if not self.complete:
+            yield "The search for terms that no list holds was stopped before its end."
+        if self.left_out:
+            yield (
+                f"Of {self.looked_at} terms that were looked at {self.left_out} were left out: no model can hold them, "
+                "or what they add is not finite."
+            )
+        if self.refused is not None:
+            yield self.refused.told(self.looked_at)
+        elif asked and not self.looked_at:
+            yield "No term was looked for: the error is the noise's."
+
+    def left(self, before: float, what: str = "fit") -> float:
+        """The error with all of it on the fitted runs, or "held_out" from the fit in turn; `before` without."""
+        error = self.found[-1].error.get(what) if self.found else None
+        return before if error is None else error
+
+    def needless(self, named: Sequence[str]) -> tuple[str, ...]:
+        """Of what is `named` that which the model does as well without, beside the terms: it stood for them.
+
+        Nothing, where the terms are a hypothesis, or stand in the place of all of it, or runs to verify speak against
+        them.
+        """
+        last = self.found[-1] if self.found else None
+        doubted = any(one.hypothesis or one.contradicted for one in self.found)
+        if last is None or doubted or last.instead_of:
+            return ()
+        return tuple(name for name in named if name not in last.beside)
+
+    def instead(self, other: FittedModel, named: Sequence[str], runs: Sequence[Run]) -> DiscoveryResult:
+        """The same, said to stand instead of what is `named`; where runs to verify speak for that `other`, so it is."""
+        if not self.found or self.refit is None:
+            return self
+        *terms, last = (replace(one, instead_of=tuple(named)) for one in self.found)
+        name = str(last.effect["name"])
+        against = contradiction(name, runs, other.left(runs), self.refit.left(runs)) if runs else None
+        if against is not None:
+            last = replace(last, contradicted=replace(against, instead_of=tuple(named)))
+        return replace(self, found=(*terms, last))

@@ -1,0 +1,120 @@
+"""A free curve where no formula is known yet: what a place lacks against one signal, drawn through knots.
+
+A curve through k knots is k columns of the regression over terms: hats, 1 at their own knot and 0 at the others. With
+A and b their products with each other and with the residual, a place and a signal explain together
+
+    bᵀ A⁺ b / |r|²
+
+of it, by the values A⁺ b at the knots. ``at + s h(a)`` adds a curve of a signal a, ``at + s b h(a)`` lets as much of a
+signal b come there as a says; of dry friction of the moving mass b is its direction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.diagnosis.discovery.regression import Regression
+from ident.diagnosis.discovery.term import Curve, Term
+from ident.diagnosis.discovery.term_candidate import TermCandidate
+from ident.diagnosis.discovery.term_library import TermLibrary
+from ident.units.grammar import powers_of
+
+Array = NDArray[np.float64]
+_KNOTS = (0.005, 0.04, 0.12, 0.25, 0.38, 0.5, 0.62, 0.75, 0.88, 0.96, 0.995)  # quantiles of the signal
+_APART = 1e-3  # of the signal's range: knots nearer to each other are one
+_FEWEST = 4  # knots: fewer are a formula
+_TRIED = 4
+_ALIKE = 0.99  # cosine of what two curves explain, of which the first is enough
+_BLIND = 1e-7  # of the largest of a group's products: what its hats do together and nobody sees
+
+
+@dataclass(frozen=True)
+class FreeCurve:
+    """The signal that a curve is of, its knots, and the term that it is drawn in."""
+
+    of: str
+    knots: tuple[float, ...]
+    term: Term
+
+    def hats(self) -> list[Term]:
+        """The curve's columns, one a knot."""
+        values = np.eye(len(self.knots))
+        return [self.drawn(row) for row in values.tolist()]
+
+    def drawn(self, values: Sequence[float], held: int = 0) -> Term:
+        """The term with these values at the knots."""
+        return replace(self.term, curve=Curve(self.of, self.knots, tuple(values), held))
+
+
+def free_curves(library: TermLibrary) -> list[FreeCurve]:
+    """Every curve for the places of a chain."""
+    return list(_all(library))
+
+
+def _all(library: TermLibrary) -> Iterator[FreeCurve]:
+    for at, place in library.places.items():
+        for of in library.signals[at]:
+            x = library.typical[of]
+            knots = _knots(x)
+            if len(knots) < _FEWEST:
+                continue
+            for by, text in _multiplied(place, at, of, library.signals[at]):
+                unit = powers_of(library.units[by]) or {} if by and text != "sgn(v) * h" else {}
+                named = (by, of) if by else (of,)
+                yield FreeCurve(of, knots, Term(place, at, text, "free curve", named, dict(unit)))
+
+
+def _multiplied(place: str, at: str, of: str, signals: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """What a curve of a signal multiplies, and the term's text."""
+    yield "", "h"
+    if at != of and at in signals:
+        yield at, f"{at} * h"
+    if place == "load" and of != "v" and "v" in signals:
+        yield "v", "sgn(v) * h"
+
+
+def _knots(x: Array) -> tuple[float, ...]:
+    kept: list[float] = []
+    for knot in np.quantile(x, _KNOTS).tolist():
+        if not kept or knot - kept[-1] > _APART * np.ptp(x):
+            kept.append(knot)
+    return tuple(kept)
+
+
+def offered(found: Regression, curves: Sequence[FreeCurve]) -> tuple[TermCandidate, ...]:
+    """The curves that explain most, no two of them alike; the hats of all of them are the terms of the regression."""
+    ends = np.cumsum([len(curve.knots) for curve in curves])
+    values = [_values(found, np.arange(end - len(curve.knots), end)) for curve, end in zip(curves, ends, strict=True)]
+    gains = found.share(np.array([float(found.with_residual[at] @ value) for at, value in values]))
+    taken: list[int] = []
+    for k in map(int, np.argsort(-gains, kind="stable")):
+        if (
+            len(taken) < _TRIED
+            and gains[k] > 0
+            and not any(_cosine(found, values[k], values[i]) > _ALIKE for i in taken)
+        ):
+            taken.append(k)
+    return tuple(_candidate(found, curves[k], *values[k], float(gains[k])) for k in taken)
+
+
+def _values(found: Regression, at: NDArray[np.intp]) -> tuple[NDArray[np.intp], Array]:
+    """A curve's values at its knots, which explain most."""
+    products = found.products[np.ix_(at, at)]
+    return at, np.linalg.pinv(products, rcond=_BLIND, hermitian=True) @ found.with_residual[at]
+
+
+def _cosine(found: Regression, one: tuple[NDArray[np.intp], Array], other: tuple[NDArray[np.intp], Array]) -> float:
+    (i, a), (j, b) = one, other
+    powers = [float(v @ found.products[np.ix_(k, k)] @ v) for k, v in (one, other)]
+    return abs(float(a @ found.products[np.ix_(i, j)] @ b)) / max(float(np.sqrt(powers[0] * powers[1])), 1e-300)
+
+
+def _candidate(found: Regression, curve: FreeCurve, at: NDArray[np.intp], values: Array, share: float) -> TermCandidate:
+    """A curve that is 1 where its value is large and well seen: the strength is that value."""
+    held = int(np.argmax(values**2 * np.diag(found.products)[at]))
+    strength = float(values[held])
+    return TermCandidate((curve.drawn((values / strength).tolist(), held),), (1.0,), strength, share)

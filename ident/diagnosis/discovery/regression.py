@@ -1,0 +1,184 @@
+"""One linear regression for all terms: which of them, beside the parameters, explain what is left.
+
+A small term φ at a place changes the output by the response of the linearised chain to it, T * φ. With J what
+parameters and first states do and r the residual,
+
+    r = Σ θ_i T * φ_i + J δ + noise
+
+within the command's band, each run over the size of its residual. Only the sums of products of [T * φ, J, r] are kept,
+summed run by run; J is taken off by its Schur complement.
+
+Terms of one form that differ by where their shapes begin, as the frequencies of a pulsation, come to the same in a
+refit. There are thousands of them on a long record: each is set beside the residual alone, and only the one that leads
+its form beside all others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from ident.cached import cached_property
+from ident.diagnosis.discovery.regressors import Regressors, blocks
+from ident.diagnosis.discovery.run_data import RunData
+from ident.diagnosis.discovery.term import Term
+from ident.parallel import each
+from ident.residuals.decimation import Response
+
+Array = NDArray[np.float64]
+_ABSORBED = 1e-4  # of a term's power that the parameters leave: less, and they do what it does
+ALIKE = 0.999  # cosine of two terms that the data cannot tell apart
+_DIGITS = 8  # of what a term explains: the rest is rounding
+_AT_ONCE = 4  # runs
+
+
+@dataclass(frozen=True)
+class Regression:
+    """Products (m, m) of the terms less what the parameters do, with the residual, (m,); `left` is its power.
+
+    Of each form with shapes the leading one of the `looked_at` terms is there. A term whose answer is finite in no run
+    is `left_out` of those.
+    """
+
+    terms: tuple[Term, ...]
+    products: Array
+    with_residual: Array
+    left: float
+    looked_at: int
+    left_out: int = 0
+
+    @cached_property
+    def gains(self) -> Array:
+        """The share of the residual's power that each term takes off by itself, (m,)."""
+        return _gains(np.diag(self.products), self.with_residual, self.left)
+
+    def share(self, taken: Array) -> Array:
+        """What part of the residual's power is `taken`: none where there is no residual."""
+        return _share(taken, self.left)
+
+    def classes(self) -> list[list[int]]:
+        """Terms by what they explain, best first; those of a class, in the list's order, cannot be told apart."""
+        size, gains = np.sqrt(np.maximum(np.diag(self.products), 1e-300)), np.round(self.gains, _DIGITS)
+        rest = np.argsort(-gains, kind="stable")
+        rest = rest[gains[rest] > 0]
+        found = []
+        while len(rest):
+            first = rest[0]
+            alike = np.abs(self.products[first, rest]) > ALIKE * size[first] * size[rest]
+            alike[0] = True
+            found.append(sorted(int(i) for i in rest[alike]))
+            rest = rest[~alike]
+        return found
+
+
+def regression(
+    terms: Sequence[Term], runs: Sequence[RunData], paths: Mapping[str, Sequence[Response]], band: float
+) -> Regression:
+    """The products of terms over some runs; `paths` has, for each signal that is added to, each run's response."""
+    beside = each(partial(Regressors.of, band=band), runs)
+    known = np.sum([columns.known.T @ columns.known for columns in beside], axis=0)
+    some, lost = _leading(terms, beside, paths, known)
+    m, total, sound = len(some), np.zeros(()), np.zeros(len(some), dtype=bool)
+    for first in range(0, len(beside), _AT_ONCE):
+        rows = _rows(some, beside, paths, range(first, min(first + _AT_ONCE, len(beside))), sound)
+        total = total + np.hstack(each(partial(np.matmul, rows.T), np.array_split(rows, 2, axis=1)))
+    along = _along(known, np.delete(total[m:-1], np.s_[m:-1], axis=1))
+    of = np.delete(np.delete(total, np.s_[m:-1], axis=0), np.s_[m:-1], axis=1) - along.T @ along
+    absorbed = np.diag(of)[:m] < _ABSORBED * np.diag(total)[:m]
+    products, with_residual = of[:m, :m].copy(), of[:m, m].copy()
+    products[absorbed], products[:, absorbed], with_residual[absorbed] = 0.0, 0.0, 0.0
+    left_out = lost + sum(not one for one, term in zip(sound, some, strict=True) if not term.free_shapes)
+    return Regression(tuple(some), products, with_residual, float(of[m, m]), len(terms), left_out)
+
+
+def _leading(
+    terms: Sequence[Term], beside: Sequence[Regressors], paths: Mapping[str, Sequence[Response]], known: Array
+) -> tuple[list[Term], int]:
+    """The terms without shapes that a refit moves, and of each form with such the one that takes off most by itself.
+
+    And how many of those with shapes are finite in no run.
+    """
+    shaped = [i for i, term in enumerate(terms) if term.free_shapes]
+    candidates = [terms[i] for i in shaped]
+    alone, sound = _alone(candidates, beside, paths, known)
+    gains = np.round(alone, _DIGITS)
+    leading: dict[object, int] = {}
+    for k, term in enumerate(candidates):
+        if gains[k] > gains[leading.setdefault(term.form, k)]:
+            leading[term.form] = k
+    kept = {shaped[k] for k in leading.values()}
+    return [term for i, term in enumerate(terms) if not term.free_shapes or i in kept], int(np.sum(~sound))
+
+
+def _alone(
+    terms: Sequence[Term], beside: Sequence[Regressors], paths: Mapping[str, Sequence[Response]], known: Array
+) -> tuple[Array, NDArray[np.bool_]]:
+    """The share of the residual's power that each of many terms takes off by itself: no products of two of them.
+
+    And which of them are finite in any run.
+    """
+    cross, power = np.zeros((len(known), len(terms))), np.zeros(len(terms))
+    finite = np.zeros(len(terms), dtype=bool)
+
+    def sums(of: tuple[int, list[int]]) -> tuple[list[int], Array, Array, NDArray[np.bool_]]:
+        run, here = of
+        found, sound = beside[run].to([terms[i] for i in here], paths[terms[here[0]].path][run])
+        return here, beside[run].known.T @ found, np.einsum("nt,nt->t", found, found), sound
+
+    todo = [(run, here) for run in range(len(beside)) for here in blocks(terms)]
+    for here, of_known, of_itself, sound in each(sums, todo):
+        cross[:, here] += of_known
+        power[here] += of_itself
+        finite[here] |= sound
+    along = _along(known, np.column_stack([cross[:-1], known[:-1, -1]]))
+    beyond = power - np.sum(along[:, :-1] ** 2, axis=0)
+    with_residual = cross[-1] - along[:, :-1].T @ along[:, -1]
+    seen = beyond >= _ABSORBED * power
+    left = known[-1, -1] - along[:, -1] @ along[:, -1]
+    return _gains(np.where(seen, beyond, 0.0), np.where(seen, with_residual, 0.0), left), finite
+
+
+def _along(known: Array, cross: Array) -> Array:
+    """Columns along orthonormal directions of J, of its products with them, (p, m); `known` are those of [J, r]."""
+    of = known[:-1, :-1]
+    scale = np.sqrt(np.maximum(np.diag(of), 1e-300))
+    strengths, directions = scipy.linalg.eigh(of / scale[:, None] / scale) if len(of) else (np.ones(0), of)
+    seen = strengths > 1e-10 * strengths.max(initial=0.0)
+    return np.asarray((directions[:, seen].T @ (cross / scale[:, None])) / np.sqrt(strengths[seen])[:, None])
+
+
+def _gains(power: Array, with_residual: Array, left: float) -> Array:
+    return _share(np.where(power > 0, with_residual**2 / np.maximum(power, 1e-300), 0.0), left)
+
+
+def _share(taken: Array, left: float) -> Array:
+    return np.asarray(taken / left if left > 0 else np.zeros_like(taken))
+
+
+def _rows(
+    terms: Sequence[Term], beside: Sequence[Regressors], paths: Mapping[str, Sequence[Response]], runs: Sequence[int],
+    sound: NDArray[np.bool_],
+) -> Array:  # fmt: skip
+    """[T * φ, J, r] of some runs, one below the other; a block of columns after the other.
+
+    `sound` (terms,) becomes true of those that are finite in one of these runs.
+    """
+    todo = [(run, here) for run in runs for here in blocks(terms)]
+    answers = iter(
+        each(lambda of: beside[of[0]].to([terms[i] for i in of[1]], paths[terms[of[1][0]].path][of[0]]), todo)
+    )
+    every = []
+    for run in runs:
+        known = beside[run].known
+        rows = np.empty((len(known), len(terms) + known.shape[1]))
+        rows[:, len(terms) :] = known
+        for here in blocks(terms):
+            rows[:, here], finite = next(answers)
+            sound[here] |= finite
+        every.append(rows)
+    return np.concatenate(every)

@@ -1,0 +1,81 @@
+"""The columns of a regression over terms: what each changes of a run's output, beside its parameters and residual."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from ident.diagnosis.discovery.run_data import RunData
+from ident.diagnosis.discovery.term import Term
+from ident.residuals.decimation import Response
+
+Array = NDArray[np.float64]
+BLOCK = 128
+"""Terms whose responses are worked out together: those to all at once are large."""
+WIDE = 1.3  # of the command's band is looked at
+_WITHOUT_END = 1e60  # of the output, for a strength of one: no power of a signal comes near
+_ROUNDING = 1e-12  # of what was measured: a residual below it is that of the arithmetic, not one to be explained
+
+
+@dataclass(frozen=True)
+class Regressors:
+    """One run as its columns see it: `known` is [J, r] within the `band`, (n, p+1), all over the residual's `size`.
+
+    What is free in the run is taken off, and so it is of each column, by the orthonormal `basis`, (n, s). Every number
+    in it is finite: a column that is not is zero, and tells nothing of the run.
+    """
+
+    record: RunData
+    band: float
+    known: Array
+    basis: Array
+    size: float
+
+    @classmethod
+    def of(cls, record: RunData, band: float) -> Regressors:
+        """Those of a run; `band` in rad/s."""
+        known, _ = _within(np.column_stack([record.sensitivities, record.residual]), record, band)
+        basis = np.empty((len(known), 0))
+        if record.free.shape[1]:
+            free, _ = _within(record.free, record, band)
+            basis = scipy.linalg.orth(free / np.maximum(np.linalg.norm(free, axis=0), 1e-300), rcond=1e-9)
+        known = known - basis @ (basis.T @ known)
+        least = _ROUNDING * float(np.std(record.run.measured)) * float(np.sqrt(len(known)))
+        size = max(float(np.linalg.norm(known[:, -1])), least, np.finfo(float).tiny)
+        return cls(record, band, known / size, basis, size)
+
+    def to(self, terms: Sequence[Term], path: Response) -> tuple[Array, NDArray[np.bool_]]:
+        """T * φ of terms that add to one signal, (n, terms), and which of them are finite, (terms,).
+
+        `path` leads from there to the output. Where small signals are not stable an answer grows without end.
+        """
+        samples = np.column_stack([term.samples(self.record.signals, self.record.rate) for term in terms])
+        found, sound = _within(path.to(samples)[:, :, 0], self.record, self.band)
+        return np.asarray((found - self.basis @ (self.basis.T @ found)) / self.size), sound
+
+
+def blocks(terms: Sequence[Term]) -> list[list[int]]:
+    """The numbers of terms that add to one signal, at most :data:`BLOCK` together."""
+    by_signal: dict[str, list[int]] = {}
+    for i, term in enumerate(terms):
+        by_signal.setdefault(term.path, []).append(i)
+    return [here[k : k + BLOCK] for here in by_signal.values() for k in range(0, len(here), BLOCK)]
+
+
+def _within(rows: Array, record: RunData, band: float) -> tuple[Array, NDArray[np.bool_]]:
+    """Columns over time as what of them is seen, and which are finite: zero is what others are.
+
+    Seen are the lines of their spectra in the band, or the windows that they begin.
+    """
+    sound = np.max(np.abs(rows), axis=0, initial=0.0) < _WITHOUT_END  # false of what is no number
+    rows = np.where(sound, rows, 0.0)
+    if record.anchoring.window:
+        return record.anchoring(rows), sound
+    spectrum = np.fft.rfft(rows, axis=0)
+    lines = np.fft.rfftfreq(len(rows), 1.0 / record.rate) * 2 * np.pi
+    inside = spectrum[(lines > 0) & (lines <= WIDE * band)]
+    return np.concatenate([inside.real, inside.imag]), sound

@@ -1,0 +1,345 @@
+"""The search for what no list holds, one term after the other.
+
+Three disjoint sets of the fitted runs: terms are ranked on the first, by one linear regression, and refitted to it;
+the second chooses between the refits; the third confirms. What passes the bar is refitted to all fitted runs, and the
+next term sought beside it. Of few runs all serve for all three, with stretches of them and whole runs held out in turn,
+and what comes of it is a hypothesis. Runs to verify only report.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from itertools import count
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.custom.definition import read_effect
+from ident.diagnosis.candidate_models import FIRST_STEPS, FITTING, TRYING, CandidateModels
+from ident.diagnosis.discovery.candidate_terms import CandidateTerms, candidate_terms
+from ident.diagnosis.discovery.characteristic_plot import characteristic_view
+from ident.diagnosis.discovery.discovery_result import DiscoveryResult, RejectedTerm
+from ident.diagnosis.discovery.interpretation import interpretation
+from ident.diagnosis.discovery.proposal import Proposal
+from ident.diagnosis.discovery.term_candidate import TermCandidate
+from ident.diagnosis.discovery.term_evidence import term_evidence
+from ident.diagnosis.discovery.term_to_effect import (
+    as_fitted,
+    curves,
+    definition,
+    equation_text,
+    lines_of,
+    searched_bounds,
+)
+from ident.diagnosis.fitted_model import FittedModel, generalises
+from ident.diagnosis.significance import improvement
+from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
+from ident.diagnosis.verification import Contradiction, contradiction
+from ident.equations.mathml import mathml
+from ident.errors import TimeIsUp, Unusable
+from ident.fit.levenberg_marquardt import Way
+from ident.parallel import each
+from ident.progress import Progress, Report
+from ident.run import Run, over_runs
+
+Array = NDArray[np.float64]
+MOST = 3  # terms
+RefittedTerm = tuple[TermCandidate, FittedModel, CandidateModels]
+_PREFIX = "proposed_"
+_EVIDENCE = 5.0  # nats beyond the logarithm of how many were looked at
+_CLOSE, _MOST_CLOSE = 1.1, 8  # times the least error of the rough refits, and how many: carried to their end
+_PLAIN = 4  # terms without shapes that are, too: held-out data may prefer them
+_AS_GOOD, _LOST = 1.02, 0.25  # times the least error: a simpler one is taken, which loses no more of what it gains
+_FEWEST = 6  # runs, of which two each search, choose and confirm: one tells nothing of what differs between runs
+
+
+@dataclass
+class TermSearch:
+    """A search from a model that ended above the noise; `models` are those of all fitted runs.
+
+    Effects that are `given` stay; others, as the terms before, are left out again where a later term does it all.
+    """
+
+    models: CandidateModels
+    base: FittedModel
+    report: Report
+    given: tuple[str, ...]
+    asked: bool = True
+    most: int = MOST
+    looked_at: int = 0
+    left_out: int = 0
+    found: list[Proposal] = field(default_factory=list)
+    refused: RejectedTerm | None = None
+    complete: bool = False
+
+    def __post_init__(self) -> None:
+        self.beside = self.base.effects
+
+    def run(self) -> DiscoveryResult:
+        """One term on top of the other until none passes the bar, or the noise is reached; then one free curve.
+
+        Of few runs, where nothing could confirm it, only where it was asked for: it takes longer than all terms.
+        """
+        begun = TermSearch(self.models, self.base, self.report, self.given)
+        with suppress(TimeIsUp):
+            while len(self.found) < self.most and not self.models.at_floor(self.base) and self._added():
+                pass
+            if (self.asked or not _few(self.models.runs)) and not self.models.at_floor(self.base):
+                self._drawn(begun)
+            self.complete = True
+        return DiscoveryResult(
+            found=tuple(map(self._restated, self.found)), refit=self.base, refused=self.refused,
+            looked_at=self.looked_at, left_out=self.left_out, complete=self.complete,
+        )  # fmt: skip
+
+    def _drawn(self, begun: TermSearch) -> None:
+        """One free curve beside the terms or, where it leaves no more without them, in the place of all of them."""
+        terms = self.found
+        self._added(curves=True)
+        begun.looked_at, begun.left_out = self.looked_at, self.left_out
+        if terms and begun._added(curves=True) and _held_out(begun) <= _AS_GOOD * _held_out(self):
+            self.models, self.base, self.beside, self.found = begun.models, begun.base, begun.beside, begun.found
+        self.looked_at, self.left_out = begun.looked_at, begun.left_out
+
+    def _added(self, curves: bool = False) -> bool:
+        """Look for one more term, or for a free curve; True where one passed the bar."""
+        self.report(Progress("proposing", len(self.found), self.most))
+        sought, chosen_by, confirming = _parts(self.models.runs)
+        searching = self.models.without(run.id for run in self.models.runs if run not in sought)
+        base = searching.refit(self.base.effects, self.base.values)
+        if not base.finite:
+            return False
+        name = next(f"{_PREFIX}{n}" for n in count(1) if f"{_PREFIX}{n}" not in self.models.effects)
+        seen = candidate_terms(self.models, base, curves=curves)
+        self._count(seen)
+        self.report(Progress("proposing", len(self.found), self.most, base.error))
+        tried = self._all_tried(searching, base, name, seen, curves)
+        if not tried:
+            return False
+        few, bar = _few(self.models.runs), float(np.log(self.looked_at)) + _EVIDENCE
+        candidate, refit, family = _chosen(base, tried, () if few else chosen_by)
+        if few:
+            gain = improvement(base.held_out, refit.held_out)
+            gained, sound = gain.nats, gain.beyond_chance and generalises(base, refit)
+        else:
+            integrated = self.models.horizon is not None
+            told = term_evidence(
+                confirming, _left(base, confirming), _left(refit, confirming), self.models.band, integrated
+            )
+            gained, sound = told.nats, told.worthwhile and (told.steady or told.beyond(bar))
+        if not (gained > bar and sound):
+            self._refuse(next(one for one in family.given.custom if one["name"] == name), refit, gained, bar)
+            return False
+        self.models = replace(self.models, effects=family.effects, given=family.given, _known={})
+        without, self.base = self.base, self.models.refit(refit.effects, refit.values)
+        self._prune(name)
+        proposal = self._proposal(candidate, seen, name, gained, bar, few)
+        self.found.append(replace(proposal, contradicted=self._contradiction(name, without)))
+        return True
+
+    def _count(self, seen: CandidateTerms) -> None:
+        """Count what was looked at, and what of it was left out."""
+        self.looked_at += seen.looked_at
+        self.left_out += seen.left_out
+
+    def _refuse(self, own: Mapping[str, Any], refit: FittedModel, gained: float, bar: float) -> None:
+        """Keep what stayed below the bar, where it is the best of that."""
+        if self.refused is None or gained > self.refused.nats:
+            terms = {one["name"] for one in self.models.given.custom}
+            beside = tuple(name for name in self.base.effects if name not in terms and name not in self.given)
+            self.refused = RejectedTerm(
+                equation=equation_text(own), nats=gained, bar=bar, beside=beside, error=refit.errors
+            )
+
+    def _all_tried(
+        self, searching: CandidateModels, base: FittedModel, name: str, seen: CandidateTerms, curves: bool
+    ) -> list[RefittedTerm]:
+        """The refits with the candidates that come first after a rough one.
+
+        What is strong moves the signals that terms are of: where the best leaves more than noise, what could be in its
+        place is sought once more, with the signals of the model that has it.
+        """
+
+        def refits(candidates: Sequence[TermCandidate], least: float = np.inf) -> list[RefittedTerm]:
+            built = [one for one in (_built(searching, base, name, c, seen) for c in candidates) if one]
+            self.left_out += len(candidates) - len(built)
+            begun = [one for one in each(lambda of: _tried(base, name, *of), built) if one]
+            return _ahead(begun, least)
+
+        tried = refits(seen.candidates)
+        if not tried:
+            return tried
+        best = stable_minimum(tried, lambda one: one[1].error)
+        if not searching.at_floor(best[1]):
+            again = candidate_terms(self.models, best[1], best[2].effects[name], curves)
+            self._count(again)
+            new = [one for one in again.candidates if not any(map(one.begins_as, seen.candidates))]
+            tried += refits(new, best[1].here.error)
+        ranked = stable_ranking(tried, lambda one: one[1].error)
+        plain = [one for one in ranked[_MOST_CLOSE:] if one[0].plain][:_PLAIN]
+        close = [one for one in (*ranked[:_MOST_CLOSE], *plain) if one[1].error <= _CLOSE * ranked[0][1].error]
+        on = replace(FITTING, aim=_AS_GOOD * ranked[0][1].here.error)
+        return _followed(each(lambda one: _gone_on(one, on), close))
+
+    def _prune(self, latest: str) -> None:
+        """Leave out what the model does as well without since the latest term."""
+        for name in self.base.effects:
+            if name in (latest, *self.given):
+                continue
+            values = self._joined(latest, name)
+            less = self.models.refit(tuple(e for e in self.base.effects if e != name), values)
+            if less.finite and not improvement(less.held_out, self.base.held_out).beyond_chance:
+                self.base = less
+        self.beside = tuple(name for name in self.beside if name in self.base.effects)
+        self.found = [one for one in self.found if one.effect["name"] in self.base.effects]
+
+    def _joined(self, latest: str, name: str) -> dict[str, float]:
+        """The values with the strength of a term given to the latest, where both are one equation."""
+        values = dict(self.base.values)
+        equations = {one["name"]: one["equation"] for one in self.models.given.custom}
+        if name in equations and equations[name] == equations[latest]:
+            values[self.models.strength(latest)] += values[self.models.strength(name)]
+        return values
+
+    def _contradiction(self, name: str, before: FittedModel) -> Contradiction | None:
+        """Whether runs to verify speak against the latest term."""
+        runs = self.models.matrix.of_use("verify")
+        return contradiction(name, runs, before.left(runs), self.base.left(runs)) if runs else None
+
+    def _proposal(
+        self, candidate: TermCandidate, seen: CandidateTerms, name: str, gained: float, bar: float, hypothesis: bool
+    ) -> Proposal:
+        own = next(one for one in self.models.given.custom if one["name"] == name)
+        own = as_fitted(own, self.models.effects[name], self.base.values)
+        return Proposal(
+            place=tuple(dict.fromkeys(term.place for term in candidate.terms)),
+            equation=equation_text(own),
+            effect=own,
+            strength=self.base.values[self.models.strength(name)],
+            std_error=self.base.deviation(self.models.strength(name)),
+            unit=self.models.preset.recorded.shown(self.models.effects[name].strength.unit),
+            parameters=self.base.parameters,
+            view=characteristic_view(candidate.terms[0], self.models.preset, seen.typical),
+            beside=self.beside,
+            terms=len(self.found) + 1,
+            shapes=sum(term.fitted for term in candidate.terms),
+            error=self.base.errors,
+            unstable=self.base.unstable,
+            nats=gained,
+            bar=bar,
+            alike=tuple("; ".join(f"{t.at}: {t.text}" for t in terms) for terms in candidate.alike),
+            meaning=interpretation(candidate.terms),
+            formula=" ".join(mathml(line, curves(own)) for line in lines_of(own)),
+            hypothesis=hypothesis,
+            free_curve=any(term.curve is not None for term in candidate.terms),
+        )
+
+    def _restated(self, proposal: Proposal) -> Proposal:
+        """The same with the definition as the last refit left it: later terms move the shapes of earlier ones."""
+        name = str(proposal.effect["name"])
+        if name not in self.base.effects:  # the time was over while it was weighed
+            return proposal
+        return replace(proposal, effect=as_fitted(proposal.effect, self.models.effects[name], self.base.values))
+
+
+def _built(
+    searching: CandidateModels, base: FittedModel, name: str, candidate: TermCandidate, seen: CandidateTerms
+) -> tuple[TermCandidate, CandidateModels] | None:
+    """The models with a candidate as an effect of this name; None where no model can hold it."""
+    with np.errstate(all="ignore"):  # bounds that are no numbers are refused below
+        own = definition(name, candidate.terms, candidate.signs, candidate.strength, seen.typical, seen.units)
+    try:
+        effect = read_effect(own, model=searching.preset.name)
+    except Unusable:
+        return None
+    bounds = {**searching.given.bounds, **searched_bounds(own, candidate.terms)}
+    given = replace(searching.given, custom=(*searching.given.custom, own), bounds=bounds)
+    family = replace(searching, effects={**searching.effects, name: effect}, given=given, _known={})
+    # It may close a circle of signals with what was found before.
+    return (candidate, family) if family.fit_together((*base.effects, name)) else None
+
+
+def _tried(base: FittedModel, name: str, candidate: TermCandidate, family: CandidateModels) -> RefittedTerm | None:
+    """First steps with a candidate on the runs that search; None where it leads nowhere."""
+    start = {**base.values, family.strength(name): candidate.strength}
+    start |= {p.in_equations: p.value for p in family.effects[name].added[1:]}
+    refit = family.refit((*base.effects, name), start, way=FIRST_STEPS)
+    return (candidate, refit, family) if refit.stable else None
+
+
+def _held_out(search: TermSearch) -> float:
+    return search.base.held_out.error
+
+
+def _ahead(begun: Sequence[RefittedTerm], least: float) -> list[RefittedTerm]:
+    """Rough refits, given up where they cannot come near what was `least` before, or is ahead after the first steps."""
+    on = replace(TRYING, aim=_CLOSE * min([least, *(refit.here.error for _, refit, _ in begun)]))
+    return _followed(each(lambda one: _gone_on(one, on), begun))
+
+
+def _followed(tried: Sequence[RefittedTerm]) -> list[RefittedTerm]:
+    """Those that a simulation follows: asked side by side."""
+    return [one for one, finite in zip(tried, each(lambda one: one[1].finite, tried), strict=True) if finite]
+
+
+def _gone_on(tried: RefittedTerm, way: Way) -> RefittedTerm:
+    """A refit that is gone on with."""
+    candidate, refit, family = tried
+    return candidate, family.gone_on(refit, way), family
+
+
+def _chosen(base: FittedModel, tried: Sequence[RefittedTerm], runs: Sequence[Run]) -> RefittedTerm:
+    """The simplest of those that leave as little of some runs, or of what was held out where there are none.
+
+    Where all of them gain little over the base one that is as good to within some per cent may gain nothing.
+    """
+    before, *errors = each(
+        lambda one: _error(one, runs) if runs else one.held_out.error, [base, *(refit for _, refit, _ in tried)]
+    )
+    least = min(errors)
+    bound = min(_AS_GOOD * least, least + _LOST * max(before - least, 0.0))
+    good = [one for one, error in zip(tried, errors, strict=True) if error <= bound]
+    return min(good, key=lambda one: one[0].simplicity)
+
+
+def _parts(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[Run, ...], tuple[Run, ...]]:
+    """The runs that search, that choose, and that confirm: each with runs of all conditions. Of too few all do all.
+
+    The outputs of one record stay together.
+    """
+    if _few(runs):
+        return tuple(runs), tuple(runs), tuple(runs)
+
+    def condition(run: Run) -> tuple[float, ...]:
+        of = run.specimen
+        return (of.mass, of.stiffness, run.Kp, run.drive) if of else (0.0, 0.0, run.Kp, run.drive)
+
+    ordered = list(dict.fromkeys(run.record or run.id for run in sorted(runs, key=condition)))
+    parts: list[set[str]] = [set(), set(), set()]
+    dealing = np.random.default_rng(0)
+    for first in range(0, len(ordered), 3):  # neighbours go to one part each: one after the other a part gets one gain
+        for at, record in zip(dealing.permutation(3), ordered[first : first + 3], strict=False):
+            parts[at].add(record)
+    sought, chosen_by, confirming = (tuple(run for run in runs if (run.record or run.id) in part) for part in parts)
+    return sought, chosen_by, confirming
+
+
+def _few(runs: Sequence[Run]) -> bool:
+    """Whether there are fewer records than search, choose and confirm."""
+    return len({run.record or run.id for run in runs}) < _FEWEST
+
+
+def _error(refit: FittedModel, runs: Sequence[Run]) -> float:
+    """Eq. (17) of runs that a refit was not made for."""
+    found = refit.fitness.fresh(tuple(runs)).exact(refit.point, sensitivities=False).runs
+    return float(over_runs([run.error for run in found], runs))
+
+
+def _left(refit: FittedModel, runs: Sequence[Run]) -> list[Array]:
+    """The residuals of some runs."""
+    fitness = refit.fitness.fresh(tuple(runs))
+    outputs = fitness.outputs(refit.point)
+    return [run.measured - outputs[run.id] for run in runs]

@@ -1,0 +1,145 @@
+"""What a regression over terms offers to be tried: single terms, and two places with one strength."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ident.diagnosis.discovery.interpretation import interpretation
+from ident.diagnosis.discovery.regression import ALIKE, Regression
+from ident.diagnosis.discovery.term import Shape, Term, ratio
+from ident.diagnosis.discovery.term_to_effect import added, state_line, sticks
+from ident.stages import PLACES
+from ident.units.quantity import known_powers, shape
+
+_TRIED, _PAIRS = 6, 3  # single terms and pairs that are refitted
+_SEEN = 200  # pairs that promise most, of which those are taken that are not alike
+_CANCELLED = 1e-6  # of the power of both: a pair that leaves less is none
+_MAY_WIN = 0.5  # times the best one's promise, which a shape that is not yet where it belongs may keep
+_NEAR = 0.01  # of the way that a refit may move a shape: from there it comes to the same
+_DRIVE = ("controller", "valve", "spool", "flow")  # one input of the machine: of two terms there one is enough
+
+
+@dataclass(frozen=True)
+class TermCandidate:
+    """Terms with one strength, a sign each, and what the regression makes of them; `alike` cannot be told from them."""
+
+    terms: tuple[Term, ...]
+    signs: tuple[float, ...]
+    strength: float
+    share: float
+    alike: tuple[tuple[Term, ...], ...] = ()
+
+    @property
+    def equation(self) -> str:
+        """What is added where."""
+        brakes = sticks(self.terms, self.strength)
+        states = [state_line(term.state) for term in self.terms if term.state]
+        return "; ".join([*states, *(added(t, sign, brakes) for t, sign in zip(self.terms, self.signs, strict=True))])
+
+    def begins_as(self, other: TermCandidate) -> bool:
+        """Whether a refit of another one comes to the same: one equation, with its shapes at about the same places."""
+        if self.equation != other.equation or self._knots != other._knots:
+            return False
+        both = zip(self._shapes, other._shapes, strict=True)
+        return all(abs(one.value - another.value) <= _NEAR * float(np.ptp(one.bounds)) for one, another in both)
+
+    @property
+    def plain(self) -> bool:
+        """Whether it is an equation alone, without shapes and curves."""
+        return not self._shapes and not self._knots
+
+    @property
+    def _shapes(self) -> list[Shape]:
+        return [shape for term in self.terms for shape in term.shapes]
+
+    @property
+    def _knots(self) -> list[float]:
+        return [knot for term in self.terms if term.curve for knot in term.curve.knots]
+
+    @property
+    def simplicity(self) -> tuple[object, ...]:
+        """What of two that are as good comes first."""
+        text = "".join(term.text for term in self.terms)
+        shapes = sum(term.fitted for term in self.terms)
+        return len(self.terms), shapes, not interpretation(self.terms), len(text), text
+
+
+def term_candidates(found: Regression, units: Mapping[str, str]) -> tuple[tuple[TermCandidate, ...], int]:
+    """The terms and pairs that promise most, and how many were looked at."""
+    classes = found.classes()
+    singles = [_single(found, group) for group in (*classes[:_TRIED], *_shaped(found, classes))]
+    pairs, count = _pairs(found, units)
+    return (*singles, *pairs), found.looked_at + count
+
+
+def _shaped(found: Regression, classes: Sequence[Sequence[int]]) -> list[Sequence[int]]:
+    """Of every kind with shapes that is not yet among those tried, the best class: a refit moves its shapes."""
+    seen = {found.terms[i].kind for group in classes[:_TRIED] for i in group}
+    more: list[Sequence[int]] = []
+    for group in classes[_TRIED:]:
+        term = found.terms[group[0]]
+        if found.gains[group[0]] < _MAY_WIN * found.gains[classes[0][0]]:
+            break
+        if term.free_shapes and term.kind not in seen:
+            seen.add(term.kind)
+            more.append(group)
+    return more
+
+
+def _single(found: Regression, group: Sequence[int]) -> TermCandidate:
+    """The plainest term of a class."""
+    terms = [found.terms[i] for i in group]
+    best = min(
+        range(len(group)), key=lambda i: (not interpretation([terms[i]]), terms[i].free_shapes, len(terms[i].text))
+    )
+    at = group[best]
+    strength, share = float(found.with_residual[at] / found.products[at, at]), float(found.gains[at])
+    others = tuple((term,) for i, term in enumerate(terms) if i != best)
+    return TermCandidate((terms[best],), (1.0,), strength, share, others)
+
+
+def _pairs(found: Regression, units: Mapping[str, str]) -> tuple[list[TermCandidate], int]:
+    """Two places with one strength: terms whose strengths have one unit, one where the drive is and one elsewhere.
+
+    Those that promise most, no two of them alike, and how many there are.
+    """
+    power = np.diag(found.products)
+    dimensions = np.unique([repr(_dimension(term, units)) for term in found.terms], return_inverse=True)[1]
+    plain = np.array([not term.shapes and not term.in_time and power[i] > 0 for i, term in enumerate(found.terms)])
+    driven = np.array([term.place in _DRIVE for term in found.terms])
+    rows, columns = np.flatnonzero(plain & driven), np.flatnonzero(plain & ~driven)
+    of_rows, of_columns = np.nonzero(dimensions[rows, None] == dimensions[columns])
+    i, j = np.tile(rows[of_rows], 2), np.tile(columns[of_columns], 2)
+    signs = np.repeat([1.0, -1.0], len(of_rows))
+    both = power[i] + power[j] + 2 * signs * found.products[i, j]
+    sound = both > _CANCELLED * (power[i] + power[j])
+    with_residual = found.with_residual[i] + signs * found.with_residual[j]
+    share = found.share(np.where(sound, with_residual**2 / np.where(sound, both, 1.0), 0.0))
+
+    def alike(k: int, other: int) -> bool:
+        (a, b, s), (c, d, t) = ((i[n], j[n], signs[n]) for n in (k, other))
+        product = found.products
+        common = product[a, c] + t * product[a, d] + s * product[b, c] + s * t * product[b, d]
+        return bool(abs(common) > ALIKE * np.sqrt(both[k] * both[other]))
+
+    taken: list[int] = []
+    for k in map(int, np.argsort(-share, kind="stable")[:_SEEN]):
+        if len(taken) < _PAIRS and share[k] > 0 and not any(alike(k, other) for other in taken):
+            taken.append(k)
+    return [_pair(found, (i[k], j[k]), signs[k], with_residual[k] / both[k], share[k]) for k in taken], len(i)
+
+
+def _pair(found: Regression, of: tuple[int, int], sign: float, strength: float, share: float) -> TermCandidate:
+    """Two terms, the second with a sign, in the order of their places."""
+    both = ((found.terms[of[0]], 1.0), (found.terms[of[1]], float(sign)))
+    terms, signs = zip(*sorted(both, key=lambda one: PLACES.index(one[0].place)), strict=True)
+    return TermCandidate(terms, tuple(signs[0] * one for one in signs), float(signs[0] * strength), float(share))
+
+
+def _dimension(term: Term, units: Mapping[str, str]) -> object:
+    """That of a term's strength."""
+    unit = ratio(units[term.at], term.unit)
+    return shape(known_powers(unit, term.text), term.text)

@@ -1,0 +1,101 @@
+"""By how much a term makes runs more likely that it was not fitted to, whatever the colour of the noise.
+
+With the periodograms of what is left before and after, averaged over m neighbouring frequencies within the band,
+
+    nats = Σ m ln(S_before / S_after)
+
+which is the ratio of the likelihoods of Whittle (1953) where each residual is noise of its own smooth spectrum: what is
+coloured in both alike counts for nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.diagnosis.discovery.regressors import WIDE
+from ident.diagnosis.significance import WORTHWHILE
+from ident.fit.windows import unforeseen
+from ident.run import Run
+
+Array = NDArray[np.float64]
+_SMOOTH = 16  # frequencies that are averaged
+_FEW = 3  # runs, below which their scatter tells nothing
+_STEADY = 3.0  # standard errors
+_LOST = 0.03  # of what is gained
+
+
+@dataclass(frozen=True)
+class TermEvidence:
+    """The nats of each run that confirms, (runs,), and the relative fall of the error, eq. (17), over all of them."""
+
+    of_runs: Array
+    fall: float
+
+    @property
+    def nats(self) -> float:
+        """Of all runs."""
+        return float(self.of_runs.sum())
+
+    @property
+    def steady(self) -> bool:
+        """Whether the runs agree: their mean gain is beyond chance, and so it is without the one that gains most."""
+        rest = self._rest
+        return bool(len(rest) < _FEW or (_deviations(self.of_runs) > _STEADY and _deviations(rest) > _STEADY))
+
+    def beyond(self, bar: float) -> bool:
+        """Whether other runs than the one that gains most gain as much as is asked for, and next to none loses.
+
+        So with what only some runs reach, as a stop at the end of a way: their mean gain is unsteady.
+        """
+        gained, lost = np.maximum(self.of_runs, 0.0).sum(), np.maximum(-self.of_runs, 0.0).sum()
+        return bool(len(self._rest) >= _FEW and self._rest.sum() > bar and lost < _LOST * gained)
+
+    @property
+    def _rest(self) -> Array:
+        """The nats of the runs but the one that gains most."""
+        return np.delete(self.of_runs, int(np.argmax(self.of_runs)))
+
+    @property
+    def worthwhile(self) -> bool:
+        """Whether the error falls by what is worth a term."""
+        return self.fall > WORTHWHILE
+
+
+def term_evidence(
+    runs: Sequence[Run], before: Sequence[Array], after: Sequence[Array], band: float, integrated: bool = False
+) -> TermEvidence:
+    """Of the residuals (n,) of some runs; `band` in rad/s.
+
+    Of a machine that has `integrated` what disturbed it the likelihoods are those of noise on a level that wanders.
+    """
+
+    def gain(run: Run, one: Array, other: Array) -> float:
+        if integrated:
+            return 0.5 * len(one) * float(np.log(max(unforeseen(one), 1e-300) / max(unforeseen(other), 1e-300)))
+        return _of_run(one, other, run.sample_rate, band)
+
+    gained = [gain(run, one, other) for run, one, other in zip(runs, before, after, strict=True)]
+    size = [float(np.mean([np.std(r) / np.std(run.measured) for run, r in zip(runs, of, strict=True)]))
+            for of in (before, after)]  # fmt: skip
+    return TermEvidence(np.array(gained), 1.0 - size[1] / size[0])
+
+
+def _deviations(gains: Array) -> float:
+    """The mean over its standard error."""
+    spread = float(np.std(gains, ddof=1))
+    return float(gains.mean() * np.sqrt(len(gains)) / spread) if spread > 0 else np.inf
+
+
+def _of_run(before: Array, after: Array, rate: float, band: float) -> float:
+    bins = 2 * np.pi * np.fft.rfftfreq(len(before), 1.0 / rate)
+    inside = (bins > 0) & (bins <= WIDE * band)
+    powers = [np.abs(np.fft.rfft(residual - residual.mean()))[inside] ** 2 for residual in (before, after)]
+    groups = max(1, int(inside.sum()) // _SMOOTH)
+    found = 0.0
+    for first, last in zip(*(np.array_split(power, groups) for power in powers), strict=True):
+        found += len(first) * float(np.log(max(first.mean(), 1e-300) / max(last.mean(), 1e-300)))
+    return found

@@ -1,0 +1,126 @@
+"""A term as an effect of its own: the definition that a user could have written."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ident.diagnosis.discovery.term import CURVE, LIMIT, STATE, Signals, Term, ratio
+from ident.effects.effect import Effect
+
+_REACH = 4.0  # times what makes a term as large as the signal that it adds to: bounds of a strength
+_FAR = 10.0  # times what a regression makes of a strength
+_STEEP = 20.0  # times a large value of a curve that others may become
+STRENGTH = "s"
+
+
+def added(term: Term, sign: float, sticks: bool = False) -> str:
+    """The equation that adds a term, or takes it off; friction that sticks adds to what dry friction takes at most."""
+    at, text = (LIMIT, term.limit) if sticks else (term.at, term.text)
+    return f"{at} = {at} {'+' if sign > 0 else '-'} {STRENGTH} * ({text})"
+
+
+def sticks(terms: Sequence[Term], strength: float) -> bool:
+    """Whether terms are dry friction, which brakes.
+
+    What drives where it should brake, as friction that is less than the model's does, is a force like any other.
+    """
+    return len(terms) == 1 and bool(terms[0].limit) and strength > 0
+
+
+def definition(
+    name: str,
+    terms: Sequence[Term],
+    signs: Sequence[float],
+    strength: float,
+    typical: Signals,
+    units: Mapping[str, str],
+) -> dict[str, Any]:
+    """The definition of an effect with one strength for one term or for several, each with its sign.
+
+    `strength` is about what it will be, `typical` are samples of the signals, `units` as the chain has them.
+    """
+    first, brakes = terms[0], sticks(terms, strength)
+    lines: list[str] = []
+    shapes: dict[str, Any] = {}
+    for term, sign in zip(terms, signs, strict=True):
+        lines += term.memory
+        lines.append(added(term, sign, brakes))
+        for shape in term.shapes:
+            low, high = shape.bounds
+            shapes[shape.symbol] = {"unit": shape.unit, "lower": low, "upper": high, "value": shape.value}
+    shown = first.samples(typical, 1.0) if first.worked_out is None else typical[first.of[0]]
+    size = float(np.sqrt(np.mean(shown**2)))
+    reach = 0.0 if first.in_time else _REACH * float(np.std(typical[first.at])) / max(size, 1e-300)
+    bound = max(reach, _FAR * abs(strength))
+    found: dict[str, Any] = {
+        "name": name, "place": terms[-1].place, "equation": lines,
+        "strength": {"symbol": STRENGTH, "unit": ratio(units[first.at], first.unit), "lower": 0.0 if brakes else -bound,
+                     "upper": bound},
+        "meaning": "proposed by search", "source": "proposed by search",
+    }  # fmt: skip
+    if first.curve is not None:
+        knots, values = list(first.curve.knots), list(first.curve.values)
+        found["curve"] = {"symbol": CURVE, "of": first.curve.of, "knots": knots, "values": values, "unit": "1",
+                          "lower": -_STEEP, "upper": _STEEP}  # fmt: skip
+    state = next((term.state for term in terms if term.state), "")
+    return (
+        found | ({"shape": shapes} if shapes else {}) | ({"state": {"symbol": STATE, "rate": state}} if state else {})
+    )
+
+
+def searched_bounds(own: Mapping[str, Any], terms: Sequence[Term]) -> dict[str, tuple[float, float]]:
+    """What a refit moves beside the strength, by name, and within which bounds."""
+    free = [shape.symbol for term in terms for shape in term.shapes if shape.free]
+    found = {f"{own['name']}.{symbol}": _bounds(own["shape"][symbol]) for symbol in free}
+    for curve in (term.curve for term in terms if term.curve is not None):
+        moved = (n for n in range(len(curve.knots)) if n != curve.held)
+        found |= {f"{own['name']}.{CURVE}_{n + 1}": _bounds(own["curve"]) for n in moved}
+    return found
+
+
+def curves(own: Mapping[str, Any]) -> dict[str, str]:
+    """The signal of the curve that an effect has, by the curve's symbol."""
+    return {own["curve"]["symbol"]: own["curve"]["of"]} if "curve" in own else {}
+
+
+def equation_text(own: Mapping[str, Any]) -> str:
+    """The equations in words, the rate of a state of its own first: h of P is told as h(P)."""
+    text = "; ".join(lines_of(own))
+    for symbol, of in curves(own).items():
+        text = re.sub(rf"\b{symbol}\b", f"{symbol}({of})", text)
+    return text
+
+
+def lines_of(own: Mapping[str, Any]) -> list[str]:
+    """Its equations, that of its own state among them."""
+    return [*([state_line(own["state"]["rate"])] if "state" in own else []), *own["equation"]]
+
+
+def state_line(rate: str) -> str:
+    """The equation of a state of its own."""
+    return f"{STATE}' = {rate}"
+
+
+def _bounds(of: Mapping[str, Any]) -> tuple[float, float]:
+    return of["lower"], of["upper"]
+
+
+def as_fitted(own: Mapping[str, Any], effect: Effect, values: Mapping[str, float]) -> dict[str, Any]:
+    """The definition with its shapes as a refit found them, by the equations' names: added, they are held there.
+
+    The strength that was found with them lies well within its bounds.
+    """
+    far, of = _FAR * abs(values[effect.added[0].in_equations]), own["strength"]
+    found = {**own, "strength": {**of, "lower": min(of["lower"], -far) if of["lower"] else 0.0,
+                                 "upper": max(of["upper"], far)}}  # fmt: skip
+    at = {parameter.symbol: values[parameter.in_equations] for parameter in effect.added[1:]}
+    if "shape" in own:
+        found["shape"] = {symbol: {**of, "value": at[symbol]} for symbol, of in own["shape"].items()}
+    if "curve" in own:
+        count = len(own["curve"]["knots"])
+        found["curve"] = {**own["curve"], "values": [at[f"{CURVE}_{n}"] for n in range(1, count + 1)]}
+    return found

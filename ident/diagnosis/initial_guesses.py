@@ -1,0 +1,108 @@
+"""From where an effect's search begins: a ripple's frequency and phase, a stop's stiffness and where it stands."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import next_fast_len
+
+from ident.diagnosis.fitted_model import FittedModel
+from ident.effects.effect import Effect
+from ident.fit.space import Space
+from ident.parameter import Parameter, Starts
+from ident.run import Run
+
+Array = NDArray[np.float64]
+_LINES = 6  # frequencies
+_ANGLES = tuple(np.arange(6) * np.pi / 3)
+_ALONG = (0.25, 0.5, 0.75)  # of an axis
+_FINE = 4  # points of a spectrum for each that the record resolves
+
+
+def initial_guesses(
+    base: FittedModel, effect: Effect, space: Space, known: Mapping[str, float]
+) -> list[dict[str, float]]:
+    """Every combination of where an effect's searched shapes may begin, by the equations' names.
+
+    `known` are the values of everything in the space, the effect off.
+    """
+    searched = [p for p in effect.added if p.searched and p.in_equations in space.names]
+    values = [_guesses_of(base, parameter, space, known) for parameter in searched]
+    names = [parameter.in_equations for parameter in searched]
+    return [dict(zip(names, found, strict=True)) for found in product(*values)]
+
+
+def strength_in_records(base: FittedModel, effect: Effect) -> float | None:
+    """The strength that the records show by themselves, SI; None where they show none.
+
+    A stop that was hit stands at the end of the way that was covered, to both sides of the middle of the stroke.
+    """
+    if effect.strength.start is not Starts.STROKE_END:
+        return None
+    middle = next((p.value for p in effect.shape if p.start is Starts.STROKE_MIDDLE), 0.0)
+    moved = [run.channels["displacement"] for run in base.fitness.runs if "displacement" in run.channels]
+    way = max((float(np.max(np.abs(x - middle))) for x in moved), default=0.0)
+    return 1.0 / way if way > 0 else None
+
+
+def _guesses_of(base: FittedModel, parameter: Parameter, space: Space, known: Mapping[str, float]) -> tuple[float, ...]:
+    """Where its effect says that its search begins."""
+    if parameter.start is Starts.PHASE:
+        return _ANGLES
+    if parameter.start is Starts.SPECTRAL_LINES:
+        return spectral_lines(base, *space.bounds(known)[parameter.in_equations])
+    axis = space.names.index(parameter.in_equations)
+    points = space.point(known) + np.zeros((len(_ALONG), 1))
+    points[:, axis] = _ALONG
+    return tuple(float(value) for value in space.values(points)[parameter.in_equations])
+
+
+def spectral_lines(base: FittedModel, lower: float, upper: float) -> tuple[float, ...]:
+    """The frequencies (1/s) between the bounds at which the residual's rate beats with the motion's, clearest first.
+
+    A gain that pulsates leaves of each line of the motion two neighbours. Times the motion itself these fall together
+    into one line, at the frequency of the pulsation, and all else is spread.
+    """
+    fitness, outputs = base.fitness, base.fitness.outputs(base.point)
+    shortest = min(run.length / run.sample_rate for run in fitness.runs)
+    longest = max(run.length / run.sample_rate for run in fitness.runs)
+    lower = max(lower, 1.0 / shortest)
+    grid = np.arange(lower, min(upper, fitness.band / 2.0), 1.0 / (_FINE * longest))
+    total = np.zeros(len(grid), complex)
+    for run in fitness.runs:
+        rates = (_rate(run, signal, fitness.band) for signal in (run.measured - outputs[run.id], outputs[run.id]))
+        (left, interval), (moved, _) = rates
+        size = float(np.std(moved)) * float(np.std(left)) or 1.0
+        n = _FINE * len(left)
+        spectrum = np.fft.rfft(left * moved / size, n) * interval
+        frequencies = np.fft.rfftfreq(n, interval)
+        total += np.interp(grid, frequencies, spectrum.real) + 1j * np.interp(grid, frequencies, spectrum.imag)
+    return _peaks(grid, np.abs(total), 1.0 / longest)
+
+
+def _rate(run: Run, signal: Array, band: float) -> tuple[Array, float]:
+    """The rate of a displacement, any other signal itself, within twice the band (rad/s) and without its mean.
+
+    As few samples as a product of two such signals needs, which reaches to four times the band, and their interval (s).
+    """
+    n = len(signal)
+    spectrum = np.fft.rfft(signal - signal.mean())
+    omega = 2 * np.pi * np.fft.rfftfreq(n, 1.0 / run.sample_rate)
+    within = int(np.searchsorted(omega, 2.0 * band, side="right"))
+    spectrum, omega = spectrum[:within], omega[:within]
+    few = min(n, next_fast_len(5 * within, real=True))
+    rate = np.fft.irfft(spectrum * 1j * omega if run.output == "displacement" else spectrum, few)
+    return rate * (few / n), n / run.sample_rate / few
+
+
+def _peaks(grid: Array, heights: Array, apart: float) -> tuple[float, ...]:
+    found: list[float] = []
+    for i in np.argsort(heights)[::-1]:
+        if all(abs(grid[i] - other) > apart for other in found):
+            found.append(float(grid[i]))
+        if len(found) == _LINES:
+            break
+    return tuple(found)

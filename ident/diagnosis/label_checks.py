@@ -1,0 +1,156 @@
+"""Runs whose label does not fit their data: a wrong mass, gain or stiffness, a turned or scaled channel, a skew.
+
+Each run is simulated by the fitted model with its labels changed, one at a time, over a ladder of values. A run is a
+suspect where its error stands out from those of the others and one change of a label brings it most of the way back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.chain.conditions import conditions
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.result import LabelErrors, Suspect
+from ident.parallel import each
+from ident.run import Run
+from ident.simulation.simulate import Simulation
+from ident.words.error import error_said
+
+Array = NDArray[np.float64]
+_OUTLIER = 5.0  # robust standard deviations of the runs' errors
+_LEAST = 1.15  # times the usual error, whatever the deviations are
+_EXPLAINED = 0.5  # of the excess that a changed label has to take away
+_FACTORS = np.array([0.1, 0.2, 0.33, 0.5, 0.67, 0.8, 0.9, 1.1, 1.25, 1.5, 2.0, 3.0, 5.0, 10.0])
+_LABELS = {"mass": "mL", "stiffness": "k", "gain": "Kp"}
+_UNITS = {"mass": "kg", "stiffness": "N/m", "gain": "1"}
+_ROUNDS = 3  # of refining a label's value
+_MOST = 0.2  # of the runs: where more stand out, it is not their labels
+
+
+def label_suspects(models: CandidateModels, fitted: FittedModel, floors: Mapping[str, float | None]) -> list[Suspect]:
+    """The runs of the matrix that are to be fitted whose labels are doubted, worst first.
+
+    `floors` is the noise floor of each run, as a fraction like eq. (17); the usual error of a run is in proportion.
+    """
+    runs = models.matrix.of_use("fit")
+    if len(runs) < 5:
+        return []
+    errors = dict(
+        zip((run.id for run in runs), each(lambda run: _errors(models, fitted, run, {})[0], runs), strict=True)
+    )
+    known = all(floors.get(run.id) for run in runs)
+    scale = {run.id: (floors[run.id] or 1.0) if known else 1.0 for run in runs}
+    ratios = np.log([max(errors[run.id], 1e-12) / scale[run.id] for run in runs])
+    usual = float(np.median(ratios))
+    spread = 1.4826 * float(np.median(np.abs(ratios - usual))) + 1e-3
+    outside = [
+        run for run, ratio in zip(runs, ratios, strict=True)
+        if ratio - usual > max(np.log(_LEAST), _OUTLIER * spread)
+    ]  # fmt: skip
+    if len(outside) > max(1, _MOST * len(runs)):
+        return []
+
+    def doubt(run: Run) -> Suspect | None:
+        return _label_suspect(models, fitted, run, float(np.exp(usual)) * scale[run.id], errors[run.id])
+
+    found = [suspect for suspect in each(doubt, outside) if suspect is not None]
+    return sorted(found, key=lambda s: (s.error.usual or 0.0) / (s.error.as_labelled or 1.0))
+
+
+def _label_suspect(
+    models: CandidateModels, fitted: FittedModel, run: Run, usual: float, error: float
+) -> Suspect | None:
+    """The change of a label that explains most of a run's excess, if one explains enough."""
+    changes = [_label(models, fitted, run, what) for what in _LABELS] + _of_channel(models, fitted, run)
+    what, stated, found, mended = min(changes, key=lambda change: change[3])
+    if error**2 - mended**2 < _EXPLAINED * (error**2 - usual**2):
+        return None
+    unit, errors = _UNITS.get(what, "s" if what == "delay" else "1"), LabelErrors(error, usual, mended)
+    return Suspect(
+        run.id, what, stated, found, unit, errors, _evidence(what, stated, found, unit, error, usual, mended)
+    )
+
+
+def _evidence(what: str, stated: float, found: float, unit: str, error: float, usual: float, mended: float) -> str:
+    """Why, in a sentence."""
+    label = f"with {what} {found:.4g} {unit} in place of {stated:.4g} {unit}"
+    of_channel = {
+        "sign": "turned in sign",
+        "unit": f"multiplied by {found:.4g}",
+        "delay": f"shifted by {1e3 * found:.3g} ms",
+    }
+    return (
+        f"the run's error is {error_said(error)}, where {error_said(usual)} would be usual; "
+        f"{of_channel.get(what, label)} it is {error_said(mended)}"
+    )
+
+
+def _label(models: CandidateModels, fitted: FittedModel, run: Run, what: str) -> tuple[str, float, float, float]:
+    """The best value of one label: what, as stated, as found, the error with it."""
+    name = _LABELS[what]
+    stated = conditions(run, models.matrix.actuator)[name]
+    others = {conditions(other, models.matrix.actuator)[name] for other in models.matrix.runs}
+    tried = np.array(sorted({*others, *(stated * _FACTORS)} - {stated}))
+    if not len(tried):
+        return what, stated, stated, np.inf
+    errors = _errors(models, fitted, run, {name: tried})
+    best = int(np.argmin(errors))
+    found, least = float(tried[best]), float(errors[best])
+    reach = 0.15 * max(abs(found), abs(found - stated))
+    for _ in range(_ROUNDS):
+        around = found + reach * np.linspace(-1.0, 1.0, 9)
+        around = around[around > 0] if stated >= 0 else around
+        errors = _errors(models, fitted, run, {name: around})
+        best = int(np.argmin(errors))
+        found, least = (float(around[best]), float(errors[best])) if errors[best] < least else (found, least)
+        reach /= 4
+    return what, stated, found, least
+
+
+def _of_channel(models: CandidateModels, fitted: FittedModel, run: Run) -> list[tuple[str, float, float, float]]:
+    """What a turned, scaled or shifted displacement would explain."""
+    y = _outputs(models, fitted, run, {})[:, 0]
+    measured = run.centred
+    power, model = float(measured @ measured), y - y.mean()
+    if not np.all(np.isfinite(model)) or not model.any():
+        return [("unit", 1.0, 1.0, np.inf)]
+    factor = float(measured @ model / (measured @ measured))
+    left = float(np.sqrt(np.sum((factor * measured - model) ** 2) / power)) / abs(factor) if factor else np.inf
+    scaled = ("sign" if factor < -0.5 else "unit", 1.0, factor, left)
+    lag = 0.0
+    for _ in range(5):
+        moved = np.interp(np.arange(len(model)) - lag * run.sample_rate, np.arange(len(model)), model)
+        slope = np.gradient(moved) * run.sample_rate
+        lag += float(-(measured - moved) @ slope / (slope @ slope))
+    moved = np.interp(np.arange(len(model)) - lag * run.sample_rate, np.arange(len(model)), model)
+    late = ("delay", 0.0, lag, float(np.std(measured - moved) * np.sqrt(len(moved) / power)))
+    return [scaled, late]
+
+
+def _errors(models: CandidateModels, fitted: FittedModel, run: Run, changed: Mapping[str, Array]) -> Array:
+    """Eq. (17) of a run for each value of a changed label, (v,)."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        left = fitted.fitness.left(run, _outputs(models, fitted, run, changed))
+        errors = np.sqrt(np.mean(left**2, axis=0)) / run.measured.std()
+    return np.where(np.isfinite(errors), errors, np.inf)
+
+
+def _outputs(models: CandidateModels, fitted: FittedModel, run: Run, changed: Mapping[str, Array]) -> Array:
+    """The model's outputs for a run with changed labels, (n, v)."""
+    fitness = fitted.fitness
+    known = {name: np.array([[value]]) for name, value in conditions(run, models.matrix.actuator).items()}
+    found = {**fitness.space.fixed, **fitted.values}
+    known |= {name: np.array([[value]]) for name, value in found.items()}
+    known |= {name: np.asarray(values)[None] for name, values in changed.items()}
+    vectors = max(np.shape(value)[1] for value in known.values())
+    fresh = replace(fitness, runs=(run,), starts=dict(fitness.starts))
+    fresh.begin(fitted.values)
+    steps = int(fitness.steps({name: np.array([value]) for name, value in found.items()}).max())
+    values = {name: np.broadcast_to(known[name], (1, vectors)) for name in fitness.chain.symbols}
+    simulation = Simulation(fitness.chain, (run,), values, steps, fresh.first_states(run, values))
+    return np.concatenate([rows[:, 0] for rows, _, _ in simulation.outputs()])

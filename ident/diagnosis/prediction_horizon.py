@@ -1,0 +1,98 @@
+"""Longer windows, weighed with an effect in the model.
+
+The windows of a machine that integrates were chosen without the effect that is missing. What that effect adds up to
+looks then like what a disturbance adds up to: short windows forgive both, and over them the effect is worth little.
+With it in the model longer windows, or whole runs, may make the records more likely than the short ones do with any
+effect. Then these are what effects are to be judged by.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.ranking import rank
+from ident.diagnosis.selection import StepwiseSelection
+from ident.diagnosis.significance import BEYOND_CHANCE
+from ident.diagnosis.tie_breaking import stable_ranking
+from ident.fit.windows import likelihood, longer
+from ident.parallel import each
+from ident.progress import Progress, Report
+
+_CARRIED = 4  # models that are taken to the next longer windows
+
+
+@dataclass(frozen=True)
+class LongerHorizon:
+    """The models over longer windows, and one of them, with an effect, that makes the records more likely."""
+
+    models: CandidateModels
+    better: FittedModel
+
+
+def longer_horizon(selection: StepwiseSelection, report: Report) -> LongerHorizon | None:
+    """The models over windows by which, with one effect, the records are most likely, where those are longer ones.
+
+    Weighed are the finalists of the first ranking over the fitted windows, refitted over longer ones, and what ranks
+    first of whole runs. More likely than by the fitted model they are to be beyond chance for the best of all that was
+    looked at. None where the fitted windows stay, or leave nothing to explain. Raises TimeIsUp.
+    """
+    base, models = selection.base, selection.models
+    horizons = longer(base.fitness, base.point)
+    if not horizons or not models.something_left(base):
+        return None
+    carried = [base, *(one.refit for one in selection.look() if one.refit is not None)]
+    chance = BEYOND_CHANCE + float(np.log(len(models.effects) * len(horizons)))
+    asked = max(
+        _log_likelihood(base, models.memory) + chance, *(_log_likelihood(one, models.memory) for one in carried)
+    )
+    best: LongerHorizon | None = None
+    for number, horizon in enumerate(horizons):
+        report(Progress("longer windows", number, len(horizons)))
+        far = models.over(horizon, models.memory if horizon else None)
+        carried = _refitted(far, carried, base.values)
+        if horizon is None:
+            carried += _ranked(far, base, report)
+        judged = _likeliest([(_log_likelihood(one, models.memory), one) for one in carried])
+        carried = [one for _, one in judged]
+        likely, ahead = next((one for one in judged if len(one[1].effects) > len(base.effects)), (-np.inf, base))
+        if likely > asked:
+            asked, best = likely, LongerHorizon(far, ahead)
+    return best
+
+
+def _refitted(models: CandidateModels, found: Sequence[FittedModel], fitted: Mapping[str, float]) -> list[FittedModel]:
+    """What was found over other windows, found again over those of these models: from there, and from the fit.
+
+    One or the other way may be barred, and over longer windows either leads far.
+    """
+    starts = [(one.effects, start) for one in found for start in (one.values, fitted)]
+    return [one for one in each(lambda start: models.settled(models.refit(*start)), starts) if one.stable]
+
+
+def _likeliest(judged: Sequence[tuple[float, FittedModel]]) -> list[tuple[float, FittedModel]]:
+    """The likeliest of each set of effects, each with how likely it is, in that order; no more than go on."""
+    found: dict[tuple[str, ...], tuple[float, FittedModel]] = {}
+    for likely, one in stable_ranking(judged, lambda one: -one[0]):
+        found.setdefault(one.effects, (likely, one))
+    return list(found.values())[:_CARRIED]
+
+
+def _ranked(models: CandidateModels, base: FittedModel, report: Report) -> list[FittedModel]:
+    """The finalists among the effects beside the fitted model."""
+    start = models.refit(base.effects, base.values)
+    if not start.finite:
+        return []
+    names = [name for name in models.effects if name not in start.effects]
+    refits = [one.refit for one in rank(models, start, names, report, thorough=False) if one.refit is not None]
+    return each(models.settled, refits)
+
+
+def _log_likelihood(refit: FittedModel, memory: float | None) -> float:
+    """How likely a refit makes the records, nats but for a constant; with a `memory` of a speed that wanders."""
+    found = likelihood(refit.fitness, refit.point, memory)
+    return found if np.isfinite(found) else -np.inf

@@ -1,0 +1,303 @@
+"""Which machine fits, where no model is named: those that the channels allow, compared on held-out data.
+
+Where the first of them leaves more than noise, something is missing, and a machine with more parameters may have made
+up for a part of it. So another with no more parameters comes before it that, with one effect of the catalogue, leaves
+much less than the first with its own; and one with fewer that leaves as little. Of the first, where the data ask for a
+value of a parameter beyond its bound, it is known that it is another machine: then one that leaves less comes before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.ranking import rank
+from ident.diagnosis.significance import improvement
+from ident.errors import Unusable
+from ident.fit.identification import Identification, StepwiseFit, completed
+from ident.fit.result import FitResult, Structure, Window
+from ident.fit.search import State
+from ident.fit.settings import Settings
+from ident.fit.summary import noticed
+from ident.matrix import Matrix
+from ident.presets import Preset, preset
+from ident.presets.suited import in_question, told_by_following, unusual
+from ident.progress import Progress, Report, silent
+from ident.words.error import error_said
+from ident.words.titles import title
+
+_WORSE = 1.02  # times the least error on held-out data: less is no reason for another parameter
+_MUCH_LESS = 0.7  # times what the first machine leaves with its best effect: so much has a simpler one to leave
+
+
+@dataclass(frozen=True)
+class StructureChoice:
+    """The models in question, the one to take first; the matrix, with a notice that says why it.
+
+    `fit` is that of the first with usual settings, None where it was the only one, and had not to be fitted.
+    """
+
+    matrix: Matrix
+    structures: tuple[Structure, ...] = ()
+    fit: FitResult | None = None
+
+    def made(self, settings: Settings) -> FitResult | None:
+        """The fit, where these settings ask for the very same."""
+        return self.fit if self.fit is not None and settings == Settings(model=self.fit.model) else None
+
+
+def compared_structures(matrix: Matrix, report: Report = silent) -> tuple[Structure, ...]:
+    """The models in question, the one to take first: the simplest whose held-out error is not worse.
+
+    Of a machine that moves along a way the simplest that is not a motor, where one is no worse. Before it comes one
+    with no more parameters that leaves much less with one effect, or with fewer that leaves as little.
+
+    Raises Unusable where the channels allow none.
+    """
+    return _compared(matrix, report)[0]
+
+
+def _compared(matrix: Matrix, report: Report) -> tuple[tuple[Structure, ...], FitResult | None]:
+    """The models in question as :func:`structures` has them, and the fit of the first where more than one was."""
+    models = in_question(matrix.runs, matrix.machine)
+    if len(models) == 1:
+        only = models[0]
+        shown = f"{only.name} is driven by {only.driven_by} and shows what was recorded"
+        if told_by_following(only, matrix.runs):
+            shown = f"{only.name}, a loop that compares both, since what was recorded is where the command is"
+        why = "the matrix describes it" if matrix.machine else shown
+        return (Structure(only.name, {"held_out": None}, len(only.parameters), why),), None
+    fitted = _all_fitted(models, matrix, report)
+    over, tried = _judged(list(fitted.values()))
+    least = min(one.error for one in tried)
+    good = [one for one in tried if one.error <= _WORSE * least]
+    strange = {model.name for model in models if unusual(model, matrix.runs)}
+    first = min(good, key=lambda one: (one.machine in strange, one.parameters))
+    with_effects = _with_an_effect_each(first, tried, report)
+    best, why = _preferred(with_effects[first.machine], list(with_effects.values()), strange)
+    others = (with_effects.get(one.machine, one) for one in tried if one.machine != best.machine)
+    said = (best.structure(over, why), *(one.structure(over, "") for one in others))
+    return said, fitted[best.machine].fit
+
+
+def _with_an_effect_each(
+    first: _JudgedStructure, tried: Sequence[_JudgedStructure], report: Report
+) -> dict[str, _JudgedStructure]:
+    """The first model and those with no more parameters, each with the effect that helps it most.
+
+    But the first alone, and as it is, where it is the only one or leaves nothing that an effect could explain.
+    """
+    simple = [one for one in tried if one.parameters <= first.parameters]
+    if len(simple) == 1 or not first.refit.finite or not first.models.something_left(first.refit):
+        return {first.machine: first}
+    return {one.machine: one.helped(report) for one in simple}
+
+
+def _preferred(
+    first: _JudgedStructure, others: Collection[_JudgedStructure], strange: Collection[str]
+) -> tuple[_JudgedStructure, str]:
+    """The one to take of models with an effect each, and why: the first, or a simpler one that says as much or more.
+
+    Much less is left by one that nothing else tells of, less by one whose parameters have values in their bounds where
+    those of the first have not; as little, and no more than by chance, by one that is not strange where the first is
+    not.
+    """
+    least = min((one.error for one in others), default=first.error)
+    if least <= _MUCH_LESS * first.error:
+        return _simplest(others), "much less with one effect"
+    within = [one for one in others if one.error < first.error and not one.at_bound]
+    if first.at_bound and within:
+        return _simplest(within), "less with one effect, and no parameter at its bound"
+    simpler = [
+        one
+        for one in others
+        if one.parameters < first.parameters
+        and one.error <= _WORSE * first.error
+        and (one.machine in strange) <= (first.machine in strange)
+        and not improvement(one.best.held_out, first.best.held_out).beyond_chance
+    ]
+    if first.with_effect is not None and simpler:
+        return min(simpler, key=lambda one: one.parameters), "as little with one effect, and simpler"
+    return first, "the simplest that is not worse"
+
+
+def _simplest(models: Collection[_JudgedStructure]) -> _JudgedStructure:
+    """The one with the fewest parameters of those that leave least."""
+    least = min(one.error for one in models)
+    return min((one for one in models if one.error <= _WORSE * least), key=lambda one: one.parameters)
+
+
+def _judged(fitted: Sequence[_FittedStructure]) -> tuple[str, list[_JudgedStructure]]:
+    """The models by one measure for all, and in words over what: the longest windows of one that is fitted so.
+
+    What a machine integrated meanwhile is no matter of its structure. But where one that settles leaves less of whole
+    runs than any leaves of windows, each begun anew where it was measured, nothing was integrated: whole runs count.
+    """
+    windows = [one.fit.window for one in fitted if one.fit.window]
+    longest = max(windows, key=lambda window: window.horizon, default=None)
+    tried = [one.judged(longest) for one in fitted]
+    if longest is None:
+        return "", tried
+    if len(windows) < len(fitted):
+        whole = [one.judged(None) for one in fitted]
+        if min(one.error for one in whole) < min(one.error for one in tried):
+            return "", whole
+    return f" over {longest.horizon:.3g} s", tried
+
+
+def _all_fitted(models: Sequence[Preset], matrix: Matrix, report: Report) -> dict[str, _FittedStructure]:
+    """The models in question, fitted, but for those that a command in closed loop does not allow while others do."""
+    fitted, refused = {}, None
+    for model in models:
+        try:
+            fitted[model.name] = _FittedStructure(model, matrix, report)
+        except Unusable as error:
+            if error.code != "closed-loop":
+                raise
+            refused = error
+    if refused and not fitted:
+        raise refused
+    return fitted
+
+
+def choose_structure(matrix: Matrix, report: Report = silent) -> StructureChoice:
+    """The models in question, with a notice of the matrix that says why the first.
+
+    Nothing is said where it is the usual model and no other could be meant.
+    """
+    found, fit = _compared(matrix, report)
+    first, *others = found
+    usual = first.machine in (Settings().model, matrix.machine) and not others
+    if usual and (matrix.machine or not told_by_following(preset(first.machine), matrix.runs)):
+        return StructureChoice(matrix, found, fit)
+    said = "; ".join(f"{one.machine} {one.why}" for one in found) if others else first.why
+    notice = f"No model was named: {said}."
+    return StructureChoice(replace(matrix, notices=(notice, *matrix.notices)), found, fit and noticed(fit, notice))
+
+
+class CompletedFit:
+    """A fit that was made already, as one that is made a step at a time."""
+
+    generations = 0
+
+    def __init__(self, fit: FitResult) -> None:
+        self._fit = fit
+
+    def start(self) -> State:
+        """Nothing is to be searched any more."""
+        return {"done": True, "history": []}
+
+    def finished(self, state: State) -> bool:  # noqa: ARG002  in any state
+        """Always."""
+        return True
+
+    def advance(self, state: State, generations: int) -> State:  # noqa: ARG002  there is nothing to advance
+        """The same state."""
+        return state
+
+    def finish(self, state: State) -> FitResult:  # noqa: ARG002  whatever it is
+        """The fit."""
+        return self._fit
+
+
+class FitWithAlternatives:
+    """A fit of the model that was chosen, a step at a time; its result says what else was tried."""
+
+    def __init__(self, fit: StepwiseFit, tried: tuple[Structure, ...]) -> None:
+        self._fit, self._tried = fit, tried
+
+    @property
+    def generations(self) -> int:
+        """Upper bound of the search's generations."""
+        return self._fit.generations
+
+    def start(self) -> State:
+        """The state before the first generation."""
+        return self._fit.start()
+
+    def finished(self, state: State) -> bool:
+        """True when the search is over and only :meth:`finish` remains."""
+        return self._fit.finished(state)
+
+    def advance(self, state: State, generations: int) -> State:
+        """The state after at most `generations` more."""
+        return self._fit.advance(state, generations)
+
+    def finish(self, state: State) -> FitResult:
+        """The result, with the structures."""
+        return replace(self._fit.finish(state), structures=self._tried)
+
+
+class _FittedStructure:
+    """A model in question, fitted."""
+
+    def __init__(self, model: Preset, matrix: Matrix, report: Report) -> None:
+        self.matrix, self.settings = matrix, Settings(model=model.name)
+        work = Identification(matrix, self.settings, report)
+        self.fit, self.parameters = completed(work), len(work.objective.space.axes)
+
+    def judged(self, window: Window | None) -> _JudgedStructure:
+        """By its error on held-out data, over windows where such are given."""
+        over = (window.horizon, window.memory) if window else (None, None)
+        family = CandidateModels.of(self.matrix, self.settings, (), *over)
+        start = {family.preset.parameter(name).in_equations: value for name, value in self.fit.values.items()}
+        return _JudgedStructure(family, self.parameters, self.fit.values, family.refit((), start))
+
+
+@dataclass(frozen=True)
+class _JudgedStructure:
+    """A model in question by the measure of all, and with the effect that helps it most."""
+
+    models: CandidateModels
+    parameters: int
+    values: Mapping[str, float]
+    refit: FittedModel
+    with_effect: FittedModel | None = None
+
+    @property
+    def machine(self) -> str:
+        """Its name."""
+        return self.models.given.model
+
+    @property
+    def error(self) -> float:
+        """What it leaves of held-out data; infinite where it cannot be followed."""
+        return _held_out(self.best)
+
+    @property
+    def best(self) -> FittedModel:
+        """With the effect, where there is one."""
+        return self.with_effect or self.refit
+
+    @property
+    def at_bound(self) -> bool:
+        """Whether the data ask for a value of one of its parameters beyond the bound."""
+        return bool(self.best.at_bounds)
+
+    def helped(self, report: Report) -> _JudgedStructure:
+        """The same with the effect of the catalogue that helps it most, as it is where none does."""
+        if not self.refit.finite:
+            return self
+
+        def told(progress: Progress) -> None:
+            report(replace(progress, stage="models with an effect", expected=()))
+
+        ranking = rank(self.models, self.refit, list(self.models.effects), told, thorough=False)
+        refits = [one.refit for one in ranking if one.refit is not None and one.helps]
+        return replace(self, with_effect=min(refits, key=_held_out, default=None))
+
+    def structure(self, over: str, more: str) -> Structure:
+        """What is told of it, and `more` why it was taken."""
+        alone = _held_out(self.refit)
+        what = f"leaves {error_said(alone)} of held-out data{over} with {self.parameters} parameters"
+        if self.with_effect is not None:
+            what += f", {error_said(self.error)} with {title(self.with_effect.effects[-1])}"
+        why = f"{what}: {more}" if more else what
+        held_out = alone if self.refit.finite else None
+        return Structure(self.machine, {"held_out": held_out}, self.parameters, why, self.values)
+
+
+def _held_out(refit: FittedModel) -> float:
+    return refit.held_out.error if refit.finite else float("inf")

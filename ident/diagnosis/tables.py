@@ -1,0 +1,110 @@
+"""A diagnosis as tables for a reader: on a terminal and in a notebook."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from ident.diagnosis.discovery.term_count_curve import term_count_curve
+from ident.words.error import error_said
+from ident.words.percent import percent
+from ident.words.plus_minus import UNDETERMINED, plus_minus_si
+from ident.words.shown import Listing
+
+if TYPE_CHECKING:
+    from ident.diagnosis.result import Diagnosis, Ranked
+
+USES = {"fit": "fit", "held_out": "held out", "verify": "verify"}
+Row = tuple[str, ...]
+
+
+def listings(found: Diagnosis) -> Iterator[Listing | str]:
+    """Errors, ranking, ladder, suspects, proposals; sentences between and below them."""
+    uses = tuple(USES.values())
+    yield found.headline
+    yield Listing("", (_measure(found), *uses), error_rows(found), uses)
+    header = ("effect", "predicted", "held out", "verify", "strength", "group")
+    yield Listing("", header, ranking_rows(found), header[1:4])
+    if rest := unconfirmed(found):
+        yield rest
+    steps = ("added", *uses, "floor", "evidence (nats)")
+    yield Listing("", steps, ladder_rows(found), steps[1:])
+    if len(found.ladder) > 1:
+        yield "evidence: nats by which the step made the held-out data more likely"
+    if found.verdict.suspects:
+        rows = [(suspect.run, suspect.what, suspect.evidence) for suspect in found.verdict.suspects]
+        yield Listing("", ("suspect run", "label", "evidence"), rows)
+    if found.proposals:
+        yield proposals_listing(found)
+        yield "each on top of those before"
+    for note in found.notes:
+        yield f"note: {note}"
+    yield found.verdict.text
+
+
+def proposals_listing(found: Diagnosis) -> Listing:
+    """The terms that no list holds."""
+    numbers = (*USES.values(), "nats (bar)")
+    header = ("terms", "proposed by search", "what it would mean", "strength", *numbers, "or")
+    return Listing("", header, proposal_rows(found), ("terms", *numbers))
+
+
+def proposal_rows(found: Diagnosis) -> Iterator[Row]:
+    """The error against the number of terms: none, then one row a term, each on top of the ones before."""
+    without, *rest = term_count_curve(found.proposals or (), found.ladder)
+    errors = [error_said(without.error.get(use)) for use in USES]
+    yield "0", f"(with {without.latest})" if without.latest else "(the fitted model)", "–", "–", *errors, "–", ""
+    for choice, one in zip(rest, found.proposals or (), strict=True):
+        errors = [one.error_of(use).said() for use in USES]
+        meant = one.meaning + (" (a hypothesis: too few runs to confirm it)" if one.hypothesis else "")
+        evidence = f"{one.nats:.3g} ({one.bar:.3g})"
+        strength_is = _searched(one.strength, one.std_error, one.unit)
+        yield str(choice.terms), one.equation, meant or "–", strength_is, *errors, evidence, ", ".join(one.alike[:3])
+
+
+def _measure(found: Diagnosis) -> str:
+    return "error (eq. 17)" if found.horizon is None else f"error over {found.horizon:.3g} s"
+
+
+def error_rows(found: Diagnosis) -> Iterator[Row]:
+    """The model's error and the noise floor by use, in per cent."""
+    yield "model", *(found.baseline.error_of(use).said() for use in USES)
+    yield "noise floor", *(percent(found.noise_floor.get(use)) for use in USES)
+
+
+def ranking_rows(found: Diagnosis) -> Iterator[Row]:
+    """One row an effect that was refitted, best first."""
+    for ranked in found.candidates:
+        if not ranked.parameters:
+            continue
+        errors = (error_said(ranked.predicted_error), *(ranked.error_of(use).said() for use in ("held_out", "verify")))
+        others = ", ".join(name for name in ranked.group if name != ranked.effect)
+        yield ranked.effect, *errors, strength(ranked), f"or {others}" if others else ""
+
+
+def unconfirmed(found: Diagnosis) -> str:
+    """The effects that promised too little to be refitted, in a line."""
+    rest = [ranked for ranked in found.candidates if not ranked.parameters]
+    if not rest:
+        return ""
+    best = min((ranked.predicted_error for ranked in rest if ranked.predicted_error is not None), default=None)
+    return f"not refitted, predicted {error_said(best)} at best: {', '.join(ranked.effect for ranked in rest)}"
+
+
+def strength(ranked: Ranked) -> str:
+    """The strength that the refit found with its standard error and unit; a dash where there was no refit."""
+    found = ranked.strength
+    return "–" if found is None else _searched(found.value, found.std_error, found.unit)
+
+
+def _searched(value: float, std_error: float | None, unit: str) -> str:
+    """A strength, which is always searched for: without a standard error the data do not determine it."""
+    return UNDETERMINED if std_error is None else plus_minus_si(value, std_error, unit, digits=4)
+
+
+def ladder_rows(found: Diagnosis) -> Iterator[Row]:
+    """One row a step: what was added, the errors after it, the floor below them, the evidence for it."""
+    floor = percent(found.noise_floor.get("fit"))
+    for rung in found.ladder:
+        evidence = "–" if rung.nats is None else f"{rung.nats:.3g}"
+        yield rung.added or "(the fitted model)", *(rung.error_of(use).said() for use in USES), floor, evidence

@@ -1,0 +1,46 @@
+"""What differs by rounding alone is a tie, broken by the order in which things stand: simpler first, then as listed.
+
+So the same matrix leads to the same answer on every processor: two refits that end at one error are as good as each
+other, whichever of them a processor happens to see below the other. A refit in a flat valley ends where rounding leads
+it, some hundredths off: refits that the data cannot tell apart tie, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TypeVar
+
+Item = TypeVar("Item")
+RELATIVE_TOLERANCE = 1e-4  # relative difference of two errors: refits end within about a hundredth of it
+PRACTICALLY_EQUAL = 1.02  # times the error: within so much, in a flat valley, rounding decides where a refit ends
+
+
+def stable_ranking(
+    items: Sequence[Item], size: Callable[[Item], float], alike: Callable[[Item, Item], bool] = lambda *_: False,
+    tied: Callable[[Sequence[Item]], Sequence[Item]] = lambda ties: ties,
+) -> list[Item]:  # fmt: skip
+    """The items from the least size on; what ties with the least of them, or is `alike` with it, as it stood.
+
+    What is not alike comes behind what is, though it be nearer in size: else it would hang on which of two others a
+    processor sees below the other whether a third ties. What ties with the least of all as `tied` puts it in order.
+    """
+    rest = sorted(range(len(items)), key=lambda n: size(items[n]))
+    found: list[Item] = []
+    while rest:
+        first = rest[0]
+        bound = _bound(size(items[first]))
+        ties = sorted(n for n in rest if n == first or size(items[n]) <= bound or alike(items[first], items[n]))
+        tying = [items[n] for n in ties]
+        found += tying if found else tied(tying)
+        rest = [n for n in rest if n not in ties]
+    return found
+
+
+def stable_minimum(items: Sequence[Item], size: Callable[[Item], float]) -> Item:
+    """The first of those items whose size ties with the least. Raises ValueError where there is none."""
+    bound = _bound(min(map(size, items)))
+    return next((item for item in items if size(item) <= bound), items[0])
+
+
+def _bound(least: float) -> float:
+    return least + RELATIVE_TOLERANCE * abs(least)

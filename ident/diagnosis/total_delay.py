@@ -1,0 +1,115 @@
+"""How late a machine answers, and by which of its lags and delays as far as the data tell it.
+
+A model has its lag at one place because it has to be somewhere. Where a delay, or a lag elsewhere, does as well in its
+place, the time constant is no property of that stage: the time T by which a slow command is answered late is what is
+known, see :mod:`ident.fit.slow_answer`. Of two that were found each may hold the other in its place, where two others
+do as well: those are weighed as pairs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import chain, combinations
+
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.fitted_model import FittedModel, indistinguishable
+from ident.diagnosis.ladder import without_effect
+from ident.diagnosis.significance import improvement
+from ident.fit.levenberg_marquardt import Way
+from ident.fit.result import Combination
+from ident.fit.slow_answer import is_late
+from ident.parallel import each
+from ident.parameter import Parameter, Starts
+
+_NEAR = 1.05  # times the model's error: what cannot come below it does not as well
+_PROMISING = 1.01  # times the error on the beginnings of the records: what leaves more is not alike
+_ROUGHLY = Way(1e-4, 12, rough=1e-3)  # of a refit that is only asked whether it does
+
+
+@dataclass(frozen=True)
+class TotalDelay:
+    """T with its standard error, s; the parameter that has it in the model, and what does as well in its place.
+
+    `before` is T of the fitted model, where something was added to it and its T is determined.
+    """
+
+    found: Combination
+    parameter: Parameter
+    in_place: tuple[str, ...]
+    before: Combination | None = None
+
+
+def total_delay(models: CandidateModels, base: FittedModel, refit: FittedModel) -> TotalDelay | None:
+    """Of a model with one time constant that is searched, which began as `base`.
+
+    None where T is not determined, or nothing does as well.
+    """
+    found = next(refit.slow_lags(), None)
+    constants = list(_time_constants(models, refit))
+    if found is None or len(constants) != 1:
+        return None
+    (constant,) = constants
+    least = refit.space.bounds(refit.values)[constant.in_equations][0]
+    fixed = {**models.given.fixed, constant.name: least}
+    short = replace(models, given=replace(models.given, fixed=fixed), _known={})
+    start = {**refit.values, constant.in_equations: least}
+
+    def other(effect: str) -> FittedModel:
+        at = {models.strength(effect): refit.values[constant.in_equations]}
+        return short.refit((*refit.effects, effect), start | at, way=way)
+
+    way = replace(_ROUGHLY, aim=_NEAR * refit.here.error, enough=refit.here.error)
+    names = [name for name, effect in models.effects.items() if is_late(effect) and name not in refit.effects]
+    names = [name for name in names if models.fit_together((*refit.effects, name))]
+    tried = [one for one in each(other, names) if one.finite]
+    alike = tuple(
+        one.effects[-1] for one in tried if improvement(one.not_held_out, refit.not_held_out).within_chance
+    )  # a time constant less, a lag or delay more
+    before = next(base.slow_lags(), None) if base is not refit else None
+    return TotalDelay(found, constant, alike, before) if alike else None
+
+
+def _time_constants(models: CandidateModels, refit: FittedModel) -> Iterator[Parameter]:
+    """Those of the machine itself that a search moves."""
+    for parameter in models.preset.parameters:
+        if parameter.start is Starts.TIME and parameter.in_equations in refit.space.names:
+            yield parameter
+
+
+def lag_ambiguities(models: CandidateModels, refit: FittedModel, added: Sequence[str]) -> list[tuple[str, ...]]:
+    """For each two lags or delays that were added, these and all that, two at a time, do as well in their places.
+
+    Only where there are such others: each by itself may be told from every other while the second one stays.
+    """
+    times = [
+        name for name, effect in models.effects.items() if is_late(effect) and effect.strength.start is Starts.TIME
+    ]
+    free, found = [name for name in times if name not in refit.effects], []
+    pairs = list(combinations([name for name in added if name in times], 2))
+    asked = _PROMISING * models.tried(refit) if pairs else 0.0
+    for pair in pairs:
+        rest = tuple(name for name in refit.effects if name not in pair)
+        others = [two for two in combinations(free, 2) if models.fit_together((*rest, *two))]
+        tried = each(partial(_in_place_of, models, refit, pair, asked), others)
+        as_good = [two for two, good in zip(others, tried, strict=True) if good]
+        if as_good:
+            found.append(tuple(dict.fromkeys((*pair, *chain(*as_good)))))
+    return found
+
+
+def _in_place_of(
+    models: CandidateModels, refit: FittedModel, pair: tuple[str, str], asked: float, two: tuple[str, str]
+) -> bool:  # fmt: skip
+    """Whether two others do as well in the place of a pair, but for chance: a first refit has to come below `asked`."""
+    rest = tuple(name for name in refit.effects if name not in pair)
+    values = without_effect(without_effect(refit.values, pair[0]), pair[1])
+    first, second = (refit.values[models.strength(name)] for name in pair)
+    one, other = map(models.strength, two)
+    starts = [{**values, one: first, other: second}, {**values, one: second, other: first}]
+    trial = models.trial((*rest, *two), starts, asked)
+    if not trial.here.error < asked:
+        return False
+    found = models.refit(trial.effects, trial.values)
+    return found.finite and indistinguishable(refit, found)

@@ -1,0 +1,126 @@
+"""Terms that stand in place of what the catalogue named: where runs to verify speak for the catalogue, that is said."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from ident.diagnosis.discovery.discovery_result import DiscoveryResult, RejectedTerm
+from ident.diagnosis.discovery.proposal import Proposal
+from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.report import dispensable_sentence, proposed_text
+from ident.diagnosis.result import Verdict
+from ident.diagnosis.verification import Contradiction
+from ident.run import Run
+
+TIMES = np.arange(2000) / 1000.0
+
+
+@dataclass
+class Leaving:
+    """A model that leaves noise of so large a share of the displacement."""
+
+    share: float
+
+    def left(self, runs: tuple[Run, ...]) -> list[np.ndarray]:
+        random = np.random.default_rng(1)
+        return [self.share * np.std(run.measured) * random.standard_normal(len(run.measured)) for run in runs]
+
+
+def verify() -> tuple[Run, ...]:
+    wave = 1e-3 * np.sin(2 * np.pi * 5 * TIMES)
+    return tuple(Run(f"v{n}", "", 1000.0, {"command": wave, "displacement": wave}, use="verify") for n in range(2))
+
+
+def found(share: float) -> DiscoveryResult:
+    last = Proposal(
+        place=("force",),
+        equation="R = R + s * (v**3)",
+        effect={"name": "proposed_1"},
+        error={"fit": 0.05, "verify": share},
+    )
+    return DiscoveryResult(found=(last,), refit=cast(FittedModel, Leaving(share)))
+
+
+def test_a_verify_error_above_the_catalogues_is_said_first_with_both() -> None:
+    told = found(0.26).instead(cast(FittedModel, Leaving(0.16)), ("play", "dead_zone"), verify())
+    against = told.found[-1].contradicted
+    assert against is not None
+    assert against.instead_of == ("play", "dead_zone")
+    assert (against.before, against.after) == pytest.approx((0.16, 0.26), rel=0.05)
+    text = proposed_text(told.found)
+    assert text.startswith("With R = R + s * (v**3) in place of play, dead zone the error on verify runs rises from 16")
+    assert "Beyond the catalogue a search proposes in place of play, dead zone: R = R + s * (v**3)." in text
+
+
+@pytest.mark.parametrize("share", [0.155, 0.10])
+def test_one_that_is_no_worse_only_says_what_it_stands_instead_of(share: float) -> None:
+    told = found(share).instead(cast(FittedModel, Leaving(0.16)), ("play",), verify())
+    assert told.found[-1].contradicted is None
+    assert told.found[-1].instead_of == ("play",)
+    assert proposed_text(told.found).startswith("Beyond the catalogue a search proposes in place of play: ")
+
+
+def test_without_runs_to_verify_nothing_is_known() -> None:
+    assert found(0.26).instead(cast(FittedModel, Leaving(0.16)), ("play",), ()).found[-1].contradicted is None
+
+
+def refused(equation: str, nats: float, *beside: str, fit: float = 0.3, verify: float | None = 0.4) -> DiscoveryResult:
+    error = {"fit": fit, "held_out": 0.31, "verify": verify}
+    best = RejectedTerm(equation=equation, nats=nats, bar=13.4, beside=beside, error=error)
+    return DiscoveryResult(refused=best, looked_at=4000)
+
+
+def test_of_two_searches_what_was_refused_and_would_leave_less_is_told() -> None:
+    """Nats count from the model that a search began with: 557 from a linear one leave more than 7 from a better one."""
+    plain = refused("Q = Q + s * (max(Q, 0) * w)", 10.3)
+    beside = refused("R = R + s * (x)", 6.9, "dead_zone", fit=0.31)
+    from_linear = refused("e = e + s * (P)", 557.0, fit=0.5)
+    for worse in (beside, from_linear):
+        for told in (plain.or_refused(worse), worse.or_refused(plain)):
+            assert (told.refused, told.looked_at) == (plain.refused, 8000)
+    assert plain.refused is not None
+    assert beside.refused is not None
+    assert "max(Q, 0) * w): 10.3 nats" in plain.refused.told(8000)
+    assert plain.refused.told(8000).endswith("13.4 are asked for. It would leave 30.0 % (40.0 % on verify runs).")
+    assert "s * (x) beside dead zone: 6.9 nats" in beside.refused.told(8000)
+    assert found(0.1).or_refused(plain).refused is None
+    unsteady = refused("w = w + s * (w * abs(v))", 1291.0).refused
+    assert unsteady is not None
+    assert "13.4 are asked for, but not from run to run: some lose by it. It would" in unsteady.told(8000)
+
+
+def test_where_a_verify_run_cannot_be_followed_a_refused_term_tells_no_error_of_it() -> None:
+    best = refused("R = R + s * (x)", 6.9, verify=None).refused
+    assert best is not None
+    assert best.told(1).endswith("It would leave 30.0 %.")
+
+
+def test_what_the_terms_do_without_is_named_no_more() -> None:
+    """Leak and asymmetry stood for a recorder that bends: with its term the model does as well without them."""
+    named = ("entrained_air", "one_way_leakage", "gain_asymmetry")
+    term = replace(found(0.1).found[-1], beside=("entrained_air",))
+    needless = DiscoveryResult(found=(term,)).needless(named)
+    assert needless == ("one_way_leakage", "gain_asymmetry")
+    groups = (("entrained_air",), ("gain_asymmetry", "null_bias"))
+    before = Verdict(named, "contradicted", ("gain_asymmetry",), groups, unexplained=True)
+    after = before.without(needless)
+    assert (after.effects, after.stood_in) == (("entrained_air",), needless)
+    assert (after.standing, after.contradicted_by) == ("stand_in", ())
+    assert after.indistinguishable == (("entrained_air",),)
+    assert before.without(named).standing == "nothing"
+    told = "one way leakage and gain asymmetry are not needed: they stood for that."
+    assert next(dispensable_sentence(needless)).endswith(told)
+
+
+@pytest.mark.parametrize("doubt", [
+    {"hypothesis": True}, {"instead_of": ("entrained_air",)},
+    {"contradicted": Contradiction("proposed_1", 0.1, 0.2, 3.0)},
+])  # fmt: skip
+def test_a_doubtful_term_takes_no_name_away(doubt: dict[str, Any]) -> None:
+    term = replace(found(0.1).found[-1], **doubt)
+    assert DiscoveryResult(found=(term,)).needless(("entrained_air",)) == ()
+    assert DiscoveryResult().needless(("entrained_air",)) == ()

@@ -1,0 +1,49 @@
+"""The lines of a gain that pulsates, found in what a fitted model leaves, by their frequency."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ident.diagnosis.initial_guesses import spectral_lines
+from ident.run import Run
+
+SECONDS, BAND = 8.0, 2 * np.pi * 40.0  # rad/s
+
+
+def base(rate: float, pulsations: dict[float, float], seed: int = 1) -> Any:
+    """A refit that leaves of x′, of 64 lines up to the band, shares that pulsate, Hz by their size: in closed form."""
+    t, rng = np.arange(round(SECONDS * rate)) / rate, np.random.default_rng(seed)
+    x, left = np.zeros_like(t), np.zeros_like(t)
+    for f, angle in zip(rng.integers(8, 320, 64) / SECONDS, rng.uniform(0, 2 * np.pi, 64), strict=True):
+        x += np.sin(2 * np.pi * f * t + angle) / (2 * np.pi * f)
+        for beat, size in pulsations.items():  # cos a · cos b has half a line at the sum and half at the difference
+            for at in (f + beat, f - beat):
+                if at:
+                    left += 0.5 * size * np.sin(2 * np.pi * at * t + angle) / (2 * np.pi * at)
+    run = Run("run", "", rate, {"command": x, "displacement": x + left})
+    fitness = SimpleNamespace(runs=(run,), band=BAND, outputs=lambda _point: {"run": x})
+    return SimpleNamespace(fitness=fitness, point=None)
+
+
+@pytest.mark.parametrize("rate", [200.0, 4096.0])
+def test_pulsations_are_found_clearest_first_whatever_the_sample_rate(rate):
+    """Far more samples than the band needs, and hardly any."""
+    found = spectral_lines(base(rate, {11.0: 0.02, 4.5: 0.01}), 0.5, 100.0)
+    assert found[:2] == pytest.approx([11.0, 4.5], abs=0.5 / SECONDS)
+
+
+def test_the_lines_of_what_does_not_pulsate_are_the_same_at_every_sample_rate():
+    """Of a residual like any other: with too few samples the upper half of the product would fold onto the lower."""
+    found = []
+    for rate in (400.0, 1024.0, 4096.0):
+        known, other = base(rate, {}), base(rate, {}, seed=2)
+        (run,), (apart,) = known.fitness.runs, other.fitness.runs
+        channels = {**run.channels, "displacement": run.measured + 0.01 * apart.measured}
+        known.fitness.runs = (replace(run, channels=channels),)
+        found.append(spectral_lines(known, 0.5, 100.0))
+    assert found[1:] == [pytest.approx(found[0])] * 2

@@ -1,0 +1,270 @@
+"""Which effects stay where adding one makes another needless, and the other way round."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import inf
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from ident.diagnosis import candidate
+from ident.diagnosis import selection as selecting
+from ident.diagnosis.selection import StepwiseSelection
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """A candidate: its refit, where it came that far, and whether it helps."""
+
+    effect: str
+    refit: Any
+    helps: bool
+    base: Any = None
+
+    @property
+    def score(self):
+        """What it is sorted by."""
+        return self.refit.held_out.score if self.refit else 0.0
+
+    @property
+    def stage(self):
+        """How far it came."""
+        return 0 if self.refit else 2
+
+    def refitted(self, _base, refit):
+        """It helps, since its refit was met on the way."""
+        return replace(self, refit=refit, helps=True)
+
+
+class Judged:
+    """Models of which only the held-out score of each set of effects is known, and what helps beyond chance."""
+
+    effects = ("a", "b", "c")
+    floor = 0.1
+
+    def __init__(self, scores: dict[str, float], needed: set[str], far: str, late: str, off: str) -> None:
+        self.off = off
+        self.met: dict[frozenset[str], Any] = {}  # one optimum for each set of effects
+        self.scores, self.needed = {"abc": 2.0, "ac": 2.0, "bc": 2.0, "c": 2.0} | scores, needed
+        self.far, self.late = far, late  # effects found only from strong ones; only beside another
+
+    def refit(self, effects, _start):
+        """A refit that knows its effects and score."""
+        score = self.scores["".join(sorted(effects))]
+        held_out = SimpleNamespace(score=score, effects=set(effects))
+        values = dict.fromkeys(effects, 1.0)
+        here = self.met.setdefault(frozenset(effects), SimpleNamespace(error=score))
+        found = SimpleNamespace(
+            effects=tuple(effects), values=values, finite=True, held_out=held_out, here=here, error=score,
+            jumping=frozenset(), between_runs=None,
+        )  # fmt: skip
+        found.listed = lambda order: SimpleNamespace(**{**vars(found), "effects": order})
+        return found
+
+    def both(self, first, second, _aim):
+        """The same with the last effects of two."""
+        return self.refit((*first.effects, second.effects[-1]), {})
+
+    def settled(self, refit):
+        """It stays."""
+        return refit
+
+    def tried(self, refit):
+        """Its score again."""
+        return refit.held_out.score
+
+    def at_floor(self, refit):
+        """Whether nothing is left."""
+        return self.floor is not None and refit.held_out.score <= self.floor
+
+    def something_left(self, refit):
+        """Whether more than noise is left, which may be known where the floor is not."""
+        return refit.held_out.score > 0.1
+
+    def scattered(self, effects):
+        """An effect that no start near the fit leads to is found from anywhere."""
+        return [self.refit(effects, {})]
+
+    def ahead(self, refits, _aim):
+        """All of them go on."""
+        return list(refits)
+
+    def doubtful(self, _refit, effect):
+        """Whether an effect that is off led to where it is not needed."""
+        return effect in self.off
+
+    def simplicity(self, effect):
+        """Of two that are as good the first."""
+        return (1, self.effects.index(effect))
+
+    def strength(self, effect):
+        """An effect has one parameter of its own name."""
+        return effect
+
+    def rank(self, _models, base, names, _report, _thorough=True, strong=False, **_heard):
+        """An effect helps where the score falls."""
+
+        def judged(name):
+            if (name in self.far and not strong) or (name in self.late and not base.effects):
+                return Judgement(name, None, helps=False)
+            refit = self.refit((*base.effects, name), {})
+            together = {"b", "c"} <= set(refit.effects)
+            return Judgement(name, refit, helps=refit.held_out.score < base.held_out.score and not together)
+
+        return selecting.in_rank_order(self, map(judged, names))
+
+    def rank_each(self, models, bases, report, thorough, **_beside):
+        """Each for itself."""
+        return [self.rank(models, base, names, report, thorough, strong=False) for base, names in bases]
+
+    def deepened(self, _models, _base, ranking):
+        """Nothing is found elsewhere."""
+        return ranking
+
+    def improvement(self, less, more):
+        """Whether an effect that only one of them has was needed, or the other does better by far."""
+        needed = bool((more.effects - less.effects) & self.needed) or more.score < 0.3 * less.score
+        return SimpleNamespace(beyond_chance=needed, within_chance=False)
+
+    def indistinguishable(self, _best, _other, _base=None):
+        """Each differs from the others beyond chance."""
+        return False
+
+    def improves(self, less, more):
+        """The same of refits."""
+        return self.improvement(less.held_out, more.held_out).beyond_chance
+
+    def distinguishable(self, worse, better):
+        """Whether of two at the noise one leaves less."""
+        return better.held_out.score < worse.held_out.score
+
+    def stand_in(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """For what a search asks of real refits."""
+        asked = ("rank", "rank_each", "deepened", "indistinguishable", "improves", "distinguishable")
+        for module, names in ((selecting, asked), (candidate, ("indistinguishable", "improvement"))):
+            for name in names:
+                monkeypatch.setattr(module, name, getattr(self, name))
+
+
+@pytest.fixture
+def searched(monkeypatch):
+    """The additions for given scores and needs."""
+
+    def of(
+        scores: dict[str, float], needed: set[str], far: str = "", late: str = "", off: str = ""
+    ) -> StepwiseSelection:
+        judged = Judged(scores, needed, far, late, off)
+        judged.stand_in(monkeypatch)
+        return StepwiseSelection(judged, judged.refit((), {}), 2, lambda *_: None).run()  # type: ignore[arg-type]
+
+    return of
+
+
+@pytest.fixture
+def added(searched):
+    """The effects that are added."""
+    return lambda *given, **more: set(searched(*given, **more).added)
+
+
+def test_what_a_later_effect_makes_needless_is_taken_out(added):
+    """a enters, b explains all of it; with a again nothing is gained, so that b alone stays."""
+    scores = {"": 1.0, "a": 0.8, "b": 0.50, "ab": 0.51}
+    assert added(scores, needed={"b"}) == {"b"}
+
+
+def test_of_effects_that_enter_and_leave_in_a_circle_the_best_set_stays(added):
+    """Each helps when it enters and seems needless once the other is there: both together are best, and stay."""
+    scores = {"": 1.0, "a": 0.8, "b": 0.9, "ab": 0.5}
+    assert added(scores, needed=set()) == {"a", "b"}
+
+
+def test_two_that_only_together_explain_the_data_are_found_where_a_third_came_first(added):
+    """a alone does best, as a delay does for two lags, and leads nowhere; b and c together leave nothing."""
+    scores = {"": 1.0, "a": 0.5, "b": 0.7, "c": 0.7, "ab": 0.6, "ac": 0.6, "bc": 0.05}
+    assert added(scores, needed={"a", "b", "c"}) == {"b", "c"}
+
+
+def test_at_the_noise_an_effect_stands_in_the_place_of_another_that_is_a_little_worse(added):
+    """A lag came first where a delay is the truth: the error falls by little then, but beyond chance."""
+    scores = {"": 1.0, "a": 0.5, "b": 0.9, "ab": 0.5, "ac": 0.09, "bc": 0.08}
+    assert added(scores, needed={"a", "c"}) == {"b", "c"}
+    assert added({**scores, "ac": 0.19, "bc": 0.18}, needed={"a", "c"}) == {"a", "c"}  # something is left: no matter
+
+
+def test_an_effect_that_shows_only_from_far_is_found_where_the_noise_is_not_reached(added):
+    """a helps at once and leaves much; b, whose refit from its promise ends where it began, leaves nothing."""
+    scores = {"": 1.0, "a": 0.7, "b": 0.5, "ab": 0.05}
+    assert added(scores, needed={"a", "b"}, far="b") == {"a", "b"}
+    assert added({**scores, "a": 0.1}, needed={"a", "b"}, far="b") == {"a"}  # the noise is reached without
+
+
+def test_an_effect_that_was_met_on_the_way_is_ranked_by_what_was_met(searched):
+    """b, which the first ranking had no refit of, is all that stays: it stands first, not a."""
+    scores = {"": 1.0, "a": 0.7, "b": 0.05, "c": 0.8, "ab": 0.05}
+    found = searched(scores, needed={"b"}, far="b")
+    assert found.added == ("b",)
+    assert [candidate.effect for candidate in found.ranking] == ["b", "a", "c"]
+    assert found.ranking[0].refit is found.found
+
+
+def test_in_question_is_what_ranks_before_the_first_that_helps_and_what_is_as_good(searched):
+    """b and c come behind a, which helps: nobody asks more of them."""
+    found = searched({"": 1.0, "a": 0.05, "b": 0.7, "c": 0.8, "ab": 0.05}, needed={"a"})
+    assert [candidate.effect for candidate in found.ranking] == ["a", "b", "c"]
+    assert found.weighed() == {"a"}
+
+
+def test_what_a_replacement_makes_needless_is_taken_out(added):
+    """c, which showed only beside b, takes the place of a; with it b gains nothing."""
+    scores = {"": 1.0, "a": 0.7, "b": 0.8, "c": 0.05, "ab": 0.2, "bc": 0.05}
+    assert added(scores, needed=set(), late="c") == {"c"}
+
+
+def test_nothing_is_tried_two_at_a_time_where_one_leaves_nothing(added):
+    """The noise is reached with one effect: what two would reach is of no interest."""
+    scores = {"": 1.0, "a": 0.1, "b": 0.7, "c": 0.7, "ab": 0.2, "ac": 0.2, "bc": 0.01}
+    assert added(scores, needed={"a"}) == {"a"}
+
+
+def test_an_effect_that_is_off_and_leads_nowhere_better_without_it_is_added_as_any_other(added):
+    """What it gained cannot be had without it: it is not taken for the way to a better optimum."""
+    scores = {"": 1.0, "a": 0.2, "b": 0.9, "ab": 0.2}
+    assert added(scores, needed={"a"}, off="a") == {"a"}
+
+
+def test_one_effect_from_anywhere_takes_the_place_of_the_first(added):
+    """b, which no start near the fit leads to, explains alone what a did not."""
+    scores = {"": 1.0, "a": 0.7, "b": 0.05, "c": 0.8, "ab": 0.05}
+    assert added(scores, needed={"b"}, far="b") == {"b"}
+
+
+def test_the_last_effect_goes_where_its_rung_refitted_does_better_without_it(monkeypatch):
+    """Four effects were added one by one; without the last, refitted from where the search ended, less is left."""
+    scores = {"": 1.0, "a": 0.9, "ab": 0.7, "abc": 0.4, "abcd": 0.5} | dict.fromkeys(("bcd", "acd", "abd"), 2.0)
+    judged = Judged(scores | {"b": 2.0, "d": 2.0}, needed={"b", "c"}, far="", late="", off="")
+    judged.effects = (*judged.effects, "d")
+    judged.stand_in(monkeypatch)
+    selection = StepwiseSelection(judged, judged.refit((), {}), 0, lambda *_: None)  # type: ignore[arg-type]
+    selection.look()
+    selection.steps.append(judged.refit("abcd", {}))
+    selection.groups = {"d": []}
+    found = selection.run()
+    assert (found.added, found.ladder()[-1][1].held_out.score) == (("a", "b", "c"), 0.4)
+    assert "d" not in found.groups
+
+
+@pytest.mark.parametrize(("left", "floor", "noise"), [(0.05, None, inf), (0.4, None, 0.0), (0.4, 0.1, 0.1)])
+def test_a_group_is_judged_beside_what_is_left_whether_or_not_a_floor_is_known(monkeypatch, left, floor, noise):
+    """Nothing is left; something is, of unknown noise; something above a floor of 0.1."""
+    judged = Judged({"": 1.0, "a": left, "b": 0.9, "ab": left}, needed={"a"}, far="", late="", off="")
+    judged.floor = floor  # type: ignore[assignment]
+    judged.stand_in(monkeypatch)
+    asked: list[float] = []
+    monkeypatch.setattr(
+        selecting, "indistinguishable_group", lambda _name, _here, _ranking, noise: asked.append(noise) or []
+    )
+    selection = StepwiseSelection(judged, judged.refit((), {}), 2, lambda *_: None).run()  # type: ignore[arg-type]
+    assert selection.added == ("a",)
+    assert set(asked) == {noise}

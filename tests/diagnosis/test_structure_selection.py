@@ -1,0 +1,215 @@
+"""Where no model is named: the simplest of those that the channels allow whose held-out error is not worse."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from functools import cache
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.cross_validation import CrossValidation
+from ident.diagnosis.structure_selection import _preferred, compared_structures
+from ident.fit.result import FitResult, Structure
+from ident.fit.settings import Settings
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
+from ident.workflows import identify
+from tests.blind.any_machine import Lab, sound
+from tests.fit.test_windows import cylinder
+from tests.presets.test_machines import motor, specimen
+
+RATE = 100.0
+
+
+def lag(output: str, integrates: bool) -> Matrix:
+    """A lag of 0.1 s, or the integral of what is behind it; solved exactly from sample to sample, noise of 1 %."""
+    runs = []
+    for number, use in enumerate(("fit", "fit", "verify")):
+        rng = np.random.default_rng([3, number])
+        u = np.repeat(rng.uniform(-1, 1, 60), 20)
+        u -= u.mean() if integrates else 0.0
+        y, x, held = np.zeros(len(u)), np.zeros(len(u)), np.exp(-1 / (RATE * 0.1))
+        for k in range(1, len(u)):
+            y[k] = held * y[k - 1] + (1 - held) * u[k - 1]
+            x[k] = x[k - 1] + 0.1 * (1 - held) * (y[k - 1] - u[k - 1]) + u[k - 1] / RATE
+        shown = x if integrates else y
+        shown = shown + 0.01 * shown.std() * rng.standard_normal(len(u))
+        units = {"command": "V", output: "m"}
+        runs.append(Run(f"r{number}", "", RATE, {"command": u, output: shown}, units, hold="zoh", use=use))
+    return Matrix(Actuator("X"), tuple(runs))
+
+
+@cache
+def compared(integrates: bool) -> tuple[Structure, ...]:
+    return compared_structures(lag("displacement", integrates))
+
+
+@cache
+def of_motor() -> tuple[Structure, ...]:
+    return compared_structures(motor(8))
+
+
+@pytest.mark.parametrize(("integrates", "model"), [(False, "first_order"), (True, "open_valve")])
+def test_a_machine_that_settles_is_told_from_one_that_integrates(integrates, model, full):
+    """Both were recorded alike, command to position; the one that is taken leaves the noise."""
+    if not full:  # one that integrates is compared over one time below, one that settles by its number of parameters
+        pytest.skip("a quarter of a minute each: run with --full")
+    first, *others = compared(integrates)
+    assert first.machine == model
+    # The noise, √2 of it over windows that begin where they were measured, with its own noise.
+    assert first.error["held_out"] < 0.0115 * np.sqrt(2)
+    assert "simplest" in first.why
+    assert {one.machine for one in (first, *others)} == {"first_order", "motor", "open_valve"}
+    wrong = next(one for one in others if one.machine == ("first_order" if integrates else "motor"))
+    assert wrong.error["held_out"] is None or wrong.error["held_out"] > 3 * first.error["held_out"]
+
+
+def lift(rate: float = 20.0) -> Matrix:
+    """A load that follows its reference with 0.6 s upwards and 3 s downwards, read coarsely, begun while it creeps."""
+    levels = [0.4, 2, 3.3, 4.6, 6, 7.2, 8.5, 9.5, 8.2, 6.8, 5.5, 4.2, 3, 1.7, 0.4]
+    reference = np.repeat(levels, int(8 * rate))
+    shown = np.full(len(reference), 0.5)
+    for k in range(1, len(shown)):
+        behind = shown[k - 1] - reference[k - 1]
+        shown[k] = reference[k - 1] + behind * np.exp(-1 / (rate * (0.6 if behind < 0 else 3.0)))
+    channels = {"command": reference, "displacement": np.round(shown / 0.005) * 0.005}
+    return Matrix(Actuator("LIFT"), (Run("steps", "", rate, channels, {"command": "V", "displacement": "m"}),))
+
+
+def test_what_follows_whole_runs_is_not_judged_by_windows():
+    """Over windows that begin with a speed, for want of a better model of one that integrates, it is no better."""
+    first, *others = compared_structures(lift())
+    assert first.machine == "first_order"
+    assert first.error["held_out"] < 0.06
+    assert all(one.error["held_out"] > 3 * first.error["held_out"] for one in others)
+
+
+def test_of_equals_the_one_with_fewer_parameters_is_taken():
+    """A motor's speed is fitted by a valve-controlled cylinder as well, with four parameters more."""
+    first, *others = of_motor()
+    assert (first.machine, first.parameters) == ("motor", 2)
+    assert next(one for one in others if one.machine == "open_valve").parameters > 2
+
+
+def test_where_the_channels_say_it_nothing_is_compared():
+    (only,) = compared_structures(specimen(1))
+    assert (only.machine, only.error["held_out"]) == ("specimen", None)
+
+
+def test_what_was_compared_is_kept_with_the_fit():
+    fit = replace(identify(motor(8), Settings(model="motor")), structures=of_motor())
+    assert FitResult.from_json(fit.to_json()) == fit
+    assert "structures" not in replace(fit, structures=()).to_json()
+
+
+def test_structures_are_compared_over_one_time():
+    """A cylinder that disturbances moved: over whole runs a slow lag would leave less of it than what it is."""
+    matrix = cylinder(2, wander=4e-3, uses=("fit", "fit", "verify"))
+    (first, *others) = compared_structures(matrix)
+    assert first.machine in ("open_valve", "motor")
+    lag = next(one for one in others if one.machine == "first_order")
+    over = re.findall(r"held-out data over ([\d.]+) s", " ".join(one.why for one in (first, *others)))
+    assert len(over) == 3
+    assert len(set(over)) == 1
+    assert lag.error["held_out"] > 1.02 * first.error["held_out"]
+
+
+def test_more_parameters_do_not_make_up_for_an_effect():
+    """A motor with a dead zone: a valve's and an oil's lags leave a little less than the motor, all of them far more
+    than the noise; with the dead zone the motor leaves the noise.
+    """
+    lab = Lab.drawn(1002, hidden=True)
+    first, *others = compared_structures(lab.measured())
+    assert first.machine == "motor"
+    assert first.error["held_out"] > min(one.error["held_out"] for one in others)
+    assert first.why.endswith("with dead zone: much less with one effect")
+
+
+def arm(size: float, sign: float, use: str) -> Run:
+    """v' = 3.3 (dead zone of 0.36 − v), two stops at ±1 rad, driven to and fro; steps of 1 ms, noise of 2 mrad."""
+    rate, n = 50.0, 1000
+    u = np.zeros(n)
+    u[100:350], u[550:800] = sign * size, -sign * size
+    x, v, out = -0.9 * sign, 0.0, np.zeros(n)
+    for k in range(n):
+        out[k] = x
+        drive = np.sign(u[k]) * max(abs(u[k]) - 0.36, 0.0)
+        for _ in range(20):
+            beyond = x - np.clip(x, -1.0, 1.0)
+            v += 1e-3 * (3.3 * (drive - v) - 2e3 * beyond - (30.0 * v if beyond else 0.0))
+            x += 1e-3 * v
+    out += 2e-3 * np.random.default_rng([5, int(10 * size)]).standard_normal(n)
+    units = {"command": "1", "displacement": "rad"}
+    return Run(f"at {size}", "", rate, {"command": u, "displacement": out}, units, hold="zoh", use=use)
+
+
+@cache
+def arms() -> Matrix:
+    """Six of its runs, two of them to verify."""
+    sizes = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
+    runs = (arm(size, (-1) ** i, "verify" if i > 3 else "fit") for i, size in enumerate(sizes))
+    return Matrix(Actuator("ARM"), tuple(runs))
+
+
+def test_an_arm_between_stops_is_a_motor_with_a_dead_zone(full):
+    if not full:  # what this rests on has tests of its own
+        pytest.skip("ten seconds: run with --full")
+    first, *_ = compared_structures(arms())
+    assert first.machine == "motor"
+    assert "with dead zone" in first.why
+
+
+def test_a_time_constant_at_its_bound_is_told():
+    """A lag for what integrates asks for one without end; the machine itself for nothing."""
+    found = {}
+    for model in ("first_order", "motor"):
+        fit = identify(arms(), Settings(model=model))
+        models = CandidateModels.of(arms(), Settings(model=model))
+        start = {models.preset.parameter(name).in_equations: value for name, value in fit.values.items()}
+        found[model] = models.refit((), start).at_bounds
+    assert found == {"first_order": ("tau",), "motor": ()}
+
+
+@pytest.mark.parametrize(
+    ("first", "other", "taken"), [(True, False, "motor"), (False, False, "lag"), (True, True, "lag")]
+)
+def test_one_that_asks_beyond_its_bound_gives_way_to_one_that_does_not(first, other, taken):
+    def model(machine: str, error: float, at_bound: bool) -> SimpleNamespace:
+        held_out = CrossValidation(np.full((2, 8), error), np.full(2, 1e3), np.zeros(2), 3000, 300.0)
+        best = SimpleNamespace(held_out=held_out)
+        return SimpleNamespace(
+            machine=machine, parameters=2, error=error, best=best, with_effect=best, at_bound=at_bound
+        )
+
+    lag, motor = model("lag", 0.324, first), model("motor", 0.306, other)
+    assert _preferred(lag, [lag, motor], set())[0].machine == taken
+
+
+@pytest.mark.parametrize(("unforetold", "taken"), [(1.03, "open_valve"), (1.0, "first_order")])
+def test_one_that_leaves_as_little_of_windows_has_to_be_as_likely(unforetold, taken):
+    """A lag follows a cylinder over windows, each begun where it was measured, and leaves all of a whole run."""
+
+    def model(machine: str, parameters: int, new: float) -> SimpleNamespace:
+        held_out = CrossValidation(
+            np.ones((2, 8)), np.full(2, 1e3), np.zeros(2), 3000, 300.0, np.full((2, 8), new), True
+        )
+        best = SimpleNamespace(held_out=held_out)
+        return SimpleNamespace(
+            machine=machine, parameters=parameters, error=0.03, best=best, with_effect=best, at_bound=False
+        )
+
+    first, lag = model("open_valve", 6, 1.0), model("first_order", 2, unforetold)
+    assert _preferred(first, [first, lag], set())[0].machine == taken
+
+
+@pytest.mark.parametrize("model", ["motor", "open_valve"])
+def test_a_cylinder_is_found_at_any_rate_of_samples(model):
+    """At 4.6 kHz: the gain of a position in one of a drive was bounded by the position, as if it were a speed."""
+    lab = sound(Lab.drawn(964, hidden=True))
+    assert lab.rate > 4000
+    fit = identify(lab.measured(), Settings(model=model))
+    assert max(fit.error["fit"], fit.error["verify"]) < 2.0 * lab.noise

@@ -1,0 +1,109 @@
+"""What was named is called found only where the error is at the floor and no run to verify speaks against it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+from ident.diagnosis.result import Diagnosis
+from ident.diagnosis.verification import contradiction, standing
+from ident.errors import Unusable
+from ident.fit.settings import Settings
+from ident.run import Run
+from ident.words.percent import percent
+from ident.workflows import diagnose
+from tests.presets.test_machines import motor
+
+
+def residual(seed: int, size: float, memory: float = 0.95) -> np.ndarray:
+    """Coloured noise of a standard deviation."""
+    noise = lfilter([1.0], [1.0, -memory], np.random.default_rng(seed).standard_normal(4000))
+    return size * noise / noise.std()
+
+
+def run_of(seed: int) -> Run:
+    output = np.random.default_rng([seed, 1]).standard_normal(4000)
+    return Run(f"r{seed}", "", 100.0, {"command": output, "displacement": output})
+
+
+def test_an_error_that_rises_beyond_chance_is_a_contradiction_and_one_that_falls_is_not():
+    runs = [run_of(1), run_of(2)]
+    before = [residual(i, 0.1) for i in (3, 4)]
+    worse, better = [1.5 * r for r in before], [0.8 * r for r in before]
+    found = contradiction("lead", runs, before, worse)
+    assert found is not None
+    assert (found.before, found.after) == pytest.approx((0.1, 0.15), rel=0.05)
+    assert found.deviations > 2
+    assert contradiction("lead", runs, before, better) is None
+
+
+def test_a_run_that_cannot_be_followed_with_an_effect_is_a_contradiction_and_one_that_never_could_is_not():
+    runs, before = [run_of(1), run_of(2)], [residual(i, 0.1) for i in (3, 4)]
+    lost = [before[0], before[1] * np.nan]
+    found = contradiction("lead", runs, before, lost)
+    grown = contradiction("lead", runs, before, [before[0], before[1] * 1e104])  # a number, and yet no error
+    assert grown is not None
+    assert (grown.after, grown.unstable) == (None, (runs[1].id,))
+    assert found is not None
+    assert (found.after, found.deviations) == (None, None)
+    assert found.before == pytest.approx(0.1, rel=0.05)
+    assert found.told("lead") == (
+        f"With lead the model is unstable on run {runs[1].id}, the error on verify runs was {percent(found.before)}: "
+        "it may stand for something else."
+    )
+    assert contradiction("lead", runs, lost, before) is None
+    assert contradiction("lead", runs, lost, lost) is None
+
+
+def test_chance_contradicts_seldom():
+    """Residuals of one size that know nothing of each other: two standard errors, on one side."""
+    runs = [run_of(1)]
+    count = sum(contradiction("lead", runs, [residual(2 * i, 0.1)], [residual(2 * i + 1, 0.1)]) is not None
+                for i in range(200))  # fmt: skip
+    assert count <= 12
+
+
+@pytest.fixture(scope="module")
+def other():
+    """A motor with a dead zone is fitted; the runs to verify are of one without."""
+    fitted, whole = motor(8, half_width=1.5), motor(9)
+    runs = (fitted.of_use("fit")[0], whole.of_use("verify")[0])
+    return diagnose(replace(fitted, runs=runs), settings=Settings(model="motor"), most=1)
+
+
+def test_what_the_runs_to_verify_speak_against_is_contradicted_and_said_first(other):
+    assert other.verdict.effects == ("dead_zone",)
+    assert other.verdict.standing == "contradicted"
+    assert other.verdict.contradicted_by == ("dead_zone",)
+    assert other.verdict.text.startswith("With dead zone the error on verify runs rises from ")
+    assert "The model lacks" not in other.verdict.text
+
+
+def test_verify_changes_nothing_that_was_found(other):
+    matrix = motor(8, half_width=1.5)
+    alone = diagnose(replace(matrix, runs=matrix.of_use("fit")), settings=Settings(model="motor"), most=1)
+    assert alone.verdict.standing == "found"
+    assert alone.verdict.effects == other.verdict.effects
+    assert alone.ladder[-1].parameters == other.ladder[-1].parameters
+    assert [c.effect for c in alone.candidates] == [c.effect for c in other.candidates]
+
+
+def test_the_standing_is_read_back_and_an_unknown_one_is_refused(other):
+    written = other.to_json()
+    assert Diagnosis.from_json(written).verdict.standing == "contradicted"
+    assert Diagnosis.from_json({**written, "verdict": {"effects": []}}).verdict.standing is None  # of an older version
+    with pytest.raises(Unusable, match="is none of found, stand_in, contradicted, nothing"):
+        Diagnosis.from_json({**written, "verdict": {**written["verdict"], "standing": "sure"}})
+
+
+def test_what_may_be_larger_than_was_searched_is_not_called_found():
+    assert standing(("lead",), False, ()) == "found"
+    assert standing(("lead",), False, (), sure=False) == "stand_in"
+
+
+def test_with_nothing_missing_nothing_stands():
+    found = diagnose(motor(10), settings=Settings(model="motor"), most=1)
+    assert (found.verdict.effects, found.verdict.standing) == ((), "nothing")
