@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from ident.diagnosis import family
+from ident.diagnosis import candidate_models
 from ident.errors import Unusable
 from ident.fit.choices import settings_of
 from ident.fit.given import of_model, with_candidates, with_candidates_given
@@ -26,7 +26,7 @@ def fit():
 def few_frictions(monkeypatch):
     """Rank four effects, whose kernels are compiled soon."""
     few = ("coulomb_friction", "presliding_friction", "quadratic_damping", "cubic_stiffness")
-    monkeypatch.setattr(family, "CATALOGUE", tuple(e for e in family.CATALOGUE if e.name in few))
+    monkeypatch.setattr(candidate_models, "CATALOGUE", tuple(e for e in candidate_models.CATALOGUE if e.name in few))
 
 
 @pytest.mark.usefixtures("few_frictions")
