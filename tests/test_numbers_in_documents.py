@@ -6,6 +6,7 @@ is changed in code, or a phrase that is rewritten, fails here until both agree. 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,6 +15,7 @@ import pytest
 from app.pages import next_view
 from ident import responding
 from ident.bench import acceptance, time_constant
+from ident.comparison import compare, profile
 from ident.diagnosis import (
     candidate,
     candidate_models,
@@ -30,6 +32,8 @@ from ident.diagnosis import (
 from ident.diagnosis.discovery import free_curves, regression, search
 from ident.diagnosis.discovery import term_candidate as proposed
 from ident.effects import EFFECTS
+from ident.figures import bode, residual_curve, sensitivity, time
+from ident.figures import tracking as tracking_figure
 from ident.fit import genetic, windows
 from ident.fit.search import Search
 from ident.hybrid import (
@@ -53,34 +57,15 @@ from ident.hybrid import (
 )
 from ident.noise import autoregression
 from ident.readers import run
+from ident.residuals import correlation, curves
 from ident.statistics import FEWEST_SETS
 from ident.statistics.control_chart import D2
 from ident.statistics.outliers import FAR
 from ident.units.quantity import PRINTED_Z0_FACTOR
+from tests.numbers_said import PARTS, Tie, beyond, per_cent, plain, within, word
+from tests.settings_of_accuracy import of_accuracy, of_accuracy_elsewhere
 
 ROOT = Path(__file__).resolve().parents[1] / "docs"
-WORDS = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"]
-PARTS = {0.5: "half", 0.1: "a tenth", 0.2: "a fifth", 0.9: "nine tenths", 0.05: "a twentieth", 0.02: "two hundredths"}
-
-
-def word(number: float) -> str:
-    """A small whole number in words."""
-    return WORDS[int(number)] if number == int(number) else str(number)
-
-
-def per_cent(share: float) -> str:
-    """1 for 0.01."""
-    return f"{100 * share:.6g}"
-
-
-def beyond(factor: float) -> str:
-    """2 for 1.02: by how many per cent a factor is beyond one."""
-    return f"{100 * (factor - 1):.6g}"
-
-
-def plain(number: float) -> str:
-    """1.03 for 1.03, 2 for 2.0."""
-    return f"{number:.6g}"
 
 
 def _paper_generations() -> int:
@@ -90,10 +75,6 @@ def _paper_generations() -> int:
     while not state["done"]:
         state = alone.advance(state, 1)
     return len(state["history"])
-
-
-Tie = tuple[str, str, tuple[object, ...]]
-"""Document, phrase, numbers."""
 
 
 def of_diagnosis() -> Iterator[Tie]:
@@ -223,7 +204,23 @@ def of_hybrid() -> Iterator[Tie]:
     yield H, "else g and {} s), a YAML file", (plain(ground.Ground().step),)
 
 
-TIED = [*of_diagnosis(), *of_others(), *of_hybrid()]
+def of_figures() -> Iterator[Tie]:
+    """What a figure shows where nothing else is asked for."""
+    F = "figures.md"
+    yield F, "with its {} % band: the {} curves that explain most", (
+        per_cent(within(curves._BAND)), word(residual_curve.SHOWN),
+    )  # fmt: skip
+    yield F, "each within the band that holds {} % of chance", (per_cent(correlation.SURE),)
+    yield F, "its {} % interval as a band", (per_cent(within(math.sqrt(profile.BOUND))),)
+    yield F, "go from {:g} to {:g} times the run's own value", (sensitivity.MULTIPLES[0], sensitivity.MULTIPLES[-1])
+    yield F, "of a first-order loop over time in their {} % bands", (per_cent(within(tracking_figure.BAND)),)
+    yield F, "shows the verify runs, at most {} of them", (word(bode._ALONE),)
+    yield F, "with several gains at most {} columns of {} runs", (word(bode.FACETS), word(bode._EACH))
+    yield F, "H1 estimate with windows of {:g} s", (compare._WINDOW,)
+    yield F, "smallest and largest sample of each of {} parts", (time.BINS,)
+
+
+TIED = [*of_diagnosis(), *of_others(), *of_hybrid(), *of_accuracy(), *of_accuracy_elsewhere(), *of_figures()]
 
 
 @pytest.mark.parametrize(("document", "phrase", "numbers"), TIED, ids=[f"{d}: {p[:40]}" for d, p, _ in TIED])

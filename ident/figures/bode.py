@@ -30,6 +30,7 @@ from ident.run import Run
 from ident.words.nearest import did_you_mean
 
 FACETS = 4
+_ALONE, _EACH = 5, 4  # runs of one gain alone; of each of several, whose columns are narrower
 _GAP = 22
 _WIDTHS = {1: 640, 2: 400, 3: 300}
 
@@ -38,7 +39,7 @@ def readable(runs: Sequence[Run]) -> tuple[Run, ...]:
     """What of `runs` one figure can show: at most four gains, and of each so many runs that the curves stay apart."""
     groups = list(by_gain(runs).values())
     places = np.unique(np.linspace(0, len(groups) - 1, min(FACETS, len(groups))).round().astype(int))
-    each = 5 if len(places) == 1 else 4
+    each = _ALONE if len(places) == 1 else _EACH
     return tuple(run for place in places for run in representative(groups[place], each))
 
 

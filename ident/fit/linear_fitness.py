@@ -34,6 +34,7 @@ Array = NDArray[np.float64]
 Outcome = TypeVar("Outcome")
 _TRUSTED = 0.05  # of the error: a doubt below this moves the error by less than 0.13 %
 _FEW = 100_000  # samples of all runs that are simulated for whole populations
+_LEADING = 20  # one vector in so many of a generation is evaluated exactly, at most
 _IN_BAND = ("blwn", "multisine")  # commands without power beyond their band
 _WRONG = 0.2  # beyond it the fast error can be off by more than half a percent
 
@@ -81,7 +82,7 @@ class LinearFitness:
         errors, doubt = self._fast(points) if self._reduces else (self._one_by_one(points), np.zeros(len(points)))
         errors[~self._followed(points)] = UNSTABLE
         self.unstable += int(np.sum(errors >= UNSTABLE))
-        few = max(1, len(points) // 20)
+        few = max(1, len(points) // _LEADING)
         leading = np.argsort(errors, kind="stable")[:few]
         doubtful = set(leading[(doubt > _TRUSTED * errors)[leading] & (errors[leading] < UNSTABLE)])
         wrong = np.flatnonzero((doubt > _WRONG * errors) & (errors < UNSTABLE))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from ident.matrix import Matrix
-from tests.acceptance.matrices import as_matrix, records_of
+from tests.acceptance.matrices import LONG, SHORT, as_matrix, records_of
 from tests.reference import qian_reference as reference
 
 
@@ -18,7 +18,7 @@ def hold(request: pytest.FixtureRequest) -> str:
 @pytest.fixture
 def seconds(full: bool) -> float:
     """Length of a run: 30 s in the full form, 2 s in the short one."""
-    return 30.0 if full else 2.0
+    return LONG if full else SHORT
 
 
 @pytest.fixture

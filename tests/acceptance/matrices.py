@@ -12,6 +12,7 @@ from ident.run import Run, Specimen
 from tests.reference import qian_reference as reference
 
 NOISE = 0.005
+SHORT, LONG = 2.0, 30.0  # s of a run, in the two forms of the tests
 
 
 def as_run(record: reference.Record, hold: str) -> Run:

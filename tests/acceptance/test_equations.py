@@ -19,6 +19,9 @@ CHAIN = PRESETS["qian2014"].chain
 INCH = 0.0254
 POUND = 4.4482216152605  # N
 PSI = POUND / INCH**2
+MACHINES = 50  # drawn
+EXACT = 1e-12  # relative
+BAND = (0.1, 500.0)  # Hz
 
 
 def values_of(plant: reference.Plant, cell: reference.Cell) -> dict[str, float]:
@@ -70,24 +73,24 @@ def random_cases(count: int) -> list[dict[str, float]]:
 
 def test_the_linearised_chain_has_the_coefficients_of_equations_10_to_15():
     """Each coefficient of its transfer function equals the closed form to 1e-12 relative, at 50 random machines."""
-    for v in random_cases(50):
+    for v in random_cases(MACHINES):
         gain, p = closed_form(v)
         numerator, denominator = of_the_chain(CHAIN, v)
         assert [float(entry) for entry in numerator[:3]] == [0, 0, 0]
-        assert float(abs(numerator[3] * p[0] / gain - 1)) < 1e-12
+        assert float(abs(numerator[3] * p[0] / gain - 1)) < EXACT
         for ours, theirs in zip(denominator, p, strict=True):
-            assert float(abs(ours * p[0] / theirs - 1)) < 1e-12
+            assert float(abs(ours * p[0] / theirs - 1)) < EXACT
 
 
 def test_the_frequency_response_is_that_of_equation_10():
     """From 0.1 to 500 Hz the response equals the closed form to 1e-12 of its magnitude, at 50 random machines."""
-    frequency = np.geomspace(0.1, 500, 200)
+    frequency = np.geomspace(*BAND, 200)
     s = 2j * np.pi * frequency
-    for v in random_cases(50):
+    for v in random_cases(MACHINES):
         gain, p = closed_form(v)
         expected = float(gain) / np.polyval([float(entry) for entry in p], s)
         found = CHAIN.linearise(v).frequency_response(frequency)
-        assert np.max(np.abs(found - expected) / np.abs(expected)) < 1e-12
+        assert np.max(np.abs(found - expected) / np.abs(expected)) < EXACT
 
 
 def test_equation_20_is_reproduced_in_inches_and_pounds():

@@ -15,6 +15,8 @@ from tests.reference import qian_reference as reference
 NAMES = reference.PARAMETERS
 TRUTH = np.array([getattr(reference.Plant(), name) for name in NAMES])
 TOLERANCE = 5e-3  # relative
+VECTORS, FEW = 100, 10  # of each kind, in the full form and in the short one
+APART = 0.01  # of the truth, of those near it
 HOPELESS = 10.0  # an unstable model: the reference grows beyond this within the record
 
 
@@ -24,7 +26,7 @@ def vectors(kind: str, count: int) -> np.ndarray:
     if kind == "truth":
         return TRUTH[None]
     if kind == "near":
-        return TRUTH * (1 + 0.01 * rng.uniform(-1, 1, (count, len(NAMES))))
+        return TRUTH * (1 + APART * rng.uniform(-1, 1, (count, len(NAMES))))
     lower, upper = np.array([reference.BOUNDS[name] for name in NAMES]).T
     return rng.uniform(lower, upper, (count, len(NAMES)))
 
@@ -42,7 +44,7 @@ def test_the_fitness_is_equation_17(kind, hold, seconds, full):
     the full form, fewer in the short one); a model that is unstable at some run is given up by both."""
     records = records_of(seconds, hold)
     fit = [record for record in records if record.trial.use == "fit"]
-    chosen = vectors(kind, 100 if full else 10)
+    chosen = vectors(kind, VECTORS if full else FEW)
     found = program_errors(records, hold, chosen)
     for vector, ours in zip(chosen, found, strict=True):
         theirs = reference.mean_error(fit, reference.Plant(*vector), hold, step=0.5)

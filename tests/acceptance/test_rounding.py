@@ -22,6 +22,7 @@ from tests.rounding import perturbed
 
 RATE = 4096.0
 CLOSE = 0.1  # standard errors
+COPIES = 10  # in the full form
 BENCH = kononykhin_reference.scattered(9)
 NEAR = {name: tuple(sorted((0.7 * value, 1.4 * value))) for name, value in sets.true_model(BENCH).values().items()}
 SHORT = Settings("kononykhin", bounds=NEAR, options={"population": 16.0, "generations": 3.0, "elite": 3.0}, seed=4)
@@ -85,7 +86,7 @@ def test_copies_of_the_data_give_the_same_values(case, full):
     matrix = make()
     first = known(identify(matrix, settings))
     assert first
-    for seed in range(10 if full else 1):
+    for seed in range(COPIES if full else 1):
         again = known(identify(perturbed(matrix, seed), settings))
         assert again.keys() == first.keys()
         far = {name: abs(again[name][0] - value) / error for name, (value, error) in first.items()}

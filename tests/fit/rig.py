@@ -12,6 +12,7 @@ from ident.run import Run
 from tests.reference import strano_reference as reference
 
 GAIN = 60.0  # V/m
+SECONDS = 8.0  # of a record
 LOAD = 1e5  # N, vertical
 NOISE = {"displacement": 1.2e-4, "pressure": 1e5, "spool": 0.02, "load": 230.0}
 """Standard deviations, m, Pa, V and N: the uncertainties that the paper prints; 20 mV for the spool."""
@@ -33,7 +34,7 @@ def supply(n: int) -> np.ndarray:
     return reference.SUPPLY - 5e5 * np.sin(2 * np.pi * 0.7 * t) * (t > 0.06)
 
 
-def columns(of: reference.Machine, seed: int, seconds: float = 8.0, vertical=LOAD) -> dict[str, np.ndarray]:
+def columns(of: reference.Machine, seed: int, seconds: float = SECONDS, vertical=LOAD) -> dict[str, np.ndarray]:
     """What the rig records, both chambers by themselves, SI."""
     rng = np.random.default_rng(seed)
     r = reference.motion(seconds, seed=seed)
@@ -48,7 +49,7 @@ def columns(of: reference.Machine, seed: int, seconds: float = 8.0, vertical=LOA
     }  # fmt: skip
 
 
-def matrix(of: reference.Machine, seed: int, outputs=ALL, seconds: float = 8.0, vertical=LOAD) -> Matrix:
+def matrix(of: reference.Machine, seed: int, outputs=ALL, seconds: float = SECONDS, vertical=LOAD) -> Matrix:
     """One record of a machine with these outputs."""
     told = columns(of, seed, seconds, vertical)
     channels = {

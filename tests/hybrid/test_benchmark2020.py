@@ -31,6 +31,7 @@ NOMINAL = {"a1b0": 2.1283e13, "a2": 4.2297e6, "a3": 3.3, "b1": 425.0, "b2": 9.99
 STATIC_GAIN = {"sensor_gain": 0.0261}
 SEED = int(os.environ.get("SERVOIDENT_SEED", "0"))
 NOISE = 0.005
+SECONDS, PLANTS = 30.0, 20  # of the record, and drawn for each case, in the full form
 NOTHING = {"m0": 1e-6, "c0": 1e-6}  # kg, N·s/m: the mass and the damping that the problem states are all there are
 LOOKED_AT = {"wv": (50.0, 2000.0), "zv": (0.05, 2.0), "Z0": (1.0, 1e4), "Ka": (1e-8, 1e-5), "Cl": (1e-8, 1e-4)}
 
@@ -53,7 +54,7 @@ def recorded(seconds: float) -> Matrix:
 
 @pytest.fixture(scope="module")
 def matrix(full: bool) -> Matrix:
-    return recorded(30.0 if full else 10.0)
+    return recorded(SECONDS if full else 10.0)
 
 
 @pytest.fixture(scope="module")
@@ -140,7 +141,7 @@ def test_other_plants_than_the_controller_was_made_for(full, identified):
         case = shaken(number)
         case = replace(case, ground=replace(case.ground, duration=None if full else 8.0))
         controller, scores = designed(identified, case).design.controller, []
-        for _ in range(20 if full else 5):
+        for _ in range(PLANTS if full else 5):
             b1, b2, a3, k = rng.normal([425.0, 9.9976e4, 3.3, 1190e3], [3.3, 3300.0, 1.3, 50e3])
             other = replace(case, physical=replace(case.physical, stiffness=k))
             found = simulate_hybrid(plant(b1=b1, b2=b2, a3=max(a3, 0.1)), other, controller, STATIC_GAIN)

@@ -24,6 +24,8 @@ Samples = NDArray[np.float64]
 SAMPLE_RATE = 4096.0  # Hz
 SENSOR = 1.2e-4  # m, standard deviation: the position sensor of the hybrid-simulation paper
 FREQUENCY, AMPLITUDE = 1.0, 0.05  # Hz and m: its test
+TAUS, GAINS = (5e-3, 50e-3), (0.7, 1.2)  # s and 1: of drawn loops
+OFF = 5.0  # times at most that a start is off
 
 
 class Sine(NamedTuple):
@@ -96,8 +98,8 @@ class Trial(NamedTuple):
 def trial(seed: int, seconds: float) -> Trial:
     """tau uniform in its logarithm over 5 to 50 ms, k over 0.7 to 1.2, starts off by up to five times, noise."""
     draw = np.random.default_rng(seed)
-    loop = Loop(float(np.exp(draw.uniform(np.log(5e-3), np.log(50e-3)))), float(draw.uniform(0.7, 1.2)))
-    off = 5.0 ** draw.uniform(-1, 1, 2)
+    loop = Loop(float(np.exp(draw.uniform(np.log(TAUS[0]), np.log(TAUS[1])))), float(draw.uniform(*GAINS)))
+    off = OFF ** draw.uniform(-1, 1, 2)
     t = times(seconds)
     y = response(t, [loop]) + SENSOR * draw.standard_normal(len(t))
     return Trial(loop, loop.tau * off[0], loop.gain * off[1], reference(t), y)

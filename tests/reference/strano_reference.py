@@ -45,6 +45,9 @@ class Machine(NamedTuple):
 NAMES = Machine._fields
 AREA = 9.05e-3  # m²
 SUPPLY = 210.0 * BAR
+FREQUENCY, AMPLITUDE = 1.0, 0.05  # Hz and m: the sine of a test
+ROUGH, EDGE = 8e-3, 20.0  # m RMS and Hz: the noise on it
+APART = 0.3  # of each parameter: how far a drawn machine is from the assumed one
 
 
 class Shown(NamedTuple):
@@ -132,19 +135,19 @@ def respond(machine, command, gain=0.0, supply=SUPPLY, vertical=0.0, fine=FINE, 
     return Shown(*columns.T)
 
 
-def motion(seconds=8.0, rate=RATE, amplitude=0.05, noise=8e-3, seed=0, still=0.05):
+def motion(seconds=8.0, rate=RATE, amplitude=AMPLITUDE, noise=ROUGH, seed=0, still=0.05):
     """A sine of 1 Hz and band-limited noise to 20 Hz (RMS `noise`), m, after `still` s at zero, begun within 0.2 s."""
     rng = np.random.default_rng(seed)
     n = round(seconds * rate)
     t = np.arange(n) / rate - still
     spectrum = np.zeros(n // 2 + 1, complex)
-    inside = (np.fft.rfftfreq(n, 1.0 / rate) > 0) & (np.fft.rfftfreq(n, 1.0 / rate) <= 20.0)
+    inside = (np.fft.rfftfreq(n, 1.0 / rate) > 0) & (np.fft.rfftfreq(n, 1.0 / rate) <= EDGE)
     spectrum[inside] = np.exp(2j * np.pi * rng.uniform(size=inside.sum()))
     rough = np.fft.irfft(spectrum, n)
     begun = np.clip(t / 0.2, 0.0, 1.0) ** 2
-    return np.where(t > 0, begun * (amplitude * np.sin(2 * np.pi * t) + noise * rough / rough.std()), 0.0)
+    return np.where(t > 0, begun * (amplitude * np.sin(2 * np.pi * FREQUENCY * t) + noise * rough / rough.std()), 0.0)
 
 
 def drawn(rng):
     """A machine drawn around the assumed one: each parameter by up to 30 % of itself."""
-    return Machine(*(value * rng.uniform(0.7, 1.3) for value in Machine()))
+    return Machine(*(value * rng.uniform(1.0 - APART, 1.0 + APART) for value in Machine()))
