@@ -43,7 +43,7 @@ def diagnose_bench(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], cou
         try:
             return BenchDiagnoser(matrix, fit, tuple(custom), course).diagnosis()
         except TimeIsUp:
-            return unranked(matrix, fit, course.taken)
+            return unranked(matrix, fit, course.seconds_taken)
 
 
 def _refuse_candidates_given(fit: FitResult) -> None:
@@ -101,7 +101,8 @@ class BenchDiagnoser:
             candidates=tuple(self._ranked(c, group, base, i == 0) for i, c in enumerate(first)),
             ladder=tuple(self._rung(step, steps[i - 1] if i else None) for i, step in enumerate(steps)),
             verdict=Verdict(added, standing(added, unexplained, ()), (), groups, (), unexplained, text),
-            proposals=(), complete=self.complete, not_looked_at=missing, seed=self.fit.seed, seconds=self.course.taken,
+            proposals=(), complete=self.complete, not_looked_at=missing, seed=self.fit.seed,
+            seconds=self.course.seconds_taken,
             version=version("servoident"), data_hash=self.matrix.data_hash,
             settings=dict(self.fit.settings),
         )  # fmt: skip
@@ -119,15 +120,15 @@ class BenchDiagnoser:
     def _heard(self, first: list[Candidate], steps: list[Refit]) -> None:
         """Tell of a step."""
         self.course.added = tuple(Expected(step.effects[-1], step.held_out_error) for step in steps[1:])
-        if self.course.found is not None:
-            self.course.found(self._said(first, steps))
+        if self.course.listener is not None:
+            self.course.listener(self._said(first, steps))
 
     def _names(self, refit: Refit) -> list[str]:
         """What may be added."""
         return [name for name in self.refitter.effects if name not in refit.effects]
 
     def _progress(self, done: int, total: int) -> None:
-        self.course.tell(Progress("confirming", done, total))
+        self.course.report_progress(Progress("confirming", done, total))
 
     # What is said ----------------------------------------------------------------------------------------------
 
@@ -174,7 +175,7 @@ class BenchDiagnoser:
         )  # fmt: skip
 
     def _rung(self, step: Refit, before: Refit | None) -> Rung:
-        nats = None if before is None else improvement(before.held_out, step.held_out).nats
+        nats = None if before is None else improvement(before.held_out, step.held_out).log_likelihood_gain
         added = None if before is None else step.effects[-1]
         return Rung(
             added=added, error=self._errors(step), offset=self._offset(step), nats=nats,
@@ -192,7 +193,7 @@ def _alike(ranking: list[Candidate]) -> tuple[str, ...]:
 
 def _evidence(found: Improvement, effect: Effect) -> Mapping[str, Any]:
     return {
-        "confirmed": True, "fall": found.share, "deviations": found.deviations, "nats": found.nats,
-        "nats_without_best_run": found.nats_without, "beyond_chance": found.beyond_chance, "looks": effect.looks,
-        "meaning": effect.meaning,
+        "confirmed": True, "fall": found.reduction, "deviations": found.deviations, "nats": found.log_likelihood_gain,
+        "nats_without_best_run": found.log_likelihood_gain_without_best, "beyond_chance": found.beyond_chance,
+        "looks": effect.looks, "meaning": effect.meaning,
     }  # fmt: skip

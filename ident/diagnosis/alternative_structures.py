@@ -35,7 +35,7 @@ class AlternativeModel:
 
     def explanations(self, found: FittedModel, without: frozenset[str], report: Report) -> Iterator[Explanation]:
         """What explains as well as what was found over its windows: nothing or one effect, `without` doubted runs."""
-        models = self.models.without(without).over(found.fitness.horizon, found.fitness.memory)
+        models = self.models.without(without).over_windows(found.fitness.horizon, found.fitness.memory)
         base = models.refit((), self.values)
         if not base.finite:
             return
@@ -44,7 +44,7 @@ class AlternativeModel:
             yield Explanation(models.given.model, (), base.errors)
             return
         ranking = rank(models, base, list(models.effects), report, thorough=False)
-        refits = [one.refit for one in ranking if one.refit is not None and one.helps]
+        refits = [one.refit for one in ranking if one.refit is not None and one.improves]
         alike = [refit for refit in refits if improvement(refit.held_out, found.held_out).within_chance]
         better = [refit for refit in alike if improvement(found.held_out, refit.held_out).beyond_chance]
         for refit in (better or alike)[:_MOST]:

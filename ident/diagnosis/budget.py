@@ -24,7 +24,7 @@ class SearchBudget:
     most: int
     budget: TimeBudget = field(default_factory=TimeBudget)
     report: Report = silent
-    found: Callable[[Diagnosis], None] | None = None
+    listener: Callable[[Diagnosis], None] | None = None
     added: tuple[Expected, ...] = ()
     propose: bool | None = None
 
@@ -34,11 +34,11 @@ class SearchBudget:
         self._stopped_by: list[BaseException] = []
 
     @property
-    def taken(self) -> float:
+    def seconds_taken(self) -> float:
         """Seconds since it began."""
         return self.budget.taken
 
-    def tell(self, progress: Progress) -> None:
+    def report_progress(self, progress: Progress) -> None:
         """Report; the first sight of the fitted model, what was added and the verdict so far stay with what follows.
 
         Raises TimeIsUp once the time is over, or the report has said so.
@@ -58,19 +58,19 @@ class SearchBudget:
         """Whether it is what the caller raised to end the work."""
         return any(error is one for one in self._stopped_by)
 
-    def hear(self, found: Diagnosis) -> None:
+    def publish(self, found: Diagnosis) -> None:
         """Tell of the diagnosis as it stands."""
-        if self.found is None:
+        if self.listener is None:
             return
         try:
-            self.found(replace(found, seconds=self.taken))
+            self.listener(replace(found, seconds=self.seconds_taken))
         except TimeIsUp:
             self.budget.end()
         except BaseException as error:
             self._stopped_by.append(error)
             raise
 
-    def conclude(self, found: Diagnosis) -> None:
+    def publish_verdict(self, found: Diagnosis) -> None:
         """Tell of the catalogue's verdict, which stands whatever follows."""
         self._verdict = found.verdict.text
-        self.hear(found)
+        self.publish(found)

@@ -35,12 +35,12 @@ class Candidate:
         return self.prediction.effect
 
     @property
-    def helps(self) -> bool:
+    def improves(self) -> bool:
         """Whether adding it helps beyond chance, and from run to run."""
-        return self.gain is not None and self.gain.beyond_chance and self.carries_over
+        return self.gain is not None and self.gain.beyond_chance and self.generalises
 
     @cached_property
-    def carries_over(self) -> bool:
+    def generalises(self) -> bool:
         """Whether it does no harm on whole runs that were left out; where there is no refit nothing is known of it."""
         return self.refit is None or self.base is None or generalises(self.base, self.refit)
 
@@ -60,7 +60,7 @@ class Candidate:
         """What it is sorted by among those that came as far: the held-out score, the trial's error, the prediction."""
         if self.refit is not None:
             return self.refit.held_out.score
-        return self.trial.here.error if self.trial is not None else self.prediction.after.score
+        return self.trial.local.error if self.trial is not None else self.prediction.after.score
 
     def refitted(self, base: FittedModel, refit: FittedModel) -> Candidate:
         """The candidate with a refit on all records, and what that gains over the model without the effect."""
@@ -130,7 +130,7 @@ def _ties(best: Candidate, other: Candidate) -> bool:
     """
     if best.refit is None or other.refit is None:
         return False
-    most = PRACTICALLY_EQUAL if best.refit.jumping == other.refit.jumping else _ENDS
+    most = PRACTICALLY_EQUAL if best.refit.hysteretic == other.refit.hysteretic else _ENDS
     if other.refit.error > most * best.refit.error:
         return False
     return indistinguishable(best.refit, other.refit, other.base)

@@ -84,7 +84,7 @@ class CandidateModels:
         }
         return cls(preset, matrix, given, excited_band(matrix.of_use("fit")), known, horizon=horizon, memory=memory)
 
-    def spoken(self, name: str) -> str:
+    def described(self, name: str) -> str:
         """An effect in words; of one of a part that nobody described also what it does, and where."""
         effect = self.effects[name]
         of, runs = self.matrix.actuator, self.matrix.runs
@@ -103,7 +103,7 @@ class CandidateModels:
         """The same models, fitted to fewer runs."""
         return replace(self, left_out=self.left_out | frozenset(runs), _known={}, _records={})
 
-    def over(self, horizon: float | None, memory: float | None) -> CandidateModels:
+    def over_windows(self, horizon: float | None, memory: float | None) -> CandidateModels:
         """The same models, fitted over other windows."""
         return replace(self, horizon=horizon, memory=memory, _known={})
 
@@ -148,7 +148,7 @@ class CandidateModels:
         """The name of an effect's strength in the equations."""
         return self.effects[effect].added[0].in_equations
 
-    def doubtful(self, refit: FittedModel, effect: str) -> bool:
+    def may_be_dispensable(self, refit: FittedModel, effect: str) -> bool:
         """Whether an effect of a refit may be but the way to a better optimum without it.
 
         So it may where it is as good as off, or is tried with many shapes of its own.
@@ -212,7 +212,7 @@ class CandidateModels:
         chance = _CHANCE * self.floors.spread(sum(run.length for run in self.runs))
         return error < (1.0 + _AT_FLOOR + chance) * self.floor
 
-    def something_left(self, refit: FittedModel) -> bool:
+    def residual_above_noise(self, refit: FittedModel) -> bool:
         """Whether the error is still above the noise: its floor, or where that is not known, its lack of memory."""
         if self.floor is not None:
             return not self.at_floor(refit)
@@ -221,31 +221,31 @@ class CandidateModels:
         memory = [float(np.corrcoef(r[1:], r[:-1])[0, 1]) for r in residuals]
         return bool(np.median(memory) > _NOISE_LIKE)
 
-    def best_of(
+    def better_optimum(
         self, refit: FittedModel, starts: Sequence[Mapping[str, float]], aim: float = np.inf
     ) -> FittedModel | None:  # fmt: skip
         """The best refit of the same model from other starts, where one is better than `refit` and comes below `aim`.
 
         Both are judged on the beginnings of the records.
         """
-        asked = min(_BETTER * self.tried(refit), aim)
-        best = self.searched(refit, starts, asked)
-        if best.here.error > asked:
+        asked = min(_BETTER * self.trial_error(refit), aim)
+        best = self.multistart(refit, starts, asked)
+        if best.local.error > asked:
             return None
         found = self.refit(refit.effects, best.values)
-        return found if found.here.error < refit.here.error else None
+        return found if found.local.error < refit.local.error else None
 
-    def searched(self, refit: FittedModel, starts: Sequence[Mapping[str, float]], aim: float = np.inf) -> FittedModel:
+    def multistart(self, refit: FittedModel, starts: Sequence[Mapping[str, float]], aim: float = np.inf) -> FittedModel:
         """The best first refit of the same model from other starts, far off: on the beginnings of the records.
 
         All set out, and the one that is ahead goes on, as long as it may come below `aim`.
         """
         setting_out = replace(_SETTING_OUT, aim=aim)
         tried = each(lambda start: self.refit(refit.effects, start, _TRIAL, setting_out), starts)
-        ahead = stable_minimum(tried, lambda one: one.here.error)
-        return self.gone_on(ahead, replace(_SEARCHING, aim=aim), _TRIAL) if ahead.finite else ahead
+        ahead = stable_minimum(tried, lambda one: one.local.error)
+        return self.continued(ahead, replace(_SEARCHING, aim=aim), _TRIAL) if ahead.finite else ahead
 
-    def scattered(self, effects: tuple[str, ...]) -> list[FittedModel]:
+    def global_starts(self, effects: tuple[str, ...]) -> list[FittedModel]:
         """First steps of a model from where in its whole search space the error is least, on the records' beginnings.
 
         Where the fitted model went far astray for want of the effect, no start near it leads back.
@@ -256,15 +256,15 @@ class CandidateModels:
         starts = [{name: float(v[0]) for name, v in fitness.space.values(point[None]).items()} for point in best]
         return [self.refit(effects, start, _TRIAL, FIRST_STEPS) for start in starts]
 
-    def ahead(self, refits: Iterable[FittedModel], aim: float) -> list[FittedModel]:
+    def leading(self, refits: Iterable[FittedModel], aim: float) -> list[FittedModel]:
         """Those of first steps that left least, as first refits that have to come below `aim`: others cannot win."""
-        rest = stable_ranking([one for one in refits if one.stable], lambda one: one.here.error)
+        rest = stable_ranking([one for one in refits if one.stable], lambda one: one.local.error)
         leading: list[FittedModel] = []
         while rest and len(leading) < _AHEAD:  # only of those that lead it is asked whether they keep their promise
             asked, rest = rest[: _AHEAD - len(leading)], rest[_AHEAD - len(leading) :]
             leading += [one for one, kept in zip(asked, each(lambda one: one.finite, asked), strict=True) if kept]
         on = replace(TRYING, aim=aim)
-        return each(lambda one: self.gone_on(one, on, _TRIAL), leading)
+        return each(lambda one: self.continued(one, on, _TRIAL), leading)
 
     def refit(
         self,
@@ -283,22 +283,22 @@ class CandidateModels:
         values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}
         return FittedModel(effects, values, fitness.space, point, here, fitness)
 
-    def gone_on(self, refit: FittedModel, way: Way, samples: int = 0) -> FittedModel:
+    def continued(self, refit: FittedModel, way: Way, samples: int = 0) -> FittedModel:
         """First steps that are gone on with; as they are, where they came to an end too far off."""
-        if way.leads_nowhere(refit.point, refit.here):
+        if way.leads_nowhere(refit.point, refit.local):
             return refit
         return self.refit(refit.effects, refit.values, samples, way)
 
-    def settled(self, refit: FittedModel) -> FittedModel:
+    def converged(self, refit: FittedModel) -> FittedModel:
         """A refit on all records, gone on with until it stays: in a long narrow valley one is stopped on its way."""
         for _ in range(_ROUNDS):
             further = self.refit(refit.effects, refit.values)
-            if not further.finite or further.here.error > _BETTER * refit.here.error:
+            if not further.finite or further.local.error > _BETTER * refit.local.error:
                 break
             refit = further
         return refit
 
-    def tried(self, refit: FittedModel) -> float:
+    def trial_error(self, refit: FittedModel) -> float:
         """What a first refit has to beat: the error of a refit on the beginnings of the records."""
         return self.fitness(refit.effects, _TRIAL).exact(refit.point, sensitivities=False).error
 
@@ -316,7 +316,7 @@ class CandidateModels:
         start, _ = stable_minimum(list(zip(starts, errors.tolist(), strict=True)), lambda one: one[1])
         return self.refit(effects, start, _TRIAL, replace(TRYING, aim=aim))
 
-    def both(self, first: FittedModel, second: FittedModel, aim: float) -> FittedModel:
+    def pair_trial(self, first: FittedModel, second: FittedModel, aim: float) -> FittedModel:
         """A first refit with the last effects of two that has to come below `aim`, from either and from halfway."""
         starts = []
         for alone, other in ((first, second), (second, first)):

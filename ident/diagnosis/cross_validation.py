@@ -52,9 +52,9 @@ class CrossValidation:
     means: Array
     samples: int
     independent: float
-    unforetold: Array | None = None
+    innovations: Array | None = None
     in_windows: bool = False
-    fitted: float | None = None
+    fitted_error: float | None = None
 
     @cached_property
     def errors(self) -> Array:
@@ -106,7 +106,7 @@ def cross_validated(
             inside = fold_of[i] == fold
             squares[i, inside] = _by_chunk(run, of, count, step)[inside]
     judged = _over_chunks(here, squares, independent)
-    return replace(judged, fitted=None) if whole_runs else judged
+    return replace(judged, fitted_error=None) if whole_runs else judged
 
 
 def not_held_out(here: Local, independent: float) -> CrossValidation:
@@ -127,7 +127,7 @@ def _over_chunks(here: Local, squares: Array, independent: float) -> CrossValida
     means = np.array([run.offset for run in here.runs])
     totals = np.array([run.total for run in here.runs])
     samples, fitted = sum(run.length for run in here.runs), float(np.mean([run.error for run in here.runs]))
-    return CrossValidation(squares, totals, means - means.mean(), samples, independent, fitted=fitted)
+    return CrossValidation(squares, totals, means - means.mean(), samples, independent, fitted_error=fitted)
 
 
 def by_chunk(signals: Sequence[Array], count: int) -> Array:

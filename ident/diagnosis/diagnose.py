@@ -95,8 +95,8 @@ def diagnose(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], course: S
             models = CandidateModels.of(matrix, given, custom, *over).without(begun_without)
             found = Diagnoser(models, fit, course, alternative_models(matrix, fit, custom)).diagnosis(matrix, custom)
         except TimeIsUp:
-            found = unranked(matrix, fit, course.taken)
-    return replace(found, seconds=course.taken)
+            found = unranked(matrix, fit, course.seconds_taken)
+    return replace(found, seconds=course.seconds_taken)
 
 
 class Diagnoser:
@@ -126,11 +126,11 @@ class Diagnoser:
         found = replace(found, budget=self._budget(matrix), next_experiment=self._next_run(matrix, found, custom))
         proposed = DiscoveryResult()
         if self._may_propose(selection) and self.stages.attempt(TERMS, lambda: self._is_proposing(selection), False):
-            self.course.conclude(self._told(found, found, after, DiscoveryResult(complete=False), going_on=True))
+            self.course.publish_verdict(self._told(found, found, after, DiscoveryResult(complete=False), going_on=True))
             proposed = self.stages.attempt(TERMS, lambda: self._proposed(selection), DiscoveryResult(complete=False))
             if not proposed.complete:
                 self.stages.miss(TERMS)
-        needless = proposed.needless(selection.added)
+        needless = proposed.dispensable(selection.added)
         named = replace(found, verdict=found.verdict.without(needless))
         if needless:  # what is in question is another now
             named = replace(named, next_experiment=self._next_run(matrix, named, custom))
@@ -181,7 +181,7 @@ class Diagnoser:
         """The error budget of the fitted model."""
 
         def parts() -> Budget | None:
-            self.course.tell(Progress(ERROR_BUDGET, 0, 1))
+            self.course.report_progress(Progress(ERROR_BUDGET, 0, 1))
             return error_budget(matrix, self.fit)
 
         return self.stages.attempt(ERROR_BUDGET, parts, None)
@@ -190,7 +190,7 @@ class Diagnoser:
         """The run that tells most of what is left in question."""
 
         def proposed() -> NextRun | None:
-            self.course.tell(Progress(NEXT_RUN, 0, 1))
+            self.course.report_progress(Progress(NEXT_RUN, 0, 1))
             return next_run(matrix, found, custom)
 
         return self.stages.attempt(NEXT_RUN, proposed, None)
@@ -200,7 +200,7 @@ class Diagnoser:
         if not self.known or not selection.added or selection.base.effects:
             return ()
         return self.stages.attempt(
-            OTHERS, lambda: alternative_explanations(self.known, selection, self.course.tell), ()
+            OTHERS, lambda: alternative_explanations(self.known, selection, self.course.report_progress), ()
         )
 
     def _late(self, selection: StepwiseSelection) -> Sequence[str]:
@@ -209,17 +209,17 @@ class Diagnoser:
         Where with the last effect they do, and something is left, it is told without that: one that makes the valve's
         lag another, as its stiction, holds this lag in its place.
         """
-        self.course.tell(Progress(LAGS, 0, 1))
+        self.course.report_progress(Progress(LAGS, 0, 1))
         models, steps = selection.models, [refit for _, refit in selection.ladder() if refit.stable][::-1]
-        for refit in steps[: _LATE if models.something_left(selection.found) else 1]:
+        for refit in steps[: _LATE if models.residual_above_noise(selection.found) else 1]:
             if late := total_delay(models, selection.base, refit):
                 without = tuple(name for name in selection.added if name not in refit.effects)
-                return (delay_sentence(late, models.spoken, without),)
+                return (delay_sentence(late, models.described, without),)
         return ()
 
     def _pairs(self, selection: StepwiseSelection) -> Sequence[tuple[str, ...]]:
         """Lags and delays of which no two can be told from two others."""
-        self.course.tell(Progress(LAGS, 0, 1))
+        self.course.report_progress(Progress(LAGS, 0, 1))
         return lag_ambiguities(selection.models, selection.found, selection.added)
 
     def _may_propose(self, selection: StepwiseSelection) -> bool:
@@ -232,7 +232,7 @@ class Diagnoser:
 
     def _is_proposing(self, selection: StepwiseSelection) -> bool:
         """Whether they are to be searched for, being wanted: where something is left, or they were asked for."""
-        return self.course.propose is True or selection.models.something_left(selection.found)
+        return self.course.propose is True or selection.models.residual_above_noise(selection.found)
 
     def _proposed(self, selection: StepwiseSelection) -> DiscoveryResult:
         """What no list holds: beside the fitted model as it was and, where that is not all, beside what was found.
@@ -249,18 +249,20 @@ class Diagnoser:
     def _of_both_searches(self, selection: StepwiseSelection, alone: DiscoveryResult) -> DiscoveryResult:
         """The terms `alone`, or those in addition to the effects that were found: what leaves less, or is simpler."""
         alone = alone.instead(selection.found, selection.added, self.models.matrix.of_use("verify"))
-        if not alone.complete or self.models.is_noise(alone.left(selection.base.error)):
+        if not alone.complete or self.models.is_noise(alone.error_with_terms(selection.base.error)):
             return alone
         further = self._terms_of(selection, selection.found)
         before, found = (refit.held_out.error for refit in (selection.base, selection.found))
-        with_both = further.left(found, "held_out")
-        simpler = alone.left(before, "held_out") < min(with_both * _SIMPLER, found) and not _repeated(alone, selection)
-        return replace(alone if simpler else further.or_refused(alone), complete=further.complete)
+        with_both = further.error_with_terms(found, "held_out")
+        simpler = alone.error_with_terms(before, "held_out") < min(with_both * _SIMPLER, found) and not _repeated(
+            alone, selection
+        )
+        return replace(alone if simpler else further.or_rejected(alone), complete=further.complete)
 
     def _terms_of(self, selection: StepwiseSelection, refit: FittedModel) -> DiscoveryResult:
         """The terms that a search adds to a refit."""
         asked = self.course.propose is True
-        return TermSearch(selection.models, refit, self.course.tell, selection.base.effects, asked).run()
+        return TermSearch(selection.models, refit, self.course.report_progress, selection.base.effects, asked).run()
 
     def _said(
         self, selection: StepwiseSelection, doubted: Sequence[Suspect], pairs: Sequence[tuple[str, ...]] = ()
@@ -295,7 +297,7 @@ class Diagnoser:
     ) -> Verdict:  # fmt: skip
         """What is said of what was added."""
         models, added, errors = selection.models, selection.added, steps[-1][1].errors
-        left = in_time(lambda: models.something_left(selection.found))
+        left = in_time(lambda: models.residual_above_noise(selection.found))
         unexplained = True if left is None else left  # nobody knows that it is noise
         if left is None:
             self.stages.miss(NOISE)
@@ -308,7 +310,7 @@ class Diagnoser:
         bounded = tuple(name for name in added if models.at_bound(selection.found, name))
         repeats, known = in_time(lambda: models.floors.measured), in_time(lambda: models.floor is not None)
         text = verdict_text(added, groups, doubted, unexplained, errors, selection.base.error, repeats is not False,
-                            floor, against, selection.complete, models.spoken, bounded,
+                            floor, against, selection.complete, models.described, bounded,
                             None if against else _better_with_fewer(steps),
                             steps[-1][1].unstable.get("verify", ()))  # fmt: skip
         stands = standing(added, unexplained, against, bool(known) or not bounded)
@@ -320,9 +322,9 @@ class Diagnoser:
         selection = self._begun(models)
         longer = None
         with suppress(TimeIsUp):  # the search ends as it is told so again, with the first of what was found
-            longer = longer_horizon(selection, self.course.tell)
+            longer = longer_horizon(selection, self.course.report_progress)
         if longer is not None:
-            found = self._begun(longer.models, longer.better).run()
+            found = self._begun(longer.models, longer.start).run()
             if found.added:
                 return found
         return selection.run()
@@ -333,7 +335,7 @@ class Diagnoser:
         base = models.refit(tuple(self.fit.effects), start)
         if not base.stable:
             raise Unusable("bad-fit", "the fitted model is unstable on a run", "fit", "fit the model to this matrix")
-        return StepwiseSelection(models, base, self.course.most, self.course.tell, self._heard, known=known)
+        return StepwiseSelection(models, base, self.course.most, self.course.report_progress, self._heard, known=known)
 
     def _heard(self, selection: StepwiseSelection) -> None:
         """Tell of a step."""
@@ -341,15 +343,15 @@ class Diagnoser:
         self.course.added = tuple(
             Expected(name, refit.held_out.error) for name, refit in steps if name and refit.stable
         )
-        if self.course.found is not None:
+        if self.course.listener is not None:
             found = self._said(selection, ())
             text = " ".join((found.verdict.text, *not_looked_at(LATER)))
-            self.course.hear(replace(found, verdict=replace(found.verdict, text=text), not_looked_at=LATER))
+            self.course.publish(replace(found, verdict=replace(found.verdict, text=text), not_looked_at=LATER))
 
     def _doubted(self, selection: StepwiseSelection) -> list[Suspect]:
 
         def doubted() -> list[Suspect]:
-            self.course.tell(Progress("labels", 0, 1))
+            self.course.report_progress(Progress("labels", 0, 1))
             return label_suspects(selection.models, selection.found, selection.models.floors.by_run)
 
         return self.stages.attempt(LABELS, doubted, [])
@@ -368,13 +370,13 @@ class Diagnoser:
         for i, candidate in enumerate(selection.ranking):
             refit, effect = candidate.refit, models.effects[candidate.effect]
             weighed = (
-                candidate.effect in in_question and in_time(partial(getattr, candidate, "carries_over")) is not None
+                candidate.effect in in_question and in_time(partial(getattr, candidate, "generalises")) is not None
             )
             listed.append(Ranked(
                 effect=candidate.effect,
                 error=refit.errors if refit else dict(NO_ERRORS),
                 offset=refit.held_out.offset if refit else None,
-                predicted_error=base.error * candidate.prediction.share,
+                predicted_error=base.error * candidate.prediction.remaining,
                 parameters=refit.parameters if refit else {},
                 group=group if candidate.effect in group else (),
                 error_with_mean=refit.errors_with_mean if refit else {},
@@ -402,7 +404,9 @@ class Diagnoser:
             added=added,
             error=refit.errors,
             offset=in_time(lambda: refit.held_out.offset) if refit.stable else None,
-            nats=in_time(lambda: improvement(before.held_out, refit.held_out).nats) if before and compared else None,
+            nats=in_time(lambda: improvement(before.held_out, refit.held_out).log_likelihood_gain)
+            if before and compared
+            else None,
             parameters=refit.parameters,
             error_with_mean=refit.errors_with_mean,
             unstable=refit.unstable,
@@ -417,7 +421,7 @@ class Diagnoser:
         for added, refit in steps:
             if not refit.stable:
                 continue  # a rung of the ladder that no search stood on
-            after = refit.left(runs)
+            after = refit.residuals(runs)
             if added and before and (found := contradiction(added, runs, before, after)):
                 yield found
             before = after
@@ -441,22 +445,22 @@ def _repeated(alone: DiscoveryResult, selection: StepwiseSelection) -> bool:
 
 def _judged(candidate: Candidate, weighed: bool) -> tuple[object, object]:
     """What is told of a candidate and takes simulations, which it keeps."""
-    return candidate.refit and candidate.refit.errors, weighed and candidate.helps
+    return candidate.refit and candidate.refit.errors, weighed and candidate.improves
 
 
 def _evidence(candidate: Candidate, effect: Effect, weighed: bool) -> dict[str, Any]:
     """The figures behind a candidate; whether it holds from run to run is asked of those that were `weighed`."""
     found = candidate.gain
     return {
-        "predicted_fall": candidate.prediction.fall,
+        "predicted_fall": candidate.prediction.reduction,
         "confirmed": candidate.refit is not None,
-        "fall": found.share if found else None,
+        "fall": found.reduction if found else None,
         "deviations": found.deviations if found else None,
-        "nats": found.nats if found else None,
-        "nats_without_best_run": found.nats_without if found else None,
-        "offset_nats": found.offset if found else None,
-        "unforetold_nats": found.likelier if found else None,
+        "nats": found.log_likelihood_gain if found else None,
+        "nats_without_best_run": found.log_likelihood_gain_without_best if found else None,
+        "offset_nats": found.offset_likelihood_gain if found else None,
+        "unforetold_nats": found.innovation_likelihood_gain if found else None,
         "beyond_chance": found.beyond_chance if found else None,
-        "carries_over": candidate.carries_over if weighed and found and found.beyond_chance else None,
+        "carries_over": candidate.generalises if weighed and found and found.beyond_chance else None,
         "looks": effect.looks,
     }

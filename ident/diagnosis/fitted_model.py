@@ -41,28 +41,28 @@ class FittedModel:
     values: Mapping[str, float]
     space: Space
     point: Array
-    here: Local
+    local: Local
     fitness: SimulatedFitness = field(repr=False)
 
     @cached_property
     def held_out(self) -> CrossValidation:
         """Its errors on blocks that were left out in turn."""
-        found = cross_validated(self.point, self.here, self._evaluated, self._simulated.independent)
-        return self._with_the_past(found)
+        found = cross_validated(self.point, self.local, self._evaluated, self._simulated.independent)
+        return self._with_innovations(found)
 
     @cached_property
     def not_held_out(self) -> CrossValidation:
         """The same with nothing left out: to compare models of as many parameters."""
-        return self._with_the_past(not_held_out(self.here, self._simulated.independent))
+        return self._with_innovations(not_held_out(self.local, self._simulated.independent))
 
     def _evaluated(self, point: Array, worth: Worth) -> Local:
         return self.fitness.exact(point, worth=worth)
 
-    def _with_the_past(self, found: CrossValidation) -> CrossValidation:
-        unforetold = self._simulated.unforetold(found.squares.shape[1])
-        return replace(found, unforetold=unforetold, in_windows=self.fitness.horizon is not None)
+    def _with_innovations(self, found: CrossValidation) -> CrossValidation:
+        unforetold = self._simulated.innovations(found.squares.shape[1])
+        return replace(found, innovations=unforetold, in_windows=self.fitness.horizon is not None)
 
-    def listed(self, effects: tuple[str, ...]) -> FittedModel:
+    def reordered(self, effects: tuple[str, ...]) -> FittedModel:
         """The same model with its effects in another order; what is known of it stays known."""
         other = copy(self)
         other.__dict__["effects"] = effects
@@ -71,48 +71,48 @@ class FittedModel:
     @cached_property
     def between_runs(self) -> CrossValidation | None:
         """Its errors on whole runs that were left out in turn; None of a single run."""
-        if len(self.here.runs) < 2:
+        if len(self.local.runs) < 2:
             return None
-        return cross_validated(self.point, self.here, self._evaluated, self._simulated.independent, whole_runs=True)
+        return cross_validated(self.point, self.local, self._evaluated, self._simulated.independent, whole_runs=True)
 
     @property
     def stable(self) -> bool:
         """Whether the model is stable on every run."""
-        return bool(np.isfinite(self.here.error))
+        return bool(np.isfinite(self.local.error))
 
     @property
     def finite(self) -> bool:
         """Whether the model is stable on every run, and leaves there what it promises."""
-        return self.stable and self._followed
+        return self.stable and self._simulation_confirms
 
     @cached_property
-    def _followed(self) -> bool:
+    def _simulation_confirms(self) -> bool:
         """Whether a simulation from the first states that were found leaves what their linear correction promises.
 
         A model that is not linear in them may look good where no first state at all leads.
         """
-        return not self._moving or self._keeps(self._simulated)
+        return not self._moving or self._confirms(self._simulated)
 
     @property
     def _moving(self) -> bool:
         return any(run.begins == "moving" for run in self.fitness.runs)
 
-    def _keeps(self, simulated: _Simulated) -> bool:
+    def _confirms(self, simulated: _Simulated) -> bool:
         return simulated.error < _FOLLOWED * self.error
 
     @cached_property
     def _simulated(self) -> _Simulated:
         """From the first states that the search went with, or from guesses where those lead nowhere."""
         found = _Simulated.of(self.fitness, self.point)
-        if not self._moving or self._keeps(found):
+        if not self._moving or self._confirms(found):
             return found
         anew = _Simulated.of(self.fitness.fresh(self.fitness.runs), self.point)
-        return anew if self._keeps(anew) else found
+        return anew if self._confirms(anew) else found
 
     @property
     def error(self) -> float:
         """Eq. (17) averaged over the runs."""
-        return float(over_runs([run.error for run in self.here.runs], self.here.runs))
+        return float(over_runs([run.error for run in self.local.runs], self.local.runs))
 
     @cached_property
     def on_verify(self) -> float | None:
@@ -133,7 +133,7 @@ class FittedModel:
     @property
     def unstable(self) -> dict[str, tuple[str, ...]]:
         """By the use of runs the ids of those on which it is unstable; a use without such runs is left out."""
-        pairs = zip(self.fitness.runs, self.here.runs, strict=True)
+        pairs = zip(self.fitness.runs, self.local.runs, strict=True)
         fitted = tuple(run.id for run, found in pairs if not found.error < UNSTABLE)
         known = None if fitted else in_time(lambda: self._verified)
         verified = known.unstable if known is not None else ()
@@ -144,8 +144,8 @@ class FittedModel:
         """RMS(x − x_m)/std(x_m) by what it is measured on; nothing over windows, whose errors count the mean."""
         if self.fitness.horizon is not None or not self.stable:
             return {}
-        fitted = [float(np.hypot(run.error, run.offset)) for run in self.here.runs]
-        found: dict[str, float | None] = {"fit": float(over_runs(fitted, self.here.runs))}
+        fitted = [float(np.hypot(run.error, run.offset)) for run in self.local.runs]
+        found: dict[str, float | None] = {"fit": float(over_runs(fitted, self.local.runs))}
         known = in_time(lambda: self._verified)
         return found | ({} if known is None or known.unstable else {"verify": known.with_mean})
 
@@ -160,19 +160,19 @@ class FittedModel:
         held_out, verify = in_time(lambda: self.held_out.error), in_time(lambda: self.on_verify)
         return {"fit": self.error, "held_out": held_out, "verify": verify}
 
-    def left(self, runs: Sequence[Run]) -> list[Array]:
+    def residuals(self, runs: Sequence[Run]) -> list[Array]:
         """What it leaves of any runs of the matrix, (n,) each, less its mean or over windows."""
         outputs = self.fitness.fresh(tuple(runs)).outputs(self.point)
         return [self.fitness.left(run, outputs[run.id]) for run in runs]
 
     @property
-    def jumping(self) -> frozenset[str]:
+    def hysteretic(self) -> frozenset[str]:
         """Its effects that act in jumps."""
         return frozenset(effect.name for effect in self.fitness.preset.effects if effect.stride > STEP)
 
     @cached_property
     def _known(self) -> Covariance:
-        return covariance(self.here, self.point)
+        return covariance(self.local, self.point)
 
     def deviation(self, parameter: str) -> float | None:
         """The standard error of a parameter by its name in the equations; None where it is held or not determined."""
@@ -204,7 +204,7 @@ class FittedModel:
     @property
     def offset(self) -> float:
         """The mean of the runs' offsets."""
-        return float(over_runs([run.offset for run in self.here.runs], self.here.runs))
+        return float(over_runs([run.offset for run in self.local.runs], self.local.runs))
 
 
 def improves(less: FittedModel, more: FittedModel) -> bool:
@@ -229,7 +229,7 @@ def dominated(worse: FittedModel, better: FittedModel, share: float = _OUTDONE) 
     if before is None or after is None:
         return False
     gain = improvement(before, after)
-    return gain.beyond_chance and gain.share > share
+    return gain.beyond_chance and gain.reduction > share
 
 
 def indistinguishable(best: FittedModel, other: FittedModel, base: FittedModel | None = None) -> bool:
@@ -242,12 +242,15 @@ def indistinguishable(best: FittedModel, other: FittedModel, base: FittedModel |
         return True
     least, left = best.held_out.score, other.held_out.score
     most = np.inf if base is None else base.held_out.score - _MOST * (base.held_out.score - least)
-    return best.jumping != other.jumping and left <= min(_JUMPS * least, most)
+    return best.hysteretic != other.hysteretic and left <= min(_JUMPS * least, most)
 
 
 def distinguishable(worse: FittedModel, better: FittedModel) -> bool:
     """Whether of two models of as many parameters, at the noise, one is likelier beyond chance, by however little."""
-    return not indistinguishable(better, worse) and improvement(worse.held_out, better.held_out).likely
+    return (
+        not indistinguishable(better, worse)
+        and improvement(worse.held_out, better.held_out).likelihood_gain_significant
+    )
 
 
 @dataclass(frozen=True)
@@ -260,7 +263,7 @@ class _Simulated:
 
     error: float
     independent: float
-    whole: list[Array]
+    whole_residuals: list[Array]
     with_mean: float
     unstable: tuple[str, ...]
 
@@ -276,9 +279,9 @@ class _Simulated:
         independent = sum(map(independent_samples, left))
         return cls(float(over_runs(errors, runs)), independent, whole, float(with_mean), unstable)
 
-    def unforetold(self, chunks: int) -> Array:
+    def innovations(self, chunks: int) -> Array:
         """Σ of squares of what the past of each residual does not foretell, by chunk, (runs, chunks)."""
-        return by_chunk([prediction_errors(residual) for residual in self.whole], chunks)
+        return by_chunk([prediction_errors(residual) for residual in self.whole_residuals], chunks)
 
 
 def _rms(residual: Array) -> float:

@@ -31,7 +31,7 @@ class LongerHorizon:
     """The models over longer windows, and one of them, with an effect, that makes the records more likely."""
 
     models: CandidateModels
-    better: FittedModel
+    start: FittedModel
 
 
 def longer_horizon(selection: StepwiseSelection, report: Report) -> LongerHorizon | None:
@@ -43,7 +43,7 @@ def longer_horizon(selection: StepwiseSelection, report: Report) -> LongerHorizo
     """
     base, models = selection.base, selection.models
     horizons = longer(base.fitness, base.point)
-    if not horizons or not models.something_left(base):
+    if not horizons or not models.residual_above_noise(base):
         return None
     carried = [base, *(one.refit for one in selection.look() if one.refit is not None)]
     chance = BEYOND_CHANCE + float(np.log(len(models.effects) * len(horizons)))
@@ -53,7 +53,7 @@ def longer_horizon(selection: StepwiseSelection, report: Report) -> LongerHorizo
     best: LongerHorizon | None = None
     for number, horizon in enumerate(horizons):
         report(Progress("longer windows", number, len(horizons)))
-        far = models.over(horizon, models.memory if horizon else None)
+        far = models.over_windows(horizon, models.memory if horizon else None)
         carried = _refitted(far, carried, base.values)
         if horizon is None:
             carried += _ranked(far, base, report)
@@ -71,7 +71,7 @@ def _refitted(models: CandidateModels, found: Sequence[FittedModel], fitted: Map
     One or the other way may be barred, and over longer windows either leads far.
     """
     starts = [(one.effects, start) for one in found for start in (one.values, fitted)]
-    return [one for one in each(lambda start: models.settled(models.refit(*start)), starts) if one.stable]
+    return [one for one in each(lambda start: models.converged(models.refit(*start)), starts) if one.stable]
 
 
 def _likeliest(judged: Sequence[tuple[float, FittedModel]]) -> list[tuple[float, FittedModel]]:
@@ -89,7 +89,7 @@ def _ranked(models: CandidateModels, base: FittedModel, report: Report) -> list[
         return []
     names = [name for name in models.effects if name not in start.effects]
     refits = [one.refit for one in rank(models, start, names, report, thorough=False) if one.refit is not None]
-    return each(models.settled, refits)
+    return each(models.converged, refits)
 
 
 def _log_likelihood(refit: FittedModel, memory: float | None) -> float:

@@ -75,7 +75,7 @@ def rank_each(
     ]
     sure, done = _FINALISTS if thorough else 2, 0
     asked = {base.effects: _asked(models, base, beside) for base in models_of}
-    anew = _ANEW * models.tried(beside) if beside is not None else np.inf
+    anew = _ANEW * models.trial_error(beside) if beside is not None else np.inf
 
     def trial(base: FittedModel, prediction: Prediction) -> Candidate:
         nonlocal done
@@ -153,8 +153,8 @@ def _tried(models: CandidateModels, base: FittedModel, prediction: Prediction, a
     """A candidate after its first refit, which has to come below `aim`; from strong effects, too, where asked."""
     refit = models.trial((*base.effects, prediction.effect), prediction.starts, aim)
     if strong:
-        other = models.searched(refit, _strong(models, base, refit), min(aim, refit.here.error))
-        refit = stable_minimum([refit, other], lambda r: r.here.error)
+        other = models.multistart(refit, _strong(models, base, refit), min(aim, refit.local.error))
+        refit = stable_minimum([refit, other], lambda r: r.local.error)
     return Candidate(prediction, refit if refit.finite else None)
 
 
@@ -178,7 +178,7 @@ def _promised(models: CandidateModels, base: FittedModel, names: Sequence[str], 
     """What every effect promises, the best first."""
     report(Progress("predicting", 0, 1))
     found = stable_ranking(predict(models, base, sorted(names, key=models.simplicity)), lambda one: one.after.score)
-    first = tuple(Expected(one.effect, base.error * one.share) for one in found[:_SIGHT])
+    first = tuple(Expected(one.effect, base.error * one.remaining) for one in found[:_SIGHT])
     report(Progress("predicting", 1, 1, base.error, first))
     return found
 
@@ -190,7 +190,7 @@ def _finalists(models: CandidateModels, base: FittedModel, tried: Sequence[Candi
     """
     best = tried[0].score if tried else 0.0
     as_last = PRACTICALLY_EQUAL * tried[sure - 1].score if len(tried) > sure and _is_quick(models, base) else 0.0
-    good = min(max(_CLOSE * best, as_last), (1.0 - _PROMISING) * models.tried(base))
+    good = min(max(_CLOSE * best, as_last), (1.0 - _PROMISING) * models.trial_error(base))
     return [one for i, one in enumerate(tried) if one.trial and (i < sure or one.score < good)]
 
 
@@ -199,7 +199,7 @@ def _met(base: FittedModel, predictions: Sequence[Prediction], beside: FittedMod
     found = []
     for one in predictions:
         if beside is not None and _is(base, one, beside):
-            known = beside.listed((*base.effects, one.effect))
+            known = beside.reordered((*base.effects, one.effect))
             found.append(Candidate(one, known).refitted(base, known))
     return found
 
@@ -211,7 +211,7 @@ def _is(base: FittedModel, prediction: Prediction, beside: FittedModel | None) -
 
 def _comes_below(candidate: Candidate, error: float) -> bool:
     """Whether the first refit of a candidate leaves less than so much."""
-    return candidate.trial is not None and candidate.trial.here.error < error
+    return candidate.trial is not None and candidate.trial.local.error < error
 
 
 def _is_better(anew: Candidate | None, known: Candidate) -> bool:
@@ -222,7 +222,7 @@ def _is_better(anew: Candidate | None, known: Candidate) -> bool:
 
 def _asked(models: CandidateModels, base: FittedModel, beside: FittedModel | None) -> float:
     """The error below which a trial has to come to be of use, on the beginnings of the records."""
-    return (1.0 - _PROMISING) * models.tried(base) if beside is None else _CLOSE * models.tried(beside)
+    return (1.0 - _PROMISING) * models.trial_error(base) if beside is None else _CLOSE * models.trial_error(beside)
 
 
 def _near(models: CandidateModels, base: FittedModel, predictions: Sequence[Prediction]) -> list[Prediction]:
@@ -235,10 +235,12 @@ def _passed_over(
     models: CandidateModels, base: FittedModel, predictions: Sequence[Prediction], tried: Sequence[Candidate]
 ) -> list[Prediction]:  # fmt: skip
     """What promises anything near what was found, where those that promised most found less than that."""
-    found = min((one.trial.here.error for one in tried if one.trial is not None), default=np.inf)
-    near = _NEAR * min(found / models.tried(base), 1.0)
+    found = min((one.trial.local.error for one in tried if one.trial is not None), default=np.inf)
+    near = _NEAR * min(found / models.trial_error(base), 1.0)
     done = {one.effect for one in tried}
-    return [p for p in predictions[: _few(models, base)] if _promises(p) and p.share < near and p.effect not in done]
+    return [
+        p for p in predictions[: _few(models, base)] if _promises(p) and p.remaining < near and p.effect not in done
+    ]
 
 
 def _few(models: CandidateModels, base: FittedModel) -> int:
@@ -264,7 +266,7 @@ def _elsewhere(
         return candidate
     starts = [*_strong(models, base, refit), *_shaken(models, refit)]
     for _ in range(_ROUNDS):
-        other = models.best_of(refit, starts, aim)
+        other = models.better_optimum(refit, starts, aim)
         if other is None:
             break
         refit, starts = other, _shaken(models, other)
@@ -293,4 +295,6 @@ def _shaken(models: CandidateModels, refit: FittedModel) -> list[dict[str, float
 
 def _promises(prediction: Prediction) -> bool:
     """Whether a prediction is worth a refit: by a part of what is asked for in the end."""
-    return prediction.fall > _PROMISING or (prediction.nats > _NATS and prediction.before.offset > VISIBLE)
+    return prediction.reduction > _PROMISING or (
+        prediction.offset_likelihood_gain > _NATS and prediction.before.offset > VISIBLE
+    )

@@ -41,9 +41,9 @@ def why(
     Of one that was not `weighed` nobody asked whether it holds from run to run.
     """
     if candidate.refit is None or candidate.gain is None:
-        share = 100 * candidate.prediction.fall
+        share = 100 * candidate.prediction.reduction
         return f"Predicted to take {share:.2g} % off the error, less than others; it was not refitted."
-    if weighed and candidate.gain.beyond_chance and not candidate.carries_over:
+    if weighed and candidate.gain.beyond_chance and not candidate.generalises:
         return _TELLS_APART.format(*map(error_said, candidate.between_runs))
     return why_of_gain(candidate.gain, effect, (before, candidate.refit.held_out.error), floor, best)
 
@@ -53,7 +53,7 @@ def why_of_gain(
 ) -> str:  # fmt: skip
     """The same of an effect that was refitted; `errors` are those on held-out data without it and with it."""
     change = "On data held out from the fit the error goes from {} to {}".format(*map(error_said, errors))
-    if gain.follows_drift and not gain.beyond_chance:
+    if gain.tracks_drift and not gain.beyond_chance:
         return f"{change}, but {_DRIFT}"
     if not gain.beyond_chance:
         return (
@@ -61,10 +61,11 @@ def why_of_gain(
         )
     near = f", with the noise floor at {percent(floor)}" if floor is not None else ""
     first = "No other effect does better. " if best else ""
-    if gain.unforetold_beyond_chance and not gain.worthwhile:
-        foretold = f"of whole runs {gain.likelier:.3g} nats less is left that their own past does not foretell"
+    if gain.innovation_gain_significant and not gain.worthwhile:
+        nats = gain.innovation_likelihood_gain
+        foretold = f"of whole runs {nats:.3g} nats less is left that their own past does not foretell"
         return f"{first}{change} over windows; {foretold}. It shows as: {effect.looks}."
-    if abs(gain.share) < 1e-3:
+    if abs(gain.reduction) < 1e-3:
         return f"{first}The error stays, but the runs' offsets become explained: {effect.looks}."
     return f"{change}{near}. {first}It shows as: {effect.looks}."
 
@@ -72,18 +73,18 @@ def why_of_gain(
 def verdict_text(
     added: Sequence[str], groups: Sequence[tuple[str, ...]], suspects: Sequence[Suspect], unexplained: bool,
     errors: Mapping[str, float | None], before: float, repeats: bool = True, floor: float | None = None,
-    against: Sequence[Contradiction] = (), complete: bool = True, spoken: Callable[[str], str] = title,
+    against: Sequence[Contradiction] = (), complete: bool = True, described: Callable[[str], str] = title,
     bounded: Sequence[str] = (), fewer: tuple[float, Sequence[str]] | None = None, unstable: Sequence[str] = (),
 ) -> str:  # fmt: skip
     """The verdict in a few sentences, what speaks against it first.
 
     Without `repeats` nobody knows how much noise lies in the command's band. Not `complete`, the search was stopped.
-    `spoken` tells what an effect is the first time that it is named; `bounded` are those whose strength ended at the
+    `described` tells what an effect is the first time that it is named; `bounded` are those whose strength ended at the
     bound of its search. `fewer` is the error on verify runs without the last of what was added, where it is
     smaller there; `unstable` are the verify runs on which the model is unstable with it.
     """
-    named = _described_once(spoken)
-    parts = [one.told(named(one.effect)) for one in against]
+    named = _described_once(described)
+    parts = [one.sentence(named(one.effect)) for one in against]
     if not complete:
         parts.append("The search was not over: what else is missing, and what could stand in the place of what was "
                      "found, was not looked at.")  # fmt: skip
@@ -117,10 +118,10 @@ def verdict_text(
     return " ".join(parts)
 
 
-def cannot_distinguish(group: Sequence[str], added: Sequence[str], spoken: Callable[[str], str] = title) -> str:
+def cannot_distinguish(group: Sequence[str], added: Sequence[str], described: Callable[[str], str] = title) -> str:
     """What data cannot do of a group of effects of which one was added, or two that stand for two others as well."""
     what = "which two these are of" if len({*group} & {*added}) == 2 else "apart"
-    return f"cannot tell {what}: {', '.join(map(spoken, group))}"
+    return f"cannot tell {what}: {', '.join(map(described, group))}"
 
 
 def _helps(
@@ -172,13 +173,13 @@ def horizon_sentence(fitted: float | None, horizon: float | None) -> Iterator[st
     )
 
 
-def delay_sentence(late: TotalDelay, spoken: Callable[[str], str] = title, without: Sequence[str] = ()) -> str:
+def delay_sentence(late: TotalDelay, described: Callable[[str], str] = title, without: Sequence[str] = ()) -> str:
     """How late the machine answers `without` some effects, and what the data cannot tell it from, in a sentence."""
-    names = ", ".join((f"{late.parameter.name} ({late.parameter.meaning})", *map(spoken, late.in_place)))
+    names = ", ".join((f"{late.parameter.name} ({late.parameter.meaning})", *map(described, late.in_place)))
     before = f", {_seconds(late.before)} by the fitted model" if late.before else ""
     begin = f"Without {', '.join(map(title, without))} a slow" if without else "A slow"
     return (
-        f"{begin} command is answered {_seconds(late.found)} late{before}; "
+        f"{begin} command is answered {_seconds(late.fitted)} late{before}; "
         f"by which lag or delay these data cannot tell: {names}."
     )
 
@@ -203,7 +204,7 @@ def proposed_text(terms: Sequence[Proposal]) -> str:
     doubt += ", at last a free curve" if any(one.free_curve for one in terms) else ""
     instead = f" in place of {', '.join(map(title, last.instead_of))}" if last.instead_of else ""
     it = "it" if len(terms) == 1 else "them"
-    against = [one.contradicted.told(one.equation) for one in terms if one.contradicted and not _mended(one, last)]
+    against = [one.contradicted.sentence(one.equation) for one in terms if one.contradicted and not _mended(one, last)]
     return " ".join([
         *against,
         f"Beyond the catalogue a search proposes{doubt}{instead}: {told}.",
@@ -224,7 +225,7 @@ def _alone(one: Proposal) -> str:
     return f"With {one.equation} but without those after it {against.rise}."
 
 
-def _described_once(spoken: Callable[[str], str]) -> Callable[[str], str]:
+def _described_once(described: Callable[[str], str]) -> Callable[[str], str]:
     """The name of an effect with what it is told by the first time, bare then."""
     told: set[str] = set()
 
@@ -232,6 +233,6 @@ def _described_once(spoken: Callable[[str], str]) -> Callable[[str], str]:
         if effect in told:
             return title(effect)
         told.add(effect)
-        return spoken(effect)
+        return described(effect)
 
     return named

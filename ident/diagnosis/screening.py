@@ -68,17 +68,17 @@ class Prediction:
     starts: tuple[Mapping[str, float], ...]
 
     @property
-    def share(self) -> float:
+    def remaining(self) -> float:
         """The part of the error that is left."""
         return self.after.error / self.before.error
 
     @property
-    def fall(self) -> float:
+    def reduction(self) -> float:
         """Relative fall of the error."""
-        return 1.0 - self.share
+        return 1.0 - self.remaining
 
     @property
-    def nats(self) -> float:
+    def offset_likelihood_gain(self) -> float:
         """By how much the runs' offsets become more likely."""
         return self.runs * float(np.log(self.before.offset / self.after.offset))
 
@@ -96,12 +96,12 @@ def _predicted(sight: _Sensitivities, base: FittedModel, names: Sequence[str]) -
     off = {symbol: value for symbol, value in models.off.items() if symbol not in base.values}
     known = {name: value for name, value in {**off, **base.values}.items() if name in fitness.space.order}
     trials = [trial for name in names for trial in _trials(models, base, fitness.space, name, known)]
-    found = sight.at(fitness, known, trials)
+    found = sight.with_effects(fitness, known, trials)
     between = found.thresholds()
-    every = [found, sight.at(fitness, known, between)] if between else [found]
+    every = [found, sight.with_effects(fitness, known, between)] if between else [found]
     before = sight.before
     best = {trial.effect: (before, np.zeros(len(base.point) + 1), trial) for trial in reversed(trials)}
-    for trial, after, step in chain.from_iterable(seen.outlooks() for seen in every):
+    for trial, after, step in chain.from_iterable(seen.predicted_fits() for seen in every):
         if after.score < (1.0 - _ROUNDING) * best[trial.effect][0].score:
             best[trial.effect] = after, step, trial
     return [
@@ -148,7 +148,9 @@ class _Sensitivities:
         records = _Records(totals, np.array([r.length for r in fitness.runs]))
         return cls(models, base.point, found, *found.products(), records)
 
-    def at(self, fitness: SimulatedFitness, known: Mapping[str, float], trials: list[_Trial]) -> _EffectResponses:
+    def with_effects(
+        self, fitness: SimulatedFitness, known: Mapping[str, float], trials: list[_Trial]
+    ) -> _EffectResponses:
         """The model with each effect at its strength alone; `known` are its values without, by the equations' names."""
         values = {name: np.full(len(trials), value) for name, value in known.items()}
         for i, trial in enumerate(trials):
@@ -168,11 +170,11 @@ class _Sensitivities:
 class _EffectResponses:
     """The responses of a fitted model to effects of some strengths."""
 
-    sight: _Sensitivities
+    sensitivities: _Sensitivities
     trials: list[_Trial]
     responses: Responses
 
-    def outlooks(self) -> Iterator[tuple[_Trial, PredictedFit, Array]]:
+    def predicted_fits(self) -> Iterator[tuple[_Trial, PredictedFit, Array]]:
         """What was simulated, what is left with a share of its response, and the step to there."""
         shown = [i for i in range(len(self.trials)) if self._power(i) > 0]
         for few in (shown[first : first + _TOGETHER] for first in range(0, len(shown), _TOGETHER)):
@@ -193,7 +195,7 @@ class _EffectResponses:
         return float(self.responses.power[:, trial].sum())
 
     def _after(self, trials: Sequence[int]) -> Iterator[tuple[PredictedFit, Array]]:
-        p, sight, responses = len(self.sight.point), self.sight, self.responses
+        p, sight, responses = len(self.sensitivities.point), self.sensitivities, self.responses
         old = [*range(p), p + 1]  # the effect's share stands behind the parameters, the residual last
         gram = np.empty((len(trials), len(sight.gram), p + 2, p + 2))
         gram[:, :, *np.ix_(old, old)] = sight.gram

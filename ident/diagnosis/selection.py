@@ -101,7 +101,7 @@ class StepwiseSelection:
             self._rounds()
 
     def _step(self, refit: FittedModel) -> None:
-        self.steps.append(self.models.settled(refit))
+        self.steps.append(self.models.converged(refit))
         self.heard(self)
 
     def _learned(self) -> None:
@@ -128,13 +128,13 @@ class StepwiseSelection:
     def alike(self) -> list[Candidate]:
         """The candidates of the first ranking that help and are no worse than its best but by chance, best first."""
         best = self.ranking[0].refit if self.ranking else None
-        if best is None or not self.ranking[0].helps:
+        if best is None or not self.ranking[0].improves:
             return []
         return not_dominated([c for c in self.ranking if c.refit and indistinguishable(best, c.refit, self.base)])
 
     def weighed(self) -> frozenset[str]:
         """The effects of the first ranking in question: down to the first that helps, and what is as good as it."""
-        first = next((i for i, candidate in enumerate(self.ranking) if candidate.helps), len(self.ranking))
+        first = next((i for i, candidate in enumerate(self.ranking) if candidate.improves), len(self.ranking))
         return frozenset(candidate.effect for candidate in (*self.ranking[: first + 1], *self.alike()))
 
     def ladder(self) -> Rungs:
@@ -173,7 +173,7 @@ class StepwiseSelection:
         while len(self.added) < self.most:
             first = len(self.steps) == 1
             ranking = self.look() if first else self._rank(self.found, thorough=False)
-            best = next((candidate for candidate in ranking if candidate.helps), None)
+            best = next((candidate for candidate in ranking if candidate.improves), None)
             if first and self._known_is_better(best):
                 continue
             if best is None or best.refit is None:
@@ -205,7 +205,7 @@ class StepwiseSelection:
     def _settled(self, refit: FittedModel) -> bool:
         """Where the model does as well without what was added, that was but a way to a better optimum: True, there."""
         name = refit.effects[-1]
-        if not self.models.doubtful(refit, name):
+        if not self.models.may_be_dispensable(refit, name):
             return False
         less = self.models.refit(refit.effects[:-1], without_effect(refit.values, name))
         worse = not less.finite or less.held_out.score >= self.found.held_out.score
@@ -228,18 +228,18 @@ class StepwiseSelection:
 
         def scattered(name: str) -> list[FittedModel]:
             nonlocal done
-            refits = self.models.scattered((*self.base.effects, name))
+            refits = self.models.global_starts((*self.base.effects, name))
             done += 1
             self.report(Progress("looking farther", done, len(names)))
             return refits
 
         tried = (refit for found in each(scattered, names) for refit in found)
-        self._better(self.models.ahead(tried, self.models.tried(self.found)))
+        self._better(self.models.leading(tried, self.models.trial_error(self.found)))
 
     def _better(self, tried: Sequence[FittedModel]) -> bool:
         """Go on with the best of first refits, where it is better beyond chance on all records."""
-        best = stable_minimum(tried, lambda trial: trial.here.error) if tried else None
-        if best is None or not best.here.error < self.models.tried(self.found):
+        best = stable_minimum(tried, lambda trial: trial.local.error) if tried else None
+        if best is None or not best.local.error < self.models.trial_error(self.found):
             return False
         refit = self.models.refit(best.effects, best.values)
         if not refit.finite or not improves(self.found, refit):
@@ -252,7 +252,7 @@ class StepwiseSelection:
         if len(self.added) == self.most:
             return False
         ranking = self._rank(self.found, thorough=True, strong=True)
-        best = next((candidate for candidate in ranking if candidate.helps), None)
+        best = next((candidate for candidate in ranking if candidate.improves), None)
         if best is None or best.refit is None:
             return False
         if not self._settled(best.refit):
@@ -269,11 +269,11 @@ class StepwiseSelection:
         finalists = [c.refit for c in self.ranking if c.refit is not None and c.effect != begun][:_PAIRED]
         if self.most < 2 or len(finalists) < 2:
             return False
-        pairs, asked = list(combinations(finalists, 2)), self.models.tried(self.found)
+        pairs, asked = list(combinations(finalists, 2)), self.models.trial_error(self.found)
         tried: list[FittedModel] = []
         for i, pair in enumerate(pairs):
             self.report(Progress("trying pairs", i, len(pairs)))
-            tried.append(self.models.both(*pair, asked))
+            tried.append(self.models.pair_trial(*pair, asked))
         return self._better(tried)
 
     def _backward(self, latest: str) -> bool:
@@ -315,14 +315,14 @@ class StepwiseSelection:
         if len(self.added) > 1:
             self._backward("")
         self.groups, here = {}, self.found
-        noise = (self.models.floor or 0.0) if self.models.something_left(here) else inf
+        noise = (self.models.floor or 0.0) if self.models.residual_above_noise(here) else inf
         for name, ranking in zip(self.added, self._in_place_of_each(self.added), strict=True):
             best = next((c for c in ranking if c.refit is not None), None)
             if best is None or best.refit is None:
                 continue
-            if best.refit.here is not here.here and self._better_instead(name, best):
+            if best.refit.local is not here.local and self._better_instead(name, best):
                 order = (best.effect if one == name else one for one in here.effects)
-                self._step(best.refit.listed(tuple(order)))
+                self._step(best.refit.reordered(tuple(order)))
                 self._backward(best.effect)
                 return True
             self.groups[name] = indistinguishable_group(name, here, ranking, noise)

@@ -63,73 +63,84 @@ class Improvement:
     the data of the fit, None where they are not those that are compared.
     """
 
-    share: float
-    nats: float
-    nats_without: float
+    reduction: float
+    log_likelihood_gain: float
+    log_likelihood_gain_without_best: float
     deviations: float
-    deviations_without: float
-    of_runs: float
-    lost: float
-    offset: float
-    visible: bool
-    likelier: float | None = None
-    likelier_without: float | None = None
-    new: float = 0.0
+    deviations_without_best: float
+    run_deviations: float
+    loss_ratio: float
+    offset_likelihood_gain: float
+    offset_matters: bool
+    innovation_likelihood_gain: float | None = None
+    innovation_likelihood_gain_without_best: float | None = None
+    innovation_share: float = 0.0
     in_windows: bool = False
-    fitted: float | None = None
+    fitted_reduction: float | None = None
 
     @property
     def beyond_chance(self) -> bool:
         """Whether the better one would be chosen again with other noise."""
-        of_error = self._likely or self._steady
-        of_offset = self.visible and self.offset > BEYOND_CHANCE and self.nats > -_SINGLE
-        return (of_error and not self.follows_drift) or of_offset or self.unforetold_beyond_chance
+        of_error = self._likelihood_gain_worthwhile or self._gain_consistent
+        of_offset = (
+            self.offset_matters and self.offset_likelihood_gain > BEYOND_CHANCE and self.log_likelihood_gain > -_SINGLE
+        )
+        return (of_error and not self.tracks_drift) or of_offset or self.innovation_gain_significant
 
     @property
-    def follows_drift(self) -> bool:
+    def tracks_drift(self) -> bool:
         """Whether the error falls, but as much as before is left that its own past does not foretell.
 
         Not where the data become more likely by themselves, nor where next to nothing of a whole run's residual is new:
         it is a pattern far above the noise, whose steps a model that is better all over may foretell less well.
         """
-        asked = self.in_windows or (not self._likely and self.new > _NEW)
-        falls = self._likely or self._steady
-        return falls and asked and self.likelier is not None and not self.likelier > _SINGLE
+        asked = self.in_windows or (not self._likelihood_gain_worthwhile and self.innovation_share > _NEW)
+        falls = self._likelihood_gain_worthwhile or self._gain_consistent
+        return (
+            falls
+            and asked
+            and self.innovation_likelihood_gain is not None
+            and not self.innovation_likelihood_gain > _SINGLE
+        )
 
     @property
-    def likely(self) -> bool:
+    def likelihood_gain_significant(self) -> bool:
         """Whether the data become more likely beyond chance, by however little the error falls: enough for a swap."""
-        steadily = self.of_runs > _UNSTEADY or self.lost < _LOST
-        return self.nats > BEYOND_CHANCE and self.nats_without > _SINGLE and steadily
+        steadily = self.run_deviations > _UNSTEADY or self.loss_ratio < _LOST
+        return self.log_likelihood_gain > BEYOND_CHANCE and self.log_likelihood_gain_without_best > _SINGLE and steadily
 
     @property
-    def _likely(self) -> bool:
-        return self.worthwhile and self.likely
+    def _likelihood_gain_worthwhile(self) -> bool:
+        return self.worthwhile and self.likelihood_gain_significant
 
     @property
-    def _steady(self) -> bool:
-        sure = self.deviations > _STEADY and self.deviations_without > _SINGLE_STEADY
+    def _gain_consistent(self) -> bool:
+        sure = self.deviations > _STEADY and self.deviations_without_best > _SINGLE_STEADY
         return self.worthwhile and sure
 
     @property
     def worthwhile(self) -> bool:
         """Whether the error falls by what is worth a parameter."""
-        if self.fitted is None:
-            return self.share > WORTHWHILE
-        return self.fitted > WORTHWHILE and self.share > _HELD * WORTHWHILE
+        if self.fitted_reduction is None:
+            return self.reduction > WORTHWHILE
+        return self.fitted_reduction > WORTHWHILE and self.reduction > _HELD * WORTHWHILE
 
     @property
-    def unforetold_beyond_chance(self) -> bool:
+    def innovation_gain_significant(self) -> bool:
         """Whether of windows less is unforetold than by chance."""
-        if not self.in_windows or self.likelier is None or self.likelier_without is None:
+        if (
+            not self.in_windows
+            or self.innovation_likelihood_gain is None
+            or self.innovation_likelihood_gain_without_best is None
+        ):
             return False
-        return self.likelier > _FORETOLD and self.likelier_without > _SINGLE
+        return self.innovation_likelihood_gain > _FORETOLD and self.innovation_likelihood_gain_without_best > _SINGLE
 
     @property
     def within_chance(self) -> bool:
         """Whether the two cannot be told apart."""
-        same_errors = self.deviations < ALIKE and self.nats < _ALIKE_NATS
-        return same_errors and (self.offset < _OFFSET_ALIKE or not self.visible)
+        same_errors = self.deviations < ALIKE and self.log_likelihood_gain < _ALIKE_NATS
+        return same_errors and (self.offset_likelihood_gain < _OFFSET_ALIKE or not self.offset_matters)
 
 
 def improvement(before: CrossValidation, after: CrossValidation) -> Improvement:
@@ -155,7 +166,7 @@ def improvement(before: CrossValidation, after: CrossValidation) -> Improvement:
         *_innovation_likelihood_gain(before, after),
         _innovation_share(after),
         before.in_windows,
-        _relative_reduction(before.fitted, after.fitted),
+        _relative_reduction(before.fitted_error, after.fitted_error),
     )
 
 
@@ -166,9 +177,9 @@ def _relative_reduction(before: float | None, after: float | None) -> float | No
 
 def _innovation_share(after: CrossValidation) -> float:
     """The share of what is left that its own past does not foretell, averaged over the runs."""
-    if after.unforetold is None:
+    if after.innovations is None:
         return 0.0
-    return float(np.mean(after.unforetold.sum(axis=1) / np.maximum(after.squares.sum(axis=1), 1e-300)))
+    return float(np.mean(after.innovations.sum(axis=1) / np.maximum(after.squares.sum(axis=1), 1e-300)))
 
 
 def _innovation_likelihood_gain(before: CrossValidation, after: CrossValidation) -> tuple[float | None, float | None]:
@@ -176,7 +187,7 @@ def _innovation_likelihood_gain(before: CrossValidation, after: CrossValidation)
 
     Of three runs or more without the run.
     """
-    known = [side.unforetold for side in (before, after) if side.unforetold is not None]
+    known = [side.innovations for side in (before, after) if side.innovations is not None]
     if len(known) < 2:
         return None, None
     length = before.samples / known[0].size

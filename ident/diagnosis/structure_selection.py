@@ -90,7 +90,7 @@ def _with_an_effect_each(
     But the first alone, and as it is, where it is the only one or leaves nothing that an effect could explain.
     """
     simple = [one for one in tried if one.parameters <= first.parameters]
-    if len(simple) == 1 or not first.refit.finite or not first.models.something_left(first.refit):
+    if len(simple) == 1 or not first.refit.finite or not first.models.residual_above_noise(first.refit):
         return {first.machine: first}
     return {one.machine: one.helped(report) for one in simple}
 
@@ -285,7 +285,7 @@ class _JudgedStructure:
             report(replace(progress, stage="models with an effect", expected=()))
 
         ranking = rank(self.models, self.refit, list(self.models.effects), told, thorough=False)
-        refits = [one.refit for one in ranking if one.refit is not None and one.helps]
+        refits = [one.refit for one in ranking if one.refit is not None and one.improves]
         return replace(self, with_effect=min(refits, key=_held_out, default=None))
 
     def structure(self, over: str, more: str) -> Structure:

@@ -35,7 +35,7 @@ class TotalDelay:
     `before` is T of the fitted model, where something was added to it and its T is determined.
     """
 
-    found: Combination
+    fitted: Combination
     parameter: Parameter
     in_place: tuple[str, ...]
     before: Combination | None = None
@@ -60,7 +60,7 @@ def total_delay(models: CandidateModels, base: FittedModel, refit: FittedModel) 
         at = {models.strength(effect): refit.values[constant.in_equations]}
         return short.refit((*refit.effects, effect), start | at, way=way)
 
-    way = replace(_ROUGHLY, aim=_NEAR * refit.here.error, enough=refit.here.error)
+    way = replace(_ROUGHLY, aim=_NEAR * refit.local.error, enough=refit.local.error)
     names = [name for name, effect in models.effects.items() if is_late(effect) and name not in refit.effects]
     names = [name for name in names if models.fit_together((*refit.effects, name))]
     tried = [one for one in each(other, names) if one.finite]
@@ -88,7 +88,7 @@ def lag_ambiguities(models: CandidateModels, refit: FittedModel, added: Sequence
     ]
     free, found = [name for name in times if name not in refit.effects], []
     pairs = list(combinations([name for name in added if name in times], 2))
-    asked = _PROMISING * models.tried(refit) if pairs else 0.0
+    asked = _PROMISING * models.trial_error(refit) if pairs else 0.0
     for pair in pairs:
         rest = tuple(name for name in refit.effects if name not in pair)
         others = [two for two in combinations(free, 2) if models.fit_together((*rest, *two))]
@@ -109,7 +109,7 @@ def _in_place_of(
     one, other = map(models.strength, two)
     starts = [{**values, one: first, other: second}, {**values, one: second, other: first}]
     trial = models.trial((*rest, *two), starts, asked)
-    if not trial.here.error < asked:
+    if not trial.local.error < asked:
         return False
     found = models.refit(trial.effects, trial.values)
     return found.finite and indistinguishable(refit, found)

@@ -44,7 +44,7 @@ class Contradiction:
     instead_of: tuple[str, ...] = ()
     unstable: tuple[str, ...] = field(default=(), metadata=WHERE_KNOWN)
 
-    def told(self, named: str) -> str:
+    def sentence(self, named: str) -> str:
         """In a sentence on what is `named`."""
         others = f" in place of {', '.join(map(title, self.instead_of))}" if self.instead_of else ""
         sure = "" if self.deviations is None else f", {self.deviations:.1f} standard errors"

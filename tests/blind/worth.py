@@ -45,7 +45,7 @@ def _left(sound: Matrix, fit: FitResult) -> NDArray[np.float64]:
     last = compare(sound, fit).runs[-1]
     models = CandidateModels.of(sound, Settings(model=fit.model))
     known = {models.preset.parameter(name).in_equations: value for name, value in fit.values.items()}
-    whole = models.settled(models.refit((), known))
+    whole = models.converged(models.refit((), known))
     run = models.matrix.runs[-1]
     outputs = whole.fitness.fresh((run,)).outputs(whole.point)
     return min(last.run.measured - last.modelled, run.measured - outputs[run.id], key=lambda left: float(np.std(left)))

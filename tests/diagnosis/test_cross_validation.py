@@ -163,9 +163,9 @@ def test_a_useless_parameter_makes_held_out_data_worse(rng):
             here = objective(known, point)
         before = CrossValidation(*_plain(without), sum(r.length for r, _ in known), 9.0 * N)
         after = cross_validated(point, here, lambda p, _, known=known: objective(known, p), 9.0 * N)
-        assert after.fitted == pytest.approx(here.error)
+        assert after.fitted_error == pytest.approx(here.error)
         found = improvement(before, after)
-        lower += found.share > 0
+        lower += found.reduction > 0
         assert not found.beyond_chance
     assert lower < 15
 
@@ -181,7 +181,7 @@ def test_what_one_run_alone_asks_for_is_not_beyond_chance(rng):
     better = squares.copy()
     better[3] *= 0.1
     before, after = (CrossValidation(s, np.full(20, 1e6), np.zeros(20), 20_000, 20_000.0) for s in (squares, better))
-    assert improvement(before, after).share > 0.03
+    assert improvement(before, after).reduction > 0.03
     assert not improvement(before, after).beyond_chance
     better = 0.9 * squares
     assert improvement(before, CrossValidation(better, np.full(20, 1e6), np.zeros(20), 20_000, 20_000.0)).beyond_chance
@@ -197,15 +197,15 @@ def test_the_fitted_records_tell_whether_an_error_falls_enough_if_half_of_it_is_
     """Fits in kinks end a little off without a fold: held out the same effect gained 1.1 % and 0.9 % on two copies."""
     squares = np.full((20, 8), 100.0)
     before, after = (
-        CrossValidation(of, np.full(20, 1e6), np.zeros(20), 20_000, 20_000.0, fitted=left)
+        CrossValidation(of, np.full(20, 1e6), np.zeros(20), 20_000, 20_000.0, fitted_error=left)
         for of, left in (
             (squares, None if fitted is None else 1.0),
             (squares * (1 - held_out) ** 2, None if fitted is None else 1.0 - fitted),
         )
     )
     gain = improvement(before, after)
-    assert gain.share == pytest.approx(held_out)
-    assert gain.likely
+    assert gain.reduction == pytest.approx(held_out)
+    assert gain.likelihood_gain_significant
     assert gain.beyond_chance is worthwhile
 
 
@@ -220,8 +220,8 @@ def test_a_slow_pattern_that_falls_is_nothing_where_the_data_become_no_likelier(
     before = judged(squares, 40.0, np.full((3, 8), 40.0), False)
     kinked, smooth = (judged(0.8 * squares, 40.0, np.full((3, 8), new), False) for new in (40.4, 39.6))
     assert improvement(before, kinked).deviations > 10
-    assert improvement(before, kinked).nats < 10
-    assert improvement(before, kinked).likelier == pytest.approx(-0.5 * 3000 * np.log(1.01))
+    assert improvement(before, kinked).log_likelihood_gain < 10
+    assert improvement(before, kinked).innovation_likelihood_gain == pytest.approx(-0.5 * 3000 * np.log(1.01))
     assert not improvement(before, kinked).beyond_chance
     assert improvement(before, smooth).beyond_chance
 
@@ -231,11 +231,11 @@ def test_of_a_pattern_far_above_the_noise_its_past_is_no_judge(rng):
     squares = 100.0 + rng.standard_normal((3, 8))
     before = judged(squares, 8.0, np.full((3, 8), 1.0), False)
     little, much = (improvement(before, judged(0.1 * squares, 8.0, np.full((3, 8), new), False)) for new in (1.1, 2.2))
-    assert little.nats < 10
-    assert max(little.likelier, much.likelier) < -100
-    assert (little.new, much.new) == pytest.approx((0.11, 0.22), rel=0.01)
+    assert little.log_likelihood_gain < 10
+    assert max(little.innovation_likelihood_gain, much.innovation_likelihood_gain) < -100
+    assert (little.innovation_share, much.innovation_share) == pytest.approx((0.11, 0.22), rel=0.01)
     assert little.beyond_chance
-    assert much.follows_drift
+    assert much.tracks_drift
 
 
 def test_over_windows_what_is_unforetold_decides(rng):
@@ -252,7 +252,7 @@ def test_over_windows_what_is_unforetold_decides(rng):
     assert improvement(before, judged(0.5 * squares, 300.0, 0.995 * new, True)).beyond_chance
     of_one = new.copy()
     of_one[1] *= 0.95
-    assert improvement(before, judged(squares, 300.0, of_one, True)).likelier > 20
+    assert improvement(before, judged(squares, 300.0, of_one, True)).innovation_likelihood_gain > 20
     assert not improvement(before, judged(squares, 300.0, of_one, True)).beyond_chance
 
 
@@ -277,5 +277,5 @@ def test_what_differs_from_run_to_run_counts_by_runs(mean, beyond):
     before, after = (CrossValidation(s, np.full(24, 1e4), np.zeros(24), 48_000, 48_000.0)
                      for s in (squares, squares * (1.0 - change)))  # fmt: skip
     gain = improvement(before, after)
-    assert gain.nats_without > 100
-    assert gain.likely is beyond
+    assert gain.log_likelihood_gain_without_best > 100
+    assert gain.likelihood_gain_significant is beyond

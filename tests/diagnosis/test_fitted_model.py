@@ -70,12 +70,12 @@ def test_of_first_steps_the_eight_that_leave_least_go_on():
     """From where they are; what is unstable, or does not keep what it promises, makes room for the next."""
     errors, lying = [0.9, np.inf, 0.5, 0.1, 0.8, 0.2, 0.7, 0.3, 0.6, 0.4, 1.0], 0.2
     steps = [
-        SimpleNamespace(effects=("e",), values={"s": error}, here=SimpleNamespace(error=error),
+        SimpleNamespace(effects=("e",), values={"s": error}, local=SimpleNamespace(error=error),
                         stable=np.isfinite(error), finite=np.isfinite(error) and error != lying)
         for error in errors
     ]  # fmt: skip
-    family = SimpleNamespace(gone_on=lambda step, way, _samples: (step.values["s"], way.aim))
-    found = CandidateModels.ahead(family, steps, 0.45)
+    family = SimpleNamespace(continued=lambda step, way, _samples: (step.values["s"], way.aim))
+    found = CandidateModels.leading(family, steps, 0.45)
     assert [aim for _, aim in found] == 8 * [0.45]
     assert [error for error, _ in found] == [error for error in sorted(errors) if error != lying][:8]
 
@@ -84,10 +84,10 @@ def test_of_first_steps_the_eight_that_leave_least_go_on():
 def test_first_steps_that_ended_far_from_what_they_have_to_reach_are_not_begun_again(aim):
     """They are gone on with where the next step promises anything near what is missing."""
     here = SimpleNamespace(error=0.1, gradient=np.array([0.02]), curvature=np.array([[0.1]]))  # promises 0.002
-    first = SimpleNamespace(effects=("e",), values={"s": 1.0}, point=np.array([0.5]), here=here)
+    first = SimpleNamespace(effects=("e",), values={"s": 1.0}, point=np.array([0.5]), local=here)
     family = SimpleNamespace(refit=lambda *told: told)
     way = Way(aim=aim)
-    assert CandidateModels.gone_on(family, first, way, 7) == (first if aim == 0.05 else (("e",), {"s": 1.0}, 7, way))
+    assert CandidateModels.continued(family, first, way, 7) == (first if aim == 0.05 else (("e",), {"s": 1.0}, 7, way))
 
 
 @pytest.mark.parametrize(("error", "aim"), [(0.1, 0.01), (0.1, 0.11), (0.1, 0.05)])
@@ -127,13 +127,13 @@ def judged(share: float, *effects: str) -> SimpleNamespace:
         score=share,
         independent=1e5,
         samples=1000,
-        unforetold=None,
+        innovations=None,
         in_windows=False,
-        fitted=None,
+        fitted_error=None,
     )
-    jumping = FittedModel.jumping.fget(SimpleNamespace(fitness=SimpleNamespace(preset=SimpleNamespace(
+    jumping = FittedModel.hysteretic.fget(SimpleNamespace(fitness=SimpleNamespace(preset=SimpleNamespace(
         effects=[effect(name) for name in effects]))))  # fmt: skip
-    return SimpleNamespace(held_out=held_out, jumping=jumping)
+    return SimpleNamespace(held_out=held_out, hysteretic=jumping)
 
 
 @pytest.mark.parametrize(

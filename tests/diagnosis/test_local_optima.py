@@ -17,10 +17,10 @@ from ident.diagnosis.selection import StepwiseSelection
 def refit(*effects: str, error: float) -> Any:
     """A refit of which the effects and the error count."""
     found = SimpleNamespace(
-        effects=effects, error=error, here=SimpleNamespace(error=error), finite=True,
-        held_out=SimpleNamespace(score=error), jumping=frozenset(), between_runs=None,
+        effects=effects, error=error, local=SimpleNamespace(error=error), finite=True,
+        held_out=SimpleNamespace(score=error), hysteretic=frozenset(), between_runs=None,
     )  # fmt: skip
-    found.listed = lambda order: SimpleNamespace(**{**vars(found), "effects": order})
+    found.reordered = lambda order: SimpleNamespace(**{**vars(found), "effects": order})
     return found
 
 
@@ -28,8 +28,8 @@ def refit(*effects: str, error: float) -> Any:
 def models():
     """A family of models in which nothing is at the noise, each effect as simple as the others."""
     return SimpleNamespace(
-        floor=0.1, at_floor=lambda _refit: False, something_left=lambda _refit: True,
-        simplicity=lambda name: (1, name), settled=lambda one: one, tried=lambda one: one.error,
+        floor=0.1, at_floor=lambda _refit: False, residual_above_noise=lambda _refit: True,
+        simplicity=lambda name: (1, name), converged=lambda one: one, trial_error=lambda one: one.error,
     )  # fmt: skip
 
 
@@ -84,7 +84,7 @@ def test_what_replaces_an_effect_stands_on_its_rung_and_is_weighed_until_nothing
             for name in found.effects
         ]  # fmt: skip
 
-    second = other.listed(("a", "b", "e", "d"))
+    second = other.reordered(("a", "b", "e", "d"))
     rounds = [ranked(first, c=("e", other)), ranked(second, d=("d", better)), ranked(better)]
     in_place(selection, rounds, monkeypatch)
     assert selection._weighed()

@@ -26,7 +26,7 @@ def left(error: float, effect: str) -> CrossValidation:
 def candidate(effect: str, held_out: float, between_runs: float | None) -> Candidate:
     """An effect that leaves so much of blocks, and of whole runs, that were left out."""
     refit: Any = SimpleNamespace(
-        effects=(effect,), held_out=left(held_out, effect), error=held_out, jumping=frozenset(),
+        effects=(effect,), held_out=left(held_out, effect), error=held_out, hysteretic=frozenset(),
         between_runs=None if between_runs is None else left(between_runs, effect),
     )  # fmt: skip
     prediction: Any = SimpleNamespace(effect=effect)
@@ -72,7 +72,7 @@ def test_what_is_missing_tells_no_two_effects_apart(of_leak, noise, beside):
     def refit(error: float) -> Any:
         squares = np.full((RUNS, CHUNKS), error**2 / CHUNKS)
         held_out = CrossValidation(squares, np.ones(RUNS), np.zeros(RUNS), 60_000, 30_000.0)
-        return SimpleNamespace(held_out=held_out, error=error, between_runs=None, effects=(), jumping=frozenset())
+        return SimpleNamespace(held_out=held_out, error=error, between_runs=None, effects=(), hysteretic=frozenset())
 
     without = refit(0.3 if noise else 0.204)
     asymmetry, leak = (
@@ -97,7 +97,7 @@ def test_where_the_boldest_promise_is_not_kept_more_is_tried(monkeypatch, kept, 
     promises = {"friction": 0.3, "dead zone": 0.5, "noise": 0.999}
     predictions = [
         SimpleNamespace(
-            effect=name, share=share, fall=1.0 - share, nats=0.0,
+            effect=name, remaining=share, reduction=1.0 - share, offset_likelihood_gain=0.0,
             after=SimpleNamespace(score=share, error=share), before=SimpleNamespace(offset=0.0),
         )
         for name, share in promises.items()
@@ -106,7 +106,7 @@ def test_where_the_boldest_promise_is_not_kept_more_is_tried(monkeypatch, kept, 
 
     def refitted(_models: Any, _base: Any, prediction: Any, _aim: float, _strong: bool) -> Candidate:
         asked.append(prediction.effect)
-        found: Any = SimpleNamespace(here=SimpleNamespace(error=kept if prediction.effect == "friction" else 0.4))
+        found: Any = SimpleNamespace(local=SimpleNamespace(error=kept if prediction.effect == "friction" else 0.4))
         return Candidate(prediction, found)
 
     for name, made in {
@@ -114,7 +114,7 @@ def test_where_the_boldest_promise_is_not_kept_more_is_tried(monkeypatch, kept, 
         "_confirmed": lambda _models, _base, one: one, "_elsewhere": lambda _models, _asked, _base, one: one,
     }.items():  # fmt: skip
         monkeypatch.setattr(f"ident.diagnosis.ranking.{name}", made)
-    models: Any = SimpleNamespace(simplicity=lambda name: (1, name), tried=lambda _base: 1.0)
+    models: Any = SimpleNamespace(simplicity=lambda name: (1, name), trial_error=lambda _base: 1.0)
     base: Any = SimpleNamespace(effects=())
     rank_each(models, [(base, list(promises))], lambda _: None, thorough=False)
     assert set(asked) == tried
@@ -125,11 +125,11 @@ def test_what_leaves_as_much_as_the_last_finalist_is_one_in_a_small_matrix(monke
     """Else rounding would choose which of the two is refitted, and so may stand in a group: one leaves 1 % more."""
     monkeypatch.setattr("ident.diagnosis.ranking._is_quick", lambda *_: quick)
     trials = [
-        Candidate(SimpleNamespace(effect=f"n{n}"), SimpleNamespace(here=SimpleNamespace(error=error)))  # type: ignore[arg-type]
+        Candidate(SimpleNamespace(effect=f"n{n}"), SimpleNamespace(local=SimpleNamespace(error=error)))  # type: ignore[arg-type]
         for n, error in enumerate([0.3, 0.32, 0.36, 0.38, 0.4, 0.404, 0.409])
     ]
-    models: Any = SimpleNamespace(tried=lambda _base: 1.0)
+    models: Any = SimpleNamespace(trial_error=lambda _base: 1.0)
     base: Any = None
     assert len(_finalists(models, base, trials, sure=5)) == refitted
-    nothing_more: Any = SimpleNamespace(tried=lambda _base: 0.404)
+    nothing_more: Any = SimpleNamespace(trial_error=lambda _base: 0.404)
     assert len(_finalists(nothing_more, base, trials, sure=5)) == 5

@@ -32,14 +32,14 @@ def family(of: Matrix) -> CandidateModels:
 
 def test_a_part_that_nobody_described_is_named_by_what_it_does():
     bare = family(matrix(Actuator("ANY")))
-    assert bare.spoken("spool_stiction") == "spool stiction (a start that waits for enough drive, at the valve)"
-    assert bare.spoken("cubic_stiffness") == "cubic stiffness (stiffening or softening with position, at the load)"
-    assert bare.spoken("dead_zone") == "dead zone"
+    assert bare.described("spool_stiction") == "spool stiction (a start that waits for enough drive, at the valve)"
+    assert bare.described("cubic_stiffness") == "cubic stiffness (stiffening or softening with position, at the load)"
+    assert bare.described("dead_zone") == "dead zone"
     valve = family(matrix(Actuator("ANY", servo_valve="D765")))
-    assert valve.spoken("spool_stiction") == "spool stiction"
-    assert valve.spoken("cubic_stiffness") == bare.spoken("cubic_stiffness")
+    assert valve.described("spool_stiction") == "spool stiction"
+    assert valve.described("cubic_stiffness") == bare.described("cubic_stiffness")
     loaded = family(matrix(Actuator("ANY"), specimen=Specimen(mass=20.0)))
-    assert loaded.spoken("cubic_stiffness") == "cubic stiffness"
+    assert loaded.described("cubic_stiffness") == "cubic stiffness"
 
 
 @pytest.mark.parametrize("against", [True, False])
@@ -48,7 +48,7 @@ def test_a_verdict_says_what_an_effect_does_once(against):
     rises = [Contradiction("cubic_stiffness", 0.1, 0.2, 3.0)] if against else []
     added = ("dead_zone", "cubic_stiffness", "spool_stiction")
     text = verdict_text(added, [("spool_stiction", "backlash")], (), False, {"fit": 0.01}, 0.2, against=rises,
-                        spoken=models.spoken)  # fmt: skip
+                        described=models.described)  # fmt: skip
     assert text.count("stiffening or softening") == 1
     assert text.count("a start that waits for enough drive, at the valve) ") == 0
     assert text.count("(a start that waits for enough drive, at the valve): with them") == 1
@@ -60,7 +60,7 @@ def test_a_verdict_says_what_an_effect_does_once(against):
 def test_a_stated_drive_is_a_description():
     closed = matrix(Actuator("ANY"))
     runs = tuple(replace(run, gain=4.0) for run in closed.runs)
-    assert family(replace(closed, runs=runs)).spoken("supply_droop") == "supply droop"
+    assert family(replace(closed, runs=runs)).described("supply_droop") == "supply droop"
 
 
 @pytest.mark.parametrize(("last", "mended"), [(0.07, True), (0.25, False)])
@@ -78,24 +78,27 @@ def test_what_later_terms_bring_down_is_not_said_first(last, mended):
     assert text.startswith("With R = R + s * v the error on verify runs rises") is not mended
 
 
-def gained(**more: float | bool) -> Improvement:
+def gained(innovations: float, innovations_without_best: float | None = None, **more: float | bool) -> Improvement:
     """A fall of the error by a tenth, steady, of which few samples tell something new."""
-    plain = {"share": 0.1, "nats": 5.3, "nats_without": 4.7, "deviations": 3.2, "deviations_without": 3.1,
-             "of_runs": 3.0, "lost": 0.3, "offset": 0.0, "visible": False, "new": 0.4}  # fmt: skip
-    return Improvement(**{**plain, **more})  # type: ignore[arg-type]
+    plain = {
+        "reduction": 0.1, "log_likelihood_gain": 5.3, "log_likelihood_gain_without_best": 4.7, "deviations": 3.2,
+        "deviations_without_best": 3.1, "run_deviations": 3.0, "loss_ratio": 0.3, "offset_likelihood_gain": 0.0,
+        "offset_matters": False, "innovation_share": 0.4,
+    }  # fmt: skip
+    told = {
+        "innovation_likelihood_gain": innovations,
+        "innovation_likelihood_gain_without_best": innovations_without_best,
+    }
+    return Improvement(**{**plain, **told, **more})  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
     ("gain", "said", "unsaid"),
     [
-        (gained(likelier=-31.0, likelier_without=-30.0), "it follows a drift", "no more than chance"),
-        (gained(likelier=90.0, likelier_without=80.0), "It shows as", "drift"),
-        (gained(likelier=-31.0, deviations=1.0), "no more than chance", "drift"),
-        (
-            gained(share=-0.4, likelier=21.4, likelier_without=15.0, in_windows=True),
-            "of whole runs 21.4 nats",
-            "offsets",
-        ),
+        (gained(-31.0, -30.0), "it follows a drift", "no more than chance"),
+        (gained(90.0, 80.0), "It shows as", "drift"),
+        (gained(-31.0, deviations=1.0), "no more than chance", "drift"),
+        (gained(21.4, 15.0, reduction=-0.4, in_windows=True), "of whole runs 21.4 nats", "offsets"),
     ],
 )
 def test_an_effect_says_why_it_helps_or_does_not(gain, said, unsaid):

@@ -20,7 +20,7 @@ class Judgement:
 
     effect: str
     refit: Any
-    helps: bool
+    improves: bool
     base: Any = None
 
     @property
@@ -35,7 +35,7 @@ class Judgement:
 
     def refitted(self, _base, refit):
         """It helps, since its refit was met on the way."""
-        return replace(self, refit=refit, helps=True)
+        return replace(self, refit=refit, improves=True)
 
 
 class Judged:
@@ -57,21 +57,21 @@ class Judged:
         values = dict.fromkeys(effects, 1.0)
         here = self.met.setdefault(frozenset(effects), SimpleNamespace(error=score))
         found = SimpleNamespace(
-            effects=tuple(effects), values=values, finite=True, held_out=held_out, here=here, error=score,
-            jumping=frozenset(), between_runs=None,
+            effects=tuple(effects), values=values, finite=True, held_out=held_out, local=here, error=score,
+            hysteretic=frozenset(), between_runs=None,
         )  # fmt: skip
-        found.listed = lambda order: SimpleNamespace(**{**vars(found), "effects": order})
+        found.reordered = lambda order: SimpleNamespace(**{**vars(found), "effects": order})
         return found
 
-    def both(self, first, second, _aim):
+    def pair_trial(self, first, second, _aim):
         """The same with the last effects of two."""
         return self.refit((*first.effects, second.effects[-1]), {})
 
-    def settled(self, refit):
+    def converged(self, refit):
         """It stays."""
         return refit
 
-    def tried(self, refit):
+    def trial_error(self, refit):
         """Its score again."""
         return refit.held_out.score
 
@@ -79,19 +79,19 @@ class Judged:
         """Whether nothing is left."""
         return self.floor is not None and refit.held_out.score <= self.floor
 
-    def something_left(self, refit):
+    def residual_above_noise(self, refit):
         """Whether more than noise is left, which may be known where the floor is not."""
         return refit.held_out.score > 0.1
 
-    def scattered(self, effects):
+    def global_starts(self, effects):
         """An effect that no start near the fit leads to is found from anywhere."""
         return [self.refit(effects, {})]
 
-    def ahead(self, refits, _aim):
+    def leading(self, refits, _aim):
         """All of them go on."""
         return list(refits)
 
-    def doubtful(self, _refit, effect):
+    def may_be_dispensable(self, _refit, effect):
         """Whether an effect that is off led to where it is not needed."""
         return effect in self.off
 
@@ -108,10 +108,10 @@ class Judged:
 
         def judged(name):
             if (name in self.far and not strong) or (name in self.late and not base.effects):
-                return Judgement(name, None, helps=False)
+                return Judgement(name, None, improves=False)
             refit = self.refit((*base.effects, name), {})
             together = {"b", "c"} <= set(refit.effects)
-            return Judgement(name, refit, helps=refit.held_out.score < base.held_out.score and not together)
+            return Judgement(name, refit, improves=refit.held_out.score < base.held_out.score and not together)
 
         return selecting.in_rank_order(self, map(judged, names))
 

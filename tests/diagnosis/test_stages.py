@@ -94,15 +94,15 @@ def test_what_the_caller_stops_the_work_by_is_no_failure():
     course = SearchBudget(most=1, report=report)
     stages = Stages(course)
     with pytest.raises(Cancelled):
-        stages.attempt(NEXT_RUN, lambda: course.tell(Progress("labels", 0, 1)), None)
+        stages.attempt(NEXT_RUN, lambda: course.report_progress(Progress("labels", 0, 1)), None)
 
     def full_disk(_found: Diagnosis) -> None:
         raise OSError("no space is left")
 
-    course.found = full_disk  # as where the file cannot be written
+    course.listener = full_disk  # as where the file cannot be written
     with pytest.raises(OSError, match="no space"):
-        stages.attempt(NEXT_RUN, lambda: course.hear(Diagnosis(candidates=(), verdict=Verdict())), None)
-    assert stages.attempt(NEXT_RUN, lambda: course.tell(Progress("next run", 0, 1)), None) is None
+        stages.attempt(NEXT_RUN, lambda: course.publish(Diagnosis(candidates=(), verdict=Verdict())), None)
+    assert stages.attempt(NEXT_RUN, lambda: course.report_progress(Progress("next run", 0, 1)), None) is None
     assert course.budget.is_over
     assert stages.notes == ["There was no time for the next run."]
 
@@ -144,7 +144,7 @@ def test_terms_of_the_first_search_stay_where_there_is_no_time_for_the_second(mo
     selection = SimpleNamespace(base=errors[0], found=errors[1], added=("lead",), models=None)
     diagnoser = object.__new__(diagnosing.Diagnoser)
     diagnoser.models = SimpleNamespace(matrix=SimpleNamespace(of_use=lambda _: ()), is_noise=lambda _: False)
-    diagnoser.course = SimpleNamespace(propose=True, tell=None)
+    diagnoser.course = SimpleNamespace(propose=True, report_progress=None)
     found = diagnoser._proposed(selection)
     assert found.found == (term,)
     assert not found.complete

@@ -50,7 +50,7 @@ def test_a_run_that_cannot_be_followed_with_an_effect_is_a_contradiction_and_one
     assert found is not None
     assert (found.after, found.deviations) == (None, None)
     assert found.before == pytest.approx(0.1, rel=0.05)
-    assert found.told("lead") == (
+    assert found.sentence("lead") == (
         f"With lead the model is unstable on run {runs[1].id}, the error on verify runs was {percent(found.before)}: "
         "it may stand for something else."
     )

@@ -18,20 +18,21 @@ class RejectedTerm:
     """The best term that stayed below the bar, beside which effects, and the errors that it would leave."""
 
     equation: str
-    nats: float
+    log_likelihood_gain: float
     bar: float
     beside: tuple[str, ...]
     error: Errors
 
-    def told(self, looked_at: int) -> str:
+    def sentences(self, looked_at: int) -> str:
         """In sentences."""
         beside = f" beside {', '.join(map(title, self.beside))}" if self.beside else ""
         verify = self.error["verify"]
         of_verify = "" if verify is None else f" ({error_said(verify)} on verify runs)"
-        but = ", but not from run to run: some lose by it" if self.nats > self.bar else ""
+        but = ", but not from run to run: some lose by it" if self.log_likelihood_gain > self.bar else ""
         return (
             f"Of {looked_at} terms that were looked at the best that was refused is {self.equation}{beside}: "
-            f"{self.nats:.3g} nats on data that it was not fitted to, {self.bar:.3g} are asked for{but}. "
+            f"{self.log_likelihood_gain:.3g} nats on data that it was not fitted to, {self.bar:.3g} are asked for"
+            f"{but}. "
             f"It would leave {error_said(self.error['fit'])}{of_verify}."
         )
 
@@ -46,22 +47,22 @@ class DiscoveryResult:
 
     found: tuple[Proposal, ...] = ()
     refit: FittedModel | None = None
-    refused: RejectedTerm | None = None
+    rejected: RejectedTerm | None = None
     looked_at: int = 0
     left_out: int = 0
     complete: bool = True
 
-    def or_refused(self, other: DiscoveryResult) -> DiscoveryResult:
+    def or_rejected(self, other: DiscoveryResult) -> DiscoveryResult:
         """The same where something was found; else with what would leave less of what two searches refused.
 
         Their nats count from different models.
         """
-        if self.found or other.refused is None:
+        if self.found or other.rejected is None:
             return self
-        refused = (one.refused for one in (self, other) if one.refused is not None)
+        refused = (one.rejected for one in (self, other) if one.rejected is not None)
         best = min(refused, key=lambda one: one.error["fit"] or 0.0)
         looked_at, left_out = self.looked_at + other.looked_at, self.left_out + other.left_out
-        return replace(self, refused=best, looked_at=looked_at, left_out=left_out)
+        return replace(self, rejected=best, looked_at=looked_at, left_out=left_out)
 
     def notes(self, asked: bool | None) -> Iterator[str]:
         """What is said of a search that was stopped, left terms out, or ended below its bar; `asked`: it was wanted."""
@@ -72,17 +73,17 @@ class DiscoveryResult:
                 f"Of {self.looked_at} terms that were looked at {self.left_out} were left out: no model can hold them, "
                 "or what they add is not finite."
             )
-        if self.refused is not None:
-            yield self.refused.told(self.looked_at)
+        if self.rejected is not None:
+            yield self.rejected.sentences(self.looked_at)
         elif asked and not self.looked_at:
             yield "No term was looked for: the error is the noise's."
 
-    def left(self, before: float, what: str = "fit") -> float:
+    def error_with_terms(self, before: float, what: str = "fit") -> float:
         """The error with all of it on the fitted runs, or "held_out" from the fit in turn; `before` without."""
         error = self.found[-1].error.get(what) if self.found else None
         return before if error is None else error
 
-    def needless(self, named: Sequence[str]) -> tuple[str, ...]:
+    def dispensable(self, named: Sequence[str]) -> tuple[str, ...]:
         """Of what is `named` that which the model does as well without, beside the terms: it stood for them.
 
         Nothing, where the terms are a hypothesis, or stand in the place of all of it, or runs to verify speak against
@@ -100,7 +101,7 @@ class DiscoveryResult:
             return self
         *terms, last = (replace(one, instead_of=tuple(named)) for one in self.found)
         name = str(last.effect["name"])
-        against = contradiction(name, runs, other.left(runs), self.refit.left(runs)) if runs else None
+        against = contradiction(name, runs, other.residuals(runs), self.refit.residuals(runs)) if runs else None
         if against is not None:
             last = replace(last, contradicted=replace(against, instead_of=tuple(named)))
         return replace(self, found=(*terms, last))

@@ -72,7 +72,7 @@ class TermSearch:
     looked_at: int = 0
     left_out: int = 0
     found: list[Proposal] = field(default_factory=list)
-    refused: RejectedTerm | None = None
+    rejected: RejectedTerm | None = None
     complete: bool = False
 
     def __post_init__(self) -> None:
@@ -91,7 +91,7 @@ class TermSearch:
                 self._drawn(begun)
             self.complete = True
         return DiscoveryResult(
-            found=tuple(map(self._restated, self.found)), refit=self.base, refused=self.refused,
+            found=tuple(map(self._restated, self.found)), refit=self.base, rejected=self.rejected,
             looked_at=self.looked_at, left_out=self.left_out, complete=self.complete,
         )  # fmt: skip
 
@@ -123,15 +123,15 @@ class TermSearch:
         candidate, refit, family = _chosen(base, tried, () if few else chosen_by)
         if few:
             gain = improvement(base.held_out, refit.held_out)
-            gained, sound = gain.nats, gain.beyond_chance and generalises(base, refit)
+            gained, sound = gain.log_likelihood_gain, gain.beyond_chance and generalises(base, refit)
         else:
             integrated = self.models.horizon is not None
             told = term_evidence(
                 confirming, _left(base, confirming), _left(refit, confirming), self.models.band, integrated
             )
-            gained, sound = told.nats, told.worthwhile and (told.steady or told.beyond(bar))
+            gained, sound = told.log_likelihood_gain, told.worthwhile and (told.consistent or told.beyond(bar))
         if not (gained > bar and sound):
-            self._refuse(next(one for one in family.given.custom if one["name"] == name), refit, gained, bar)
+            self._reject(next(one for one in family.given.custom if one["name"] == name), refit, gained, bar)
             return False
         self.models = replace(self.models, effects=family.effects, given=family.given, _known={})
         without, self.base = self.base, self.models.refit(refit.effects, refit.values)
@@ -145,13 +145,13 @@ class TermSearch:
         self.looked_at += seen.looked_at
         self.left_out += seen.left_out
 
-    def _refuse(self, own: Mapping[str, Any], refit: FittedModel, gained: float, bar: float) -> None:
+    def _reject(self, own: Mapping[str, Any], refit: FittedModel, gained: float, bar: float) -> None:
         """Keep what stayed below the bar, where it is the best of that."""
-        if self.refused is None or gained > self.refused.nats:
+        if self.rejected is None or gained > self.rejected.log_likelihood_gain:
             terms = {one["name"] for one in self.models.given.custom}
             beside = tuple(name for name in self.base.effects if name not in terms and name not in self.given)
-            self.refused = RejectedTerm(
-                equation=equation_text(own), nats=gained, bar=bar, beside=beside, error=refit.errors
+            self.rejected = RejectedTerm(
+                equation=equation_text(own), log_likelihood_gain=gained, bar=bar, beside=beside, error=refit.errors
             )
 
     def _all_tried(
@@ -177,11 +177,11 @@ class TermSearch:
             again = candidate_terms(self.models, best[1], best[2].effects[name], curves)
             self._count(again)
             new = [one for one in again.candidates if not any(map(one.begins_as, seen.candidates))]
-            tried += refits(new, best[1].here.error)
+            tried += refits(new, best[1].local.error)
         ranked = stable_ranking(tried, lambda one: one[1].error)
         plain = [one for one in ranked[_MOST_CLOSE:] if one[0].plain][:_PLAIN]
         close = [one for one in (*ranked[:_MOST_CLOSE], *plain) if one[1].error <= _CLOSE * ranked[0][1].error]
-        on = replace(FITTING, aim=_AS_GOOD * ranked[0][1].here.error)
+        on = replace(FITTING, aim=_AS_GOOD * ranked[0][1].local.error)
         return _followed(each(lambda one: _gone_on(one, on), close))
 
     def _prune(self, latest: str) -> None:
@@ -207,7 +207,7 @@ class TermSearch:
     def _contradiction(self, name: str, before: FittedModel) -> Contradiction | None:
         """Whether runs to verify speak against the latest term."""
         runs = self.models.matrix.of_use("verify")
-        return contradiction(name, runs, before.left(runs), self.base.left(runs)) if runs else None
+        return contradiction(name, runs, before.residuals(runs), self.base.residuals(runs)) if runs else None
 
     def _proposal(
         self, candidate: TermCandidate, seen: CandidateTerms, name: str, gained: float, bar: float, hypothesis: bool
@@ -276,7 +276,7 @@ def _held_out(search: TermSearch) -> float:
 
 def _ahead(begun: Sequence[RefittedTerm], least: float) -> list[RefittedTerm]:
     """Rough refits, given up where they cannot come near what was `least` before, or is ahead after the first steps."""
-    on = replace(TRYING, aim=_CLOSE * min([least, *(refit.here.error for _, refit, _ in begun)]))
+    on = replace(TRYING, aim=_CLOSE * min([least, *(refit.local.error for _, refit, _ in begun)]))
     return _followed(each(lambda one: _gone_on(one, on), begun))
 
 
@@ -288,7 +288,7 @@ def _followed(tried: Sequence[RefittedTerm]) -> list[RefittedTerm]:
 def _gone_on(tried: RefittedTerm, way: Way) -> RefittedTerm:
     """A refit that is gone on with."""
     candidate, refit, family = tried
-    return candidate, family.gone_on(refit, way), family
+    return candidate, family.continued(refit, way), family
 
 
 def _chosen(base: FittedModel, tried: Sequence[RefittedTerm], runs: Sequence[Run]) -> RefittedTerm:

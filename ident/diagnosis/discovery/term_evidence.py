@@ -32,37 +32,37 @@ _LOST = 0.03  # of what is gained
 class TermEvidence:
     """The nats of each run that confirms, (runs,), and the relative fall of the error, eq. (17), over all of them."""
 
-    of_runs: Array
-    fall: float
+    gain_of_runs: Array
+    reduction: float
 
     @property
-    def nats(self) -> float:
+    def log_likelihood_gain(self) -> float:
         """Of all runs."""
-        return float(self.of_runs.sum())
+        return float(self.gain_of_runs.sum())
 
     @property
-    def steady(self) -> bool:
+    def consistent(self) -> bool:
         """Whether the runs agree: their mean gain is beyond chance, and so it is without the one that gains most."""
         rest = self._rest
-        return bool(len(rest) < _FEW or (_deviations(self.of_runs) > _STEADY and _deviations(rest) > _STEADY))
+        return bool(len(rest) < _FEW or (_deviations(self.gain_of_runs) > _STEADY and _deviations(rest) > _STEADY))
 
     def beyond(self, bar: float) -> bool:
         """Whether other runs than the one that gains most gain as much as is asked for, and next to none loses.
 
         So with what only some runs reach, as a stop at the end of a way: their mean gain is unsteady.
         """
-        gained, lost = np.maximum(self.of_runs, 0.0).sum(), np.maximum(-self.of_runs, 0.0).sum()
+        gained, lost = np.maximum(self.gain_of_runs, 0.0).sum(), np.maximum(-self.gain_of_runs, 0.0).sum()
         return bool(len(self._rest) >= _FEW and self._rest.sum() > bar and lost < _LOST * gained)
 
     @property
     def _rest(self) -> Array:
         """The nats of the runs but the one that gains most."""
-        return np.delete(self.of_runs, int(np.argmax(self.of_runs)))
+        return np.delete(self.gain_of_runs, int(np.argmax(self.gain_of_runs)))
 
     @property
     def worthwhile(self) -> bool:
         """Whether the error falls by what is worth a term."""
-        return self.fall > WORTHWHILE
+        return self.reduction > WORTHWHILE
 
 
 def term_evidence(

@@ -25,7 +25,7 @@ class Leaving:
 
     share: float
 
-    def left(self, runs: tuple[Run, ...]) -> list[np.ndarray]:
+    def residuals(self, runs: tuple[Run, ...]) -> list[np.ndarray]:
         random = np.random.default_rng(1)
         return [self.share * np.std(run.measured) * random.standard_normal(len(run.measured)) for run in runs]
 
@@ -70,8 +70,8 @@ def test_without_runs_to_verify_nothing_is_known() -> None:
 
 def refused(equation: str, nats: float, *beside: str, fit: float = 0.3, verify: float | None = 0.4) -> DiscoveryResult:
     error = {"fit": fit, "held_out": 0.31, "verify": verify}
-    best = RejectedTerm(equation=equation, nats=nats, bar=13.4, beside=beside, error=error)
-    return DiscoveryResult(refused=best, looked_at=4000)
+    best = RejectedTerm(equation=equation, log_likelihood_gain=nats, bar=13.4, beside=beside, error=error)
+    return DiscoveryResult(rejected=best, looked_at=4000)
 
 
 def test_of_two_searches_what_was_refused_and_would_leave_less_is_told() -> None:
@@ -80,30 +80,30 @@ def test_of_two_searches_what_was_refused_and_would_leave_less_is_told() -> None
     beside = refused("R = R + s * (x)", 6.9, "dead_zone", fit=0.31)
     from_linear = refused("e = e + s * (P)", 557.0, fit=0.5)
     for worse in (beside, from_linear):
-        for told in (plain.or_refused(worse), worse.or_refused(plain)):
-            assert (told.refused, told.looked_at) == (plain.refused, 8000)
-    assert plain.refused is not None
-    assert beside.refused is not None
-    assert "max(Q, 0) * w): 10.3 nats" in plain.refused.told(8000)
-    assert plain.refused.told(8000).endswith("13.4 are asked for. It would leave 30.0 % (40.0 % on verify runs).")
-    assert "s * (x) beside dead zone: 6.9 nats" in beside.refused.told(8000)
-    assert found(0.1).or_refused(plain).refused is None
-    unsteady = refused("w = w + s * (w * abs(v))", 1291.0).refused
+        for told in (plain.or_rejected(worse), worse.or_rejected(plain)):
+            assert (told.rejected, told.looked_at) == (plain.rejected, 8000)
+    assert plain.rejected is not None
+    assert beside.rejected is not None
+    assert "max(Q, 0) * w): 10.3 nats" in plain.rejected.sentences(8000)
+    assert plain.rejected.sentences(8000).endswith("13.4 are asked for. It would leave 30.0 % (40.0 % on verify runs).")
+    assert "s * (x) beside dead zone: 6.9 nats" in beside.rejected.sentences(8000)
+    assert found(0.1).or_rejected(plain).rejected is None
+    unsteady = refused("w = w + s * (w * abs(v))", 1291.0).rejected
     assert unsteady is not None
-    assert "13.4 are asked for, but not from run to run: some lose by it. It would" in unsteady.told(8000)
+    assert "13.4 are asked for, but not from run to run: some lose by it. It would" in unsteady.sentences(8000)
 
 
 def test_where_a_verify_run_cannot_be_followed_a_refused_term_tells_no_error_of_it() -> None:
-    best = refused("R = R + s * (x)", 6.9, verify=None).refused
+    best = refused("R = R + s * (x)", 6.9, verify=None).rejected
     assert best is not None
-    assert best.told(1).endswith("It would leave 30.0 %.")
+    assert best.sentences(1).endswith("It would leave 30.0 %.")
 
 
 def test_what_the_terms_do_without_is_named_no_more() -> None:
     """Leak and asymmetry stood for a recorder that bends: with its term the model does as well without them."""
     named = ("entrained_air", "one_way_leakage", "gain_asymmetry")
     term = replace(found(0.1).found[-1], beside=("entrained_air",))
-    needless = DiscoveryResult(found=(term,)).needless(named)
+    needless = DiscoveryResult(found=(term,)).dispensable(named)
     assert needless == ("one_way_leakage", "gain_asymmetry")
     groups = (("entrained_air",), ("gain_asymmetry", "null_bias"))
     before = Verdict(named, "contradicted", ("gain_asymmetry",), groups, unexplained=True)
@@ -122,5 +122,5 @@ def test_what_the_terms_do_without_is_named_no_more() -> None:
 ])  # fmt: skip
 def test_a_doubtful_term_takes_no_name_away(doubt: dict[str, Any]) -> None:
     term = replace(found(0.1).found[-1], **doubt)
-    assert DiscoveryResult(found=(term,)).needless(("entrained_air",)) == ()
-    assert DiscoveryResult().needless(("entrained_air",)) == ()
+    assert DiscoveryResult(found=(term,)).dispensable(("entrained_air",)) == ()
+    assert DiscoveryResult().dispensable(("entrained_air",)) == ()

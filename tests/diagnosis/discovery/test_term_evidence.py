@@ -23,5 +23,5 @@ BAR = 14.0
 )
 def test_all_runs_gain_or_some_gain_much_and_none_loses(gains, steady, beyond):
     found = TermEvidence(np.array(gains), 0.1)
-    assert found.steady is steady
+    assert found.consistent is steady
     assert found.beyond(BAR) is beyond
