@@ -10,7 +10,15 @@ from numpy.typing import NDArray
 Samples = NDArray[np.float64]
 Beginning = Literal["at rest", "standing", "moving"]
 ROUNDING = 1e-9  # of a command's largest value: it is held but for rounding
-_LEAST = 16  # samples that a command is held
+SLOW = 0.05  # of the typical speed: slower is standing still
+AT_ZERO = 0.02  # of the record's standard deviation: nearer is at zero, and as near is the same place
+ERRORS = 4.0  # standard errors within which a value or a speed is nothing, too
+MOST_NOISE = 0.03  # of the record's standard deviation: what is taken for noise, however rough the record
+DRIVEN = 0.05  # of the command's standard deviation: a first value beyond it is a step at the first sample
+STEP_ANSWER = 0.05  # of the record's standard deviation: what a record of a single step may begin at
+LEAST_HELD = 16  # samples that a command is held
+LOOKED_AT = 0.001  # s: the first samples, by which a speed is told, at least FEWEST
+FEWEST = 4
 
 
 def beginning(x: Samples, command: Samples | None, sample_rate: float, stepped: bool = False) -> Beginning:
@@ -28,15 +36,15 @@ def beginning(x: Samples, command: Samples | None, sample_rate: float, stepped: 
     size, speed = float(np.std(x)), float(np.std(x[n:] - x[:-n])) / n
     slope, value = np.polyfit(np.arange(n), x[:n], 1)
     # Differences of fourth order leave the noise of a well sampled record (their gain on white noise is √70).
-    noise = min(float(np.std(np.diff(x, 4))) / np.sqrt(70.0), 0.03 * size) if len(x) > 8 else 0.0
-    if command is not None and abs(command[0]) > 0.05 * np.std(command):
-        few = abs(x[0]) <= 0.02 * size and abs(x[1] - x[0]) <= 0.05 * speed
-        if few or (stepped and abs(x[0]) <= max(0.05 * size, 4 * noise)):
+    noise = min(float(np.std(np.diff(x, 4))) / np.sqrt(70.0), MOST_NOISE * size) if len(x) > 8 else 0.0
+    if command is not None and abs(command[0]) > DRIVEN * np.std(command):
+        few = abs(x[0]) <= AT_ZERO * size and abs(x[1] - x[0]) <= SLOW * speed
+        if few or (stepped and abs(x[0]) <= max(STEP_ANSWER * size, ERRORS * noise)):
             return "at rest"  # the step comes with the first sample, and what follows it is its answer
     slope_error = noise * np.sqrt(12.0 / (n * (n**2 - 1)))
     value_error = np.hypot(noise / np.sqrt(n), slope_error * (n - 1) / 2)
-    still = abs(slope) <= max(0.05 * speed, 4 * slope_error)
-    if still and abs(value) <= max(0.02 * size, 4 * value_error):
+    still = abs(slope) <= max(SLOW * speed, ERRORS * slope_error)
+    if still and abs(value) <= max(AT_ZERO * size, ERRORS * value_error):
         return "at rest"
     return "standing" if still and standing_for(x, command, sample_rate) else "moving"
 
@@ -51,13 +59,13 @@ def standing_for(x: Samples, command: Samples | None, sample_rate: float) -> int
     command = x if command is None else command
     changes = np.flatnonzero(np.abs(command - command[0]) > ROUNDING * np.abs(command).max())
     count = int(changes[0]) if len(changes) else 0
-    if count < _LEAST:
+    if count < LEAST_HELD:
         return 0
     parts = (x[: _first(x, sample_rate)], *np.array_split(x[:count], 4))
     means, errors = [part.mean() for part in parts], [part.std() / np.sqrt(len(part)) for part in parts]
-    return count if np.ptp(means) <= 0.02 * np.std(x) + 4.0 * max(errors) else 0
+    return count if np.ptp(means) <= AT_ZERO * np.std(x) + ERRORS * max(errors) else 0
 
 
 def _first(x: Samples, sample_rate: float) -> int:
     """The samples by which it is told."""
-    return min(len(x), max(4, round(0.001 * sample_rate)))
+    return min(len(x), max(FEWEST, round(LOOKED_AT * sample_rate)))

@@ -5,10 +5,9 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 from ident.errors import Unusable
-from ident.responding import still_apart
 from ident.run import Run
 from ident.words.shown import Listing, Shown
 
@@ -39,6 +38,21 @@ class Controller:
     kv: float
 
 
+StepState = Literal["applied", "not_needed", "off"]
+APPLIED: StepState = "applied"
+NOT_NEEDED: StepState = "not_needed"
+OFF: StepState = "off"
+
+
+@dataclass(frozen=True)
+class StepOutcome:
+    """What became of a step of preprocessing, and what it said; see :mod:`ident.preprocessing`."""
+
+    step: str
+    state: StepState
+    told: str = ""
+
+
 @dataclass(frozen=True, eq=False)
 class Matrix(Shown):
     """All runs of one actuator. `data_hash` is the SHA-256 of the description and every raw file, in order."""
@@ -51,6 +65,7 @@ class Matrix(Shown):
     limits_text: str = ""  # what the file `limits` holds
     notices: tuple[str, ...] = ()  # what reading changed or assumed, in words
     machine: str = ""  # the name of the model that the description puts together from stages
+    preprocessing: tuple[StepOutcome, ...] = ()  # the steps that it went through, none as it was read
 
     def __add__(self, other: Matrix) -> Matrix:
         """The runs of both. Raises Unusable where they are of two actuators, or a run's id is in both."""
@@ -62,9 +77,8 @@ class Matrix(Shown):
             what = f"two runs are called {min(twice)!r}"
             raise Unusable("duplicate-id", what, "matrix + matrix", 'give each its own, as id="kp7"')
         both = hashlib.sha256(f"{self.data_hash} {other.data_hash}".encode()).hexdigest()
-        runs, still = still_apart((*self.runs, *other.runs))
-        notices = tuple(dict.fromkeys((*self.notices, *other.notices, *still)))
-        return replace(self, runs=runs, data_hash=both, notices=notices)
+        notices = tuple(dict.fromkeys((*self.notices, *other.notices)))
+        return replace(self, runs=(*self.runs, *other.runs), data_hash=both, notices=notices)
 
     def listings(self) -> Sequence[Listing | str]:
         """What it holds, as a notebook shows it."""

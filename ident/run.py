@@ -74,6 +74,7 @@ class Run(Shown):
     record: str = ""
     share: float = 1.0
     closed_loop: bool | None = None  # whether a controller made the command of the output; None: nobody said
+    assumed_beginning: Beginning | None = None  # how it is taken to begin, whatever its samples show; None: as they do
 
     @property
     def command(self) -> Samples:
@@ -170,11 +171,14 @@ class Run(Shown):
         if first and "command" in self.channels:
             before = self.command[:first]
             past = before if past is None else np.concatenate([past, before])
-        return replace(self, channels={name: samples[first:last] for name, samples in self.channels.items()}, past=past)
+        channels = {name: samples[first:last] for name, samples in self.channels.items()}
+        return replace(self, channels=channels, past=past, assumed_beginning=None if first else self.assumed_beginning)
 
     @cached_property
     def begins(self) -> Beginning:
         """How the measured output begins: a model may start at rest, in its equilibrium, or in a state to be found."""
+        if self.assumed_beginning is not None:
+            return self.assumed_beginning
         command = self.channels.get("command")
         return beginning(self._shown_by, command, self.sample_rate, command is not None and self.stepped)
 

@@ -39,6 +39,7 @@ from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.hybrid.kalman_identification import KalmanIdentification
 from ident.matrix import Matrix
+from ident.preprocessing import screen
 from ident.presets.preset import Kind
 from ident.progress import Report, silent
 from ident.synthesis.matrix import Simulation, simulated
@@ -91,8 +92,9 @@ def identification(matrix: Matrix, settings: Settings, report: Report = silent) 
     matrix could be fitted with, and where the matrix does not allow the fit.
     """
     check_settings(settings)
+    matrix = screen(matrix, settings.preprocessing)
     if not settings.model:
-        choice = choose_structure(matrix, report)
+        choice = choose_structure(matrix, report, settings.preprocessing)
         named = replace(settings, model=choice.structures[0].machine)
         made = choice.made(named)
         return FitWithAlternatives(
@@ -128,11 +130,16 @@ def compare(matrix: Matrix, fit: FitResult) -> Comparison:
     return comparison.compare(matrix, fit, _served(fit.model).simulator)
 
 
+def _screened(matrix: Matrix, fit: FitResult) -> Matrix:
+    """The matrix with the uses of runs that a fit gave them, for what takes some of the runs."""
+    return screen(matrix, fit.settings.get("preprocessing", {}))
+
+
 def study(matrix: Matrix, fit: FitResult) -> Study:
     """A fit beside its data, for figures one after the other."""
     from ident.figures import Study  # noqa: PLC0415 - altair, which a fit does not need
 
-    return Study(matrix, fit, _served(fit.model).simulator)
+    return Study(_screened(matrix, fit), fit, _served(fit.model).simulator)
 
 
 def figure(
@@ -190,7 +197,7 @@ def diagnose(
                        "leave it out")  # fmt: skip
     own = tuple(one if isinstance(one, Effect) else read_effect(one, model=fit.model) for one in custom)
     fit = with_candidates_given(fit, bounds or {}, own=own)
-    return replace(served.diagnoser(matrix, fit, own, course), matrix=matrix)
+    return replace(served.diagnoser(_screened(matrix, fit), fit, own, course), matrix=matrix)
 
 
 def propose(

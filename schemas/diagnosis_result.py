@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from schemas.result import DefinitionView, ErrorBudget, Errors, Nothing, SettingsView
+from schemas.result import DefinitionView, ErrorBudget, Errors, Nothing, SettingsView, StepView
 
 
 class RefittedView(BaseModel):
@@ -225,3 +225,4 @@ class DiagnosisResult(BaseModel):
     version: str
     data_hash: str
     notes: list[str]
+    preprocessing: list[StepView] = Field(default_factory=list)

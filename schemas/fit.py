@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, StrictBool
 
 from schemas.result import ErrorBudget, Errors, EstimateView, FitResultView, SettingsView
 
@@ -15,6 +15,7 @@ class Chosen(BaseModel):
     Without a `model` that which fits is taken, of those that the channels allow; with effects, bounds or values the
     likeliest. The search ends with the generation that goes beyond `budget`, s. `custom` adds effects of one's own:
     definitions as `POST /custom-effects` takes them, or names of those at `/own-effects`, which `effects` takes, too.
+    `preprocessing` switches steps off by name: `{"stroke_centre": false}`.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -28,6 +29,7 @@ class Chosen(BaseModel):
     options: dict[str, Finite] = Field(default_factory=dict)
     load: str = "none"
     budget: float | None = Field(default=None, gt=0)
+    preprocessing: dict[str, StrictBool] = Field(default_factory=dict, max_length=50)
 
 
 class StartRequest(BaseModel):

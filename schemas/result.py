@@ -62,6 +62,7 @@ class SettingsView(BaseModel):
     options: dict[str, Number] = Field(default_factory=dict)
     custom: list[DefinitionView] = Field(default_factory=list)
     budget: Number | None = None
+    preprocessing: dict[str, bool] = Field(default_factory=dict)
     start: StartView | None = None
 
 
@@ -192,6 +193,14 @@ class ActuatorStated(BaseModel):
     volume: float | None = None
 
 
+class StepView(BaseModel):
+    """A step of preprocessing: whether it was applied, not needed or switched off, and what was told of it."""
+
+    step: str
+    state: Literal["applied", "not_needed", "off"]
+    told: str = ""
+
+
 class FitResultView(BaseModel):
     """The contract's fit JSON; `evolution` belongs to the parameters `searched`, in that order.
 
@@ -231,3 +240,4 @@ class FitResultView(BaseModel):
     actuator: ActuatorStated | None = None
     ended_early: bool = False
     left_out: list[str] = Field(default_factory=list)
+    preprocessing: list[StepView] = Field(default_factory=list)

@@ -13,7 +13,6 @@ from pathlib import Path
 import pytest
 
 from app.pages import next_view
-from ident import responding
 from ident.bench import acceptance, time_constant
 from ident.comparison import compare, profile
 from ident.diagnosis import (
@@ -56,6 +55,7 @@ from ident.hybrid import (
     what_if,
 )
 from ident.noise import autoregression
+from ident.preprocessing import run_exclusion
 from ident.readers import run
 from ident.residuals import correlation, curves
 from ident.statistics import FEWEST_SETS
@@ -150,7 +150,7 @@ def of_others() -> Iterator[Tie]:
 
     M = "matrix-format.md"
     yield M, "({} % of the deviation that the output has in the others, under more than {} of their command", (
-        per_cent(responding._STILL), PARTS[responding._DRIVEN],
+        per_cent(run_exclusion.STANDS.value), PARTS[run_exclusion.DRIVEN.value],
     )  # fmt: skip
     yield M, "of at least {} samples, all finite", (run.SHORTEST,)
     yield M, "so one of it is 0.0254 m × 6.894757 kPa = {:.6f} m⁴/s", (PRINTED_Z0_FACTOR,)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
+from app.cli.preprocessing_options import NoRunExclusion, switches
 from ident.words.number import count
 
 if TYPE_CHECKING:
@@ -18,15 +19,17 @@ if TYPE_CHECKING:
 def check(
     matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")],
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the findings as JSON; - is stdout.")] = None,
+    no_run_exclusion: NoRunExclusion = False,
 ) -> None:
     """Say what is in a matrix, and every doubt about it. Exit status 1 where it has a fault."""
     from dataclasses import asdict
 
     from ident.checks.check import check as findings_of
+    from ident.preprocessing import screen
     from ident.readers import read_matrix
 
     check_target(json)
-    read = read_matrix(matrix)
+    read = screen(read_matrix(matrix), switches(no_run_exclusion=no_run_exclusion))
     findings = findings_of(read)
     if json is not None:
         write_json([asdict(finding) for finding in findings], json)

@@ -26,6 +26,14 @@ from app.cli.fit_options import (
 )
 from app.cli.given import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
+from app.cli.preprocessing_options import (
+    NoCommandOffset,
+    NoForceSign,
+    NoInitialState,
+    NoRunExclusion,
+    NoStrokeCentre,
+    switches,
+)
 from app.cli.progress import shown
 from ident.errors import Cancelled, TimeIsUp, Unusable
 
@@ -78,6 +86,11 @@ def diagnose(
     propose: Proposes = None,
     seed: Seed = 0,
     time: Limit = None,
+    no_run_exclusion: NoRunExclusion = False,
+    no_force_sign: NoForceSign = False,
+    no_command_offset: NoCommandOffset = False,
+    no_stroke_centre: NoStrokeCentre = False,
+    no_initial_state: NoInitialState = False,
     json: Target = None,
 ) -> None:
     """Find what a model lacks. Effects are ranked by their error on held-out data, and added while they help."""
@@ -93,16 +106,22 @@ def diagnose(
     from ident.workflows import diagnose as diagnosed
 
     check_target(json)
+    off = switches(
+        no_run_exclusion=no_run_exclusion, no_force_sign=no_force_sign, no_command_offset=no_command_offset,
+        no_stroke_centre=no_stroke_centre, no_initial_state=no_initial_state,
+    )  # fmt: skip
     budget = TimeBudget(time)
     records = read_matrix(matrix)
-    given = None if fit is None else given_fit(fit, any((model, effect, option, method != "ga", load != "none")))
+    given = None if fit is None else given_fit(fit, any((model, effect, option, method != "ga", load != "none", off)))
     try:
         with shown() as report, budget.running():
-            named, choice = modelled(records, model if given is None else given.model, report)
+            named, choice = modelled(records, model if given is None else given.model, report, off)
     except TimeIsUp:
-        _tell(unfitted(records, replace(Settings(), model="", seed=seed), budget.taken), json)
+        _tell(unfitted(records, replace(Settings(), model="", seed=seed, preprocessing=off), budget.taken), json)
         return
-    chosen = settings(named, effect, method, bounds, set_, load, seed, option, candidates=True)
+    chosen = settings(
+        named, effect, method, bounds, set_, load, seed, option, preprocessing=off, candidates=True
+    )  # fmt: skip
     given = choice.made(chosen) if given is None else with_candidates_given(given, chosen.bounds, chosen.fixed)
     defined = together((), definitions(custom or []))
     if given is not None:

@@ -29,6 +29,14 @@ from app.cli.fit_options import (
     settings,
 )
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
+from app.cli.preprocessing_options import (
+    NoCommandOffset,
+    NoForceSign,
+    NoInitialState,
+    NoRunExclusion,
+    NoStrokeCentre,
+    switches,
+)
 from app.cli.progress import shown
 from ident.errors import Unusable
 
@@ -54,6 +62,11 @@ def fit(
     option: Options = None,
     budget: Budget = None,
     profile: Profiled = None,
+    no_run_exclusion: NoRunExclusion = False,
+    no_force_sign: NoForceSign = False,
+    no_command_offset: NoCommandOffset = False,
+    no_stroke_centre: NoStrokeCentre = False,
+    no_initial_state: NoInitialState = False,
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the fit as JSON; - is stdout.")] = None,
 ) -> None:
     """Identify the parameters of a model. With standard errors, and the error on runs that no fit saw.
@@ -65,9 +78,14 @@ def fit(
     from ident.workflows import identify
 
     check_target(json)
+    off = switches(
+        no_run_exclusion=no_run_exclusion, no_force_sign=no_force_sign, no_command_offset=no_command_offset,
+        no_stroke_centre=no_stroke_centre, no_initial_state=no_initial_state,
+    )  # fmt: skip
     continued = None
     if start is not None:
-        others = {"--model": model, "--custom": custom, "--bounds": bounds, "--set": set_, "--load": load != "none"}
+        others = {"--model": model, "--custom": custom, "--bounds": bounds, "--set": set_, "--load": load != "none",
+                  **{f"--no-{name.replace('_', '-')}": True for name in off}}  # fmt: skip
         how = Searched(method, seed, tuple(option or ()), budget)
         continued = StartOptions(start, tuple(effect or ()), terms, search, how, others).settings()
     elif search:
@@ -78,8 +96,8 @@ def fit(
     def fitted(path: Path, report: Report) -> FitResult:
         if continued is not None:
             return identify(read_matrix(path), continued, report)
-        named, choice = modelled(read_matrix(path), model, report)
-        chosen = settings(named, effect, method, bounds, set_, load, seed, option, custom, budget, terms)
+        named, choice = modelled(read_matrix(path), model, report, off)
+        chosen = settings(named, effect, method, bounds, set_, load, seed, option, custom, budget, terms, off)
         result = choice.made(chosen) or identify(choice.matrix, chosen, report)
         return replace(result, structures=choice.structures)
 

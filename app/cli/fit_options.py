@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -98,7 +99,9 @@ Options = Annotated[
 ]
 
 
-def modelled(matrix: Matrix, model: str | None, report: Report) -> tuple[str, StructureChoice]:
+def modelled(
+    matrix: Matrix, model: str | None, report: Report, preprocessing: Mapping[str, bool]
+) -> tuple[str, StructureChoice]:  # fmt: skip
     """The model that was named; else the one that fits, and what was found on the way to it.
 
     Raises Unusable where the channels allow none.
@@ -107,7 +110,7 @@ def modelled(matrix: Matrix, model: str | None, report: Report) -> tuple[str, St
 
     if model is not None:
         return _named(model), StructureChoice(matrix)
-    choice = choose_structure(matrix, report)
+    choice = choose_structure(matrix, report, preprocessing)
     return choice.structures[0].machine, choice
 
 
@@ -128,7 +131,7 @@ def _named(model: str) -> str:
 def settings(
     model: str, effect: list[str] | None, method: str, bounds: list[str] | None, set_: list[str] | None, load: str,
     seed: int, option: list[str] | None, custom: list[Path] | None = None, budget: float | None = None,
-    terms: int | None = None, candidates: bool = False,
+    terms: int | None = None, preprocessing: Mapping[str, bool] | None = None, candidates: bool = False,
 ) -> Settings:  # fmt: skip
     """The library's settings from what the command line gives. Raises Unusable.
 
@@ -142,7 +145,7 @@ def settings(
 
     own, found = additions(custom or [], terms)
     base = Settings(model=model, method=method, load=load, seed=seed, options=method_options(option or []),
-                    budget=budget)  # fmt: skip
+                    budget=budget, preprocessing=preprocessing or {})  # fmt: skip
     named = dict.fromkeys((*(effect or []), *own.effects))
     chosen = with_named(base, tuple(named), own.custom, found, defined_here)
     preset = preset_with(model, chosen.effects, chosen.custom)

@@ -121,8 +121,9 @@ def _made(draft: Draft, files: Gathered, out: Path) -> None:
     """Check the matrix, write it, and say what was taken and what is doubted."""
     from ident.checks.check import check
     from ident.drafts.text import drafted
+    from ident.preprocessing import screen
 
-    matrix = drafted(files)
+    matrix = screen(drafted(files))
     _write(files, out)
     findings = check(matrix)
     noticed = {notice.replace("runs/", "", 1) for notice in matrix.notices}  # which the description shows

@@ -22,6 +22,7 @@ from ident.fit.identification import check_settings
 from ident.fit.result import FitResult
 from ident.fit.settings import GENERAL, Settings
 from ident.plain import written
+from ident.preprocessing import off_steps, screen
 from ident.presets.suited import in_question
 from ident.residuals.budget import budget
 from ident.residuals.survey import survey
@@ -88,10 +89,11 @@ def settings_of(request: Chosen, matrix: MatrixView | None, candidates: bool = F
     named = request.model or _model(request, matrix)
     if not named:
         return Settings(model="", method=request.method, seed=request.seed, load=request.load, options=request.options,
-                        budget=request.budget)  # fmt: skip
+                        budget=request.budget, preprocessing=off_steps(request.preprocessing))  # fmt: skip
     return chosen_settings(Choices(
         model=named, effects=request.effects, custom=request.custom, method=request.method, seed=request.seed,
         bounds=request.bounds, fixed=request.set, load=request.load, options=request.options, budget=request.budget,
+        preprocessing=request.preprocessing,
     ), candidates=candidates)  # fmt: skip
 
 
@@ -199,6 +201,7 @@ def side_by_side(context: Context, fit_id: str, others: Sequence[str]) -> SideBy
 def budget_of(context: Context, fit_id: str) -> ErrorBudget:
     """What the error on the runs to fit is made of. Raises Unusable where the model is unstable at every run."""
     row = find(context, fit_id)
-    matrix = matrices.load(context, row.matrix)
+    fit = FitResult.from_json(row.result)
+    matrix = screen(matrices.load(context, row.matrix), fit.settings.get("preprocessing", {}))
     fitted = replace(matrix, runs=matrix.of_use("fit") or matrix.runs)
-    return ErrorBudget(**budget(compare(fitted, FitResult.from_json(row.result))).to_json())
+    return ErrorBudget(**budget(compare(fitted, fit)).to_json())

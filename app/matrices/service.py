@@ -23,6 +23,7 @@ from app.tables import MatrixRow
 from ident.checks.check import check
 from ident.errors import Unusable
 from ident.matrix import Actuator, Matrix
+from ident.preprocessing import screen
 from ident.readers.limits import LIMITS
 from ident.readers.source import DESCRIPTION, inside
 from ident.readers.strict_yaml import read_yaml
@@ -192,7 +193,8 @@ def load(context: Context, matrix: str) -> Matrix:
 
 
 def summary(matrix: Matrix) -> dict[str, Any]:
-    """What is shown of a matrix without its samples."""
+    """What is shown of a matrix without its samples, with the runs that a fit takes out of it."""
+    matrix = screen(matrix)
     return {
         "data_hash": matrix.data_hash,
         "runs": [_run(run) for run in matrix.runs],

@@ -11,6 +11,8 @@ from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.fit.settings import METHODS
+from ident.preprocessing import STEPS
+from ident.preprocessing.step import Step
 from ident.presets import PRESETS, Preset
 from ident.presets.suited import in_question
 from ident.stages import PLACES
@@ -40,6 +42,7 @@ class StartView:
     methods: tuple[str, ...]
     effects: tuple[tuple[str, tuple[Effect, ...]], ...]
     force: bool
+    steps: tuple[Step, ...]
     runs: tuple[tuple[str, str], ...]
 
 
@@ -57,6 +60,7 @@ def start_view(matrix: MatrixView, kept: Sequence[Kept] = ()) -> StartView:
         methods=METHODS,
         effects=tuple((name, found) for name, found in (*_by_place(models), ("of this lab", own)) if found),
         force=any("force" in run.channels for run in matrix.runs),
+        steps=STEPS,
         runs=tuple((run.id, run.use) for run in matrix.runs),
     )
 

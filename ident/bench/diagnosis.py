@@ -104,7 +104,7 @@ class BenchDiagnoser:
             proposals=(), complete=self.complete, not_looked_at=missing, seed=self.fit.seed,
             seconds=self.course.seconds_taken,
             version=version("servoident"), data_hash=self.matrix.data_hash,
-            settings=dict(self.fit.settings),
+            settings=dict(self.fit.settings), preprocessing=self.fit.preprocessing,
         )  # fmt: skip
 
     def _add(self, first: list[Candidate], steps: list[Refit]) -> None:

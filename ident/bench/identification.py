@@ -201,6 +201,7 @@ class BenchIdentification:
                    *_compared(self.analysis, solution)),
             settings=self.settings.to_json(), searched=tuple(called[n] for n in self.space.names),
             evolution=evolution(self.space, state), actuator=self.matrix.actuator,
+            preprocessing=self.matrix.preprocessing,
         )  # fmt: skip
 
     def _far_bounds(self, error: float | None) -> list[str]:

@@ -24,6 +24,7 @@ from ident.checks.summary import RunSummary, Summary, describe
 from ident.checks.timing import timing
 from ident.checks.unit_factor import unit_factor
 from ident.matrix import Actuator, Matrix
+from ident.preprocessing import screen
 from ident.run import Run
 
 __all__ = ["Finding", "Findings", "RunSummary", "Summary", "check", "describe"]
@@ -33,6 +34,7 @@ ORDER = ("fault", "doubt", "note")
 
 def check(matrix: Matrix) -> Findings:
     """Everything that a person should know about the data: faults first, then doubts, then notes."""
+    matrix = screen(matrix)
     measured = [(run, respond(run)) for run in matrix.runs]
     found = [finding for run, response in measured for finding in one_run(run, response, matrix.actuator)]
     found += [*delays(measured), *(scaled := list(scale(measured))), *repeats(matrix), *statements(matrix)]

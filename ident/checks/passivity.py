@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ident.checks.finding import Finding
-from ident.presets.passivity import gives_work_back, work
+from ident.preprocessing.force_sign import gives_work_back, work
 from ident.run import Run
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ident.matrix import Matrix
+from ident.preprocessing import screen
 from ident.run import Run
 
 
@@ -49,7 +50,8 @@ class Summary:
 
 
 def describe(matrix: Matrix) -> Summary:
-    """The summary of a matrix."""
+    """The summary of a matrix, with the runs that a fit takes out of it."""
+    matrix = screen(matrix)
     timed = all(run.time_unit == "s" for run in matrix.runs)
     return Summary(
         serial=matrix.actuator.serial,

@@ -22,6 +22,7 @@ from ident.fit.simulated_runs import every_run, is_simulated
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Matrix
 from ident.parallel import each
+from ident.preprocessing import prepare
 from ident.presets import Preset
 from ident.run import USES, Run, over_runs
 from ident.words.engineering import quantity
@@ -251,7 +252,8 @@ def fitted(fit: FitResult, matrix: Matrix) -> tuple[Preset, Matrix, dict[str, fl
     Raises Unusable where a value is missing.
     """
     named = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
-    preset, driven = named.for_matrix(matrix, str(fit.settings.get("load", "none")))
+    load, switches = str(fit.settings.get("load", "none")), fit.settings.get("preprocessing", {})
+    preset, driven = prepare(named, matrix, load, switches)
     values = usual_shapes(named.effects)
     values |= {preset.parameter(name).in_equations: value for name, value in fit.values.items()}
     missing = [p.name for p in preset.parameters if p.in_equations not in values]

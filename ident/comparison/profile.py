@@ -28,6 +28,7 @@ from ident.fit.result import Estimate, FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.noise.effective_sample_size import independent_samples
+from ident.preprocessing import screen
 from ident.progress import Progress, Report, silent
 from ident.words.error import error_said
 from ident.words.nearest import did_you_mean
@@ -96,6 +97,7 @@ def profile(
     estimate = check_profiled(fit, name)
     if not 5 <= points <= _MOST:
         raise Unusable("bad-option", f"{points} values", "profile", f"give 5 to {_MOST}")
+    matrix = screen(matrix, fit.settings.get("preprocessing", {}))
     told = np.array([independent_samples(one.run.measured - one.modelled) for one in _fitted(matrix, fit)])
     held = _Held(matrix, Settings.from_json(dict(fit.settings)), name, told)
     grid = _grid(fit, name, points, held)

@@ -29,6 +29,7 @@ from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.reduction import excited_band
 from ident.matrix import Matrix
 from ident.parallel import each
+from ident.preprocessing import prepare
 from ident.run import Run
 
 Array = NDArray[np.float64]
@@ -93,7 +94,7 @@ def _rivals(in_question: Rivals, matrix: Matrix) -> list[Rival]:
         raise Unusable("bad-value", f"noise {noise:g}", "noise floor", "give a positive share of the output")
     found = []
     for preset, values in in_question.models:
-        suited, driven = preset.for_matrix(trusted)
+        suited, driven = prepare(preset, trusted, switches=in_question.preprocessing)
         runs = driven.of_use("fit")
         band = excited_band(runs)
         found.append(Rival(suited, dict(values), driven, band, deviation_of_noise(runs, band, noise)))

@@ -56,7 +56,8 @@ def alternative_models(matrix: Matrix, fit: FitResult, custom: Iterable[Effect])
     found = []
     for one in fit.structures:
         if one.machine != fit.model and one.values:
-            family = CandidateModels.of(matrix, Settings(model=one.machine), custom)
+            settings = Settings(model=one.machine, preprocessing=fit.settings.get("preprocessing", {}))
+            family = CandidateModels.of(matrix, settings, custom)
             values = {family.preset.parameter(name).in_equations: value for name, value in one.values.items()}
             found.append(AlternativeModel(family, values))
     return tuple(found)

@@ -26,6 +26,7 @@ from ident.fit.space import search_space
 from ident.matrix import Matrix
 from ident.noise.floor import Floors, noise_floors
 from ident.parallel import each
+from ident.preprocessing import prepare
 from ident.presets import Preset
 from ident.presets import preset as preset_named
 from ident.presets.middle import about
@@ -74,7 +75,7 @@ class CandidateModels:
         memory: float | None = None,
     ) -> CandidateModels:  # fmt: skip
         """The models of the settings' preset with every effect that it has a place for."""
-        preset, matrix = preset_named(given.model).for_matrix(matrix, given.load)
+        preset, matrix = prepare(preset_named(given.model), matrix, given.load, given.preprocessing)
         there = preset.driven_by in MOTIONS or any(run.specimen or "force" in run.channels for run in matrix.runs)
         listed = (*(effect for effect in CATALOGUE if there or not effect.of_specimen), *custom)
         known = {

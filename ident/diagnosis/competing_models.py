@@ -30,7 +30,8 @@ def competing_models(found: Diagnosis, custom: Sequence[Effect] = ()) -> Rivals:
     models = tuple(_model(found, values, custom) for values in _chosen(found))
     floor = found.noise_floor.get("fit") or 0.0
     doubted = frozenset(suspect.run for suspect in found.verdict.suspects)
-    return Rivals(models, floor if 0 < floor < math.inf else NOISE, doubted)
+    switches = found.settings.get("preprocessing", {})
+    return Rivals(models, floor if 0 < floor < math.inf else NOISE, doubted, switches)
 
 
 def _chosen(found: Diagnosis) -> list[Values]:

@@ -289,6 +289,7 @@ class Diagnoser:
             version=version("servoident"),
             data_hash=self.models.matrix.data_hash,
             settings=dict(self.fit.settings),
+            preprocessing=models.matrix.preprocessing,
         )
 
     def _verdict(

@@ -11,7 +11,7 @@ from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.diagnosis.tables import listings
 from ident.diagnosis.verification import Standing
 from ident.errors import Unusable
-from ident.matrix import Matrix
+from ident.matrix import Matrix, StepOutcome
 from ident.plain import UNWRITTEN, WHERE_KNOWN, Misfit, read, written
 from ident.residuals.budget import Budget
 from ident.run import USES, Specimen
@@ -227,6 +227,7 @@ class Diagnosis(Shown):
     version: str = ""
     data_hash: str = ""
     notes: tuple[str, ...] = ()
+    preprocessing: tuple[StepOutcome, ...] = field(default=(), metadata=WHERE_KNOWN)
     matrix: Matrix | None = field(default=None, compare=False, repr=False, metadata=UNWRITTEN)
 
     @property

@@ -22,6 +22,8 @@ from ident.fit.search import State
 from ident.fit.settings import Settings
 from ident.fit.summary import noticed
 from ident.matrix import Matrix
+from ident.preprocessing import off_steps, screen
+from ident.preprocessing.pipeline import ALL_ON
 from ident.presets import Preset, preset
 from ident.presets.suited import in_question, told_by_following, unusual
 from ident.progress import Progress, Report, silent
@@ -45,10 +47,14 @@ class StructureChoice:
 
     def made(self, settings: Settings) -> FitResult | None:
         """The fit, where these settings ask for the very same."""
-        return self.fit if self.fit is not None and settings == Settings(model=self.fit.model) else None
+        fit = self.fit
+        usual = fit and Settings(model=fit.model, preprocessing=fit.settings.get("preprocessing", {}))
+        return fit if fit is not None and settings == usual else None
 
 
-def compared_structures(matrix: Matrix, report: Report = silent) -> tuple[Structure, ...]:
+def compared_structures(
+    matrix: Matrix, report: Report = silent, preprocessing: Mapping[str, bool] = ALL_ON
+) -> tuple[Structure, ...]:  # fmt: skip
     """The models in question, the one to take first: the simplest whose held-out error is not worse.
 
     Of a machine that moves along a way the simplest that is not a motor, where one is no worse. Before it comes one
@@ -56,10 +62,12 @@ def compared_structures(matrix: Matrix, report: Report = silent) -> tuple[Struct
 
     Raises Unusable where the channels allow none.
     """
-    return _compared(matrix, report)[0]
+    return _compared(screen(matrix, preprocessing), report, preprocessing)[0]
 
 
-def _compared(matrix: Matrix, report: Report) -> tuple[tuple[Structure, ...], FitResult | None]:
+def _compared(
+    matrix: Matrix, report: Report, preprocessing: Mapping[str, bool]
+) -> tuple[tuple[Structure, ...], FitResult | None]:  # fmt: skip
     """The models in question as :func:`structures` has them, and the fit of the first where more than one was."""
     models = in_question(matrix.runs, matrix.machine)
     if len(models) == 1:
@@ -69,7 +77,7 @@ def _compared(matrix: Matrix, report: Report) -> tuple[tuple[Structure, ...], Fi
             shown = f"{only.name}, a loop that compares both, since what was recorded is where the command is"
         why = "the matrix describes it" if matrix.machine else shown
         return (Structure(only.name, {"held_out": None}, len(only.parameters), why),), None
-    fitted = _all_fitted(models, matrix, report)
+    fitted = _all_fitted(models, matrix, report, preprocessing)
     over, tried = _judged(list(fitted.values()))
     least = min(one.error for one in tried)
     good = [one for one in tried if one.error <= _WORSE * least]
@@ -147,12 +155,14 @@ def _judged(fitted: Sequence[_FittedStructure]) -> tuple[str, list[_JudgedStruct
     return f" over {longest.horizon:.3g} s", tried
 
 
-def _all_fitted(models: Sequence[Preset], matrix: Matrix, report: Report) -> dict[str, _FittedStructure]:
+def _all_fitted(
+    models: Sequence[Preset], matrix: Matrix, report: Report, preprocessing: Mapping[str, bool]
+) -> dict[str, _FittedStructure]:  # fmt: skip
     """The models in question, fitted, but for those that a command in closed loop does not allow while others do."""
     fitted, refused = {}, None
     for model in models:
         try:
-            fitted[model.name] = _FittedStructure(model, matrix, report)
+            fitted[model.name] = _FittedStructure(model, matrix, report, preprocessing)
         except Unusable as error:
             if error.code != "closed-loop":
                 raise
@@ -162,12 +172,16 @@ def _all_fitted(models: Sequence[Preset], matrix: Matrix, report: Report) -> dic
     return fitted
 
 
-def choose_structure(matrix: Matrix, report: Report = silent) -> StructureChoice:
+def choose_structure(
+    matrix: Matrix, report: Report = silent, preprocessing: Mapping[str, bool] = ALL_ON
+) -> StructureChoice:  # fmt: skip
     """The models in question, with a notice of the matrix that says why the first.
 
-    Nothing is said where it is the usual model and no other could be meant.
+    Nothing is said where it is the usual model and no other could be meant. `preprocessing` has false for each step
+    that is switched off.
     """
-    found, fit = _compared(matrix, report)
+    matrix = screen(matrix, preprocessing)
+    found, fit = _compared(matrix, report, preprocessing)
     first, *others = found
     usual = first.machine in (Settings().model, matrix.machine) and not others
     if usual and (matrix.machine or not told_by_following(preset(first.machine), matrix.runs)):
@@ -233,8 +247,8 @@ class FitWithAlternatives:
 class _FittedStructure:
     """A model in question, fitted."""
 
-    def __init__(self, model: Preset, matrix: Matrix, report: Report) -> None:
-        self.matrix, self.settings = matrix, Settings(model=model.name)
+    def __init__(self, model: Preset, matrix: Matrix, report: Report, preprocessing: Mapping[str, bool]) -> None:
+        self.matrix, self.settings = matrix, Settings(model=model.name, preprocessing=off_steps(preprocessing))
         work = Identification(matrix, self.settings, report)
         self.fit, self.parameters = completed(work), len(work.objective.space.axes)
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ident.diagnosis.discovery.term_count_curve import term_count_curve
+from ident.preprocessing.told import told
 from ident.words.error import error_said
 from ident.words.percent import percent
 from ident.words.plus_minus import UNDETERMINED, plus_minus_si
@@ -39,6 +40,8 @@ def listings(found: Diagnosis) -> Iterator[Listing | str]:
         yield "each on top of those before"
     for note in found.notes:
         yield f"note: {note}"
+    for said in told(found.preprocessing, found.notes):
+        yield f"preprocessing: {said}"
     yield found.verdict.text
 
 

@@ -10,6 +10,7 @@ from ident.errors import Unusable
 from ident.fit.extended import extended
 from ident.fit.given import Value, bounds_in_si, values_in_si, with_candidates
 from ident.fit.settings import Settings
+from ident.preprocessing import off_steps
 from ident.words.nearest import did_you_mean
 
 
@@ -29,6 +30,7 @@ class Choices(TypedDict, total=False):
     seed: int
     options: Mapping[str, float]
     budget: float | None
+    preprocessing: Mapping[str, bool]
 
 
 def settings_of(choices: Choices, usual: Settings | None = None, candidates: bool = False) -> Settings:
@@ -48,4 +50,7 @@ def settings_of(choices: Choices, usual: Settings | None = None, candidates: boo
     if candidates:
         model = with_candidates(model, (*chosen["bounds"], *chosen["fixed"]), named.custom)
     bounds, fixed = bounds_in_si(chosen["bounds"], model), values_in_si(chosen["fixed"], model)
-    return Settings(**{**chosen, "effects": named.effects, "custom": named.custom, "bounds": bounds, "fixed": fixed})
+    return Settings(**{
+        **chosen, "effects": named.effects, "custom": named.custom, "bounds": bounds, "fixed": fixed,
+        "preprocessing": off_steps(chosen["preprocessing"]),
+    })  # fmt: skip

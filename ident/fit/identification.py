@@ -33,6 +33,7 @@ from ident.fit.summary import noticed, summarise
 from ident.fit.windows import in_longer_windows, in_windows
 from ident.matrix import Matrix
 from ident.noise.floor import noise_floors
+from ident.preprocessing import off_steps, prepare
 from ident.presets import PRESETS, Preset
 from ident.progress import Progress, Report, silent
 from ident.run import Run
@@ -61,7 +62,7 @@ class Identification:
             what = "every run is to verify, none to fit"
             raise Unusable("no-fit-runs", what, "runs", "mark at least one run use: fit")
         named = preset_with(settings.model, settings.effects, settings.custom)
-        self.preset, self.matrix = named.for_matrix(matrix, settings.load)
+        self.preset, self.matrix = prepare(named, matrix, settings.load, settings.preprocessing)
         matrix = self.matrix
         _refuse_undriven(self.preset, matrix)
         self._runs = matrix.of_use("fit")
@@ -205,6 +206,7 @@ def _ended_early(result: FitResult, generations: int) -> FitResult:
 
 def check_settings(settings: Settings) -> None:
     """Raise Unusable for settings that no matrix could be fitted with."""
+    off_steps(settings.preprocessing)
     if settings.budget is not None:
         _check_budget(settings)
     if not settings.model:

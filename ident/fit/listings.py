@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
+from ident.preprocessing.told import told
 from ident.words.error import error_said
 from ident.words.percent import percent
 from ident.words.plus_minus import UNDETERMINED, determined, plus_minus_si
@@ -35,6 +36,8 @@ def remarks(result: FitResult) -> Iterator[str]:
         yield f"not determined: {entry.name}: {entry.reason}"
     for note in result.notes:
         yield f"note: {note}"
+    for said in told(result.preprocessing, result.notes):
+        yield f"preprocessing: {said}"
 
 
 def parameter_rows(parameters: Mapping[str, Estimate]) -> Iterator[tuple[str, ...]]:

@@ -9,7 +9,7 @@ from typing import Any
 
 from ident.errors import Unusable
 from ident.fit.listings import listings
-from ident.matrix import Actuator, Matrix
+from ident.matrix import Actuator, Matrix, StepOutcome
 from ident.plain import UNWRITTEN, WHERE_KNOWN, Misfit, read, written
 from ident.presets.description import description
 from ident.presets.record_units import SAMPLE
@@ -154,8 +154,8 @@ class FitResult(Shown):
     the first as `anchored_error` alone, which is the same. `window` is there where the fit was made over windows.
     `evolution` belongs to the parameters `searched`, in that order. `actuator` is what was stated of the machine;
     earlier versions did not keep it. The search of one that `ended_early` ran out of its time. Runs that are `left_out`
-    were not fitted, and are in no mean over the runs to fit; they stand in `runs`. `matrix` holds the data, where the
-    fit was made here.
+    were not fitted, and are in no mean over the runs to fit; they stand in `runs`. `preprocessing` has what became of
+    each step of it, which earlier versions did not tell. `matrix` holds the data, where the fit was made here.
     """
 
     model: str
@@ -188,6 +188,7 @@ class FitResult(Shown):
     searched: tuple[str, ...] = ()
     evolution: tuple[Generation, ...] = field(default=(), repr=False)
     actuator: Actuator | None = field(default=None, metadata=WHERE_KNOWN)
+    preprocessing: tuple[StepOutcome, ...] = field(default=(), metadata=WHERE_KNOWN)
     matrix: Matrix | None = field(default=None, compare=False, repr=False, metadata=UNWRITTEN)
 
     def listings(self) -> Iterable[Listing | str]:

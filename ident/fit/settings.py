@@ -23,7 +23,8 @@ class Settings:
     model, like those of the catalogue. `bounds` maps a parameter's name to (lower, upper), `fixed` to the value it is
     held at, all SI. With every parameter fixed nothing is searched and the result is the error of that model. Without a
     `model` ("") that which fits is taken, of those that the channels allow. The search ends with the generation that
-    goes beyond `budget`, s; with one, two fits need not be the same. With a `start` the fit begins where an earlier one
+    goes beyond `budget`, s; with one, two fits need not be the same. `preprocessing` has false for each step that is
+    switched off, see :data:`ident.preprocessing.STEPS`. With a `start` the fit begins where an earlier one
     ended, and nothing is searched unless that asks for it.
     """
 
@@ -37,6 +38,7 @@ class Settings:
     options: Mapping[str, float] = field(default_factory=dict)  # of the method: population, keep, mutation, ...
     custom: tuple[Mapping[str, Any], ...] = ()
     budget: float | None = None
+    preprocessing: Mapping[str, bool] = field(default_factory=dict, metadata=WHERE_KNOWN)
     start: Start | None = field(default=None, metadata=WHERE_KNOWN)
 
     def to_json(self) -> dict[str, Any]:

@@ -146,6 +146,7 @@ def summarise(
         searched=tuple(label[name][0] for name in space.names),
         evolution=evolution(objective.space, state),
         actuator=matrix.actuator,
+        preprocessing=matrix.preprocessing,
     )
 
 

@@ -20,9 +20,7 @@ from ident.matrix import Matrix
 from ident.parameter import Parameter
 from ident.presets.convention import Convention
 from ident.presets.effect_scales import scale_of
-from ident.presets.middle import about, middle_of
-from ident.presets.neutral import from_neutral
-from ident.presets.passivity import passive
+from ident.presets.middle import about
 from ident.presets.record_units import RecordUnits
 from ident.presets.stated import refuse_unstated
 from ident.run import DISTURBANCES, MOTIONS
@@ -216,8 +214,8 @@ class Preset:
     def for_matrix(self, matrix: Matrix, load: str = "none") -> tuple[Preset, Matrix]:
         """The model that suits a matrix, and the matrix with what drives that model as its command.
 
-        `load` "force": the measured force takes the place of the specimen's equation. Raises Unusable where it was
-        not measured, or the model has no specimen.
+        With `load` "force" no disturbance may be measured beside the force. The data are as they were recorded:
+        :func:`ident.preprocessing.prepare` goes on from here. Raises Unusable where the model does not suit them.
         """
         preset = self._driven_as(matrix)
         refuse_unmeasured(preset.chain.symbols, matrix.runs)
@@ -240,12 +238,7 @@ class Preset:
         preset = preset.disturbed_as(matrix, load)
         if preset.kind == "chain":
             preset = replace(preset, chain=varying(preset.chain, matrix.runs))
-        if preset.driven_by in MOTIONS:
-            matrix = passive(matrix)
-        elif preset.kind == "chain" and preset.driven_by == "command":
-            matrix = from_neutral(matrix, preset.core)
-            preset = replace(preset, middle=middle_of(matrix, preset.core)).with_effects(preset.effects)
-        return (preset.with_measured_load(matrix), matrix) if load == "force" else (preset, matrix)
+        return preset, matrix
 
     def _driven_as(self, matrix: Matrix) -> Preset:
         """The machine in open loop where the command is no way. Raises Unusable where runs differ in that."""

@@ -22,7 +22,6 @@ from ident.readers.source import DESCRIPTION, Beside, Folder, Source, alone, bes
 from ident.readers.stated import from_arrays, from_table, of_file
 from ident.readers.table import Table
 from ident.readers.text import read_text
-from ident.responding import still_apart
 from ident.run import Run
 from ident.words.number import count
 from ident.words.stated import Stated
@@ -93,8 +92,6 @@ def read_source(source: Source, limits: Limits = LIMITS) -> Matrix:
     text = source.read(DESCRIPTION, limits.description)
     described = describe(text, limits)
     runs, notices, digest = read_runs(source, described, text, limits)
-    runs, of_still = still_apart(runs)
-    notices += of_still
     stated = "" if described.limits is None else limits_text(source, described.limits, limits)
     return Matrix(
         described.actuator, runs, digest, described.controller, described.limits, stated, notices, described.machine

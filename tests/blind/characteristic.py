@@ -18,6 +18,7 @@ from ident.custom.definition import preset_with
 from ident.diagnosis.result import Diagnosis
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.matrix import Matrix
+from ident.preprocessing import prepare
 from ident.residuals.traces import inside
 
 Array = NDArray[np.float64]
@@ -51,7 +52,7 @@ def _laws(
     matrix: Matrix, model: str, effects: Sequence[str], custom: Sequence[Mapping[str, Any]], known: Mapping[str, float]
 ) -> dict[str, Array]:
     """The signals inside a model, all runs one behind the other."""
-    preset, driven = preset_with(model, effects, custom).for_matrix(matrix)
+    preset, driven = prepare(preset_with(model, effects, custom), matrix)
     values = {p.in_equations: known.get(p.name, p.value) for p in preset.parameters}
     runs = driven.of_use("fit")
     traces = inside(SimulatedRuns(preset, driven, runs, np.inf), values, _READ)

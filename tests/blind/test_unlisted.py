@@ -7,6 +7,7 @@ import pytest
 
 from ident.comparison.compare import modelled
 from ident.custom.definition import preset_with
+from ident.preprocessing import prepare
 from tests.blind.unlisted import key, outcome, table
 from tests.blind.unlisted_effects import KIND, MODEL, Secret, written
 from tests.reference import qian_reference as linear
@@ -22,7 +23,7 @@ def test_an_equation_as_a_user_writes_it_is_that_of_the_reference(name, full):
     hidden = drawn(name, np.random.default_rng([5, NAMES.index(name)]))
     machine = Secret(PLANT, hidden._replace(s=0.1 * hidden.s), 0.005, 1)
     clean, own = machine.measured(machine.trials[4:6], noise=0.0), written(machine.hidden)
-    model, driven = preset_with(MODEL, (own["name"],), (own,)).for_matrix(clean)
+    model, driven = prepare(preset_with(MODEL, (own["name"],), (own,)), clean)
     values = {p.in_equations: getattr(PLANT, p.name, p.value) for p in model.parameters}
     linear_outputs = modelled(model, values, driven)
     outputs = modelled(model, {**values, model.parameter(f"{own['name']}.s").in_equations: machine.hidden.s}, driven)

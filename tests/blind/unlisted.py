@@ -23,6 +23,7 @@ from ident.diagnosis.result import Diagnosis
 from ident.diagnosis.selection import USUAL
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
+from ident.preprocessing import prepare
 from ident.workflows import diagnose, identify
 from tests.blind import characteristic
 from tests.blind.campaign import add, rows
@@ -96,7 +97,7 @@ def outcome(machine: Hiding, catalogue: bool, true: tuple[Mapping[str, Any], Map
 def _off(found: Diagnosis, clean: Matrix, noise: float) -> float:
     """How far the model's outputs are from those without noise, in deviations of the noise, on average over runs."""
     effects, custom, known = characteristic.ending(found)
-    model, driven = preset_with(MODEL, effects, custom).for_matrix(clean)
+    model, driven = prepare(preset_with(MODEL, effects, custom), clean)
     values = {p.in_equations: known.get(p.name, p.value) for p in model.parameters}
     outputs = modelled(model, values, driven)
     left = [np.std(run.measured - outputs[run.id]) / np.std(run.measured) for run in clean.runs]

@@ -12,6 +12,7 @@ from ident.effects import effect
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
+from ident.preprocessing import prepare
 from ident.presets import preset
 from ident.run import Run
 from ident.workflows import compare, diagnose, identify
@@ -54,7 +55,7 @@ def test_stops_at_both_ends_are_found_wherever_the_transducer_has_its_zero():
 
 @pytest.mark.parametrize("low", [-0.3, -0.05])
 def test_where_nothing_stops_a_machine_its_zero_is_the_middle_where_it_was_covered(low):
-    model, _ = preset("motor").with_effects((effect("end_stop"),)).for_matrix(cylinder(low, 0.2, stops=False))
+    model, _ = prepare(preset("motor").with_effects((effect("end_stop"),)), cylinder(low, 0.2, stops=False))
     assert model.parameter("end_stop.middle").value == 0.0
 
 
@@ -80,7 +81,7 @@ def test_a_fit_of_stops_that_knew_no_middle_can_be_read_and_has_it_at_zero():
     [(500.0, 500.5, 500.25), (-0.3, 0.2, -0.05), (-0.05, 0.45, 0.2), (LOW, HIGH, 1.45), (-1.7, -1.2, -1.45)],
 )
 def test_the_middle_of_a_stroke_is_that_of_the_way_between_stops_wherever_the_zero_lies(low, high, middle):
-    model, _ = preset("motor").with_effects((effect("end_stop"),)).for_matrix(cylinder(low, high))
+    model, _ = prepare(preset("motor").with_effects((effect("end_stop"),)), cylinder(low, high))
     found = model.parameter("end_stop.middle")
     assert found.value == pytest.approx(middle, abs=2e-3)
     family = CandidateModels.of(cylinder(low, high), Settings(model="motor"))

@@ -12,6 +12,7 @@ from ident.comparison.compare import compare, modelled
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
+from ident.preprocessing import prepare
 from ident.presets import PRESETS
 from ident.readers import read_matrix
 from ident.run import Run, Specimen
@@ -38,7 +39,7 @@ def test_the_measured_force_stands_for_any_specimen():
     matrix = loaded(Specimen())
     truth = {p.name: p.value for p in PRESETS["qian2014"].parameters}
     measured = matrix.runs[0].measured
-    preset, matrix = PRESETS["qian2014"].for_matrix(matrix, "force")
+    preset, matrix = prepare(PRESETS["qian2014"], matrix, "force")
     with_force = modelled(preset, truth, matrix)["run"]
     without = modelled(PRESETS["qian2014"], truth, matrix)["run"]
     assert np.std(with_force - measured) < 2e-3 * np.std(measured)

@@ -16,6 +16,7 @@ from ident.fit import simulated_runs
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import Space
 from ident.matrix import Actuator, Matrix
+from ident.preprocessing import prepare
 from ident.presets import Preset, preset
 from ident.run import Run
 from ident.simulation.kernel import Kernel
@@ -50,7 +51,7 @@ def _fenced() -> Iterator[None]:
 def model(*effects: str) -> Preset:
     """The actuator against a measured force."""
     matrix = Matrix(ACTUATOR, (loaded(0, "linear"),))
-    return preset("qian2014", effects).for_matrix(matrix, "force")[0]
+    return prepare(preset("qian2014", effects), matrix, "force")[0]
 
 
 @cache

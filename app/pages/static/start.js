@@ -46,6 +46,8 @@ form.addEventListener("submit", (event) => {
     wanted.bounds = bounds(fields);
     if (fields.get("budget")) wanted.budget = Number(fields.get("budget"));
     if (fields.has("load")) wanted.load = fields.get("load");
+    const off = [...form.querySelectorAll("[name=preprocessing]:not(:checked)")];
+    if (off.length) wanted.preprocessing = Object.fromEntries(off.map((box) => [box.value, false]));
     try {
       const { data } = await send("POST", form.action, { ...wanted, matrix: await matrix() });
       location.assign(`/fits/${data.id}`);

@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ident.preprocessing import screen
+from ident.preprocessing.run_exclusion import still_apart
 from ident.readers import from_arrays, read_matrix
-from ident.responding import still_apart
 from ident.run import Run
 from ident.workflows import compare, identify
 
@@ -76,8 +77,10 @@ def bench(folder: Path) -> Path:
 def test_a_run_below_the_dead_zone_spoils_no_error(tmp_path):
     """It was some thousand per cent, and with it the mean of all; the fit is that of the others, and says so."""
     matrix = read_matrix(bench(tmp_path))
-    assert [one.use for one in matrix.runs] == ["fit", "fit", "still", "verify"]
-    assert any(notice.startswith("run r2 stands still") for notice in matrix.notices)
+    assert [one.use for one in matrix.runs] == ["fit", "fit", "fit", "verify"]  # as it is stated
+    screened = screen(matrix)
+    assert [one.use for one in screened.runs] == ["fit", "fit", "still", "verify"]
+    assert any(notice.startswith("run r2 stands still") for notice in screened.notices)
     fit = identify(matrix, model="motor", effects=["dead_zone"])
     assert any(note.startswith("run r2 stands still") for note in fit.notes)
     assert [one.id for one in fit.runs] == ["r0", "r1", "r3"]
@@ -92,5 +95,7 @@ def test_records_that_are_added_up_are_told_apart_alike():
         for one in (run("a", 1.0), run("b", 0.9), run("c", 0.004))
     ]
     whole = made[0] + made[1] + made[2]
-    assert [one.use for one in whole.runs] == ["fit", "fit", "still"]
-    assert whole.notices[-1].startswith("run c stands still")
+    screened = screen(whole)
+    assert [one.use for one in screened.runs] == ["fit", "fit", "still"]
+    assert screened.notices[-1].startswith("run c stands still")
+    assert screen(screened).notices == screened.notices  # said once

@@ -6,10 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from ident.matrix import Matrix
-from ident.run import Run
+from ident.preprocessing.step import Prepared, Step, Threshold
+from ident.run import MOTIONS, Run
 
-_SURE = -0.1  # of the deviations: a spring or a mass alone takes no work in the mean, and noise neither
+GIVES_BACK = Threshold(
+    -0.1,
+    "of the product of the deviations of force and speed",
+    "a mean of force times speed below it says that the specimen gives work back",
+    "a spring or a mass alone takes no work in the mean, and noise neither: they stay around zero",
+)
 
 
 def work(run: Run) -> float | None:
@@ -24,14 +29,15 @@ def work(run: Run) -> float | None:
 def gives_work_back(run: Run) -> bool:
     """Whether a moved specimen would have to drive what moves it."""
     found = work(run)
-    return found is not None and found < _SURE
+    return found is not None and found < GIVES_BACK.value
 
 
-def passive(matrix: Matrix) -> Matrix:
-    """The matrix with the sign of the force turned in every run in which the specimen would give work back."""
-    wrong = [run for run in matrix.runs if gives_work_back(run)]
+def _act(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
+    """Turn the sign of the force in every run in which the specimen would give work back."""
+    matrix = prepared.matrix
+    wrong = [run for run in matrix.runs if gives_work_back(run)] if prepared.model.driven_by in MOTIONS else []
     if not wrong:
-        return matrix
+        return prepared, ()
     ids = ", ".join(run.id for run in wrong)
     worst = max(work(run) or 0.0 for run in wrong)
     said = (
@@ -39,4 +45,15 @@ def passive(matrix: Matrix) -> Matrix:
         f"deviations in the mean, so that a specimen without a drive of its own would give work back."
     )
     runs = tuple(run.turned("force") if run in wrong else run for run in matrix.runs)
-    return replace(matrix, runs=runs, notices=(said, *matrix.notices))
+    return replace(prepared, matrix=replace(matrix, runs=runs)), (said,)
+
+
+FORCE_SIGN = Step(
+    name="force_sign",
+    does="turns the sign of the force of a run",
+    applies="a motion drives the model, a run records force and speed, and their product says that the specimen gives "
+    "work back",
+    without="the force is taken with the sign that was recorded",
+    thresholds=(GIVES_BACK,),
+    act=_act,
+)

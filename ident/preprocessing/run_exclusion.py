@@ -7,11 +7,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from ident.run import BENCH, STILL, Run
+from ident.preprocessing.step import Prepared, Step, Threshold
+from ident.run import BENCH, STILL, USES, Run
 from ident.words.percent import percent
 
-_STILL = 0.02  # of the typical standard deviation of the output
-_DRIVEN = 0.1  # of the typical size of the command: as much asks for an answer
+STANDS = Threshold(
+    0.02,
+    "of the upper quartile of the runs' standard deviations of the output",
+    "a run whose output deviates less stands still",
+    "noise is of that size on a usual record, so that the error of such a run would be one of noise over noise",
+)
+DRIVEN = Threshold(
+    0.1,
+    "of the median of the runs' commands",
+    "a run whose command is larger asks for an answer",
+    "a run with a smaller command was meant to be small, and is fitted",
+)
 
 
 def still_apart(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[str, ...]]:
@@ -28,9 +39,10 @@ def still_apart(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[str, ...]]:
             continue
         moved = float(np.quantile([_moved(run) for run in alike], 0.75))
         driven = float(np.median([run.drive for run in alike]))
-        still = [run for run in alike if _moved(run) < _STILL * moved and run.drive > _DRIVEN * driven]
+        still = [run for run in alike if _moved(run) < STANDS.value * moved and run.drive > DRIVEN.value * driven]
         if not any(run.use == "fit" for run in alike if run not in still):
             continue
+        still = [run for run in still if run.use in USES]
         found |= {run.id: replace(run, use=STILL) for run in still}
         said += [_said(run, _moved(run) / moved) for run in still]
     return tuple(found.values()), tuple(said)
@@ -46,3 +58,20 @@ def _said(run: Run, share: float) -> str:
         "though its command is of the size of theirs, as behind a dead zone, in dry friction or at a stop; the error "
         "of eq. (17), which divides by that deviation, says nothing of it, so it is neither fitted nor verified"
     )
+
+
+def _act(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
+    """Take the runs that stand still out of the fit and of the verification."""
+    runs, said = still_apart(prepared.matrix.runs)
+    return replace(prepared, matrix=replace(prepared.matrix, runs=runs)), said
+
+
+RUN_EXCLUSION = Step(
+    name="run_exclusion",
+    does="takes runs that do not respond out of the fit and of the verification",
+    applies="the output of a run does next to nothing under a command that moves the machine in other runs",
+    without="every run is fitted or verified as it is stated",
+    thresholds=(STANDS, DRIVEN),
+    act=_act,
+    needs_model=False,
+)
