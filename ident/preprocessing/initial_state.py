@@ -1,4 +1,4 @@
-"""How each run begins: at rest, standing elsewhere or moving: what of its first state a model has to find."""
+"""How each run begins, which says what of its first state a model has to find."""
 
 from __future__ import annotations
 

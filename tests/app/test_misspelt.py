@@ -191,7 +191,13 @@ def test_a_misspelt_name_is_answered_with_the_nearest(given, service, servoident
 
 @pytest.mark.parametrize(
     ("arguments", "meant"),
-    [(("fot",), "fit"), (("effects", "kep"), "keep"), (("fit", "m", "--efect", "x"), "--effect")],
+    [
+        (("fot",), "fit"),
+        (("effects", "kep"), "keep"),
+        (("fit", "m", "--efect", "x"), "--effect"),
+        (("fit", "m", "--no-stroke-center"), "--no-stroke-centre"),
+        (("check", "m", "--no-run-exclusio"), "exclusion"),
+    ],
 )
 def test_commands_and_options_are_names_too(servoident, arguments, meant):
     done = servoident(*arguments)
@@ -210,6 +216,9 @@ BODIES = [
     ("/fits", {"matrix": "STORED", "model": "qian2014", "set": {"M0": 4}}, "m0"),
     ("/fits", {"matrix": "STORED", "model": "qian2014", "options": {"populaton": 20}}, "population"),
     ("/fits", {"matrix": "STORED", "model": "qian2014", "method": "cmaes"}, "cma-es"),
+    ("/fits", {"matrix": "STORED", "model": "qian2014", "preprocessing": {"stroke_center": False}}, "stroke_centre"),
+    ("/fits", {"matrix": "STORED", "model": "motor", "preprocessing": {"comand_offset": False}}, "command_offset"),
+    ("/diagnoses", {"matrix": "STORED", "preprocessing": {"inital_state": False}}, "initial_state"),
     ("/diagnoses", {"matrix": "STORED", "maxeffects": 2}, "max_effects"),
     ("/matrices/STORED/revisions", {"actuater": {}}, "actuator"),
     ("/webhooks", {"url": "http://127.0.0.1:9", "events": ["set.aproved"]}, "set.approved"),

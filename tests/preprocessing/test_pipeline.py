@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import replace
+from inspect import signature
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from app.cli.check import check
+from app.cli.diagnose import diagnose as diagnose_command
+from app.cli.fit import fit
+from app.cli.preprocessing_options import switches
 from app.regress.recheck import recomputed, refitted
 from ident.diagnosis.recommended import settings_after
 from ident.diagnosis.result import Diagnosis
@@ -120,6 +127,16 @@ def test_every_step_says_what_it_does_and_why_its_numbers_are_what_they_are():
             assert number.unit and number.meaning and number.reason, step.name  # noqa: PT018
 
 
+def test_the_manual_and_the_command_line_name_every_step_in_order():
+    told = (Path(__file__).parents[2] / "docs" / "matrix.md").read_text(encoding="utf-8")
+    assert (
+        tuple(re.findall(r"^\| `(\w+)` \|.*\|.*\|.*\|$", told.split("### What is done to the data")[1], re.M)) == NAMES
+    )
+    for command, names in ((fit, NAMES), (diagnose_command, NAMES), (check, ("run_exclusion",))):
+        given = [name for name in signature(command).parameters if name.startswith("no_")]
+        assert switches(**dict.fromkeys(given, True)) == dict.fromkeys(names, False), command
+
+
 def test_a_step_that_is_not_known_is_refused_with_the_nearest_name():
     matrix = test_beginnings.cylinder(1, 0.7)
     for ask in (
@@ -148,19 +165,19 @@ def unprepared() -> tuple[Matrix, FitResult]:
 
 def test_a_stored_fit_keeps_its_switches_wherever_it_is_used(unprepared):
     """Compared, refitted, continued, rechecked and diagnosed: the data are taken as the fit took them."""
-    matrix, fit = unprepared
+    matrix, given = unprepared
     usual = identify(matrix, model="motor")
     assert "preprocessing" not in usual.to_json()["settings"]
-    assert usual.error["fit"] < 0.5 * fit.error["fit"]
-    stored = FitResult.from_json(json.loads(json.dumps(fit.to_json())))
+    assert usual.error["fit"] < 0.5 * given.error["fit"]
+    stored = FitResult.from_json(json.loads(json.dumps(given.to_json())))
     assert stored.settings["preprocessing"] == OFF
-    assert stored.preprocessing == fit.preprocessing
+    assert stored.preprocessing == given.preprocessing
     assert {one.step: one.state for one in stored.preprocessing}["command_offset"] == "off"
     assert any("command_offset of preprocessing is switched off" in note for note in stored.notes)
-    assert compare(matrix, stored).error["fit"] == pytest.approx(fit.error["fit"], rel=1e-6)
+    assert compare(matrix, stored).error["fit"] == pytest.approx(given.error["fit"], rel=1e-6)
     continued = identify(matrix, start=stored)
     assert continued.settings["preprocessing"] == OFF
-    assert continued.error["fit"] == pytest.approx(fit.error["fit"], rel=1e-3)
+    assert continued.error["fit"] == pytest.approx(given.error["fit"], rel=1e-3)
     changes = (*recomputed(stored, matrix), *refitted(stored, matrix, silent))
     assert changes
     assert not [change for change in changes if change.moved(1e-3)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -52,6 +53,7 @@ def test_all_others_stay_as_they_are(runs):
 
 def bench(folder: Path) -> Path:
     """A cylinder of 0.4 m/s for 1 V behind a dead zone of 0.3 V, driven to and fro at four sizes, noise of 0.1 mm."""
+    folder.mkdir(exist_ok=True)
     random = np.random.default_rng(8)
     lines = ["actuator: {serial: DZ}", "runs:"]
     for number, size in enumerate((1.0, 0.8, 0.25, 0.6)):
@@ -99,3 +101,25 @@ def test_records_that_are_added_up_are_told_apart_alike():
     assert [one.use for one in screened.runs] == ["fit", "fit", "still"]
     assert screened.notices[-1].startswith("run c stands still")
     assert screen(screened).notices == screened.notices  # said once
+
+
+def test_the_commands_keep_such_a_run_where_they_are_told_to(servoident, tmp_path):
+    """`check` says what is taken out; `fit` has the run among its errors again, and says that the step is off."""
+    folder = bench(tmp_path / "bench")
+    usual, kept = servoident("check", folder), servoident("check", folder, "--no-run-exclusion")
+    assert "notice: run r2 stands still" in usual.stdout
+    assert "fit: 2 runs" in usual.stdout
+    assert "stands still" not in kept.stdout
+    assert "fit: 3 runs" in kept.stdout
+    assert "notice: The step run_exclusion of preprocessing is switched off" in kept.stdout
+    held = [part for text in ("Kt=0.4", "c0=1", "m0=0.05") for part in ("--set", text)]
+    file = tmp_path / "fit.json"
+    done = servoident("fit", folder, "--model", "motor", *held, "--no-run-exclusion", "--json", file)
+    assert done.returncode == 0, done.stderr
+    assert "note: The step run_exclusion of preprocessing is switched off" in done.stdout
+    found = json.loads(file.read_text())
+    assert [run["id"] for run in found["runs"]] == ["r0", "r1", "r2", "r3"]
+    assert found["settings"]["preprocessing"] == {"run_exclusion": False}
+    again = servoident("fit", folder, "--start", file, "--no-stroke-centre")
+    assert again.returncode == 2
+    assert "--no-stroke-centre cannot be given with a start" in again.stderr
