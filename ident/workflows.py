@@ -44,6 +44,7 @@ from ident.presets.preset import Kind
 from ident.progress import Report, silent
 from ident.synthesis.matrix import Simulation, simulated
 from ident.time_budget import TimeBudget
+from ident.words.arguments import stated_kinds
 
 if TYPE_CHECKING:
     from ident.figures import AltairChart, Study
@@ -106,6 +107,7 @@ def identification(matrix: Matrix, settings: Settings, report: Report = silent) 
     return served.by_method.get(settings.method, served.fitter)(matrix, settings, report)
 
 
+@stated_kinds
 def identify(
     matrix: Matrix, settings: Settings | None = None, report: Report = silent,
     start: FitResult | Diagnosis | None = None, **choices: Unpack[Choices],
@@ -125,6 +127,7 @@ def identify(
     return replace(completed(identification(matrix, chosen, report)), matrix=matrix)
 
 
+@stated_kinds
 def compare(matrix: Matrix, fit: FitResult) -> Comparison:
     """Every run of the matrix against the fitted model. Raises Unusable where the fit is of another model's data."""
     return comparison.compare(matrix, fit, _served(fit.model).simulator)
@@ -142,6 +145,7 @@ def study(matrix: Matrix, fit: FitResult) -> Study:
     return Study(_screened(matrix, fit), fit, _served(fit.model).simulator)
 
 
+@stated_kinds
 def figure(
     result: FitResult | Comparison | Diagnosis, name: str, matrix: Matrix | None = None, theme: str = "light",
     share: float = 1.0, **options: Any,
@@ -163,6 +167,7 @@ def figure(
     return figures.shown(figures.figure(name, study(matrix, fit), theme, share, **options))
 
 
+@stated_kinds
 def diagnose(
     matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None, most: int = USUAL,
     custom: Sequence[Effect | Mapping[str, Any] | str] = (), report: Report = silent, seconds: float | None = None,
@@ -200,6 +205,7 @@ def diagnose(
     return replace(served.diagnoser(_screened(matrix, fit), fit, own, course), matrix=matrix)
 
 
+@stated_kinds
 def propose(
     matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None, report: Report = silent,
     seconds: float | None = None,
@@ -212,6 +218,7 @@ def propose(
     return diagnose(matrix, fit, settings, most=0, report=report, seconds=seconds, propose=True)
 
 
+@stated_kinds
 def next_run(found: Diagnosis, matrix: Matrix | None = None, seed: int = 0) -> Experiment:
     """The run that best tells apart what a diagnosis leaves in question; ``.command()`` is its signal.
 
@@ -224,6 +231,7 @@ def next_run(found: Diagnosis, matrix: Matrix | None = None, seed: int = 0) -> E
     return design.propose(competing_models(found), matrix, seed)
 
 
+@stated_kinds
 def simulate(
     preset: str = "qian2014", seconds: float = 30.0, seed: int = 0, noise: float = 0.005,
     effects: Mapping[str, float] | None = None, small: bool = False, report: Report = silent,
@@ -236,12 +244,14 @@ def simulate(
     return simulated(Simulation(preset, seconds, seed, noise, effects or {}, small), report)
 
 
+@stated_kinds
 def save(result: FitResult | Diagnosis, path: Path | str) -> None:
     """Write a fit or a diagnosis as JSON: the file that `servoident fit --json` or `diagnose --json` writes."""
     text = json.dumps(result.to_json(), indent=2, allow_nan=False, ensure_ascii=False) + "\n"
     Path(path).write_text(text, encoding="utf-8")
 
 
+@stated_kinds
 def load(path: Path | str, matrix: Matrix | None = None) -> FitResult | Diagnosis:
     """The fit or the diagnosis in a JSON file, of any version; with its `matrix`, figures can be drawn of it.
 

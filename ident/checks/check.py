@@ -26,12 +26,14 @@ from ident.checks.unit_factor import unit_factor
 from ident.matrix import Actuator, Matrix
 from ident.preprocessing import screen
 from ident.run import Run
+from ident.words.arguments import stated_kinds
 
 __all__ = ["Finding", "Findings", "RunSummary", "Summary", "check", "describe"]
 
 ORDER = ("fault", "doubt", "note")
 
 
+@stated_kinds
 def check(matrix: Matrix) -> Findings:
     """Everything that a person should know about the data: faults first, then doubts, then notes."""
     matrix = screen(matrix)

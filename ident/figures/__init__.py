@@ -8,6 +8,7 @@ from typing import Any
 from ident.custom.definition import preset_with
 from ident.diagnosis.result import Diagnosis
 from ident.errors import Unusable
+from ident.figures.choose import KINDS, Option
 from ident.figures.drawing import Drawing
 from ident.figures.frame import unchecked
 from ident.figures.ladder import ladder
@@ -19,6 +20,7 @@ from ident.figures.study import Study
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.presets import Preset
+from ident.words.arguments import of_kind
 from ident.words.nearest import did_you_mean
 from ident.words.titles import title
 
@@ -70,6 +72,8 @@ def figure(name: str, study: Study, theme: str = "light", share: float = 1.0, **
                 f"figure {name}",
                 did_you_mean(option, (*known, "theme", "share")),
             )
+    for option, value in options.items():
+        of_kind(f"figure {name}", option, value, KINDS.get(option, Option))
     with unchecked():
         return FIGURES[name].draw(study, look(theme, share), options)
 

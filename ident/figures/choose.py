@@ -46,6 +46,8 @@ class Wish:
 
 
 Option = str | float | Sequence[str] | Sequence[float] | None
+KINDS: Mapping[str, Any] = {"candidate": Any, **dict.fromkeys(("view", "axis", "smoothing", "x", "y"), str | None)}
+"""What an option takes that takes something else than one value or several; `candidate` is judged where it is used."""
 
 
 def wish(

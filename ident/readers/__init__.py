@@ -23,6 +23,7 @@ from ident.readers.stated import from_arrays, from_table, of_file
 from ident.readers.table import Table
 from ident.readers.text import read_text
 from ident.run import Run
+from ident.words.arguments import of_kind
 from ident.words.number import count
 from ident.words.stated import Stated
 
@@ -62,6 +63,8 @@ def read_matrix(path: Path | str, limits: Limits = LIMITS, **stated: Unpack[Stat
 
     Raises Unusable for everything that is wrong with it; docs/matrix-format.md lists the codes.
     """
+    of_kind("read_matrix", "path", path, Path | str)
+    of_kind("read_matrix", "limits", limits, Limits)
     path = Path(path)
     if path.suffix.lower() in (*BINARY, *TEXT) and not path.is_dir():
         return _read_file(path, limits, stated)

@@ -22,6 +22,7 @@ from ident.readers.run_description import RunDescription, describe_run
 from ident.readers.suggestion import suggestion
 from ident.readers.table import Array, Table
 from ident.units.quantity import shown
+from ident.words.arguments import of_kind
 from ident.words.nearest import did_you_mean
 from ident.words.stated import Stated
 
@@ -35,6 +36,8 @@ def described(stated: Mapping[str, Any], file: str, name: str) -> RunDescription
     if unknown:
         remedy = did_you_mean(unknown[0], Stated.__annotations__)
         raise Unusable("unknown-key", f"unknown key {unknown[0]!r}", file, remedy)
+    for key in _OF_NO_RUN:
+        of_kind(file, key, stated.get(key), Mapping[str, Any] | None)
     units, columns = stated.get("units") or {}, stated.get("columns") or {}
     for channel in (*columns, *(() if units else ("",))):
         if channel not in units:
