@@ -23,9 +23,9 @@ from ident.design.experiment import Experiment
 from ident.diagnosis import diagnose as diagnosis
 from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.competing_models import competing_models
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.recommended import settings_after
 from ident.diagnosis.result import Diagnosis
-from ident.diagnosis.selection import MOST, USUAL
 from ident.diagnosis.structure_selection import CompletedFit, FitWithAlternatives, choose_structure
 from ident.diagnosis.unfitted import unfitted
 from ident.effects.effect import Effect
@@ -169,10 +169,10 @@ def figure(
 
 @stated_kinds
 def diagnose(
-    matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None, most: int = USUAL,
-    custom: Sequence[Effect | Mapping[str, Any] | str] = (), report: Report = silent, seconds: float | None = None,
-    found: Callable[[Diagnosis], None] | None = None, propose: bool | None = None, budget: TimeBudget | None = None,
-    bounds: Bounds | None = None,
+    matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None,
+    most: int = CRITERIA.selection.usual, custom: Sequence[Effect | Mapping[str, Any] | str] = (),
+    report: Report = silent, seconds: float | None = None, found: Callable[[Diagnosis], None] | None = None,
+    propose: bool | None = None, budget: TimeBudget | None = None, bounds: Bounds | None = None,
 ) -> Diagnosis:  # fmt: skip
     """Rank what the fitted model lacks, add what helps beyond chance, and say what is left.
 
@@ -185,8 +185,8 @@ def diagnose(
     of parameters of effects that may be added, as ``{"presliding_friction.displacement": ("1 um", "1 mm")}``; those
     in the settings hold as well. Raises Unusable where matrix, fit or settings do not go together.
     """
-    if not 0 <= most <= MOST:
-        raise Unusable("bad-option", f"{most} effects", "max-effects", f"give 0 to {MOST}")
+    if not 0 <= most <= CRITERIA.selection.most:
+        raise Unusable("bad-option", f"{most} effects", "max-effects", f"give 0 to {CRITERIA.selection.most}")
     if seconds is not None and not seconds > 0:
         raise Unusable("bad-option", f"{seconds:g} s", "time", "give the seconds that it may take")
     budget = budget or TimeBudget(seconds)

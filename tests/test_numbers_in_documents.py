@@ -15,21 +15,7 @@ import pytest
 from app.pages import next_view
 from ident.bench import acceptance, time_constant
 from ident.comparison import compare, profile
-from ident.diagnosis import (
-    candidate,
-    candidate_models,
-    cross_validation,
-    fitted_model,
-    ranking,
-    screening,
-    selection,
-    significance,
-    structure_selection,
-    tie_breaking,
-    verification,
-)
-from ident.diagnosis.discovery import free_curves, regression, search
-from ident.diagnosis.discovery import term_candidate as proposed
+from ident.diagnosis.criteria import CRITERIA
 from ident.effects import EFFECTS
 from ident.figures import bode, residual_curve, sensitivity, time
 from ident.figures import tracking as tracking_figure
@@ -81,56 +67,76 @@ def of_diagnosis() -> Iterator[Tie]:
     """What decides in a diagnosis."""
     D = "diagnosis.md"
     yield D, "all {} effects in about a second", (len(EFFECTS),)
-    yield D, "The first {} are told at once", (word(ranking._SIGHT),)
-    yield D, "at {} strengths over its range", (word(len(screening._LADDER)),)
-    yield D, "leaves more than {} times what that promises is no result", (plain(fitted_model._FOLLOWED),)
-    yield D, "takes at least {} per cent off the error of the fitted records", (word(100 * significance.WORTHWHILE),)
-    yield D, "{} of it on held-out chunks, too", (PARTS[significance._HELD],)
+    yield D, "The first {} are told at once", (word(CRITERIA.ranking.told_at_once),)
+    yield D, "at {} strengths over its range", (word(len(CRITERIA.screening.strengths)),)
+    yield (
+        D,
+        "leaves more than {} times what that promises is no result",
+        (plain(CRITERIA.estimation.simulation_excess),),
+    )
+    yield (
+        D,
+        "takes at least {} per cent off the error of the fitted records",
+        (word(100 * CRITERIA.significance.worthwhile),),
+    )
+    yield D, "{} of it on held-out chunks, too", (PARTS[CRITERIA.significance.worthwhile_held_out],)
     yield (
         D,
         "the {} that promised most are begun anew from {} points",
-        (word(selection._SCATTERED), candidate_models._SCATTERED),
+        (word(CRITERIA.selection.global_restarts), CRITERIA.estimation.global_points),
     )
-    yield D, "The {} best points of each take three steps", (word(candidate_models._LEADING),)
-    yield D, "differ by less than {} standard errors, and whose outputs", (word(significance.ALIKE),)
-    yield D, "white noise could not tell apart by {}, are its group", (word(significance.ALIKE),)
-    yield D, "beside the best stands what takes {} of what it takes", (PARTS[candidate._AS_MUCH],)
-    yield D, "no more than {} of the unexplained rest", (PARTS[candidate._OF_REST],)
-    yield D, "Then {} others of the first ranking, two at a time", (word(selection._PAIRED),)
-    yield D, "If the error stays more than {} % above the noise floor", (per_cent(candidate_models._AT_FLOOR),)
-    yield D, "rises with an effect by more than {} of its standard errors", (word(verification._SURE),)
-    yield D, "a bootstrap over chunks of {} correlation times", (word(verification._MEMORY),)
-    yield D, "What differs by less than {} % of an error is a tie", (per_cent(tie_breaking.RELATIVE_TOLERANCE),)
+    yield D, "The {} best points of each take three steps", (word(CRITERIA.estimation.global_starts),)
+    yield (
+        D,
+        "differ by less than {} standard errors, and whose outputs",
+        (word(CRITERIA.significance.indistinguishable),),
+    )
+    yield D, "white noise could not tell apart by {}, are its group", (word(CRITERIA.significance.indistinguishable),)
+    yield D, "beside the best stands what takes {} of what it takes", (PARTS[CRITERIA.ambiguity.nearly_as_much],)
+    yield D, "no more than {} of the unexplained rest", (PARTS[CRITERIA.ambiguity.bias_of_missing],)
+    yield D, "Then {} others of the first ranking, two at a time", (word(CRITERIA.selection.paired),)
+    yield D, "If the error stays more than {} % above the noise floor", (per_cent(CRITERIA.noise.floor_excess),)
+    yield D, "rises with an effect by more than {} of its standard errors", (word(CRITERIA.verification.deviations),)
+    yield D, "a bootstrap over chunks of {} correlation times", (word(CRITERIA.verification.chunk_length),)
+    yield D, "What differs by less than {} % of an error is a tie", (per_cent(CRITERIA.significance.tie),)
     yield (
         D,
         "whose errors differ by less than {} %, since one in a flat valley",
-        (beyond(tie_breaking.PRACTICALLY_EQUAL),),
+        (beyond(CRITERIA.significance.practically_equal),),
     )
-    yield D, "But one that leaves {} more than another, beyond chance, of whole", (PARTS[fitted_model._OUTDONE],)
-    yield D, "Terms that explain the same (cosine above {})", (plain(regression.ALIKE),)
-    yield D, "the best {} classes and {} pairs", (word(proposed._TRIED), word(proposed._PAIRS))
-    yield D, "the leading {}, with {} that have no shapes", (word(search._MOST_CLOSE), word(search._PLAIN))
-    yield D, "place, form and shape that were looked at) + {} nats", (plain(search._EVIDENCE),)
-    yield D, "Of fewer than {} runs all do all three", (word(search._FEWEST),)
-    yield D, "the next term sought beside it, {} at most", (word(search.MOST),)
-    yield D, "hats at {} quantiles of the signal", (word(len(free_curves._KNOTS)),)
-    yield D, "the {} groups that explain most are refitted", (word(free_curves._TRIED),)
+    yield (
+        D,
+        "But one that leaves {} more than another, beyond chance, of whole",
+        (PARTS[CRITERIA.significance.dominated],),
+    )
+    yield D, "Terms that explain the same (cosine above {})", (plain(CRITERIA.discovery.same_class),)
+    yield D, "the best {} classes and {} pairs", (word(CRITERIA.discovery.classes), word(CRITERIA.discovery.pairs))
+    yield (
+        D,
+        "the leading {}, with {} that have no shapes",
+        (word(CRITERIA.discovery.most_close), word(CRITERIA.discovery.plain)),
+    )
+    yield D, "place, form and shape that were looked at) + {} nats", (plain(CRITERIA.discovery.log_likelihood_gain),)
+    yield D, "Of fewer than {} runs all do all three", (word(CRITERIA.discovery.fewest_runs),)
+    yield D, "the next term sought beside it, {} at most", (word(CRITERIA.discovery.most),)
+    yield D, "hats at {} quantiles of the signal", (word(len(CRITERIA.discovery.knots)),)
+    yield D, "the {} groups that explain most are refitted", (word(CRITERIA.discovery.curves),)
     yield D, "of {}, {} or {} times its slowest other time constant", tuple(plain(t) for t in windows._TIMES)
-    yield D, "on held-out data exceeds {}, or where", (plain(significance.BEYOND_CHANCE),)
-    yield D, "mean gain of a chunk exceeds {} of its standard errors", (plain(significance._STEADY),)
-    yield D, "must cost the others no more than {} of it", (PARTS[significance._LOST],)
-    yield D, "(of {} or more): their mean gain", (word(significance._SEVERAL),)
-    yield D, "their mean gain has to be {} of its standard errors", (plain(significance._UNSTEADY),)
+    yield D, "on held-out data exceeds {}, or where", (plain(CRITERIA.significance.log_likelihood_gain),)
+    yield D, "mean gain of a chunk exceeds {} of its standard errors", (plain(CRITERIA.significance.consistent),)
+    yield D, "must cost the others no more than {} of it", (PARTS[CRITERIA.significance.loss_ratio],)
+    yield D, "(of {} or more): their mean gain", (word(CRITERIA.significance.several_runs),)
+    yield D, "their mean gain has to be {} of its standard errors", (plain(CRITERIA.significance.run_consistency),)
     yield D, "over its last {} samples", (autoregression._ORDER,)
-    yield D, "over {} nats (`evidence.unforetold_nats`)", (plain(significance._SINGLE),)
-    yield D, "less than {} of what is left is new", (PARTS[significance._NEW],)
-    yield D, "and L over {} nats is enough by itself", (plain(significance._FORETOLD),)
-    yield D, "whole runs, dealt into {} folds", (word(cross_validation.FOLDS),)
+    yield D, "over {} nats (`evidence.unforetold_nats`)", (plain(CRITERIA.significance.gain_without_best),)
+    yield D, "less than {} of what is left is new", (PARTS[CRITERIA.significance.innovation_share],)
+    yield D, "and L over {} nats is enough by itself", (plain(CRITERIA.significance.innovation_gain),)
+    yield D, "whole runs, dealt into {} folds", (word(CRITERIA.cross_validation.folds),)
 
 
 def of_others() -> Iterator[Tie]:
     """What decides elsewhere."""
-    yield "which-machine.md", "leaves less than {} of what the other leaves", (plain(structure_selection._MUCH_LESS),)
+    yield "which-machine.md", "leaves less than {} of what the other leaves", (plain(CRITERIA.structure.much_less),)
     yield "which-machine.md", "[{} effects](models.md#effects)", ({41: "Forty-one"}[len(EFFECTS)],)
     yield "lab.md", "within {} of it there is nothing left to find", (plain(next_view.NEAR),)
 

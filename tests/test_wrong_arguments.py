@@ -23,7 +23,8 @@ SAMPLES: dict[str, Any] = {"str": "some text", "float": 5, "Mapping": {"some": 1
 WITHIN = {
     "effects": [[5], 5, "dead_zone"], "custom": [[5], "some"], "bounds": [{"tau": 5}, {"tau": ("1 ms", object())}],
     "fixed": [{"tau": object()}, {5: 1.0}], "options": [{"population": "many"}, ["population"]],
-    "seed": [1.5, "1", True], "budget": ["10 s"], "model": [5, ["qian2014"]], "method": [5], "load": [None],
+    "seed": [1.5, "1", True], "budget": ["10 s"],
+    "preprocessing": [{"force_sign": "no"}, ["force_sign"], {5: False}], "model": [5, ["qian2014"]], "method": [5], "load": [None],
 }  # fmt: skip
 """Of the choices of a fit, some that are wrong inside."""
 STATED = {
@@ -77,7 +78,8 @@ def test_a_value_of_a_wrong_kind_is_refused_in_one_line(
 ) -> None:
     """Each function × each parameter × values that are no such thing; all else that is given is right."""
     diagnosis = ident.load(ROOT / "tests" / "stored" / "diagnosis.json")
-    right = {"matrix": matrix, "fit": fit, "result": fit, "found": diagnosis, "name": "time", "path": "matrix"}
+    right = {"matrix": matrix, "fit": fit, "result": fit, "found": diagnosis, "name": "time", "path": "matrix",
+             "arrays": {"command": np.zeros(8), "displacement": np.zeros(8)}, "table": {}}  # fmt: skip
     called = getattr(ident, function)
     needed = {
         key: right[key]

@@ -97,7 +97,7 @@ def diagnose(
     from app.cli.arguments import definitions
     from app.cli.kept_here import beside
     from ident.custom.definition import read_effect, together
-    from ident.diagnosis.selection import USUAL
+    from ident.diagnosis.criteria import CRITERIA
     from ident.diagnosis.unfitted import unfitted
     from ident.fit.given import with_candidates_given
     from ident.fit.settings import Settings
@@ -128,7 +128,7 @@ def diagnose(
         named, defined = given.model, together(given.settings.get("custom", ()), defined)
     defined = beside(defined, named) if own else defined
     given = None if given is None else given.with_custom(defined)
-    most = USUAL if max_effects is None else max_effects
+    most = CRITERIA.selection.usual if max_effects is None else max_effects
     effects = tuple(read_effect(definition, model=named) for definition in defined)
     with shown() as report, followed(json) as follow:
         found = diagnosed(

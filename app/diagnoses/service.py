@@ -16,9 +16,9 @@ from app.own_effects.naming import every, with_kept
 from app.paging import cursor, keys_of
 from app.tables import DiagnosisRow
 from ident.custom.definition import definition_of, read_effect, together
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.named import named
 from ident.diagnosis.result import Diagnosis, Verdict
-from ident.diagnosis.selection import MOST, USUAL
 from ident.errors import Unusable
 from ident.fit.given import with_candidates_given
 from ident.fit.identification import check_settings
@@ -52,9 +52,9 @@ class Search:
 
 def submit(context: Context, request: DiagnosisRequest, job: str, who: str) -> JobView:
     """Queue a diagnosis under the id decided for its job. It is recorded before this returns: nothing can lose it."""
-    most = USUAL if request.max_effects is None else request.max_effects
-    if most > MOST:
-        raise Unusable("bad-option", f"{most} effects", "max_effects", f"give 0 to {MOST}")
+    most = CRITERIA.selection.usual if request.max_effects is None else request.max_effects
+    if most > CRITERIA.selection.most:
+        raise Unusable("bad-option", f"{most} effects", "max_effects", f"give 0 to {CRITERIA.selection.most}")
     matrix_id, settings = _wanted(context, request)
     matrix = matrices.find(context, matrix_id)
     reseed = request.seed if request.fit is not None and "seed" in request.model_fields_set else None

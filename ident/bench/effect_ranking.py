@@ -18,7 +18,8 @@ from ident.bench.observed import Observed, observe
 from ident.bench.records import Record
 from ident.bench.residual import Residual
 from ident.cached import cached_property
-from ident.diagnosis.cross_validation import FOLDS, CrossValidation
+from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.cross_validation import CrossValidation
 from ident.diagnosis.significance import Improvement, improvement
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect, off_values
@@ -165,8 +166,10 @@ class Refitter:
         blocks = shown.normal(shown.origin).products
         count = len(blocks) // len(self._shown)
         squares = np.zeros(len(blocks))
-        for fold in range(FOLDS):
-            inside, used = np.arange(len(blocks)) % FOLDS == fold, np.arange(len(fitted.products)) % FOLDS != fold
+        folds = CRITERIA.cross_validation.folds
+        for fold in range(folds):
+            inside = np.arange(len(blocks)) % folds == fold
+            used = np.arange(len(fitted.products)) % folds != fold
             total = fitted.products[used].sum(axis=0)
             step = _bounded(total)
             direction = np.append(step, 1.0)

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.ranking import rank
 from ident.diagnosis.result import Explanation
@@ -22,8 +23,6 @@ from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.progress import Progress, Report
-
-_MOST = 3  # effects of one other model that are told
 
 
 @dataclass(frozen=True)
@@ -47,7 +46,7 @@ class AlternativeModel:
         refits = [one.refit for one in ranking if one.refit is not None and one.improves]
         alike = [refit for refit in refits if improvement(refit.held_out, found.held_out).within_chance]
         better = [refit for refit in alike if improvement(found.held_out, refit.held_out).beyond_chance]
-        for refit in (better or alike)[:_MOST]:
+        for refit in (better or alike)[: CRITERIA.ambiguity.alternatives]:
             yield Explanation(models.given.model, refit.effects, refit.errors, bool(better))
 
 

@@ -8,15 +8,12 @@ from itertools import groupby
 
 from ident.cached import cached_property
 from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel, dominated, generalises, indistinguishable
 from ident.diagnosis.screening import Prediction
 from ident.diagnosis.significance import Improvement, improvement
-from ident.diagnosis.tie_breaking import PRACTICALLY_EQUAL, stable_ranking
+from ident.diagnosis.tie_breaking import stable_ranking
 from ident.parallel import each
-
-_ENDS = 1.05  # times the error: so far apart end refits with what acts in jumps
-_AS_MUCH = 0.9  # of what the best takes, in power
-_OF_REST = 0.05  # of what nothing explains, in power: what is missing may have turned so much the other way
 
 
 @dataclass(frozen=True)
@@ -119,8 +116,8 @@ def _explains_nearly_as_much(best: FittedModel, other: Candidate, noise: float) 
     if other.base is None or other.refit is None:
         return False
     least, here, without = (refit.held_out.error**2 for refit in (best, other.refit, other.base))
-    takes_as_much = without - here > _AS_MUCH * (without - least)
-    return takes_as_much and here - least < _OF_REST * (least - noise**2)
+    takes_as_much = without - here > CRITERIA.ambiguity.nearly_as_much * (without - least)
+    return takes_as_much and here - least < CRITERIA.ambiguity.bias_of_missing * (least - noise**2)
 
 
 def _ties(best: Candidate, other: Candidate) -> bool:
@@ -130,7 +127,11 @@ def _ties(best: Candidate, other: Candidate) -> bool:
     """
     if best.refit is None or other.refit is None:
         return False
-    most = PRACTICALLY_EQUAL if best.refit.hysteretic == other.refit.hysteretic else _ENDS
+    most = (
+        CRITERIA.significance.practically_equal
+        if best.refit.hysteretic == other.refit.hysteretic
+        else CRITERIA.significance.hysteretic_tie
+    )
     if other.refit.error > most * best.refit.error:
         return False
     return indistinguishable(best.refit, other.refit, other.base)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.chain.channels import unmeasured
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
 from ident.effects import CATALOGUE
@@ -34,20 +35,6 @@ from ident.run import MOTIONS, Run
 from ident.words.titles import title
 
 Array = NDArray[np.float64]
-_TRIAL = 131_072  # samples of a first refit; the finalists take every sample
-FITTING, TRYING = Way(1e-7, 20, rough=1e-5), Way(1e-5, 10, rough=1e-4)  # of a refit, a first one
-_SETTING_OUT, _SEARCHING = TRYING, Way(1e-5, 20, rough=1e-4)  # of one far off, and where it is ahead of others
-_SCATTERED, _LEADING = 128, 4  # points of a whole search space, and those of them from which a refit begins
-FIRST_STEPS, _AHEAD = Way(1e-5, 3), 8  # of it, and how many go on
-_SIGHT = 32_768  # samples that they are judged by
-_SIDE_BY_SIDE = 8  # effects of a chain of which each lane carries one
-_OFF = 0.01  # of the largest strength
-_BETTER = 0.99  # times the error: a new optimum, not the same one
-_ROUNDS = 5  # of going on with a refit
-_AT_FLOOR = 0.02  # by how much the error may exceed the noise floor and still be noise, beside
-_SHARES = (1.0, 0.3, 0.03)  # of the strength alone of the second of two effects
-_CHANCE = 3.0  # standard deviations
-_NOISE_LIKE = 0.5  # correlation of neighbouring residuals that noise may have, where there is no floor
 
 
 @dataclass
@@ -127,8 +114,8 @@ class CandidateModels:
         apart = [name for name in names if self.effects[name].has_searched_shapes]
         rest = [name for name in names if name not in apart]
         found = [[name] for name in apart]
-        for first in range(0, len(rest), _SIDE_BY_SIDE):
-            group = rest[first : first + _SIDE_BY_SIDE]
+        for first in range(0, len(rest), CRITERIA.estimation.effects_a_chain):
+            group = rest[first : first + CRITERIA.estimation.effects_a_chain]
             found += [group] if self.fit_together((*base, *group)) else [[name] for name in group]
         return found
 
@@ -158,7 +145,7 @@ class CandidateModels:
             return True
         strength = self.strength(effect)
         lower, upper = refit.space.bounds(refit.values)[strength]
-        return abs(refit.values[strength]) < _OFF * max(-lower, upper)
+        return abs(refit.values[strength]) < CRITERIA.estimation.off_strength * max(-lower, upper)
 
     def at_bound(self, refit: FittedModel, effect: str) -> bool:
         """Whether the strength of an effect ended at a bound that the search set, and no user."""
@@ -210,8 +197,8 @@ class CandidateModels:
         """Whether an error, eq. (17) over the fitted runs, is noise alone."""
         if self.floor is None:
             return False
-        chance = _CHANCE * self.floors.spread(sum(run.length for run in self.runs))
-        return error < (1.0 + _AT_FLOOR + chance) * self.floor
+        chance = CRITERIA.noise.floor_deviations * self.floors.spread(sum(run.length for run in self.runs))
+        return error < (1.0 + CRITERIA.noise.floor_excess + chance) * self.floor
 
     def residual_above_noise(self, refit: FittedModel) -> bool:
         """Whether the error is still above the noise: its floor, or where that is not known, its lack of memory."""
@@ -220,7 +207,7 @@ class CandidateModels:
         outputs = refit.fitness.outputs(refit.point)
         residuals = [refit.fitness.left(run, outputs[run.id]) for run in self.runs]
         memory = [float(np.corrcoef(r[1:], r[:-1])[0, 1]) for r in residuals]
-        return bool(np.median(memory) > _NOISE_LIKE)
+        return bool(np.median(memory) > CRITERIA.noise.noise_correlation)
 
     def better_optimum(
         self, refit: FittedModel, starts: Sequence[Mapping[str, float]], aim: float = np.inf
@@ -229,7 +216,7 @@ class CandidateModels:
 
         Both are judged on the beginnings of the records.
         """
-        asked = min(_BETTER * self.trial_error(refit), aim)
+        asked = min(CRITERIA.estimation.new_optimum * self.trial_error(refit), aim)
         best = self.multistart(refit, starts, asked)
         if best.local.error > asked:
             return None
@@ -241,31 +228,45 @@ class CandidateModels:
 
         All set out, and the one that is ahead goes on, as long as it may come below `aim`.
         """
-        setting_out = replace(_SETTING_OUT, aim=aim)
-        tried = each(lambda start: self.refit(refit.effects, start, _TRIAL, setting_out), starts)
+        setting_out = replace(CRITERIA.estimation.trial, aim=aim)
+        tried = each(
+            lambda start: self.refit(refit.effects, start, CRITERIA.estimation.trial_samples, setting_out), starts
+        )
         ahead = stable_minimum(tried, lambda one: one.local.error)
-        return self.continued(ahead, replace(_SEARCHING, aim=aim), _TRIAL) if ahead.finite else ahead
+        return (
+            self.continued(ahead, replace(CRITERIA.estimation.far_trial, aim=aim), CRITERIA.estimation.trial_samples)
+            if ahead.finite
+            else ahead
+        )
 
     def global_starts(self, effects: tuple[str, ...]) -> list[FittedModel]:
         """First steps of a model from where in its whole search space the error is least, on the records' beginnings.
 
         Where the fitted model went far astray for want of the effect, no start near it leads back.
         """
-        fitness = self.fitness(effects, _SIGHT)
-        points = scipy.stats.qmc.Sobol(len(fitness.space.axes), rng=0).random(_SCATTERED)
-        best = points[np.argsort(fitness.errors(points), kind="stable")[:_LEADING]]
+        fitness = self.fitness(effects, CRITERIA.estimation.global_samples)
+        points = scipy.stats.qmc.Sobol(len(fitness.space.axes), rng=0).random(CRITERIA.estimation.global_points)
+        best = points[np.argsort(fitness.errors(points), kind="stable")[: CRITERIA.estimation.global_starts]]
         starts = [{name: float(v[0]) for name, v in fitness.space.values(point[None]).items()} for point in best]
-        return [self.refit(effects, start, _TRIAL, FIRST_STEPS) for start in starts]
+        return [
+            self.refit(effects, start, CRITERIA.estimation.trial_samples, CRITERIA.estimation.screen)
+            for start in starts
+        ]
 
     def leading(self, refits: Iterable[FittedModel], aim: float) -> list[FittedModel]:
         """Those of first steps that left least, as first refits that have to come below `aim`: others cannot win."""
         rest = stable_ranking([one for one in refits if one.stable], lambda one: one.local.error)
         leading: list[FittedModel] = []
-        while rest and len(leading) < _AHEAD:  # only of those that lead it is asked whether they keep their promise
-            asked, rest = rest[: _AHEAD - len(leading)], rest[_AHEAD - len(leading) :]
+        while (
+            rest and len(leading) < CRITERIA.estimation.leading
+        ):  # only of those that lead it is asked whether they keep their promise
+            asked, rest = (
+                rest[: CRITERIA.estimation.leading - len(leading)],
+                rest[CRITERIA.estimation.leading - len(leading) :],
+            )
             leading += [one for one, kept in zip(asked, each(lambda one: one.finite, asked), strict=True) if kept]
-        on = replace(TRYING, aim=aim)
-        return each(lambda one: self.continued(one, on, _TRIAL), leading)
+        on = replace(CRITERIA.estimation.trial, aim=aim)
+        return each(lambda one: self.continued(one, on, CRITERIA.estimation.trial_samples), leading)
 
     def refit(
         self,
@@ -278,7 +279,7 @@ class CandidateModels:
         fitness = self.fitness(effects, samples)
         known = {p.in_equations: p.value for p in fitness.preset.parameters} | dict(start)
         point = fitness.space.point({**known, **fitness.space.fixed})
-        way = way or (TRYING if samples else FITTING)
+        way = way or (CRITERIA.estimation.trial if samples else CRITERIA.estimation.full)
         point, here = fitness.optimum(point, way)
         off = {p.in_equations for name, e in self.effects.items() if name not in effects for p in e.added}
         values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}
@@ -292,16 +293,18 @@ class CandidateModels:
 
     def converged(self, refit: FittedModel) -> FittedModel:
         """A refit on all records, gone on with until it stays: in a long narrow valley one is stopped on its way."""
-        for _ in range(_ROUNDS):
+        for _ in range(CRITERIA.estimation.convergence_rounds):
             further = self.refit(refit.effects, refit.values)
-            if not further.finite or further.local.error > _BETTER * refit.local.error:
+            if not further.finite or further.local.error > CRITERIA.estimation.new_optimum * refit.local.error:
                 break
             refit = further
         return refit
 
     def trial_error(self, refit: FittedModel) -> float:
         """What a first refit has to beat: the error of a refit on the beginnings of the records."""
-        return self.fitness(refit.effects, _TRIAL).exact(refit.point, sensitivities=False).error
+        return (
+            self.fitness(refit.effects, CRITERIA.estimation.trial_samples).exact(refit.point, sensitivities=False).error
+        )
 
     def trial(
         self, effects: tuple[str, ...], starts: Sequence[Mapping[str, float]], aim: float = np.inf
@@ -310,18 +313,22 @@ class CandidateModels:
 
         It is given up where it cannot come below `aim`.
         """
-        fitness = self.fitness(effects, _TRIAL)
+        fitness = self.fitness(effects, CRITERIA.estimation.trial_samples)
         errors = fitness.errors(
             np.array([fitness.space.point({**self.off, **s, **fitness.space.fixed}) for s in starts])
         )
         start, _ = stable_minimum(list(zip(starts, errors.tolist(), strict=True)), lambda one: one[1])
-        return self.refit(effects, start, _TRIAL, replace(TRYING, aim=aim))
+        return self.refit(
+            effects, start, CRITERIA.estimation.trial_samples, replace(CRITERIA.estimation.trial, aim=aim)
+        )
 
     def pair_trial(self, first: FittedModel, second: FittedModel, aim: float) -> FittedModel:
         """A first refit with the last effects of two that has to come below `aim`, from either and from halfway."""
         starts = []
         for alone, other in ((first, second), (second, first)):
             here, there = (self.strength(refit.effects[-1]) for refit in (alone, other))
-            starts += [{**alone.values, there: share * other.values[there]} for share in _SHARES]
+            starts += [
+                {**alone.values, there: share * other.values[there]} for share in CRITERIA.estimation.pair_shares
+            ]
             starts.append({**alone.values, here: 0.5 * alone.values[here], there: 0.5 * other.values[there]})
         return self.trial((*first.effects, second.effects[-1]), starts, aim)

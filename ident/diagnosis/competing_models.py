@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from ident.custom.definition import read_effect
 from ident.design.rivals import NOISE, Model, Rivals
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.diagnosis.result import Diagnosis, bad_diagnosis
 from ident.effects import CATALOGUE
@@ -14,7 +15,6 @@ from ident.effects.effect import Effect, usual_shapes
 from ident.errors import Unusable
 from ident.presets import PRESETS, preset
 
-MOST = 3
 Values = Mapping[str, ParameterEstimate]
 
 
@@ -40,12 +40,12 @@ def _chosen(found: Diagnosis) -> list[Values]:
     for group in found.verdict.indistinguishable:
         known = [refitted[name] for name in group if name in refitted]
         if len(known) > 1:
-            return known[:MOST]
+            return known[: CRITERIA.conclusion.competing]
     ladder = [rung.parameters for rung in found.ladder if rung.parameters]
     settled = bool(found.verdict.effects) or not found.verdict.unexplained
     if settled and ladder:  # nothing is in question but how well the parameters are known
         return ladder[-1:]
-    return list(refitted.values())[:MOST] or ladder[-1:]
+    return list(refitted.values())[: CRITERIA.conclusion.competing] or ladder[-1:]
 
 
 def _model(found: Diagnosis, parameters: Values, custom: Sequence[Effect]) -> Model:

@@ -20,20 +20,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
+from ident.diagnosis.criteria import CRITERIA
 from ident.fit.bounded_step import bounded_step
 from ident.fit.fitness import Local, Worth, local
-from ident.fit.levenberg_marquardt import Way, levenberg_marquardt, promise
+from ident.fit.levenberg_marquardt import levenberg_marquardt, promise
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.products import without
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 Mask = NDArray[np.bool_]
-CHUNKS, FOLDS = 8, 4
-_FINER = 32  # chunks of a record where there are fewer records than CHUNKS
-_DEALT = 0  # seed by which runs are dealt to folds: a matrix lists them in an order of its own
-_FAR = 0.01  # of an axis: a longer step is beyond what one linearisation tells
-_CLOSE = Way(converged=1e-4, most=20)  # of a fit without a fold: it starts close by, and one linearisation ends it
 
 
 @dataclass(frozen=True)
@@ -84,7 +80,7 @@ def weight_of_offsets(runs: int, samples: int) -> float:
 
 def scored(error: float, offset: float, weight: float) -> float:
     """Error and offsets in one number, least for the most likely model."""
-    return error * (1.0 + weight * float(np.log(max(offset, 1e-9))))
+    return error * (1.0 + weight * float(np.log(max(offset, CRITERIA.cross_validation.least_offset))))
 
 
 def cross_validated(
@@ -119,8 +115,12 @@ def not_held_out(here: Local, independent: float) -> CrossValidation:
 
 def _chunks(here: Local) -> int:
     """The chunks of a record: more where there are few records."""
-    few = len(here.runs) < CHUNKS
-    return min(_FINER, *(len(run.blocks) for run in here.runs)) if few else CHUNKS
+    few = len(here.runs) < CRITERIA.cross_validation.chunks
+    return (
+        min(CRITERIA.cross_validation.chunks_of_few, *(len(run.blocks) for run in here.runs))
+        if few
+        else CRITERIA.cross_validation.chunks
+    )
 
 
 def _over_chunks(here: Local, squares: Array, independent: float) -> CrossValidation:
@@ -137,12 +137,14 @@ def by_chunk(signals: Sequence[Array], count: int) -> Array:
 
 def _folds_of_chunks(runs: int, count: int) -> Indices:
     """The fold of each run's chunks, (runs, count): one chunk after the other."""
-    return np.tile(np.arange(count) % FOLDS, (runs, 1))
+    return np.tile(np.arange(count) % CRITERIA.cross_validation.folds, (runs, 1))
 
 
 def _folds_of_runs(runs: int, count: int) -> Indices:
     """The same where whole runs are left out, dealt out at random."""
-    dealt = np.random.default_rng(_DEALT).permutation(runs) % min(FOLDS, runs)
+    dealt = np.random.default_rng(CRITERIA.cross_validation.seed).permutation(runs) % min(
+        CRITERIA.cross_validation.folds, runs
+    )
     return np.repeat(dealt[:, None], count, axis=1)
 
 
@@ -151,7 +153,7 @@ def _without(
 ) -> tuple[Local, Array]:
     """Where the fit of the used blocks ends: a linearisation, and the step from there that is left."""
     step = _step(point, here, [_projected(run, of) for run, of in zip(here.runs, used, strict=True)])
-    if not len(step) or np.abs(step).max() <= _FAR:
+    if not len(step) or np.abs(step).max() <= CRITERIA.cross_validation.max_step:
         return here, step
 
     seen: dict[bytes, Local] = {point.tobytes(): here}
@@ -161,12 +163,16 @@ def _without(
         part = _partly(there, used)
         return part if part.error < least else None
 
-    end, last = levenberg_marquardt(lambda _here: _partly(here, used), point, _CLOSE, better=better)
+    end, last = levenberg_marquardt(
+        lambda _here: _partly(here, used), point, CRITERIA.cross_validation.effort, better=better
+    )
     tried = [one.error for one in seen.values() if one is not here]
     if not any(map(np.isfinite, tried)):  # the point lies at the edge of what is stable: judged by its linearisation
         return here, step
     rest = bounded_step(end, last.curvature, last.gradient)
-    return seen[end.tobytes()], rest if promise(last, rest) <= _CLOSE.converged * last.error else np.zeros(len(point))
+    return seen[end.tobytes()], rest if promise(
+        last, rest
+    ) <= CRITERIA.cross_validation.effort.converged * last.error else np.zeros(len(point))
 
 
 def _partly(here: Local, used: list[Mask]) -> Local:

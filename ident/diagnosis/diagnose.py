@@ -16,6 +16,7 @@ from ident.diagnosis.alternative_structures import AlternativeModel, alternative
 from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.candidate import Candidate
 from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.discovery_result import DiscoveryResult
 from ident.diagnosis.discovery.search import TermSearch
 from ident.diagnosis.fitted_model import FittedModel
@@ -42,7 +43,7 @@ from ident.diagnosis.result import (
     Suspect,
     Verdict,
 )
-from ident.diagnosis.selection import USUAL, StepwiseSelection
+from ident.diagnosis.selection import StepwiseSelection
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.stages import (
     EFFECTS,
@@ -59,7 +60,6 @@ from ident.diagnosis.stages import (
     Stages,
     not_looked_at,
 )
-from ident.diagnosis.tie_breaking import RELATIVE_TOLERANCE
 from ident.diagnosis.total_delay import lag_ambiguities, total_delay
 from ident.diagnosis.unfitted import unranked
 from ident.diagnosis.verification import Contradiction, contradiction, standing
@@ -73,9 +73,6 @@ from ident.progress import Expected, Progress
 from ident.residuals.budget import Budget
 from ident.time_budget import in_time
 
-_SIMPLER = 1.05  # times the error that terms may leave without what was found, and still come before those beside it
-_RISES = 1.1  # times the least error on verify runs on the way: from there on it is told
-_LATE = 2  # models, the last one first, of which it is asked how late they answer
 Steps = Sequence[tuple[str | None, FittedModel]]
 """From the fitted model to the last, what each step added."""
 
@@ -211,7 +208,7 @@ class Diagnoser:
         """
         self.course.report_progress(Progress(LAGS, 0, 1))
         models, steps = selection.models, [refit for _, refit in selection.ladder() if refit.stable][::-1]
-        for refit in steps[: _LATE if models.residual_above_noise(selection.found) else 1]:
+        for refit in steps[: CRITERIA.ambiguity.delay_models if models.residual_above_noise(selection.found) else 1]:
             if late := total_delay(models, selection.base, refit):
                 without = tuple(name for name in selection.added if name not in refit.effects)
                 return (delay_sentence(late, models.described, without),)
@@ -227,7 +224,7 @@ class Diagnoser:
 
         Unasked they are not where no more effects were wanted than the few that were found.
         """
-        exhausted = self.course.most >= USUAL or len(selection.added) < self.course.most
+        exhausted = self.course.most >= CRITERIA.selection.usual or len(selection.added) < self.course.most
         return exhausted if self.course.propose is None else self.course.propose
 
     def _is_proposing(self, selection: StepwiseSelection) -> bool:
@@ -254,9 +251,9 @@ class Diagnoser:
         further = self._terms_of(selection, selection.found)
         before, found = (refit.held_out.error for refit in (selection.base, selection.found))
         with_both = further.error_with_terms(found, "held_out")
-        simpler = alone.error_with_terms(before, "held_out") < min(with_both * _SIMPLER, found) and not _repeated(
-            alone, selection
-        )
+        simpler = alone.error_with_terms(before, "held_out") < min(
+            with_both * CRITERIA.conclusion.simpler_terms, found
+        ) and not _repeated(alone, selection)
         return replace(alone if simpler else further.or_rejected(alone), complete=further.complete)
 
     def _terms_of(self, selection: StepwiseSelection, refit: FittedModel) -> DiscoveryResult:
@@ -432,7 +429,7 @@ def _better_with_fewer(steps: Steps) -> tuple[float, tuple[str, ...]] | None:
     """The least error on verify runs on the way, and what was added since; None where the last is about as small."""
     errors = [refit.errors["verify"] for _, refit in steps]
     last, least = errors[-1], min((error for error in errors if error is not None), default=None)
-    if last is None or least is None or last < _RISES * least:
+    if last is None or least is None or last < CRITERIA.verification.rise * least:
         return None
     return least, tuple(name for name, _ in steps[errors.index(least) + 1 :] if name)
 
@@ -441,7 +438,7 @@ def _repeated(alone: DiscoveryResult, selection: StepwiseSelection) -> bool:
     """Whether the first of some terms leaves what an effect that was named leaves alone: it is that, in other words."""
     named = (c.refit.error for c in selection.ranking if c.refit is not None and c.effect in selection.added)
     first = alone.found[0].error["fit"] if alone.found else None
-    return first is not None and any(abs(first - error) <= RELATIVE_TOLERANCE * error for error in named)
+    return first is not None and any(abs(first - error) <= CRITERIA.significance.tie * error for error in named)
 
 
 def _judged(candidate: Candidate, weighed: bool) -> tuple[object, object]:

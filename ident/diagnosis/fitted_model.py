@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.cross_validation import CrossValidation, by_chunk, cross_validated, not_held_out
 from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.diagnosis.significance import improvement
@@ -27,10 +28,6 @@ from ident.words.error import UNSTABLE
 from ident.words.plus_minus import NOT_DETERMINED
 
 Array = NDArray[np.float64]
-_FOLLOWED = 1.03  # times the promised error that a simulation may leave
-_JUMPS = 1.1  # times the held-out error: so far apart end refits with an effect that acts in jumps
-_MOST = 0.5  # of what one effect explains
-_OUTDONE = 0.1  # of the error on whole runs: less tells no two effects apart
 
 
 @dataclass(frozen=True)
@@ -98,7 +95,7 @@ class FittedModel:
         return any(run.begins == "moving" for run in self.fitness.runs)
 
     def _confirms(self, simulated: _Simulated) -> bool:
-        return simulated.error < _FOLLOWED * self.error
+        return simulated.error < CRITERIA.estimation.simulation_excess * self.error
 
     @cached_property
     def _simulated(self) -> _Simulated:
@@ -220,7 +217,7 @@ def generalises(less: FittedModel, more: FittedModel) -> bool:
     return not dominated(more, less, share=-np.inf)
 
 
-def dominated(worse: FittedModel, better: FittedModel, share: float = _OUTDONE) -> bool:
+def dominated(worse: FittedModel, better: FittedModel, share: float = CRITERIA.significance.dominated) -> bool:
     """Whether of two models one is better beyond chance, and by a `share`, on whole runs that neither was fitted to.
 
     Equals whose fits end at other optima lie some per cent apart there.
@@ -241,8 +238,12 @@ def indistinguishable(best: FittedModel, other: FittedModel, base: FittedModel |
     if improvement(other.held_out, best.held_out).within_chance:
         return True
     least, left = best.held_out.score, other.held_out.score
-    most = np.inf if base is None else base.held_out.score - _MOST * (base.held_out.score - least)
-    return best.hysteretic != other.hysteretic and left <= min(_JUMPS * least, most)
+    most = (
+        np.inf
+        if base is None
+        else base.held_out.score - CRITERIA.significance.hysteretic_share * (base.held_out.score - least)
+    )
+    return best.hysteretic != other.hysteretic and left <= min(CRITERIA.significance.hysteretic_scatter * least, most)
 
 
 def distinguishable(worse: FittedModel, better: FittedModel) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import next_fast_len
 
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.effects.effect import Effect
 from ident.fit.space import Space
@@ -16,10 +17,6 @@ from ident.parameter import Parameter, Starts
 from ident.run import Run
 
 Array = NDArray[np.float64]
-_LINES = 6  # frequencies
-_ANGLES = tuple(np.arange(6) * np.pi / 3)
-_ALONG = (0.25, 0.5, 0.75)  # of an axis
-_FINE = 4  # points of a spectrum for each that the record resolves
 
 
 def initial_guesses(
@@ -51,12 +48,13 @@ def strength_in_records(base: FittedModel, effect: Effect) -> float | None:
 def _guesses_of(base: FittedModel, parameter: Parameter, space: Space, known: Mapping[str, float]) -> tuple[float, ...]:
     """Where its effect says that its search begins."""
     if parameter.start is Starts.PHASE:
-        return _ANGLES
+        angles = CRITERIA.initial_guesses.angles
+        return tuple(np.arange(angles) * np.pi / (angles / 2))
     if parameter.start is Starts.SPECTRAL_LINES:
         return spectral_lines(base, *space.bounds(known)[parameter.in_equations])
     axis = space.names.index(parameter.in_equations)
-    points = space.point(known) + np.zeros((len(_ALONG), 1))
-    points[:, axis] = _ALONG
+    points = space.point(known) + np.zeros((len(CRITERIA.initial_guesses.along_range), 1))
+    points[:, axis] = CRITERIA.initial_guesses.along_range
     return tuple(float(value) for value in space.values(points)[parameter.in_equations])
 
 
@@ -70,13 +68,13 @@ def spectral_lines(base: FittedModel, lower: float, upper: float) -> tuple[float
     shortest = min(run.length / run.sample_rate for run in fitness.runs)
     longest = max(run.length / run.sample_rate for run in fitness.runs)
     lower = max(lower, 1.0 / shortest)
-    grid = np.arange(lower, min(upper, fitness.band / 2.0), 1.0 / (_FINE * longest))
+    grid = np.arange(lower, min(upper, fitness.band / 2.0), 1.0 / (CRITERIA.initial_guesses.spectrum_points * longest))
     total = np.zeros(len(grid), complex)
     for run in fitness.runs:
         rates = (_rate(run, signal, fitness.band) for signal in (run.measured - outputs[run.id], outputs[run.id]))
         (left, interval), (moved, _) = rates
         size = float(np.std(moved)) * float(np.std(left)) or 1.0
-        n = _FINE * len(left)
+        n = CRITERIA.initial_guesses.spectrum_points * len(left)
         spectrum = np.fft.rfft(left * moved / size, n) * interval
         frequencies = np.fft.rfftfreq(n, interval)
         total += np.interp(grid, frequencies, spectrum.real) + 1j * np.interp(grid, frequencies, spectrum.imag)
@@ -93,7 +91,7 @@ def _rate(run: Run, signal: Array, band: float) -> tuple[Array, float]:
     omega = 2 * np.pi * np.fft.rfftfreq(n, 1.0 / run.sample_rate)
     within = int(np.searchsorted(omega, 2.0 * band, side="right"))
     spectrum, omega = spectrum[:within], omega[:within]
-    few = min(n, next_fast_len(5 * within, real=True))
+    few = min(n, next_fast_len(CRITERIA.initial_guesses.product_points * within, real=True))
     rate = np.fft.irfft(spectrum * 1j * omega if run.output == "displacement" else spectrum, few)
     return rate * (few / n), n / run.sample_rate / few
 
@@ -103,6 +101,6 @@ def _peaks(grid: Array, heights: Array, apart: float) -> tuple[float, ...]:
     for i in np.argsort(heights)[::-1]:
         if all(abs(grid[i] - other) > apart for other in found):
             found.append(float(grid[i]))
-        if len(found) == _LINES:
+        if len(found) == CRITERIA.initial_guesses.lines:
             break
     return tuple(found)

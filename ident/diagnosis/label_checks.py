@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ident.chain.conditions import conditions
 from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.criteria import CRITERIA, EPSILON
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.result import LabelErrors, Suspect
 from ident.parallel import each
@@ -22,14 +23,8 @@ from ident.simulation.simulate import Simulation
 from ident.words.error import error_said
 
 Array = NDArray[np.float64]
-_OUTLIER = 5.0  # robust standard deviations of the runs' errors
-_LEAST = 1.15  # times the usual error, whatever the deviations are
-_EXPLAINED = 0.5  # of the excess that a changed label has to take away
-_FACTORS = np.array([0.1, 0.2, 0.33, 0.5, 0.67, 0.8, 0.9, 1.1, 1.25, 1.5, 2.0, 3.0, 5.0, 10.0])
 _LABELS = {"mass": "mL", "stiffness": "k", "gain": "Kp"}
 _UNITS = {"mass": "kg", "stiffness": "N/m", "gain": "1"}
-_ROUNDS = 3  # of refining a label's value
-_MOST = 0.2  # of the runs: where more stand out, it is not their labels
 
 
 def label_suspects(models: CandidateModels, fitted: FittedModel, floors: Mapping[str, float | None]) -> list[Suspect]:
@@ -38,21 +33,21 @@ def label_suspects(models: CandidateModels, fitted: FittedModel, floors: Mapping
     `floors` is the noise floor of each run, as a fraction like eq. (17); the usual error of a run is in proportion.
     """
     runs = models.matrix.of_use("fit")
-    if len(runs) < 5:
+    if len(runs) < CRITERIA.labels.fewest_runs:
         return []
     errors = dict(
         zip((run.id for run in runs), each(lambda run: _errors(models, fitted, run, {})[0], runs), strict=True)
     )
     known = all(floors.get(run.id) for run in runs)
     scale = {run.id: (floors[run.id] or 1.0) if known else 1.0 for run in runs}
-    ratios = np.log([max(errors[run.id], 1e-12) / scale[run.id] for run in runs])
+    ratios = np.log([max(errors[run.id], EPSILON) / scale[run.id] for run in runs])
     usual = float(np.median(ratios))
-    spread = 1.4826 * float(np.median(np.abs(ratios - usual))) + 1e-3
+    spread = 1.4826 * float(np.median(np.abs(ratios - usual))) + CRITERIA.labels.least_spread
     outside = [
         run for run, ratio in zip(runs, ratios, strict=True)
-        if ratio - usual > max(np.log(_LEAST), _OUTLIER * spread)
+        if ratio - usual > max(np.log(CRITERIA.labels.least_excess), CRITERIA.labels.outlier * spread)
     ]  # fmt: skip
-    if len(outside) > max(1, _MOST * len(runs)):
+    if len(outside) > max(1, CRITERIA.labels.most * len(runs)):
         return []
 
     def doubt(run: Run) -> Suspect | None:
@@ -68,7 +63,7 @@ def _label_suspect(
     """The change of a label that explains most of a run's excess, if one explains enough."""
     changes = [_label(models, fitted, run, what) for what in _LABELS] + _of_channel(models, fitted, run)
     what, stated, found, mended = min(changes, key=lambda change: change[3])
-    if error**2 - mended**2 < _EXPLAINED * (error**2 - usual**2):
+    if error**2 - mended**2 < CRITERIA.labels.explained * (error**2 - usual**2):
         return None
     unit, errors = _UNITS.get(what, "s" if what == "delay" else "1"), LabelErrors(error, usual, mended)
     return Suspect(
@@ -95,20 +90,20 @@ def _label(models: CandidateModels, fitted: FittedModel, run: Run, what: str) ->
     name = _LABELS[what]
     stated = conditions(run, models.matrix.actuator)[name]
     others = {conditions(other, models.matrix.actuator)[name] for other in models.matrix.runs}
-    tried = np.array(sorted({*others, *(stated * _FACTORS)} - {stated}))
+    tried = np.array(sorted({*others, *(stated * np.array(CRITERIA.labels.factors))} - {stated}))
     if not len(tried):
         return what, stated, stated, np.inf
     errors = _errors(models, fitted, run, {name: tried})
     best = int(np.argmin(errors))
     found, least = float(tried[best]), float(errors[best])
-    reach = 0.15 * max(abs(found), abs(found - stated))
-    for _ in range(_ROUNDS):
-        around = found + reach * np.linspace(-1.0, 1.0, 9)
+    reach = CRITERIA.labels.reach * max(abs(found), abs(found - stated))
+    for _ in range(CRITERIA.labels.rounds):
+        around = found + reach * np.linspace(-1.0, 1.0, CRITERIA.labels.points)
         around = around[around > 0] if stated >= 0 else around
         errors = _errors(models, fitted, run, {name: around})
         best = int(np.argmin(errors))
         found, least = (float(around[best]), float(errors[best])) if errors[best] < least else (found, least)
-        reach /= 4
+        reach /= CRITERIA.labels.narrowing
     return what, stated, found, least
 
 
@@ -123,7 +118,7 @@ def _of_channel(models: CandidateModels, fitted: FittedModel, run: Run) -> list[
     left = float(np.sqrt(np.sum((factor * measured - model) ** 2) / power)) / abs(factor) if factor else np.inf
     scaled = ("sign" if factor < -0.5 else "unit", 1.0, factor, left)
     lag = 0.0
-    for _ in range(5):
+    for _ in range(CRITERIA.labels.shift_rounds):
         moved = np.interp(np.arange(len(model)) - lag * run.sample_rate, np.arange(len(model)), model)
         slope = np.gradient(moved) * run.sample_rate
         lag += float(-(measured - moved) @ slope / (slope @ slope))

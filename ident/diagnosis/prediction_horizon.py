@@ -14,16 +14,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.ranking import rank
 from ident.diagnosis.selection import StepwiseSelection
-from ident.diagnosis.significance import BEYOND_CHANCE
 from ident.diagnosis.tie_breaking import stable_ranking
 from ident.fit.windows import likelihood, longer
 from ident.parallel import each
 from ident.progress import Progress, Report
-
-_CARRIED = 4  # models that are taken to the next longer windows
 
 
 @dataclass(frozen=True)
@@ -46,7 +44,7 @@ def longer_horizon(selection: StepwiseSelection, report: Report) -> LongerHorizo
     if not horizons or not models.residual_above_noise(base):
         return None
     carried = [base, *(one.refit for one in selection.look() if one.refit is not None)]
-    chance = BEYOND_CHANCE + float(np.log(len(models.effects) * len(horizons)))
+    chance = CRITERIA.significance.log_likelihood_gain + float(np.log(len(models.effects) * len(horizons)))
     asked = max(
         _log_likelihood(base, models.memory) + chance, *(_log_likelihood(one, models.memory) for one in carried)
     )
@@ -79,7 +77,7 @@ def _likeliest(judged: Sequence[tuple[float, FittedModel]]) -> list[tuple[float,
     found: dict[tuple[str, ...], tuple[float, FittedModel]] = {}
     for likely, one in stable_ranking(judged, lambda one: -one[0]):
         found.setdefault(one.effects, (likely, one))
-    return list(found.values())[:_CARRIED]
+    return list(found.values())[: CRITERIA.structure.carried_models]
 
 
 def _ranked(models: CandidateModels, base: FittedModel, report: Report) -> list[FittedModel]:

@@ -12,27 +12,14 @@ import numpy as np
 
 from ident.diagnosis.candidate import Candidate, in_rank_order
 from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.screening import Prediction, predict
-from ident.diagnosis.significance import VISIBLE, WORTHWHILE
-from ident.diagnosis.tie_breaking import PRACTICALLY_EQUAL, stable_minimum, stable_ranking
+from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
 from ident.parallel import each
 from ident.progress import Expected, Progress, Report
 
 Item = TypeVar("Item")
-_CONTENDERS, _FEW = 12, 10  # refitted; fewer, the more effects there are already
-_QUICK = 200_000  # steps of a matrix so small that every promise can be tried, and every finalist elsewhere
-_NEAR = 1.3  # times the best predicted error: the contenders for a further effect
-_FINALISTS = 5
-_CLOSE = 1.05  # times the best trial's error: also a finalist, where it promises anything
-_ANEW = 0.98  # times the error: a model that is known is at another, better optimum
-_DEEPER = 2  # of the finalists are looked for elsewhere, too
-_STRONG = (1.0, 0.6, 0.3)  # of the largest strength, from where
-_ROUNDS = 4  # of going on from a better optimum that was found elsewhere
-_SHAKEN = (0.5, 0.7, 1.4, 2.0)  # times the strength that a refit found, from where, too
-_PROMISING = 0.3 * WORTHWHILE  # relative fall of the score that is worth a refit
-_NATS = 3.0  # of the offsets, too
-_SIGHT = 5  # effects that are told at first sight
 
 Base = tuple[FittedModel, Sequence[str]]
 """A model, and the effects that could be added to it."""
@@ -71,11 +58,12 @@ def rank_each(
     heard(_so_far(promised[0]))
     models_of = [base for base, _ in bases]
     contenders = [
-        of[:_CONTENDERS] if thorough else _near(models, base, of) for base, of in zip(models_of, promised, strict=True)
+        of[: CRITERIA.ranking.contenders] if thorough else _near(models, base, of)
+        for base, of in zip(models_of, promised, strict=True)
     ]
-    sure, done = _FINALISTS if thorough else 2, 0
+    sure, done = CRITERIA.ranking.finalists if thorough else 2, 0
     asked = {base.effects: _asked(models, base, beside) for base in models_of}
-    anew = _ANEW * models.trial_error(beside) if beside is not None else np.inf
+    anew = CRITERIA.ranking.found_again * models.trial_error(beside) if beside is not None else np.inf
 
     def trial(base: FittedModel, prediction: Prediction) -> Candidate:
         nonlocal done
@@ -102,7 +90,7 @@ def rank_each(
     found = [in_rank_order(models, ones) for ones in _side_by_side(final, models_of, finalists)]
     heard(_so_far(promised[0], tried[0], found[0]))
     report(Progress("confirming", done, done + 1))
-    deeper = _DEEPER if thorough else 1
+    deeper = CRITERIA.ranking.multistart_finalists if thorough else 1
     elsewhere = partial(_elsewhere, models, asked if beside else {})
     farther = _side_by_side(elsewhere, models_of, [ones[:deeper] for ones in found])
     return [
@@ -144,9 +132,9 @@ def deepened(models: CandidateModels, base: FittedModel, ranking: Sequence[Candi
     """The ranking of a small matrix, once all its finalists are looked for elsewhere; as it is of a large one."""
     if not _is_quick(models, base):
         return list(ranking)
-    finalists, rest = ranking[:_FINALISTS], ranking[_FINALISTS:]
-    farther = each(partial(_elsewhere, models, {}, base), finalists[_DEEPER:])
-    return in_rank_order(models, [*finalists[:_DEEPER], *farther, *rest])
+    finalists, rest = ranking[: CRITERIA.ranking.finalists], ranking[CRITERIA.ranking.finalists :]
+    farther = each(partial(_elsewhere, models, {}, base), finalists[CRITERIA.ranking.multistart_finalists :])
+    return in_rank_order(models, [*finalists[: CRITERIA.ranking.multistart_finalists], *farther, *rest])
 
 
 def _tried(models: CandidateModels, base: FittedModel, prediction: Prediction, aim: float, strong: bool) -> Candidate:
@@ -178,7 +166,7 @@ def _promised(models: CandidateModels, base: FittedModel, names: Sequence[str], 
     """What every effect promises, the best first."""
     report(Progress("predicting", 0, 1))
     found = stable_ranking(predict(models, base, sorted(names, key=models.simplicity)), lambda one: one.after.score)
-    first = tuple(Expected(one.effect, base.error * one.remaining) for one in found[:_SIGHT])
+    first = tuple(Expected(one.effect, base.error * one.remaining) for one in found[: CRITERIA.ranking.told_at_once])
     report(Progress("predicting", 1, 1, base.error, first))
     return found
 
@@ -189,8 +177,14 @@ def _finalists(models: CandidateModels, base: FittedModel, tried: Sequence[Candi
     As good as the best of them or, in a small matrix, as the last: rounding does not choose between these.
     """
     best = tried[0].score if tried else 0.0
-    as_last = PRACTICALLY_EQUAL * tried[sure - 1].score if len(tried) > sure and _is_quick(models, base) else 0.0
-    good = min(max(_CLOSE * best, as_last), (1.0 - _PROMISING) * models.trial_error(base))
+    as_last = (
+        CRITERIA.significance.practically_equal * tried[sure - 1].score
+        if len(tried) > sure and _is_quick(models, base)
+        else 0.0
+    )
+    good = min(
+        max(CRITERIA.ranking.close_trial * best, as_last), (1.0 - CRITERIA.ranking.promising) * models.trial_error(base)
+    )
     return [one for i, one in enumerate(tried) if one.trial and (i < sure or one.score < good)]
 
 
@@ -217,17 +211,25 @@ def _comes_below(candidate: Candidate, error: float) -> bool:
 def _is_better(anew: Candidate | None, known: Candidate) -> bool:
     """Whether a model that is known was found anew, at a better optimum."""
     assert known.refit is not None
-    return anew is not None and anew.refit is not None and anew.refit.error < _ANEW * known.refit.error
+    return (
+        anew is not None
+        and anew.refit is not None
+        and anew.refit.error < CRITERIA.ranking.found_again * known.refit.error
+    )
 
 
 def _asked(models: CandidateModels, base: FittedModel, beside: FittedModel | None) -> float:
     """The error below which a trial has to come to be of use, on the beginnings of the records."""
-    return (1.0 - _PROMISING) * models.trial_error(base) if beside is None else _CLOSE * models.trial_error(beside)
+    return (
+        (1.0 - CRITERIA.ranking.promising) * models.trial_error(base)
+        if beside is None
+        else CRITERIA.ranking.close_trial * models.trial_error(beside)
+    )
 
 
 def _near(models: CandidateModels, base: FittedModel, predictions: Sequence[Prediction]) -> list[Prediction]:
     """The contenders for a further effect: those that promise anything near what the best promises."""
-    near = _NEAR * predictions[0].after.error
+    near = CRITERIA.ranking.near_best * predictions[0].after.error
     return [p for p in predictions if _promises(p) and p.after.error < near][: _few(models, base)]
 
 
@@ -236,7 +238,7 @@ def _passed_over(
 ) -> list[Prediction]:  # fmt: skip
     """What promises anything near what was found, where those that promised most found less than that."""
     found = min((one.trial.local.error for one in tried if one.trial is not None), default=np.inf)
-    near = _NEAR * min(found / models.trial_error(base), 1.0)
+    near = CRITERIA.ranking.near_best * min(found / models.trial_error(base), 1.0)
     done = {one.effect for one in tried}
     return [
         p for p in predictions[: _few(models, base)] if _promises(p) and p.remaining < near and p.effect not in done
@@ -245,13 +247,17 @@ def _passed_over(
 
 def _few(models: CandidateModels, base: FittedModel) -> int:
     """How many contenders for a further effect there may be."""
-    return _CONTENDERS if _is_quick(models, base) else max(_FEW - 2 * len(base.effects), _FINALISTS)
+    return (
+        CRITERIA.ranking.contenders
+        if _is_quick(models, base)
+        else max(CRITERIA.ranking.further_contenders - 2 * len(base.effects), CRITERIA.ranking.finalists)
+    )
 
 
 def _is_quick(models: CandidateModels, base: FittedModel) -> bool:
     """Whether a matrix is so small that refits take next to nothing."""
     steps = int(base.fitness.steps(base.fitness.space.values(base.point[None])).max())
-    return steps * sum(run.length for run in models.runs) < _QUICK
+    return steps * sum(run.length for run in models.runs) < CRITERIA.ranking.quick_steps
 
 
 def _elsewhere(
@@ -265,7 +271,7 @@ def _elsewhere(
     if refit is None or models.at_floor(refit):
         return candidate
     starts = [*_strong(models, base, refit), *_shaken(models, refit)]
-    for _ in range(_ROUNDS):
+    for _ in range(CRITERIA.ranking.multistart_rounds):
         other = models.better_optimum(refit, starts, aim)
         if other is None:
             break
@@ -280,7 +286,7 @@ def _strong(models: CandidateModels, base: FittedModel, refit: FittedModel) -> l
     end = lower if refit.values[symbol] < 0 else upper
     added = models.effects[refit.effects[-1]].added[1:]
     shape = {p.in_equations: refit.values[p.in_equations] for p in added if p.in_equations in refit.values}
-    return [{**base.values, **shape, symbol: share * end} for share in _STRONG]
+    return [{**base.values, **shape, symbol: share * end} for share in CRITERIA.ranking.strong_starts]
 
 
 def _shaken(models: CandidateModels, refit: FittedModel) -> list[dict[str, float]]:
@@ -290,11 +296,15 @@ def _shaken(models: CandidateModels, refit: FittedModel) -> list[dict[str, float
     """
     symbol = models.strength(refit.effects[-1])
     lower, upper = refit.fitness.space.bounds(refit.values)[symbol]
-    return [{**refit.values, symbol: float(np.clip(s * refit.values[symbol], lower, upper))} for s in _SHAKEN]
+    return [
+        {**refit.values, symbol: float(np.clip(s * refit.values[symbol], lower, upper))}
+        for s in CRITERIA.ranking.shaken_starts
+    ]
 
 
 def _promises(prediction: Prediction) -> bool:
     """Whether a prediction is worth a refit: by a part of what is asked for in the end."""
-    return prediction.reduction > _PROMISING or (
-        prediction.offset_likelihood_gain > _NATS and prediction.before.offset > VISIBLE
+    return prediction.reduction > CRITERIA.ranking.promising or (
+        prediction.offset_likelihood_gain > CRITERIA.ranking.offset_gain
+        and prediction.before.offset > CRITERIA.significance.offset
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from ident.diagnosis.candidate import Candidate
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.proposal import Proposal
 from ident.diagnosis.result import Explanation, Suspect
 from ident.diagnosis.significance import Improvement
@@ -65,7 +66,7 @@ def why_of_gain(
         nats = gain.innovation_likelihood_gain
         foretold = f"of whole runs {nats:.3g} nats less is left that their own past does not foretell"
         return f"{first}{change} over windows; {foretold}. It shows as: {effect.looks}."
-    if abs(gain.reduction) < 1e-3:
+    if abs(gain.reduction) < CRITERIA.conclusion.no_fall:
         return f"{first}The error stays, but the runs' offsets become explained: {effect.looks}."
     return f"{change}{near}. {first}It shows as: {effect.looks}."
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.criteria import CRITERIA, EPSILON
 from ident.diagnosis.cross_validation import scored, weight_of_offsets
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.initial_guesses import initial_guesses, strength_in_records
@@ -27,19 +28,6 @@ from ident.fit.space import Space
 from ident.parallel import each
 
 Array = NDArray[np.float64]
-SAMPLES = 49_152
-_LADDER = (0.01, 0.03, 0.1, 0.3, 1.0)  # of the way from off to each bound
-_FINER = (1e-4, 3e-4, 1e-3, 3e-3)  # besides, for a machine of unknown size, whose bounds are wide
-_MANY, _AMONG_MANY = 10, (0.3,)  # beginnings of the shapes, from each of which one strength has to do
-_REACH = 2.0  # by which factor a response may be scaled: beyond, it would be another strength's
-_FAR = 0.1  # of an axis: a parameter that hardly matters where it is may be sent anywhere by a linearisation
-_PARTS = (1.0, 0.5, 0.2, 0.05, 0.01)  # of the way to a prediction: it may be too bold
-_SUDDEN, _WIDE = 300.0, 4.0  # a response grows so much in power, over so wide a step, by a threshold between
-_BETWEEN = (0.2, 0.4, 0.6, 0.8)  # powers of the step
-_BACK = (0.67, 0.33, 0.0)  # powers of the share of the simulated strength
-_ROUNDING = 1e-9  # of a score, by which nothing is better
-_ROUNDS = 3  # of weighting each run by what it is left with
-_TOGETHER = 64  # trials whose sums of products lie side by side in memory
 
 
 @dataclass(frozen=True)
@@ -92,7 +80,7 @@ def predict(models: CandidateModels, base: FittedModel, names: Sequence[str]) ->
 
 def _predicted(sight: _Sensitivities, base: FittedModel, names: Sequence[str]) -> list[Prediction]:
     """The predictions of effects that one chain holds; strengths are added where a threshold was jumped over."""
-    models, fitness = sight.models, sight.models.fitness((*base.effects, *names), SAMPLES)
+    models, fitness = sight.models, sight.models.fitness((*base.effects, *names), CRITERIA.screening.samples)
     off = {symbol: value for symbol, value in models.off.items() if symbol not in base.values}
     known = {name: value for name, value in {**off, **base.values}.items() if name in fitness.space.order}
     trials = [trial for name in names for trial in _trials(models, base, fitness.space, name, known)]
@@ -102,7 +90,7 @@ def _predicted(sight: _Sensitivities, base: FittedModel, names: Sequence[str]) -
     before = sight.before
     best = {trial.effect: (before, np.zeros(len(base.point) + 1), trial) for trial in reversed(trials)}
     for trial, after, step in chain.from_iterable(seen.predicted_fits() for seen in every):
-        if after.score < (1.0 - _ROUNDING) * best[trial.effect][0].score:
+        if after.score < (1.0 - CRITERIA.screening.score_tolerance) * best[trial.effect][0].score:
             best[trial.effect] = after, step, trial
     return [
         Prediction(
@@ -142,7 +130,7 @@ class _Sensitivities:
     @classmethod
     def of(cls, models: CandidateModels, base: FittedModel) -> _Sensitivities:
         """Simulate the model with each parameter moved."""
-        fitness = models.fitness(base.effects, SAMPLES)
+        fitness = models.fitness(base.effects, CRITERIA.screening.samples)
         found = Sensitivities.of(fitness, base.point)
         totals = np.array([np.sum((r.measured - r.measured.mean()) ** 2) for r in fitness.runs])
         records = _Records(totals, np.array([r.length for r in fitness.runs]))
@@ -177,7 +165,9 @@ class _EffectResponses:
     def predicted_fits(self) -> Iterator[tuple[_Trial, PredictedFit, Array]]:
         """What was simulated, what is left with a share of its response, and the step to there."""
         shown = [i for i in range(len(self.trials)) if self._power(i) > 0]
-        for few in (shown[first : first + _TOGETHER] for first in range(0, len(shown), _TOGETHER)):
+        for few in (
+            shown[first : first + CRITERIA.screening.batch] for first in range(0, len(shown), CRITERIA.screening.batch)
+        ):
             yield from ((self.trials[i], *found) for i, found in zip(few, self._after(few), strict=True))
 
     def thresholds(self) -> list[_Trial]:
@@ -187,8 +177,10 @@ class _EffectResponses:
             if one != replace(other, strength=one.strength):
                 continue
             ratio = other.strength / one.strength
-            if 1 < ratio < _WIDE and self._power(i + 1) > _SUDDEN * self._power(i):
-                found += [replace(one, strength=one.strength * ratio**share) for share in _BETWEEN]
+            if 1 < ratio < CRITERIA.screening.threshold_step and self._power(
+                i + 1
+            ) > CRITERIA.screening.threshold_growth * self._power(i):
+                found += [replace(one, strength=one.strength * ratio**share) for share in CRITERIA.screening.between]
         return found
 
     def _power(self, trial: int) -> float:
@@ -211,7 +203,7 @@ def _refit_starts(
 ) -> tuple[dict[str, float], ...]:
     """The values from which to refit with the effect: parts of the way to the prediction, and of the way back."""
     p, symbol = len(base.point), models.strength(trial.effect)
-    moved = np.clip(step[:p], -_FAR, _FAR)
+    moved = np.clip(step[:p], -CRITERIA.screening.max_step, CRITERIA.screening.max_step)
 
     def at(share: float, here: float) -> dict[str, float]:
         point = np.clip(base.point + share * moved, 0.0, 1.0)
@@ -219,8 +211,12 @@ def _refit_starts(
         return {**base.values, **values, **trial.shape, symbol: here}
 
     scaled = float(step[p])
-    parts = [at(share, share * scaled * trial.strength) for share in _PARTS]
-    return (*parts, *(at(1.0, scaled**share * trial.strength) for share in _BACK)) if scaled else tuple(parts)
+    parts = [at(share, share * scaled * trial.strength) for share in CRITERIA.screening.step_shares]
+    return (
+        (*parts, *(at(1.0, scaled**share * trial.strength) for share in CRITERIA.screening.strength_powers))
+        if scaled
+        else tuple(parts)
+    )
 
 
 def _from_records(
@@ -240,7 +236,13 @@ def _trials(
     """The strengths to try, SI: shares of the way from off to each bound, from wherever the shapes may begin."""
     lower, upper = space.bounds(known)[models.strength(name)]
     shapes = initial_guesses(base, models.effects[name], space, known)
-    shares = _AMONG_MANY if len(shapes) > _MANY else (*_FINER, *_LADDER) if space.scale_free else _LADDER
+    shares = (
+        CRITERIA.screening.strengths_of_many
+        if len(shapes) > CRITERIA.screening.many_shapes
+        else (*CRITERIA.screening.weak_strengths, *CRITERIA.screening.strengths)
+        if space.scale_free
+        else CRITERIA.screening.strengths
+    )
     for shape in shapes:
         for end in (upper, lower):
             yield from (_Trial(name, share * end, shape) for share in shares if end)
@@ -263,24 +265,25 @@ def _after(
     """
     count, runs, p = *gram.shape[:2], gram.shape[-1] - 1
     here = np.append(point, np.zeros(p - fitted))  # the strength's axis runs from 0 to _REACH
-    scale = np.append(np.ones(fitted), np.full(p - fitted, _REACH))
+    scale = np.append(np.ones(fitted), np.full(p - fitted, CRITERIA.screening.max_scaling))
     share = weight_of_offsets(runs, int(records.lengths.sum()))
     offsets = (means - means.mean(axis=1, keepdims=True)) / np.sqrt(records.totals / records.lengths)[:, None]
     of_offsets = offsets.transpose(0, 2, 1) @ offsets
+    least_offset = CRITERIA.cross_validation.least_offset
     flat, left = gram.reshape(count, runs, -1), gram[..., p, p]
     step, direction = np.zeros((count, p)), np.append(np.zeros((count, p)), np.ones((count, 1)), axis=1)
-    for _ in range(_ROUNDS):
-        weights = 1.0 / np.sqrt(np.maximum(left, 1e-24 * records.totals) * records.totals)
+    for _ in range(CRITERIA.screening.reweighting_rounds):
+        weights = 1.0 / np.sqrt(np.maximum(left, EPSILON**2 * records.totals) * records.totals)
         joint = (weights[:, None] @ flat).reshape(count, p + 1, p + 1)
         error = np.mean(np.sqrt(left / records.totals), axis=1)
-        squared = np.maximum(_along(of_offsets[:, None], direction)[:, 0], 1e-18 * runs)
+        squared = np.maximum(_along(of_offsets[:, None], direction)[:, 0], least_offset**2 * runs)
         joint += (share * runs * error / squared)[:, None, None] * of_offsets  # the gradient of the second part
         H, g = joint[:, :p, :p], -joint[:, :p, p]
         step = scale * bounded_steps(here / scale, H * scale[:, None] * scale, g * scale)
         direction = np.append(-step, np.ones((count, 1)), axis=1)
-        left = np.maximum(_along(gram, direction), 1e-12 * records.totals)
+        left = np.maximum(_along(gram, direction), EPSILON * records.totals)
     error = np.mean(np.sqrt(left / records.totals), axis=1)
-    offset = np.sqrt(np.maximum(_along(of_offsets[:, None], direction)[:, 0], 1e-18 * runs) / runs)
+    offset = np.sqrt(np.maximum(_along(of_offsets[:, None], direction)[:, 0], least_offset**2 * runs) / runs)
     for one, other, found in zip(error.tolist(), offset.tolist(), step, strict=True):
         yield PredictedFit(one, other, scored(one, other, share)), found
 

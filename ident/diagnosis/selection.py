@@ -16,6 +16,7 @@ from math import inf
 
 from ident.diagnosis.candidate import Candidate, in_rank_order, indistinguishable_group, not_dominated
 from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel, distinguishable, improves, indistinguishable
 from ident.diagnosis.ladder import Ladder, Rungs, score, without_effect
 from ident.diagnosis.ranking import deepened, rank, rank_each
@@ -23,13 +24,6 @@ from ident.diagnosis.tie_breaking import stable_minimum
 from ident.errors import TimeIsUp
 from ident.parallel import each
 from ident.progress import Progress, Report
-
-MOST = 6  # effects that are added
-USUAL = 4  # where the user says nothing
-_WEIGHED = 3  # effects that are weighed against others in their place each time: more take long
-_ROUNDS = 3  # of replacing
-_SCATTERED = 8  # of the first ranking that are tried with the fitted model forgotten
-_PAIRED = 5  # finalists that are tried two at a time
 
 
 @dataclass
@@ -95,7 +89,7 @@ class StepwiseSelection:
         for farther in (self._weighed, self._stronger, self._paired):
             if self.models.floor is not None and not self.models.at_floor(self.found) and farther():
                 self._rounds()
-        for _ in range(_ROUNDS):
+        for _ in range(CRITERIA.selection.rounds):
             if not self._shortened() and not (self.models.at_floor(self.found) and self._weighed()):
                 break
             self._rounds()
@@ -117,9 +111,9 @@ class StepwiseSelection:
         groups, before = self.groups, self.found
         self.groups = {}
         seen: set[frozenset[str]] = set()
-        for _ in range(_ROUNDS):
+        for _ in range(CRITERIA.selection.rounds):
             self._forward()
-            if len(self.added) > _WEIGHED or frozenset(self.added) in seen or not self._replaced():
+            if len(self.added) > CRITERIA.selection.exchanged or frozenset(self.added) in seen or not self._replaced():
                 break
             seen.add(frozenset(self.added))
         if self.found is before:
@@ -197,9 +191,9 @@ class StepwiseSelection:
 
     def _weighed(self) -> bool:
         """Weigh as many effects as are not weighed otherwise, until none is replaced; True where one was."""
-        if len(self.added) <= _WEIGHED or self.groups:
+        if len(self.added) <= CRITERIA.selection.exchanged or self.groups:
             return False
-        rounds = (self._replaced() for _ in range(_ROUNDS))
+        rounds = (self._replaced() for _ in range(CRITERIA.selection.rounds))
         return sum(takewhile(bool, rounds)) > 0
 
     def _settled(self, refit: FittedModel) -> bool:
@@ -223,7 +217,7 @@ class StepwiseSelection:
         """
         if self.models.floor is None or self.models.at_floor(self.found):
             return
-        names = [candidate.effect for candidate in self.ranking[:_SCATTERED]]
+        names = [candidate.effect for candidate in self.ranking[: CRITERIA.selection.global_restarts]]
         done = 0
 
         def scattered(name: str) -> list[FittedModel]:
@@ -266,7 +260,9 @@ class StepwiseSelection:
         One at a time may lead astray: two lags look like a delay, and from there to whatever mends the difference.
         """
         begun = self.steps[1].effects[-1] if len(self.steps) > 1 else ""  # every other was tried beside it
-        finalists = [c.refit for c in self.ranking if c.refit is not None and c.effect != begun][:_PAIRED]
+        finalists = [c.refit for c in self.ranking if c.refit is not None and c.effect != begun][
+            : CRITERIA.selection.paired
+        ]
         if self.most < 2 or len(finalists) < 2:
             return False
         pairs, asked = list(combinations(finalists, 2)), self.models.trial_error(self.found)

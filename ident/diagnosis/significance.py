@@ -29,24 +29,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.diagnosis.criteria import CRITERIA, EPSILON, TINY
 from ident.diagnosis.cross_validation import CrossValidation
 
 Array = NDArray[np.float64]
-BEYOND_CHANCE = 10.0  # nats: one in 20,000 by chance, if only the best of a large number could tell
-WORTHWHILE = 1e-2  # relative fall of the error: less is not worth a parameter, however certain
-_HELD = 0.5  # of what is worth a parameter that is to be seen on held-out data, too
-ALIKE = 3.0  # standard deviations below which two refits differ by chance
-_OFFSET_ALIKE = 4.5  # nats: three deviations
-_ALIKE_NATS = 2 * ALIKE**2  # where white noise of σ separates outputs f, g by ALIKE deviations: |f − g|² = 36 σ²
-VISIBLE = 3e-4  # of the standard deviation: offsets below are nobody's concern
-_SINGLE = 5.0  # nats that are to be left without the run that gains most, and the least of L
-_FORETOLD = 15.0  # nats of L: a drift that its past does not quite foretell makes ten
-_NEW = 0.2  # of what is left that is not foretold: less, and it is no noise
-_STEADY = 3.0  # deviations of the mean gain of the chunks that are beyond chance by themselves
-_SINGLE_STEADY = 2.5  # deviations that are to be left without the run that gains most
-_UNSTEADY = 1.5  # deviations of the mean gain of the runs below which few of them gain
-_LOST = 0.1  # of what these few gain that the rest may lose: more, and it is they against the rest
-_SEVERAL = 6  # runs that are counted one by one; of fewer their chunks are
 
 
 @dataclass(frozen=True)
@@ -83,7 +69,9 @@ class Improvement:
         """Whether the better one would be chosen again with other noise."""
         of_error = self._likelihood_gain_worthwhile or self._gain_consistent
         of_offset = (
-            self.offset_matters and self.offset_likelihood_gain > BEYOND_CHANCE and self.log_likelihood_gain > -_SINGLE
+            self.offset_matters
+            and self.offset_likelihood_gain > CRITERIA.significance.log_likelihood_gain
+            and self.log_likelihood_gain > -CRITERIA.significance.gain_without_best
         )
         return (of_error and not self.tracks_drift) or of_offset or self.innovation_gain_significant
 
@@ -94,20 +82,29 @@ class Improvement:
         Not where the data become more likely by themselves, nor where next to nothing of a whole run's residual is new:
         it is a pattern far above the noise, whose steps a model that is better all over may foretell less well.
         """
-        asked = self.in_windows or (not self._likelihood_gain_worthwhile and self.innovation_share > _NEW)
+        asked = self.in_windows or (
+            not self._likelihood_gain_worthwhile and self.innovation_share > CRITERIA.significance.innovation_share
+        )
         falls = self._likelihood_gain_worthwhile or self._gain_consistent
         return (
             falls
             and asked
             and self.innovation_likelihood_gain is not None
-            and not self.innovation_likelihood_gain > _SINGLE
+            and not self.innovation_likelihood_gain > CRITERIA.significance.gain_without_best
         )
 
     @property
     def likelihood_gain_significant(self) -> bool:
         """Whether the data become more likely beyond chance, by however little the error falls: enough for a swap."""
-        steadily = self.run_deviations > _UNSTEADY or self.loss_ratio < _LOST
-        return self.log_likelihood_gain > BEYOND_CHANCE and self.log_likelihood_gain_without_best > _SINGLE and steadily
+        steadily = (
+            self.run_deviations > CRITERIA.significance.run_consistency
+            or self.loss_ratio < CRITERIA.significance.loss_ratio
+        )
+        return (
+            self.log_likelihood_gain > CRITERIA.significance.log_likelihood_gain
+            and self.log_likelihood_gain_without_best > CRITERIA.significance.gain_without_best
+            and steadily
+        )
 
     @property
     def _likelihood_gain_worthwhile(self) -> bool:
@@ -115,15 +112,21 @@ class Improvement:
 
     @property
     def _gain_consistent(self) -> bool:
-        sure = self.deviations > _STEADY and self.deviations_without_best > _SINGLE_STEADY
+        sure = (
+            self.deviations > CRITERIA.significance.consistent
+            and self.deviations_without_best > CRITERIA.significance.consistent_without_best
+        )
         return self.worthwhile and sure
 
     @property
     def worthwhile(self) -> bool:
         """Whether the error falls by what is worth a parameter."""
         if self.fitted_reduction is None:
-            return self.reduction > WORTHWHILE
-        return self.fitted_reduction > WORTHWHILE and self.reduction > _HELD * WORTHWHILE
+            return self.reduction > CRITERIA.significance.worthwhile
+        return (
+            self.fitted_reduction > CRITERIA.significance.worthwhile
+            and self.reduction > CRITERIA.significance.worthwhile_held_out * CRITERIA.significance.worthwhile
+        )
 
     @property
     def innovation_gain_significant(self) -> bool:
@@ -134,24 +137,32 @@ class Improvement:
             or self.innovation_likelihood_gain_without_best is None
         ):
             return False
-        return self.innovation_likelihood_gain > _FORETOLD and self.innovation_likelihood_gain_without_best > _SINGLE
+        return (
+            self.innovation_likelihood_gain > CRITERIA.significance.innovation_gain
+            and self.innovation_likelihood_gain_without_best > CRITERIA.significance.gain_without_best
+        )
 
     @property
     def within_chance(self) -> bool:
         """Whether the two cannot be told apart."""
-        same_errors = self.deviations < ALIKE and self.log_likelihood_gain < _ALIKE_NATS
-        return same_errors and (self.offset_likelihood_gain < _OFFSET_ALIKE or not self.offset_matters)
+        same_errors = (
+            self.deviations < CRITERIA.significance.indistinguishable
+            and self.log_likelihood_gain < CRITERIA.significance.indistinguishable_gain
+        )
+        return same_errors and (
+            self.offset_likelihood_gain < CRITERIA.significance.indistinguishable_offsets or not self.offset_matters
+        )
 
 
 def improvement(before: CrossValidation, after: CrossValidation) -> Improvement:
     """What `after` gains over `before`."""
-    weights = 1.0 / (np.maximum(np.minimum(before.errors, after.errors), 1e-12) * before.totals)
+    weights = 1.0 / (np.maximum(np.minimum(before.errors, after.errors), EPSILON) * before.totals)
     difference = (before.squares - after.squares) * weights[:, None]
     best = _largest_gain(difference)
     n = len(before.means)
-    offset = n * float(np.log(max(before.offset, 1e-12) / max(after.offset, 1e-12))) if n > 2 else 0.0
+    offset = n * float(np.log(max(before.offset, EPSILON) / max(after.offset, EPSILON))) if n > 2 else 0.0
     share = 1.0 - after.error / before.error if before.error > 0 else 0.0
-    visible = max(before.offset, after.offset) > VISIBLE
+    visible = max(before.offset, after.offset) > CRITERIA.significance.offset
     everything = np.zeros(difference.shape, dtype=bool)
     return Improvement(
         share,
@@ -159,7 +170,11 @@ def improvement(before: CrossValidation, after: CrossValidation) -> Improvement:
         _log_likelihood_gain(before, after, best),
         _deviations(difference),
         _deviations(difference[~best]),
-        _deviations(difference.sum(axis=1)[~best.any(axis=1)] if len(difference) >= _SEVERAL else difference),
+        _deviations(
+            difference.sum(axis=1)[~best.any(axis=1)]
+            if len(difference) >= CRITERIA.significance.several_runs
+            else difference
+        ),
         _loss_ratio(difference[~best]),
         offset,
         visible,
@@ -179,7 +194,7 @@ def _innovation_share(after: CrossValidation) -> float:
     """The share of what is left that its own past does not foretell, averaged over the runs."""
     if after.innovations is None:
         return 0.0
-    return float(np.mean(after.innovations.sum(axis=1) / np.maximum(after.squares.sum(axis=1), 1e-300)))
+    return float(np.mean(after.innovations.sum(axis=1) / np.maximum(after.squares.sum(axis=1), TINY)))
 
 
 def _innovation_likelihood_gain(before: CrossValidation, after: CrossValidation) -> tuple[float | None, float | None]:
@@ -191,12 +206,12 @@ def _innovation_likelihood_gain(before: CrossValidation, after: CrossValidation)
     if len(known) < 2:
         return None, None
     length = before.samples / known[0].size
-    sums = [np.maximum(one, 1e-300) for one in known]
+    sums = [np.maximum(one, TINY) for one in known]
     power = np.minimum(*(side.mean(axis=1, keepdims=True) for side in sums))
     best = _largest_gain((sums[0] - sums[1]) / power)
 
     def nats(but: NDArray[np.bool_]) -> float:
-        left = [np.maximum(np.where(but, 0.0, side).sum(axis=1), 1e-300) for side in sums]
+        left = [np.maximum(np.where(but, 0.0, side).sum(axis=1), TINY) for side in sums]
         return 0.5 * length * float((~but).sum(axis=1) @ np.log(left[0] / left[1]))
 
     return nats(np.zeros_like(best)), nats(best)
@@ -217,7 +232,7 @@ def _log_likelihood_gain(before: CrossValidation, after: CrossValidation, but: N
     errors = [
         float(np.mean(np.sqrt(np.where(but, 0.0, side.squares).sum(axis=1) / side.totals))) for side in (before, after)
     ]
-    return before.independent * float(np.log(max(errors[0], 1e-12) / max(errors[1], 1e-12)))
+    return before.independent * float(np.log(max(errors[0], EPSILON) / max(errors[1], EPSILON)))
 
 
 def _loss_ratio(differences: Array) -> float:

@@ -12,6 +12,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.ranking import rank
 from ident.diagnosis.significance import improvement
@@ -29,9 +30,6 @@ from ident.presets.suited import in_question, told_by_following, unusual
 from ident.progress import Progress, Report, silent
 from ident.words.error import error_said
 from ident.words.titles import title
-
-_WORSE = 1.02  # times the least error on held-out data: less is no reason for another parameter
-_MUCH_LESS = 0.7  # times what the first machine leaves with its best effect: so much has a simpler one to leave
 
 
 @dataclass(frozen=True)
@@ -80,7 +78,7 @@ def _compared(
     fitted = _all_fitted(models, matrix, report, preprocessing)
     over, tried = _judged(list(fitted.values()))
     least = min(one.error for one in tried)
-    good = [one for one in tried if one.error <= _WORSE * least]
+    good = [one for one in tried if one.error <= CRITERIA.structure.worse * least]
     strange = {model.name for model in models if unusual(model, matrix.runs)}
     first = min(good, key=lambda one: (one.machine in strange, one.parameters))
     with_effects = _with_an_effect_each(first, tried, report)
@@ -113,7 +111,7 @@ def _preferred(
     not.
     """
     least = min((one.error for one in others), default=first.error)
-    if least <= _MUCH_LESS * first.error:
+    if least <= CRITERIA.structure.much_less * first.error:
         return _simplest(others), "much less with one effect"
     within = [one for one in others if one.error < first.error and not one.at_bound]
     if first.at_bound and within:
@@ -122,7 +120,7 @@ def _preferred(
         one
         for one in others
         if one.parameters < first.parameters
-        and one.error <= _WORSE * first.error
+        and one.error <= CRITERIA.structure.worse * first.error
         and (one.machine in strange) <= (first.machine in strange)
         and not improvement(one.best.held_out, first.best.held_out).beyond_chance
     ]
@@ -134,7 +132,7 @@ def _preferred(
 def _simplest(models: Collection[_JudgedStructure]) -> _JudgedStructure:
     """The one with the fewest parameters of those that leave least."""
     least = min(one.error for one in models)
-    return min((one for one in models if one.error <= _WORSE * least), key=lambda one: one.parameters)
+    return min((one for one in models if one.error <= CRITERIA.structure.worse * least), key=lambda one: one.parameters)
 
 
 def _judged(fitted: Sequence[_FittedStructure]) -> tuple[str, list[_JudgedStructure]]:

@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
+from ident.diagnosis.criteria import CRITERIA
+
 Item = TypeVar("Item")
-RELATIVE_TOLERANCE = 1e-4  # relative difference of two errors: refits end within about a hundredth of it
-PRACTICALLY_EQUAL = 1.02  # times the error: within so much, in a flat valley, rounding decides where a refit ends
 
 
 def stable_ranking(
@@ -43,4 +43,4 @@ def stable_minimum(items: Sequence[Item], size: Callable[[Item], float]) -> Item
 
 
 def _bound(least: float) -> float:
-    return least + RELATIVE_TOLERANCE * abs(least)
+    return least + CRITERIA.significance.tie * abs(least)

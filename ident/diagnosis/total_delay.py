@@ -14,18 +14,14 @@ from functools import partial
 from itertools import chain, combinations
 
 from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel, indistinguishable
 from ident.diagnosis.ladder import without_effect
 from ident.diagnosis.significance import improvement
-from ident.fit.levenberg_marquardt import Way
 from ident.fit.result import Combination
 from ident.fit.slow_answer import is_late
 from ident.parallel import each
 from ident.parameter import Parameter, Starts
-
-_NEAR = 1.05  # times the model's error: what cannot come below it does not as well
-_PROMISING = 1.01  # times the error on the beginnings of the records: what leaves more is not alike
-_ROUGHLY = Way(1e-4, 12, rough=1e-3)  # of a refit that is only asked whether it does
 
 
 @dataclass(frozen=True)
@@ -60,7 +56,9 @@ def total_delay(models: CandidateModels, base: FittedModel, refit: FittedModel) 
         at = {models.strength(effect): refit.values[constant.in_equations]}
         return short.refit((*refit.effects, effect), start | at, way=way)
 
-    way = replace(_ROUGHLY, aim=_NEAR * refit.local.error, enough=refit.local.error)
+    way = replace(
+        CRITERIA.ambiguity.delay_effort, aim=CRITERIA.ambiguity.delay_near * refit.local.error, enough=refit.local.error
+    )
     names = [name for name, effect in models.effects.items() if is_late(effect) and name not in refit.effects]
     names = [name for name in names if models.fit_together((*refit.effects, name))]
     tried = [one for one in each(other, names) if one.finite]
@@ -88,7 +86,7 @@ def lag_ambiguities(models: CandidateModels, refit: FittedModel, added: Sequence
     ]
     free, found = [name for name in times if name not in refit.effects], []
     pairs = list(combinations([name for name in added if name in times], 2))
-    asked = _PROMISING * models.trial_error(refit) if pairs else 0.0
+    asked = CRITERIA.ambiguity.pair_near * models.trial_error(refit) if pairs else 0.0
     for pair in pairs:
         rest = tuple(name for name in refit.effects if name not in pair)
         others = [two for two in combinations(free, 2) if models.fit_together((*rest, *two))]

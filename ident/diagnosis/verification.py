@@ -13,6 +13,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.diagnosis.criteria import CRITERIA, TINY
 from ident.noise.effective_sample_size import independent_samples
 from ident.plain import WHERE_KNOWN
 from ident.run import Run, over_runs
@@ -23,10 +24,6 @@ Array = NDArray[np.float64]
 Standing = Literal["found", "stand_in", "contradicted", "nothing"]
 """found: the error is at the floor; stand_in: it fell, something is left, or may be, for a strength ended at the bound
 of its search; contradicted: it rises on verify runs."""
-_SURE = 2.0  # standard errors
-_MEMORY = 10.0  # correlation times in a chunk
-_LEAST = 4  # chunks of a run
-_RESAMPLED = 400
 
 
 @dataclass(frozen=True)
@@ -73,11 +70,14 @@ def contradiction(
         sizes = [float(np.std(r) / np.std(run.measured)) for run, r in zip(runs, before, strict=True)]
         return Contradiction(effect, float(over_runs(sizes, runs)), None, None, unstable=unstable)
     random = np.random.default_rng(0)
-    drawn = {"before": np.empty((len(runs), _RESAMPLED)), "after": np.empty((len(runs), _RESAMPLED))}
+    drawn = {
+        "before": np.empty((len(runs), CRITERIA.verification.resamples)),
+        "after": np.empty((len(runs), CRITERIA.verification.resamples)),
+    }
     whole = {"before": np.empty(len(runs)), "after": np.empty(len(runs))}
     for i, (run, old, new) in enumerate(zip(runs, before, after, strict=True)):
         chunks = _chunks(old)
-        picked = random.integers(len(chunks), size=(_RESAMPLED, len(chunks)))
+        picked = random.integers(len(chunks), size=(CRITERIA.verification.resamples, len(chunks)))
         size = float(np.std(run.measured))
         for name, residual in (("before", old), ("after", new)):
             sums = np.array([np.sum(residual[chunk] ** 2) for chunk in chunks])
@@ -87,9 +87,9 @@ def contradiction(
     change = over_runs(drawn["after"], runs) - over_runs(drawn["before"], runs)
     first, last = (float(over_runs(whole[name], runs)) for name in ("before", "after"))
     error = float(np.std(change))
-    if not last - first > _SURE * error:
+    if not last - first > CRITERIA.verification.deviations * error:
         return None
-    return Contradiction(effect, first, last, (last - first) / max(error, 1e-300))
+    return Contradiction(effect, first, last, (last - first) / max(error, TINY))
 
 
 def _unstable(runs: Sequence[Run], left: Sequence[Array]) -> tuple[str, ...]:
@@ -102,7 +102,13 @@ def _unstable(runs: Sequence[Run], left: Sequence[Array]) -> tuple[str, ...]:
 def _chunks(residual: Array) -> list[slice]:
     """Neighbouring samples that tell together about as much as ten that know nothing of each other."""
     n = len(residual)
-    length = int(np.clip(_MEMORY * n / independent_samples(residual), 1, max(n // _LEAST, 1)))
+    length = int(
+        np.clip(
+            CRITERIA.verification.chunk_length * n / independent_samples(residual),
+            1,
+            max(n // CRITERIA.verification.least_chunks, 1),
+        )
+    )
     return [slice(first, min(first + length, n)) for first in range(0, n, length)]
 
 

@@ -74,6 +74,7 @@ def from_arrays(arrays: Mapping[str, ArrayLike], **stated: Unpack[Stated]) -> Ma
     units={"command": "mm", "displacement": "mm"}, gain=7)``. Records of one actuator add up: ``first + second``.
     Raises Unusable as reading a file does.
     """
+    of_kind("from_arrays", "arrays", arrays, Mapping[str, Any])
     columns = {name: np.asarray(values) for name, values in arrays.items()}
 
     def load(numbers: Sequence[int]) -> list[Array]:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ident.diagnosis.selection import MOST
+from ident.diagnosis.criteria import CRITERIA
 from ident.effects import effect
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
@@ -77,7 +77,7 @@ def clutter(seed: int, noise: float = 0.01, small: bool = False) -> dict[str, An
     row = {"kind": "clutter", "matrix": "small" if small else "full", "noise": noise, "seed": seed,
            "hidden": dict(machine.hidden), "shapes": dict(machine.shapes), "outside": dict(machine.outside),
            "strong": names[0], "oracle": oracle / noise}  # fmt: skip
-    found = judged(matrix, machine.hidden, most=MOST)
+    found = judged(matrix, machine.hidden, most=CRITERIA.selection.most)
     return row | found | said(found, names)
 
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.result import Diagnosis
-from ident.diagnosis.selection import USUAL
 from ident.effects import EFFECTS
 from ident.effects.effect import Effect
 from ident.fit.settings import Settings
@@ -158,7 +158,10 @@ def outcome(machine: Machine) -> dict[str, Any]:
 
 
 def judged(
-    matrix: Matrix, hidden: dict[str, float] | Any, custom: tuple[Effect, ...] = (), most: int = USUAL
+    matrix: Matrix,
+    hidden: dict[str, float] | Any,
+    custom: tuple[Effect, ...] = (),
+    most: int = CRITERIA.selection.usual,
 ) -> dict[str, Any]:
     """Fit, diagnose with the catalogue and effects of one's own, and compare with the truth."""
     fit = identify(matrix, Settings())

@@ -19,8 +19,8 @@ import numpy as np
 
 from ident.comparison.compare import modelled
 from ident.custom.definition import preset_with
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.result import Diagnosis
-from ident.diagnosis.selection import USUAL
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.preprocessing import prepare
@@ -78,7 +78,7 @@ def outcome(machine: Hiding, catalogue: bool, true: tuple[Mapping[str, Any], Map
     matrix = machine.measured()
     fit = identify(matrix, Settings(model=MODEL))
     begun = time.perf_counter()
-    found = diagnose(matrix, fit, most=USUAL if catalogue else 0, propose=True)
+    found = diagnose(matrix, fit, most=CRITERIA.selection.usual if catalogue else 0, propose=True)
     seconds = round(time.perf_counter() - begun, 1)
     proposed, listed = found.proposals or (), found.ladder[-1]
     errors = {use: ((proposed or [listed])[-1].error[use] or 0.0) / machine.noise for use in ("fit", "verify")}

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from ident.diagnosis import candidate_models
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.screening import predict
 from ident.fit.settings import Settings
 from tests.diagnosis.test_diagnose import measured
+from tests.diagnosis.vary import vary
 from tests.fit.test_windows import cylinder
 
 
@@ -17,7 +17,7 @@ def test_what_an_effect_promises_hangs_on_none_beside_it(monkeypatch):
     base = models.refit((), {p.in_equations: p.value for p in models.preset.parameters})
     names = list(models.effects)[::3]
     together = predict(models, base, names)
-    monkeypatch.setattr(candidate_models, "_SIDE_BY_SIDE", 1)
+    vary(monkeypatch, "estimation", effects_a_chain=1)
     for one, alone in zip(together, predict(models, base, names), strict=True):
         assert one.effect == alone.effect
         assert one.after.score == pytest.approx(alone.after.score, rel=1e-3)

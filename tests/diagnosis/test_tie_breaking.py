@@ -5,15 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ident.diagnosis.tie_breaking import RELATIVE_TOLERANCE, stable_minimum, stable_ranking
+from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
 
 SIZES = {
     "a": 1.0,
     "b": 0.5,
-    "c": 0.5 * (1 - 0.3 * RELATIVE_TOLERANCE),
+    "c": 0.5 * (1 - 0.3 * CRITERIA.significance.tie),
     "d": 0.4999,
     "e": 0.7,
-    "f": 1.0 - 0.3 * RELATIVE_TOLERANCE,
+    "f": 1.0 - 0.3 * CRITERIA.significance.tie,
 }
 
 

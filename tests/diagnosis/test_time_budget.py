@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from ident.diagnosis import candidate_models
-from ident.diagnosis.discovery import term_candidate
 from ident.diagnosis.discovery.search import TermSearch
 from ident.diagnosis.discovery.term_library import TermLibrary
 from ident.diagnosis.result import Diagnosis
@@ -26,6 +25,7 @@ from ident.simulation import recursion, simulate
 from ident.time_budget import TimeBudget
 from ident.workflows import diagnose
 from tests.blind.machines import Machine
+from tests.diagnosis.vary import vary
 from tests.reference import qian_reference as linear
 
 FEW = ("dead_zone", "command_delay")
@@ -76,8 +76,7 @@ def counted(monkeypatch) -> Callable[..., tuple[Diagnosis, Events]]:
     # Of the search for terms a few steps: it is the same loop for many.
     every = TermLibrary.terms
     monkeypatch.setattr(TermLibrary, "terms", lambda of: islice(every(of), 60))
-    monkeypatch.setattr(term_candidate, "_TRIED", 1)
-    monkeypatch.setattr(term_candidate, "_PAIRS", 0)
+    vary(monkeypatch, "discovery", classes=1, pairs=0)
     monkeypatch.setattr(TermSearch, "_drawn", lambda *_: None)
 
     def telling(function):

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from ident.chain.channels import READABLE, unmeasured
 from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.criteria import CRITERIA
 from ident.run import MOTIONS, Run
 
 _SURROUNDS = ("supply_pressure", "vertical_load", "temperature")
 _FORCES = ("force", "drive_force")
-_RESTS = 1e-9  # of its size: the deviation of a channel that is the same in all runs
 
 
 def auxiliary_channels(models: CandidateModels) -> tuple[str, ...]:
@@ -39,4 +39,4 @@ def units_of(run: Run) -> Mapping[str, str]:
 
 def _varies(name: str, runs: tuple[Run, ...]) -> bool:
     every = np.concatenate([run.channels[name] for run in runs])
-    return bool(np.std(every) > _RESTS * np.abs(every).max(initial=0.0))
+    return bool(np.std(every) > CRITERIA.discovery.rests * np.abs(every).max(initial=0.0))

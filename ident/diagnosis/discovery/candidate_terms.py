@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ident.chain.conditions import CONDITIONS
 from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery import free_curves
 from ident.diagnosis.discovery.auxiliary_channels import auxiliary_channels, units_of
 from ident.diagnosis.discovery.compressibility_terms import OIL
@@ -32,7 +33,6 @@ _PLACES = {
 _READ, _LOOP = "y_fb", "y_in"  # what the transducer reads is another place than the record where a loop uses it
 _SIGNALS = ("w", "Q", "P", "v", "x", "F")
 _VARIED = ("Kp", "mL", "k")  # conditions of a run
-_PROPORTIONAL = 1.0 - 1e-6  # cosine of signals that are one
 
 
 @dataclass(frozen=True)
@@ -150,7 +150,7 @@ def _distinct(names: Sequence[str], typical: Mapping[str, Array]) -> list[str]:
     for name in names:
         x = typical[name]
         moves = bool(np.all(np.isfinite(x))) and np.ptp(x) > 0
-        if moves and not any(_cosine(x, typical[other]) > _PROPORTIONAL for other in kept):
+        if moves and not any(_cosine(x, typical[other]) > CRITERIA.discovery.proportional for other in kept):
             kept.append(name)
     return kept
 

@@ -5,15 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.term import Signals, Term
 from ident.presets import Preset
 from ident.residuals.views import view_called
 
 Array = NDArray[np.float64]
-_BINS = 24
-_TOLD = 0.5  # of a term's power: below, no curve shows it
-_STRAIGHT = 1e-6  # of the values' power: less is none
-_SMALL = 0.1  # of a signal's deviation: nearer to zero no share of it is looked at
 
 
 def characteristic_view(term: Term, preset: Preset, typical: Signals) -> str:
@@ -25,8 +22,8 @@ def characteristic_view(term: Term, preset: Preset, typical: Signals) -> str:
     if term.worked_out is not None:
         return ""
     values, at = term.samples(typical, 1.0), typical[term.at]
-    large = np.abs(at) > _SMALL * np.std(at)
-    found = [("", _TOLD)]
+    large = np.abs(at) > CRITERIA.discovery.small * np.std(at)
+    found = [("", CRITERIA.discovery.shown)]
     for name in dict.fromkeys(term.of):
         whole, share = f"{term.at}({name})", f"{term.at}({name})/{term.at}"
         if name in typical and view_called(whole, preset):
@@ -40,8 +37,12 @@ def _explained_share(values: Array, by: Array, straight: bool) -> float:
     """The share of what a line, or a constant, leaves of the values that a curve against a signal takes."""
     line = np.polynomial.Polynomial.fit(by, values, 1 if straight else 0)(by)
     left = values - line
-    edges = np.quantile(by, np.linspace(0, 1, _BINS + 1)[1:-1])
+    edges = np.quantile(by, np.linspace(0, 1, CRITERIA.discovery.bins + 1)[1:-1])
     of = np.searchsorted(edges, by)
-    counts, sums = np.bincount(of, minlength=_BINS), np.bincount(of, left, _BINS)
+    counts, sums = np.bincount(of, minlength=CRITERIA.discovery.bins), np.bincount(of, left, CRITERIA.discovery.bins)
     power = float(left @ left)
-    return float(np.sum(sums**2 / np.maximum(counts, 1))) / power if power > _STRAIGHT * float(values @ values) else 0.0
+    return (
+        float(np.sum(sums**2 / np.maximum(counts, 1))) / power
+        if power > CRITERIA.discovery.straight * float(values @ values)
+        else 0.0
+    )

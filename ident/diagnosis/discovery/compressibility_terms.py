@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.term import Shape, Signals, Term
 from ident.equations.equation import Equation
 
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 OIL = "Ke"
 """The signal that the compressibility is."""
-_SOFT = (0.3, 0.7, 0.95)  # quantiles of the size of the pressure: where half of what air adds is gone
 _OF = (("P", "abs({a})", "size"), ("P", "{a}", "side"), ("x", "{a}", "side"), ("x", "abs({a})", "size"))
 
 
@@ -32,7 +32,7 @@ def compressibility_terms(library: TermLibrary) -> Iterator[Term]:
         if a in library.typical:
             powers = library.unit((OIL, 1), (a, 1))
             yield _softer(text.format(a=a), f"softer with {kind}", (a,), powers, ())
-    for share in _SOFT:
+    for share in CRITERIA.terms.soft:
         h = Shape("h", float(np.quantile(np.abs(library.typical["P"]), share)), library.units["P"])
         if h.value > 0:
             yield _softer("1 / (1 + (P / h)**2)", "softer near rest", ("P",), library.unit((OIL, 1)), (h,))

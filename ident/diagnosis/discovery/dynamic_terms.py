@@ -10,6 +10,7 @@ import numpy as np
 import scipy  # signal, which takes most of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
 
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.term import STATE, Shape, Signals, Term, multiplied
 from ident.units.grammar import Powers
 
@@ -17,14 +18,8 @@ if TYPE_CHECKING:
     from ident.diagnosis.discovery.term_library import TermLibrary
 
 Array = NDArray[np.float64]
-_LAGS = (0.02, 0.06, 0.2, 0.6)  # of a period at the end of the band, times 2π
-_PLAYS = (0.1, 0.3, 0.6)  # of the deviation of a signal
 SLIP = "v / sqrt(v**2 + vs**2)"
 """Friction that slips near rest: below vs it grows with the speed."""
-SLIPPING = 0.1  # quantile of the size of the speed
-_YIELDING = (0.1, 0.4, 1.5)  # of the deviation of the position
-_RESONANCES, _DAMPED = (0.15, 0.2, 0.27, 0.36, 0.48, 0.65, 0.9), 0.1  # of the end of the band; of critical damping
-_RECOVERING = (0.02, 0.1, 0.5)  # of the shortest run
 _REMEMBERED = {("controller", "x"), ("flow", "P"), ("load", "v"), ("load", "x")}  # places of another signal's memory
 _ERROR = {"dr", "v_in"}  # what a loop knows the rate of its error by
 
@@ -61,7 +56,7 @@ def error_terms(library: TermLibrary, place: str, at: str) -> Iterator[Term]:
 
 def _late(library: TermLibrary, place: str, at: str, a: str) -> Iterator[Term]:
     by, unit = _by(library, place, at, a)
-    for share in _LAGS:
+    for share in CRITERIA.terms.lags:
         T = Shape("T", share / library.band * 2 * np.pi, "s")
 
         def late(signals: Signals, rate: float, T: float = T.value) -> Array:
@@ -85,7 +80,7 @@ def _late(library: TermLibrary, place: str, at: str, a: str) -> Iterator[Term]:
 
 def _slipping_late(library: TermLibrary, place: str, at: str, T: Shape) -> Iterator[Term]:
     """Friction that slips near rest, behind a lag."""
-    vs = library.slow(SLIPPING)
+    vs = library.slow(CRITERIA.terms.slipping)
     if vs.value > 0:
 
         def slipping(signals: Signals, rate: float) -> Array:
@@ -97,7 +92,7 @@ def _slipping_late(library: TermLibrary, place: str, at: str, T: Shape) -> Itera
 
 def _after(library: TermLibrary, place: str, at: str) -> Iterator[Term]:
     """A gain that hangs on how much there was before, as that of a supply which gives way under a flow."""
-    for share in _RECOVERING:
+    for share in CRITERIA.terms.recovering:
         T = Shape("T", share * library.seconds, "s")
 
         def used(signals: Signals, rate: float, T: float = T.value) -> Array:
@@ -108,7 +103,7 @@ def _after(library: TermLibrary, place: str, at: str) -> Iterator[Term]:
 
 def _play(library: TermLibrary, place: str, at: str, a: str) -> Iterator[Term]:
     by, unit = _by(library, place, at, a)
-    for share in _PLAYS:
+    for share in CRITERIA.terms.plays:
         half = share * float(np.std(library.typical[a]))
 
         def held(signals: Signals, _rate: float, half: float = half) -> Array:
@@ -125,7 +120,7 @@ def _play(library: TermLibrary, place: str, at: str, a: str) -> Iterator[Term]:
 
 def _yielding(library: TermLibrary, place: str, at: str) -> Iterator[Term]:
     """A force that builds up along the way and yields smoothly, z' = v − |v| z / b (Dahl 1968)."""
-    for share in _YIELDING:
+    for share in CRITERIA.terms.yielding:
         reach = share * float(np.std(library.typical["x"]))
 
         def built(signals: Signals, _rate: float, reach: float = reach) -> Array:
@@ -142,13 +137,13 @@ def _yielding(library: TermLibrary, place: str, at: str) -> Iterator[Term]:
 
 def _resonant(library: TermLibrary, place: str, at: str, a: str) -> Iterator[Term]:
     """A mass on a spring that a signal moves: its motion beside that."""
-    for share in _RESONANCES:
+    for share in CRITERIA.terms.resonances:
         w = share * library.band
-        a1, a2 = Shape("a1", 2 * _DAMPED / w, "s"), Shape("a2", 1 / w**2, "s^2")
+        a1, a2 = Shape("a1", 2 * CRITERIA.terms.damping / w, "s"), Shape("a2", 1 / w**2, "s^2")
 
         def beside(signals: Signals, rate: float, w: float = w) -> Array:
             warped = 0.5 * w / np.tan(0.5 * w / rate)  # the bilinear rule, right at w
-            over, under = scipy.signal.bilinear([1.0], [1 / w**2, 2 * _DAMPED / w, 1.0], warped)
+            over, under = scipy.signal.bilinear([1.0], [1 / w**2, 2 * CRITERIA.terms.damping / w, 1.0], warped)
             return np.asarray(scipy.signal.lfilter(over, under, signals[a]) - signals[a])
 
         yield Term(place, at, f"lag2({a}, a1, a2) - {a}", "resonance", (a,), library.unit((a, 1)), (a1, a2), (), beside)

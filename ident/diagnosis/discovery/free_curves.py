@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.diagnosis.criteria import CRITERIA, TINY
 from ident.diagnosis.discovery.regression import Regression
 from ident.diagnosis.discovery.term import Curve, Term
 from ident.diagnosis.discovery.term_candidate import TermCandidate
@@ -24,12 +25,6 @@ from ident.diagnosis.discovery.term_library import TermLibrary
 from ident.units.grammar import powers_of
 
 Array = NDArray[np.float64]
-_KNOTS = (0.005, 0.04, 0.12, 0.25, 0.38, 0.5, 0.62, 0.75, 0.88, 0.96, 0.995)  # quantiles of the signal
-_APART = 1e-3  # of the signal's range: knots nearer to each other are one
-_FEWEST = 4  # knots: fewer are a formula
-_TRIED = 4
-_ALIKE = 0.99  # cosine of what two curves explain, of which the first is enough
-_BLIND = 1e-7  # of the largest of a group's products: what its hats do together and nobody sees
 
 
 @dataclass(frozen=True)
@@ -60,7 +55,7 @@ def _all(library: TermLibrary) -> Iterator[FreeCurve]:
         for of in library.signals[at]:
             x = library.typical[of]
             knots = _knots(x)
-            if len(knots) < _FEWEST:
+            if len(knots) < CRITERIA.discovery.fewest_knots:
                 continue
             for by, text in _multiplied(place, at, of, library.signals[at]):
                 unit = powers_of(library.units[by]) or {} if by and text != "sgn(v) * h" else {}
@@ -79,8 +74,8 @@ def _multiplied(place: str, at: str, of: str, signals: Sequence[str]) -> Iterato
 
 def _knots(x: Array) -> tuple[float, ...]:
     kept: list[float] = []
-    for knot in np.quantile(x, _KNOTS).tolist():
-        if not kept or knot - kept[-1] > _APART * np.ptp(x):
+    for knot in np.quantile(x, CRITERIA.discovery.knots).tolist():
+        if not kept or knot - kept[-1] > CRITERIA.discovery.knots_apart * np.ptp(x):
             kept.append(knot)
     return tuple(kept)
 
@@ -93,9 +88,9 @@ def offered(found: Regression, curves: Sequence[FreeCurve]) -> tuple[TermCandida
     taken: list[int] = []
     for k in map(int, np.argsort(-gains, kind="stable")):
         if (
-            len(taken) < _TRIED
+            len(taken) < CRITERIA.discovery.curves
             and gains[k] > 0
-            and not any(_cosine(found, values[k], values[i]) > _ALIKE for i in taken)
+            and not any(_cosine(found, values[k], values[i]) > CRITERIA.discovery.same_curve for i in taken)
         ):
             taken.append(k)
     return tuple(_candidate(found, curves[k], *values[k], float(gains[k])) for k in taken)
@@ -104,13 +99,13 @@ def offered(found: Regression, curves: Sequence[FreeCurve]) -> tuple[TermCandida
 def _values(found: Regression, at: NDArray[np.intp]) -> tuple[NDArray[np.intp], Array]:
     """A curve's values at its knots, which explain most."""
     products = found.products[np.ix_(at, at)]
-    return at, np.linalg.pinv(products, rcond=_BLIND, hermitian=True) @ found.with_residual[at]
+    return at, np.linalg.pinv(products, rcond=CRITERIA.discovery.curve_rank, hermitian=True) @ found.with_residual[at]
 
 
 def _cosine(found: Regression, one: tuple[NDArray[np.intp], Array], other: tuple[NDArray[np.intp], Array]) -> float:
     (i, a), (j, b) = one, other
     powers = [float(v @ found.products[np.ix_(k, k)] @ v) for k, v in (one, other)]
-    return abs(float(a @ found.products[np.ix_(i, j)] @ b)) / max(float(np.sqrt(powers[0] * powers[1])), 1e-300)
+    return abs(float(a @ found.products[np.ix_(i, j)] @ b)) / max(float(np.sqrt(powers[0] * powers[1])), TINY)
 
 
 def _candidate(found: Regression, curve: FreeCurve, at: NDArray[np.intp], values: Array, share: float) -> TermCandidate:

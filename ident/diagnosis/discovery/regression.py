@@ -24,6 +24,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
+from ident.diagnosis.criteria import CRITERIA, TINY
 from ident.diagnosis.discovery.regressors import Regressors, blocks
 from ident.diagnosis.discovery.run_data import RunData
 from ident.diagnosis.discovery.term import Term
@@ -31,10 +32,6 @@ from ident.parallel import each
 from ident.residuals.decimation import Response
 
 Array = NDArray[np.float64]
-_ABSORBED = 1e-4  # of a term's power that the parameters leave: less, and they do what it does
-ALIKE = 0.999  # cosine of two terms that the data cannot tell apart
-_DIGITS = 8  # of what a term explains: the rest is rounding
-_AT_ONCE = 4  # runs
 
 
 @dataclass(frozen=True)
@@ -63,13 +60,13 @@ class Regression:
 
     def classes(self) -> list[list[int]]:
         """Terms by what they explain, best first; those of a class, in the list's order, cannot be told apart."""
-        size, gains = np.sqrt(np.maximum(np.diag(self.products), 1e-300)), np.round(self.gains, _DIGITS)
+        size, gains = np.sqrt(np.maximum(np.diag(self.products), TINY)), np.round(self.gains, CRITERIA.discovery.digits)
         rest = np.argsort(-gains, kind="stable")
         rest = rest[gains[rest] > 0]
         found = []
         while len(rest):
             first = rest[0]
-            alike = np.abs(self.products[first, rest]) > ALIKE * size[first] * size[rest]
+            alike = np.abs(self.products[first, rest]) > CRITERIA.discovery.same_class * size[first] * size[rest]
             alike[0] = True
             found.append(sorted(int(i) for i in rest[alike]))
             rest = rest[~alike]
@@ -84,12 +81,14 @@ def regression(
     known = np.sum([columns.known.T @ columns.known for columns in beside], axis=0)
     some, lost = _leading(terms, beside, paths, known)
     m, total, sound = len(some), np.zeros(()), np.zeros(len(some), dtype=bool)
-    for first in range(0, len(beside), _AT_ONCE):
-        rows = _rows(some, beside, paths, range(first, min(first + _AT_ONCE, len(beside))), sound)
+    for first in range(0, len(beside), CRITERIA.discovery.runs_at_once):
+        rows = _rows(
+            some, beside, paths, range(first, min(first + CRITERIA.discovery.runs_at_once, len(beside))), sound
+        )
         total = total + np.hstack(each(partial(np.matmul, rows.T), np.array_split(rows, 2, axis=1)))
     along = _along(known, np.delete(total[m:-1], np.s_[m:-1], axis=1))
     of = np.delete(np.delete(total, np.s_[m:-1], axis=0), np.s_[m:-1], axis=1) - along.T @ along
-    absorbed = np.diag(of)[:m] < _ABSORBED * np.diag(total)[:m]
+    absorbed = np.diag(of)[:m] < CRITERIA.discovery.absorbed * np.diag(total)[:m]
     products, with_residual = of[:m, :m].copy(), of[:m, m].copy()
     products[absorbed], products[:, absorbed], with_residual[absorbed] = 0.0, 0.0, 0.0
     left_out = lost + sum(not one for one, term in zip(sound, some, strict=True) if not term.free_shapes)
@@ -106,7 +105,7 @@ def _leading(
     shaped = [i for i, term in enumerate(terms) if term.free_shapes]
     candidates = [terms[i] for i in shaped]
     alone, sound = _alone(candidates, beside, paths, known)
-    gains = np.round(alone, _DIGITS)
+    gains = np.round(alone, CRITERIA.discovery.digits)
     leading: dict[object, int] = {}
     for k, term in enumerate(candidates):
         if gains[k] > gains[leading.setdefault(term.form, k)]:
@@ -138,7 +137,7 @@ def _alone(
     along = _along(known, np.column_stack([cross[:-1], known[:-1, -1]]))
     beyond = power - np.sum(along[:, :-1] ** 2, axis=0)
     with_residual = cross[-1] - along[:, :-1].T @ along[:, -1]
-    seen = beyond >= _ABSORBED * power
+    seen = beyond >= CRITERIA.discovery.absorbed * power
     left = known[-1, -1] - along[:, -1] @ along[:, -1]
     return _gains(np.where(seen, beyond, 0.0), np.where(seen, with_residual, 0.0), left), finite
 
@@ -146,14 +145,14 @@ def _alone(
 def _along(known: Array, cross: Array) -> Array:
     """Columns along orthonormal directions of J, of its products with them, (p, m); `known` are those of [J, r]."""
     of = known[:-1, :-1]
-    scale = np.sqrt(np.maximum(np.diag(of), 1e-300))
+    scale = np.sqrt(np.maximum(np.diag(of), TINY))
     strengths, directions = scipy.linalg.eigh(of / scale[:, None] / scale) if len(of) else (np.ones(0), of)
-    seen = strengths > 1e-10 * strengths.max(initial=0.0)
+    seen = strengths > CRITERIA.discovery.rank * strengths.max(initial=0.0)
     return np.asarray((directions[:, seen].T @ (cross / scale[:, None])) / np.sqrt(strengths[seen])[:, None])
 
 
 def _gains(power: Array, with_residual: Array, left: float) -> Array:
-    return _share(np.where(power > 0, with_residual**2 / np.maximum(power, 1e-300), 0.0), left)
+    return _share(np.where(power > 0, with_residual**2 / np.maximum(power, TINY), 0.0), left)
 
 
 def _share(taken: Array, left: float) -> Array:

@@ -9,16 +9,12 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
+from ident.diagnosis.criteria import CRITERIA, TINY
 from ident.diagnosis.discovery.run_data import RunData
 from ident.diagnosis.discovery.term import Term
 from ident.residuals.decimation import Response
 
 Array = NDArray[np.float64]
-BLOCK = 128
-"""Terms whose responses are worked out together: those to all at once are large."""
-WIDE = 1.3  # of the command's band is looked at
-_WITHOUT_END = 1e60  # of the output, for a strength of one: no power of a signal comes near
-_ROUNDING = 1e-12  # of what was measured: a residual below it is that of the arithmetic, not one to be explained
 
 
 @dataclass(frozen=True)
@@ -42,9 +38,11 @@ class Regressors:
         basis = np.empty((len(known), 0))
         if record.free.shape[1]:
             free, _ = _within(record.free, record, band)
-            basis = scipy.linalg.orth(free / np.maximum(np.linalg.norm(free, axis=0), 1e-300), rcond=1e-9)
+            basis = scipy.linalg.orth(
+                free / np.maximum(np.linalg.norm(free, axis=0), TINY), rcond=CRITERIA.discovery.free_rank
+            )
         known = known - basis @ (basis.T @ known)
-        least = _ROUNDING * float(np.std(record.run.measured)) * float(np.sqrt(len(known)))
+        least = CRITERIA.discovery.rounding * float(np.std(record.run.measured)) * float(np.sqrt(len(known)))
         size = max(float(np.linalg.norm(known[:, -1])), least, np.finfo(float).tiny)
         return cls(record, band, known / size, basis, size)
 
@@ -63,7 +61,11 @@ def blocks(terms: Sequence[Term]) -> list[list[int]]:
     by_signal: dict[str, list[int]] = {}
     for i, term in enumerate(terms):
         by_signal.setdefault(term.path, []).append(i)
-    return [here[k : k + BLOCK] for here in by_signal.values() for k in range(0, len(here), BLOCK)]
+    return [
+        here[k : k + CRITERIA.discovery.block]
+        for here in by_signal.values()
+        for k in range(0, len(here), CRITERIA.discovery.block)
+    ]
 
 
 def _within(rows: Array, record: RunData, band: float) -> tuple[Array, NDArray[np.bool_]]:
@@ -71,11 +73,11 @@ def _within(rows: Array, record: RunData, band: float) -> tuple[Array, NDArray[n
 
     Seen are the lines of their spectra in the band, or the windows that they begin.
     """
-    sound = np.max(np.abs(rows), axis=0, initial=0.0) < _WITHOUT_END  # false of what is no number
+    sound = np.max(np.abs(rows), axis=0, initial=0.0) < CRITERIA.discovery.diverged  # false of what is no number
     rows = np.where(sound, rows, 0.0)
     if record.anchoring.window:
         return record.anchoring(rows), sound
     spectrum = np.fft.rfft(rows, axis=0)
     lines = np.fft.rfftfreq(len(rows), 1.0 / record.rate) * 2 * np.pi
-    inside = spectrum[(lines > 0) & (lines <= WIDE * band)]
+    inside = spectrum[(lines > 0) & (lines <= CRITERIA.discovery.band * band)]
     return np.concatenate([inside.real, inside.imag]), sound

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ident.chain.chain import linear_model
 from ident.chain.conditions import conditions
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.auxiliary_channels import channels_of
 from ident.diagnosis.fitted_model import FittedModel
 from ident.fit.anchoring import Anchoring
@@ -23,7 +24,6 @@ from ident.residuals.views import injected
 from ident.run import Run
 
 Array = NDArray[np.float64]
-_MOST = 60_000  # coarse samples of all runs together: records are cut to their beginnings
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def run_data(refit: FittedModel, names: Sequence[str], instead_of: Sequence[str]
     fitness, point = refit.fitness, refit.point
     windows = [fitness.anchoring(run).window for run in fitness.runs]
     count = next(n for n in range(stride(fitness.runs), 0, -1) if all(window % n == 0 for window in windows))
-    most = max(256, _MOST // len(fitness.runs))
+    most = max(CRITERIA.discovery.fewest_samples, CRITERIA.discovery.samples // len(fitness.runs))
     sensitivities = Sensitivities.of(fitness, point)
     values = {name: float(value[0]) for name, value in fitness.space.values(point[None]).items()}
     inner = inside(fitness.whole(), values, names)

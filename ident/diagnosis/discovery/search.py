@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.custom.definition import read_effect
-from ident.diagnosis.candidate_models import FIRST_STEPS, FITTING, TRYING, CandidateModels
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.candidate_terms import CandidateTerms, candidate_terms
 from ident.diagnosis.discovery.characteristic_plot import characteristic_view
 from ident.diagnosis.discovery.discovery_result import DiscoveryResult, RejectedTerm
@@ -46,14 +47,8 @@ from ident.progress import Progress, Report
 from ident.run import Run, over_runs
 
 Array = NDArray[np.float64]
-MOST = 3  # terms
 RefittedTerm = tuple[TermCandidate, FittedModel, CandidateModels]
 _PREFIX = "proposed_"
-_EVIDENCE = 5.0  # nats beyond the logarithm of how many were looked at
-_CLOSE, _MOST_CLOSE = 1.1, 8  # times the least error of the rough refits, and how many: carried to their end
-_PLAIN = 4  # terms without shapes that are, too: held-out data may prefer them
-_AS_GOOD, _LOST = 1.02, 0.25  # times the least error: a simpler one is taken, which loses no more of what it gains
-_FEWEST = 6  # runs, of which two each search, choose and confirm: one tells nothing of what differs between runs
 
 
 @dataclass
@@ -68,7 +63,7 @@ class TermSearch:
     report: Report
     given: tuple[str, ...]
     asked: bool = True
-    most: int = MOST
+    most: int = CRITERIA.discovery.most
     looked_at: int = 0
     left_out: int = 0
     found: list[Proposal] = field(default_factory=list)
@@ -100,7 +95,11 @@ class TermSearch:
         terms = self.found
         self._added(curves=True)
         begun.looked_at, begun.left_out = self.looked_at, self.left_out
-        if terms and begun._added(curves=True) and _held_out(begun) <= _AS_GOOD * _held_out(self):
+        if (
+            terms
+            and begun._added(curves=True)
+            and _held_out(begun) <= CRITERIA.discovery.practically_equal * _held_out(self)
+        ):
             self.models, self.base, self.beside, self.found = begun.models, begun.base, begun.beside, begun.found
         self.looked_at, self.left_out = begun.looked_at, begun.left_out
 
@@ -119,7 +118,7 @@ class TermSearch:
         tried = self._all_tried(searching, base, name, seen, curves)
         if not tried:
             return False
-        few, bar = _few(self.models.runs), float(np.log(self.looked_at)) + _EVIDENCE
+        few, bar = _few(self.models.runs), float(np.log(self.looked_at)) + CRITERIA.discovery.log_likelihood_gain
         candidate, refit, family = _chosen(base, tried, () if few else chosen_by)
         if few:
             gain = improvement(base.held_out, refit.held_out)
@@ -179,9 +178,13 @@ class TermSearch:
             new = [one for one in again.candidates if not any(map(one.begins_as, seen.candidates))]
             tried += refits(new, best[1].local.error)
         ranked = stable_ranking(tried, lambda one: one[1].error)
-        plain = [one for one in ranked[_MOST_CLOSE:] if one[0].plain][:_PLAIN]
-        close = [one for one in (*ranked[:_MOST_CLOSE], *plain) if one[1].error <= _CLOSE * ranked[0][1].error]
-        on = replace(FITTING, aim=_AS_GOOD * ranked[0][1].local.error)
+        plain = [one for one in ranked[CRITERIA.discovery.most_close :] if one[0].plain][: CRITERIA.discovery.plain]
+        close = [
+            one
+            for one in (*ranked[: CRITERIA.discovery.most_close], *plain)
+            if one[1].error <= CRITERIA.discovery.close * ranked[0][1].error
+        ]
+        on = replace(CRITERIA.estimation.full, aim=CRITERIA.discovery.practically_equal * ranked[0][1].local.error)
         return _followed(each(lambda one: _gone_on(one, on), close))
 
     def _prune(self, latest: str) -> None:
@@ -266,7 +269,7 @@ def _tried(base: FittedModel, name: str, candidate: TermCandidate, family: Candi
     """First steps with a candidate on the runs that search; None where it leads nowhere."""
     start = {**base.values, family.strength(name): candidate.strength}
     start |= {p.in_equations: p.value for p in family.effects[name].added[1:]}
-    refit = family.refit((*base.effects, name), start, way=FIRST_STEPS)
+    refit = family.refit((*base.effects, name), start, way=CRITERIA.estimation.screen)
     return (candidate, refit, family) if refit.stable else None
 
 
@@ -276,7 +279,10 @@ def _held_out(search: TermSearch) -> float:
 
 def _ahead(begun: Sequence[RefittedTerm], least: float) -> list[RefittedTerm]:
     """Rough refits, given up where they cannot come near what was `least` before, or is ahead after the first steps."""
-    on = replace(TRYING, aim=_CLOSE * min([least, *(refit.local.error for _, refit, _ in begun)]))
+    on = replace(
+        CRITERIA.estimation.trial,
+        aim=CRITERIA.discovery.close * min([least, *(refit.local.error for _, refit, _ in begun)]),
+    )
     return _followed(each(lambda one: _gone_on(one, on), begun))
 
 
@@ -300,7 +306,9 @@ def _chosen(base: FittedModel, tried: Sequence[RefittedTerm], runs: Sequence[Run
         lambda one: _error(one, runs) if runs else one.held_out.error, [base, *(refit for _, refit, _ in tried)]
     )
     least = min(errors)
-    bound = min(_AS_GOOD * least, least + _LOST * max(before - least, 0.0))
+    bound = min(
+        CRITERIA.discovery.practically_equal * least, least + CRITERIA.discovery.lost_gain * max(before - least, 0.0)
+    )
     good = [one for one, error in zip(tried, errors, strict=True) if error <= bound]
     return min(good, key=lambda one: one[0].simplicity)
 
@@ -320,8 +328,14 @@ def _parts(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[Run, ...], tuple
     ordered = list(dict.fromkeys(run.record or run.id for run in sorted(runs, key=condition)))
     parts: list[set[str]] = [set(), set(), set()]
     dealing = np.random.default_rng(0)
-    for first in range(0, len(ordered), 3):  # neighbours go to one part each: one after the other a part gets one gain
-        for at, record in zip(dealing.permutation(3), ordered[first : first + 3], strict=False):
+    for first in range(
+        0, len(ordered), CRITERIA.discovery.parts
+    ):  # neighbours go to one part each: one after the other a part gets one gain
+        for at, record in zip(
+            dealing.permutation(CRITERIA.discovery.parts),
+            ordered[first : first + CRITERIA.discovery.parts],
+            strict=False,
+        ):
             parts[at].add(record)
     sought, chosen_by, confirming = (tuple(run for run in runs if (run.record or run.id) in part) for part in parts)
     return sought, chosen_by, confirming
@@ -329,7 +343,7 @@ def _parts(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[Run, ...], tuple
 
 def _few(runs: Sequence[Run]) -> bool:
     """Whether there are fewer records than search, choose and confirm."""
-    return len({run.record or run.id for run in runs}) < _FEWEST
+    return len({run.record or run.id for run in runs}) < CRITERIA.discovery.fewest_runs
 
 
 def _error(refit: FittedModel, runs: Sequence[Run]) -> float:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.diagnosis.criteria import CRITERIA
 from ident.equations.equation import Equation
 from ident.equations.interpolation import interpolated
 from ident.units.grammar import Powers, powers_of
@@ -33,7 +34,7 @@ class Shape:
     value: float
     unit: str
     free: bool = True
-    spread: float = 8.0
+    spread: float = CRITERIA.terms.spread
     lower: float | None = None
     upper: float | None = None
 

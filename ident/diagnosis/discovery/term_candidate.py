@@ -7,18 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.interpretation import interpretation
-from ident.diagnosis.discovery.regression import ALIKE, Regression
+from ident.diagnosis.discovery.regression import Regression
 from ident.diagnosis.discovery.term import Shape, Term, ratio
 from ident.diagnosis.discovery.term_to_effect import added, state_line, sticks
 from ident.stages import PLACES
 from ident.units.quantity import known_powers, shape
 
-_TRIED, _PAIRS = 6, 3  # single terms and pairs that are refitted
-_SEEN = 200  # pairs that promise most, of which those are taken that are not alike
-_CANCELLED = 1e-6  # of the power of both: a pair that leaves less is none
-_MAY_WIN = 0.5  # times the best one's promise, which a shape that is not yet where it belongs may keep
-_NEAR = 0.01  # of the way that a refit may move a shape: from there it comes to the same
 _DRIVE = ("controller", "valve", "spool", "flow")  # one input of the machine: of two terms there one is enough
 
 
@@ -44,7 +40,10 @@ class TermCandidate:
         if self.equation != other.equation or self._knots != other._knots:
             return False
         both = zip(self._shapes, other._shapes, strict=True)
-        return all(abs(one.value - another.value) <= _NEAR * float(np.ptp(one.bounds)) for one, another in both)
+        return all(
+            abs(one.value - another.value) <= CRITERIA.discovery.same_shape * float(np.ptp(one.bounds))
+            for one, another in both
+        )
 
     @property
     def plain(self) -> bool:
@@ -70,18 +69,18 @@ class TermCandidate:
 def term_candidates(found: Regression, units: Mapping[str, str]) -> tuple[tuple[TermCandidate, ...], int]:
     """The terms and pairs that promise most, and how many were looked at."""
     classes = found.classes()
-    singles = [_single(found, group) for group in (*classes[:_TRIED], *_shaped(found, classes))]
+    singles = [_single(found, group) for group in (*classes[: CRITERIA.discovery.classes], *_shaped(found, classes))]
     pairs, count = _pairs(found, units)
     return (*singles, *pairs), found.looked_at + count
 
 
 def _shaped(found: Regression, classes: Sequence[Sequence[int]]) -> list[Sequence[int]]:
     """Of every kind with shapes that is not yet among those tried, the best class: a refit moves its shapes."""
-    seen = {found.terms[i].kind for group in classes[:_TRIED] for i in group}
+    seen = {found.terms[i].kind for group in classes[: CRITERIA.discovery.classes] for i in group}
     more: list[Sequence[int]] = []
-    for group in classes[_TRIED:]:
+    for group in classes[CRITERIA.discovery.classes :]:
         term = found.terms[group[0]]
-        if found.gains[group[0]] < _MAY_WIN * found.gains[classes[0][0]]:
+        if found.gains[group[0]] < CRITERIA.discovery.may_win * found.gains[classes[0][0]]:
             break
         if term.free_shapes and term.kind not in seen:
             seen.add(term.kind)
@@ -115,7 +114,7 @@ def _pairs(found: Regression, units: Mapping[str, str]) -> tuple[list[TermCandid
     i, j = np.tile(rows[of_rows], 2), np.tile(columns[of_columns], 2)
     signs = np.repeat([1.0, -1.0], len(of_rows))
     both = power[i] + power[j] + 2 * signs * found.products[i, j]
-    sound = both > _CANCELLED * (power[i] + power[j])
+    sound = both > CRITERIA.discovery.cancelled * (power[i] + power[j])
     with_residual = found.with_residual[i] + signs * found.with_residual[j]
     share = found.share(np.where(sound, with_residual**2 / np.where(sound, both, 1.0), 0.0))
 
@@ -123,11 +122,11 @@ def _pairs(found: Regression, units: Mapping[str, str]) -> tuple[list[TermCandid
         (a, b, s), (c, d, t) = ((i[n], j[n], signs[n]) for n in (k, other))
         product = found.products
         common = product[a, c] + t * product[a, d] + s * product[b, c] + s * t * product[b, d]
-        return bool(abs(common) > ALIKE * np.sqrt(both[k] * both[other]))
+        return bool(abs(common) > CRITERIA.discovery.same_class * np.sqrt(both[k] * both[other]))
 
     taken: list[int] = []
-    for k in map(int, np.argsort(-share, kind="stable")[:_SEEN]):
-        if len(taken) < _PAIRS and share[k] > 0 and not any(alike(k, other) for other in taken):
+    for k in map(int, np.argsort(-share, kind="stable")[: CRITERIA.discovery.pairs_seen]):
+        if len(taken) < CRITERIA.discovery.pairs and share[k] > 0 and not any(alike(k, other) for other in taken):
             taken.append(k)
     return [_pair(found, (i[k], j[k]), signs[k], with_residual[k] / both[k], share[k]) for k in taken], len(i)
 

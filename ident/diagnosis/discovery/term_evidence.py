@@ -16,16 +16,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.discovery.regressors import WIDE
-from ident.diagnosis.significance import WORTHWHILE
+from ident.diagnosis.criteria import CRITERIA, TINY
 from ident.fit.windows import unforeseen
 from ident.run import Run
 
 Array = NDArray[np.float64]
-_SMOOTH = 16  # frequencies that are averaged
-_FEW = 3  # runs, below which their scatter tells nothing
-_STEADY = 3.0  # standard errors
-_LOST = 0.03  # of what is gained
 
 
 @dataclass(frozen=True)
@@ -44,7 +39,13 @@ class TermEvidence:
     def consistent(self) -> bool:
         """Whether the runs agree: their mean gain is beyond chance, and so it is without the one that gains most."""
         rest = self._rest
-        return bool(len(rest) < _FEW or (_deviations(self.gain_of_runs) > _STEADY and _deviations(rest) > _STEADY))
+        return bool(
+            len(rest) < CRITERIA.discovery.few_runs
+            or (
+                _deviations(self.gain_of_runs) > CRITERIA.discovery.consistent
+                and _deviations(rest) > CRITERIA.discovery.consistent
+            )
+        )
 
     def beyond(self, bar: float) -> bool:
         """Whether other runs than the one that gains most gain as much as is asked for, and next to none loses.
@@ -52,7 +53,11 @@ class TermEvidence:
         So with what only some runs reach, as a stop at the end of a way: their mean gain is unsteady.
         """
         gained, lost = np.maximum(self.gain_of_runs, 0.0).sum(), np.maximum(-self.gain_of_runs, 0.0).sum()
-        return bool(len(self._rest) >= _FEW and self._rest.sum() > bar and lost < _LOST * gained)
+        return bool(
+            len(self._rest) >= CRITERIA.discovery.few_runs
+            and self._rest.sum() > bar
+            and lost < CRITERIA.discovery.lost * gained
+        )
 
     @property
     def _rest(self) -> Array:
@@ -62,7 +67,7 @@ class TermEvidence:
     @property
     def worthwhile(self) -> bool:
         """Whether the error falls by what is worth a term."""
-        return self.reduction > WORTHWHILE
+        return self.reduction > CRITERIA.significance.worthwhile
 
 
 def term_evidence(
@@ -75,7 +80,7 @@ def term_evidence(
 
     def gain(run: Run, one: Array, other: Array) -> float:
         if integrated:
-            return 0.5 * len(one) * float(np.log(max(unforeseen(one), 1e-300) / max(unforeseen(other), 1e-300)))
+            return 0.5 * len(one) * float(np.log(max(unforeseen(one), TINY) / max(unforeseen(other), TINY)))
         return _of_run(one, other, run.sample_rate, band)
 
     gained = [gain(run, one, other) for run, one, other in zip(runs, before, after, strict=True)]
@@ -92,10 +97,10 @@ def _deviations(gains: Array) -> float:
 
 def _of_run(before: Array, after: Array, rate: float, band: float) -> float:
     bins = 2 * np.pi * np.fft.rfftfreq(len(before), 1.0 / rate)
-    inside = (bins > 0) & (bins <= WIDE * band)
+    inside = (bins > 0) & (bins <= CRITERIA.discovery.band * band)
     powers = [np.abs(np.fft.rfft(residual - residual.mean()))[inside] ** 2 for residual in (before, after)]
-    groups = max(1, int(inside.sum()) // _SMOOTH)
+    groups = max(1, int(inside.sum()) // CRITERIA.discovery.smoothing)
     found = 0.0
     for first, last in zip(*(np.array_split(power, groups) for power in powers), strict=True):
-        found += len(first) * float(np.log(max(first.mean(), 1e-300) / max(last.mean(), 1e-300)))
+        found += len(first) * float(np.log(max(first.mean(), TINY) / max(last.mean(), TINY)))
     return found

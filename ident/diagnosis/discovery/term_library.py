@@ -13,15 +13,12 @@ from itertools import product
 
 import numpy as np
 
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.compressibility_terms import compressibility_terms
-from ident.diagnosis.discovery.dynamic_terms import SLIP, SLIPPING, dynamic_terms, error_terms
+from ident.diagnosis.discovery.dynamic_terms import SLIP, dynamic_terms, error_terms
 from ident.diagnosis.discovery.term import LIMIT, Shape, Signals, Term, multiplied
 from ident.units.grammar import Powers, powers_of
 
-_QUANTILES = (0.3, 0.5, 0.7, 0.85, 0.95)  # of the size of a signal: thresholds
-_HILLS, _HILL = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95), (0.1, 0.25)  # quantiles of the position, widths in its range
-_SLOW = (0.05, 0.15, 0.4)  # of the size of the speed
-_FADING = (0.15, 0.5)  # of the shortest run
 ALONE = "valve"
 """A place whose own signal alone terms are of."""
 
@@ -73,7 +70,7 @@ class TermLibrary:
             yield self._dragging(plain, a, "1" if kind == "sign" else "")
         scale = Shape("a0", float(np.std(self.typical[a])), self.units[a], free=False)
         yield Term(place, at, f"sgn({a}) * sqrt(abs({a}) / a0)", "root", (a,), {}, (scale,))
-        for share in _QUANTILES:
+        for share in CRITERIA.terms.thresholds:
             width = Shape("h", float(np.quantile(np.abs(self.typical[a]), share)), self.units[a])
             if width.value > 0:
                 for text, kind in (
@@ -104,7 +101,7 @@ class TermLibrary:
         """Dry friction that is more, or less, near rest than in motion."""
         if place != "load" or "v" not in self.signals[at]:
             return
-        for share in _SLOW:
+        for share in CRITERIA.terms.slow:
             vs = self.slow(share)
             if vs.value > 0:
                 near_rest = "exp(-(v / vs)**2)"
@@ -114,7 +111,7 @@ class TermLibrary:
 
     def _slipping(self, place: str, at: str) -> Iterator[Term]:
         """Friction that slips smoothly near rest, as a wet seal's, and what it grows with."""
-        vs = self.slow(SLIPPING)
+        vs = self.slow(CRITERIA.terms.slipping)
         if vs.value > 0:
             yield Term(place, at, SLIP, "slip", ("v",), {}, (vs,))
             for a in self.signals[at]:
@@ -125,8 +122,8 @@ class TermLibrary:
         if "x" not in self.typical:
             return
         x = self.typical["x"]
-        span = float(np.ptp(np.quantile(x, [0.02, 0.98])))
-        for share, wide in product(_HILLS, _HILL) if span > 0 else ():
+        span = float(np.ptp(np.quantile(x, CRITERIA.terms.range_quantiles)))
+        for share, wide in product(CRITERIA.terms.hills, CRITERIA.terms.hill_widths) if span > 0 else ():
             middle = Shape(
                 "xm", float(np.quantile(x, share)), self.units["x"], lower=float(x.min()), upper=float(x.max())
             )
@@ -155,7 +152,7 @@ class TermLibrary:
                     yield self._dragging(rubbing, a, name)
         if "t" not in self.varied:
             yield Term(place, at, "t", "drift", ("t",), {"s": 1.0})
-        for share in _FADING:
+        for share in CRITERIA.terms.fading:
             T = Shape("T", share * self.seconds, "s")
             for a in self.signals[at]:
                 if a in (at, "v"):
@@ -179,8 +176,8 @@ class TermLibrary:
             return
         step = 1.0 / self.seconds
         for number in range(1, int(self.band / (2 * np.pi) / step)):
-            f = Shape("fp", number * step, "1/s", spread=1.0 + 0.7 / number)
-            for phase in (0.0, 0.25):
+            f = Shape("fp", number * step, "1/s", spread=1.0 + CRITERIA.terms.frequency_spread / number)
+            for phase in CRITERIA.terms.phases:
                 turn = Shape("g", phase, "1", lower=-0.5, upper=0.5)
                 text = f"{at} * sin(2 * pi * (fp * t + g))"
                 yield Term(place, at, text, "periodic", (at, "t"), self.unit((at, 1)), (f, turn))

@@ -8,12 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from ident.diagnosis.criteria import CRITERIA, TINY
 from ident.diagnosis.discovery.term import CURVE, LIMIT, STATE, Signals, Term, ratio
 from ident.effects.effect import Effect
 
-_REACH = 4.0  # times what makes a term as large as the signal that it adds to: bounds of a strength
-_FAR = 10.0  # times what a regression makes of a strength
-_STEEP = 20.0  # times a large value of a curve that others may become
 STRENGTH = "s"
 
 
@@ -54,8 +52,9 @@ def definition(
             shapes[shape.symbol] = {"unit": shape.unit, "lower": low, "upper": high, "value": shape.value}
     shown = first.samples(typical, 1.0) if first.worked_out is None else typical[first.of[0]]
     size = float(np.sqrt(np.mean(shown**2)))
-    reach = 0.0 if first.in_time else _REACH * float(np.std(typical[first.at])) / max(size, 1e-300)
-    bound = max(reach, _FAR * abs(strength))
+    as_large = float(np.std(typical[first.at])) / max(size, TINY)
+    reach = 0.0 if first.in_time else CRITERIA.discovery.strength_reach * as_large
+    bound = max(reach, CRITERIA.discovery.strength_far * abs(strength))
     found: dict[str, Any] = {
         "name": name, "place": terms[-1].place, "equation": lines,
         "strength": {"symbol": STRENGTH, "unit": ratio(units[first.at], first.unit), "lower": 0.0 if brakes else -bound,
@@ -63,9 +62,9 @@ def definition(
         "meaning": "proposed by search", "source": "proposed by search",
     }  # fmt: skip
     if first.curve is not None:
-        knots, values = list(first.curve.knots), list(first.curve.values)
+        knots, values, steep = list(first.curve.knots), list(first.curve.values), CRITERIA.discovery.curve_steep
         found["curve"] = {"symbol": CURVE, "of": first.curve.of, "knots": knots, "values": values, "unit": "1",
-                          "lower": -_STEEP, "upper": _STEEP}  # fmt: skip
+                          "lower": -steep, "upper": steep}  # fmt: skip
     state = next((term.state for term in terms if term.state), "")
     return (
         found | ({"shape": shapes} if shapes else {}) | ({"state": {"symbol": STATE, "rate": state}} if state else {})
@@ -114,7 +113,7 @@ def as_fitted(own: Mapping[str, Any], effect: Effect, values: Mapping[str, float
 
     The strength that was found with them lies well within its bounds.
     """
-    far, of = _FAR * abs(values[effect.added[0].in_equations]), own["strength"]
+    far, of = CRITERIA.discovery.strength_far * abs(values[effect.added[0].in_equations]), own["strength"]
     found = {**own, "strength": {**of, "lower": min(of["lower"], -far) if of["lower"] else 0.0,
                                  "upper": max(of["upper"], far)}}  # fmt: skip
     at = {parameter.symbol: values[parameter.in_equations] for parameter in effect.added[1:]}

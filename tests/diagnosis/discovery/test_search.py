@@ -12,7 +12,6 @@ import pytest
 from ident.custom.definition import read_effect
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.discovery import regression as regressions
-from ident.diagnosis.discovery import regressors
 from ident.diagnosis.discovery.candidate_terms import candidate_terms
 from ident.diagnosis.discovery.run_data import run_data
 from ident.diagnosis.discovery.search import TermSearch, _built
@@ -26,6 +25,7 @@ from ident.progress import Progress
 from ident.workflows import diagnose, identify, study
 from tests.bench.test_diagnosis import matrix_with
 from tests.blind.machines import matrix_of
+from tests.diagnosis.vary import vary
 from tests.reference import qian_reference as linear
 from tests.reference.outside_reference import Outside, measure_all
 
@@ -253,8 +253,7 @@ def test_the_regression_is_that_of_all_terms_and_runs_at_once(monkeypatch):
         return [(one.equation, one.strength, one.share) for one in seen.candidates]
 
     together = candidates()
-    monkeypatch.setattr(regressors, "BLOCK", 7)
-    monkeypatch.setattr(regressions, "_AT_ONCE", 5)
+    vary(monkeypatch, "discovery", block=7, runs_at_once=5)
     for (text, strength, share), (other, same, left) in zip(together, candidates(), strict=True):
         assert text == other
         assert (strength, share) == pytest.approx((same, left), rel=1e-6)

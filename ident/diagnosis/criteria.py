@@ -1,0 +1,440 @@
+"""Every number that decides in a diagnosis, by the stage that it decides in.
+
+Below each number stand [its unit], what it is (read: value, unit, meaning), why it is so, and the test below
+tests/diagnosis that holds it; a number without one is held by no test of its own yet.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ident.diagnosis.discovery.criteria import Discovery, TermShapes
+from ident.fit.levenberg_marquardt import Way
+
+TINY = 1e-300
+"""[1] A logarithm's or a quotient's argument is kept above it. Why: the smallest normal number is 2e-308."""
+EPSILON = 1e-12
+"""[of a size] A relative error below it is taken as this. Why: rounding of a sum of ten thousand terms."""
+
+
+@dataclass(frozen=True)
+class Estimation:
+    """How far the parameters of one model are refined, and what counts as a refit."""
+
+    full: Way = Way(1e-7, 20, rough=1e-5)
+    """[Way] Effort of a refit to every sample. Why: 20 steps end within a hundredth of a tie."""
+    trial: Way = Way(1e-5, 10, rough=1e-4)
+    """[Way] Effort of a refit on trial. Why: a trial only has to rank, and is refined if it is among the first."""
+    far_trial: Way = Way(1e-5, 20, rough=1e-4)
+    """[Way] Effort of the leader of several starts far away. Why: from far away ten steps do not arrive."""
+    screen: Way = Way(1e-5, 3)
+    """[Way] Effort of first steps from many starts. Why: three steps tell which start leads.
+    Test: test_fitted_model.py::test_of_first_steps_the_eight_that_leave_least_go_on"""
+    trial_samples: int = 131_072
+    """[samples] Of all runs in a trial. Why: enough for a ranking; the finalists take every sample."""
+    global_samples: int = 32_768
+    """[samples] Of all runs by which points of the whole space are judged. Why: 128 points are to cost about as
+    much as one trial."""
+    global_points: int = 128
+    """[points] Of a Sobol sample of the whole search space. Why: a model has up to about ten parameters."""
+    global_starts: int = 4
+    """[points] Of these from which a refit begins. Why: the least error of a coarse sample is not always the best
+    start."""
+    leading: int = 8
+    """[refits] Of first steps that are continued. Why: the rest is far behind.
+    Test: test_fitted_model.py::test_of_first_steps_the_eight_that_leave_least_go_on"""
+    effects_a_chain: int = 8
+    """[effects] Of one simulated chain, one for each lane. Why: registers of the kernel.
+    Test: test_groups.py::test_what_an_effect_promises_hangs_on_none_beside_it"""
+    new_optimum: float = 0.99
+    """[ratio of errors] Below which a refit is a new optimum. Why: refits of one optimum end far closer
+    together."""
+    convergence_rounds: int = 5
+    """[refits] To continue with while each is a new optimum. Why: in a long narrow valley one refit stops on its
+    way."""
+    pair_shares: tuple[float, ...] = (1.0, 0.3, 0.03)
+    """[of the strength] Of the second of two effects when fitted alone, to start the pair from. Why: the first may
+    take over most of what the second explained alone.
+    Test: test_selection.py::test_two_that_only_together_explain_the_data_are_found_where_a_third_came_first"""
+    simulation_excess: float = 1.03
+    """[ratio of errors] Of a simulation over its linear prediction that is still a result. Why: a model that is not
+    linear in its first states may look good where none leads.
+    Test: test_fitted_model.py::test_what_no_first_state_leads_to_is_no_refit"""
+    off_strength: float = 0.01
+    """[of the largest strength] Below which an effect is as good as off. Why: less is not seen in the output.
+    Test: test_selection.py::test_an_effect_that_is_off_and_leads_nowhere_better_without_it_is_added_as_any_other"""
+
+
+@dataclass(frozen=True)
+class Noise:
+    """When an error is noise alone."""
+
+    floor_excess: float = 0.02
+    """[of the floor] By which an error may exceed the noise floor, in addition to chance. Why: the floor itself is
+    an estimate. Test: test_diagnose.py::test_what_the_catalogue_does_not_hold_is_called_unexplained"""
+    floor_deviations: float = 3.0
+    """[standard deviations] Of the noise floor that the error may exceed it by. Why: one in 700 by chance."""
+    noise_correlation: float = 0.5
+    """[correlation] Of neighbouring residuals that noise may have where no floor is known. Why: above it the
+    residual has a memory. Test: test_diagnose.py::test_repeats_tell_that_what_is_left_is_noise_in_the_band"""
+
+
+@dataclass(frozen=True)
+class StructureSelection:
+    """Which machine fits where none is named, and over which windows it is judged."""
+
+    worse: float = 1.02
+    """[ratio of errors] On held-out data beyond which a simpler machine is worse. Why: less is no reason for
+    another parameter. Test: test_structure_selection.py::test_of_equals_the_one_with_fewer_parameters_is_taken"""
+    much_less: float = 0.7
+    """[ratio of errors] Of another machine with its best effect to that of the first. Why: a machine with more
+    parameters may have made up for a part of what is missing.
+    Test: test_structure_selection.py::test_more_parameters_do_not_make_up_for_an_effect"""
+    carried_models: int = 4
+    """[models] Taken to the next longer windows. Why: the likeliest of each set of effects.
+    Test: test_prediction_horizon.py::test_another_gain_each_way_is_judged_over_whole_runs"""
+
+
+@dataclass(frozen=True)
+class Screening:
+    """The predicted error of each effect, to first order."""
+
+    samples: int = 49_152
+    """[samples] Of all runs that an effect is simulated on. Why: all effects in about a second."""
+    strengths: tuple[float, ...] = (0.01, 0.03, 0.1, 0.3, 1.0)
+    """[of the way to each bound] At which an effect is simulated. Why: a response scales over a factor of three.
+    Test: test_groups.py::test_what_an_effect_promises_hangs_on_none_beside_it"""
+    weak_strengths: tuple[float, ...] = (1e-4, 3e-4, 1e-3, 3e-3)
+    """[of the way to each bound] In addition, for a machine of unknown size. Why: its bounds are wide."""
+    many_shapes: int = 10
+    """[initial guesses] Of shapes, above which each is simulated at fewer strengths. Why: their number multiplies
+    that of the strengths."""
+    strengths_of_many: tuple[float, ...] = (0.3,)
+    """[of the way to each bound] At which each of many shapes is simulated. Why: the middle of the range by its
+    logarithm."""
+    max_scaling: float = 2.0
+    """[ratio of strengths] By which a response may be scaled. Why: beyond it the response would be another
+    strength's."""
+    max_step: float = 0.1
+    """[of an axis] That a parameter is moved at most by the prediction. Why: one that hardly matters may be sent
+    anywhere by a linearisation."""
+    step_shares: tuple[float, ...] = (1.0, 0.5, 0.2, 0.05, 0.01)
+    """[of the predicted step] From where a refit may begin. Why: a prediction may be too bold."""
+    strength_powers: tuple[float, ...] = (0.67, 0.33, 0.0)
+    """[exponent of the scaling] Of further starts, between the scaled and the simulated strength. Why: what has a
+    threshold needs the simulated strength."""
+    threshold_growth: float = 300.0
+    """[ratio of powers] Of two neighbouring responses between which a threshold lies. Why: a proportional response
+    grows by at most ten.
+    Test: test_far_starts.py::test_the_hidden_effect_is_found_where_no_start_near_the_fit_leads_to_it"""
+    threshold_step: float = 4.0
+    """[ratio of strengths] Between which a threshold is looked for. Why: the ladder's steps are of three."""
+    between: tuple[float, ...] = (0.2, 0.4, 0.6, 0.8)
+    """[exponent of the step] Of strengths tried where a threshold lies. Why: equal steps of the logarithm."""
+    score_tolerance: float = 1e-9
+    """[of a score] By which nothing is better. Why: rounding."""
+    reweighting_rounds: int = 3
+    """[rounds] Of weighting each run by its residual. Why: the weights settle within three."""
+    batch: int = 64
+    """[responses] Whose products lie side by side in memory. Why: cache."""
+
+
+@dataclass(frozen=True)
+class InitialGuesses:
+    """Where the shapes of an effect begin."""
+
+    lines: int = 6
+    """[lines] Of the spectrum taken as frequencies. Why: the clearest are usually among the first three.
+    Test: test_initial_guesses.py::test_pulsations_are_found_clearest_first_whatever_the_sample_rate"""
+    angles: int = 6
+    """[angles] Around a turn, where a phase begins. Why: an optimum of a phase reaches a third of a turn."""
+    product_points: int = 5
+    """[points] For each line of a signal that is multiplied by another of its kind. Why: the product reaches to four
+    times the band of the two."""
+    along_range: tuple[float, ...] = (0.25, 0.5, 0.75)
+    """[of an axis] Where a searched shape begins. Why: three starts reach all optima of a smooth one."""
+    spectrum_points: int = 4
+    """[points] Of a spectrum for each that the record resolves. Why: a peak between two is not missed.
+    Test: test_initial_guesses.py::test_the_lines_of_what_does_not_pulsate_are_the_same_at_every_sample_rate"""
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """How many candidates are refitted, on trial and to every sample."""
+
+    contenders: int = 12
+    """[candidates] Refitted on trial. Why: the best is among the first twelve predictions."""
+    further_contenders: int = 10
+    """[candidates] For a further effect, less two for each that is there. Why: each costs more the larger the
+    model."""
+    quick_steps: int = 200_000
+    """[simulation steps] Of all runs below which a matrix is quick. Why: every prediction and every finalist can
+    then be tried. Test: test_ranking.py::test_what_leaves_as_much_as_the_last_finalist_is_one_in_a_small_matrix"""
+    near_best: float = 1.3
+    """[ratio of predicted errors] To the best of a contender for a further effect. Why: a prediction is that far
+    off. Test: test_ranking.py::test_where_the_boldest_promise_is_not_kept_more_is_tried"""
+    finalists: int = 5
+    """[candidates] Refitted to every sample. Why: the table of the first five is told in full.
+    Test: test_ranking.py::test_what_leaves_as_much_as_the_last_finalist_is_one_in_a_small_matrix"""
+    close_trial: float = 1.05
+    """[ratio of trial errors] To the best of one that is a finalist too. Why: the trial sees only the beginnings of
+    the records."""
+    found_again: float = 0.98
+    """[ratio of errors] Below which a known model found again is at another optimum. Why: what acts in jumps has
+    many optima.
+    Test: test_local_optima.py::test_a_model_that_is_known_is_found_anew_where_that_leads_to_a_better_optimum"""
+    multistart_finalists: int = 2
+    """[finalists] Refitted from other strengths, too. Why: they decide what is added."""
+    strong_starts: tuple[float, ...] = (1.0, 0.6, 0.3)
+    """[of the largest strength] From which a refit begins, too. Why: a fit that lacks the effect may have gone far
+    astray. Test: test_far_starts.py::test_strong_starts_lie_within_the_bounds_of_the_model_that_they_begin_from"""
+    shaken_starts: tuple[float, ...] = (0.5, 0.7, 1.4, 2.0)
+    """[of the fitted strength] From which a refit begins, too. Why: play and stiction have optima nearby, one for
+    each reversal."""
+    multistart_rounds: int = 4
+    """[rounds] Of continuing from a better optimum. Why: each begins around the last."""
+    promising: float = 3e-3
+    """[relative reduction] Of the score that is worth a refit. Why: three tenths of what is asked in the end
+    (significance.worthwhile)."""
+    offset_gain: float = 3.0
+    """[log-likelihood] Predicted gain of the runs' offsets that is worth a refit. Why: a third of what is asked in
+    the end. Test: test_diagnose.py::test_a_null_bias_is_found_by_the_offsets"""
+    told_at_once: int = 5
+    """[effects] Told as soon as they are predicted. Why: a page shows five."""
+
+
+@dataclass(frozen=True)
+class CrossValidationFolds:
+    """Blocks of the records that take turns in being held out."""
+
+    chunks: int = 8
+    """[chunks] Of each record. Why: each fold then has two of each record.
+    Test: test_cross_validation.py::test_held_out_errors_of_a_line_are_those_of_fits_without_each_fold"""
+    folds: int = 4
+    """[folds] A quarter of the data is held out at a time. Why: the fit without a fold is close to the fit of all.
+    Test: test_cross_validation.py::test_errors_between_runs_are_those_of_fits_without_each_fold_of_runs"""
+    chunks_of_few: int = 32
+    """[chunks] Of each record where there are fewer records than chunks. Why: the scatter of chunks is to be
+    known."""
+    seed: int = 0
+    """[seed] By which runs are dealt to folds. Why: a matrix lists its runs in an order of its own."""
+    max_step: float = 0.01
+    """[of an axis] That one linearisation is trusted over. Why: a longer step is fitted in full.
+    Test: test_cross_validation.py::test_a_step_stays_in_the_cube_and_the_rest_makes_up_for_it"""
+    effort: Way = Way(converged=1e-4, most=20)
+    """[Way] Of a fit without a fold. Why: it starts close by, and one linearisation ends it."""
+    least_offset: float = 1e-9
+    """[of the standard deviation] Of an offset in a score. Why: a logarithm needs one."""
+
+
+@dataclass(frozen=True)
+class Significance:
+    """When one model is better than another beyond chance, and when the two are equal."""
+
+    log_likelihood_gain: float = 10.0
+    """[log-likelihood] That a better model gains on held-out data. Why: one in 20,000 by chance, if only the best
+    of a large number could tell.
+    Test: test_cross_validation.py::test_what_one_run_alone_asks_for_is_not_beyond_chance"""
+    worthwhile: float = 1e-2
+    """[relative reduction] Of the error that is worth a parameter. Why: less is not worth one, however certain.
+    Test: test_cross_validation.py::
+    test_the_fitted_records_tell_whether_an_error_falls_enough_if_half_of_it_is_seen_held_out"""
+    worthwhile_held_out: float = 0.5
+    """[of the worthwhile] Reduction that is to be seen on held-out data, too. Why: fits in kinks end a little off
+    without a fold. Test: test_cross_validation.py::
+    test_the_fitted_records_tell_whether_an_error_falls_enough_if_half_of_it_is_seen_held_out"""
+    indistinguishable: float = 3.0
+    """[standard errors] Below which two models differ by chance. Why: one in 700 by chance.
+    Test: test_ranking.py::test_what_nothing_replaced_is_in_its_group"""
+    indistinguishable_offsets: float = 4.5
+    """[log-likelihood] Of the offsets below which two models differ by chance. Why: three standard deviations."""
+    indistinguishable_gain: float = 18.0
+    """[log-likelihood] Below which two models differ by chance. Why: 2 × 3²: white noise of σ separates the outputs
+    by three deviations, |f − g|² = 36 σ²."""
+    offset: float = 3e-4
+    """[of the standard deviation] Of an offset that matters. Why: less is nobody's concern.
+    Test: test_diagnose.py::test_a_null_bias_is_found_by_the_offsets"""
+    gain_without_best: float = 5.0
+    """[log-likelihood] That is to remain without the run that gains most, and the least of the innovations. Why:
+    what one run alone asks for is a question about that run.
+    Test: test_cross_validation.py::test_what_one_run_alone_asks_for_is_not_beyond_chance"""
+    innovation_gain: float = 15.0
+    """[log-likelihood] Of the innovations that is enough by itself over windows. Why: a drift that its past does
+    not quite predict makes ten. Test: test_cross_validation.py::test_over_windows_what_is_unforetold_decides"""
+    innovation_share: float = 0.2
+    """[of the residual's power] That is innovation where the innovations are asked. Why: less, and the residual is
+    no noise. Test: test_cross_validation.py::test_of_a_pattern_far_above_the_noise_its_past_is_no_judge"""
+    consistent: float = 3.0
+    """[standard errors] Of the mean gain of the chunks that is beyond chance by itself. Why: one in 700 by chance.
+    Test: test_cross_validation.py::test_a_slow_pattern_that_falls_is_nothing_where_the_data_become_no_likelier"""
+    consistent_without_best: float = 2.5
+    """[standard errors] That are to remain without the run that gains most. Why: one run fewer knows a little less.
+    Test: test_cross_validation.py::test_what_one_run_alone_asks_for_is_not_beyond_chance"""
+    run_consistency: float = 1.5
+    """[standard errors] Of the mean gain of the runs below which few of them gain. Why: what only some runs reach
+    is unsteady without being chance.
+    Test: test_cross_validation.py::test_what_differs_from_run_to_run_counts_by_runs"""
+    loss_ratio: float = 0.1
+    """[of the gains] That the other runs may lose where few gain. Why: more, and it is these runs against the
+    others. Test: test_cross_validation.py::test_what_differs_from_run_to_run_counts_by_runs"""
+    several_runs: int = 6
+    """[runs] From which on runs are counted, and not their chunks. Why: the scatter of fewer is not known.
+    Test: test_cross_validation.py::test_what_differs_from_run_to_run_counts_by_runs"""
+    hysteretic_scatter: float = 1.1
+    """[ratio of held-out errors] Within which refits with an effect that acts in jumps are equal. Why: a hysteretic
+    effect has a local optimum for each sequence of reversals.
+    Test: test_fitted_model.py::test_what_acts_in_jumps_is_as_good_as_what_leaves_some_per_cent_less"""
+    hysteretic_share: float = 0.5
+    """[of the best's reduction] That such a refit is to explain. Why: what explains less is another effect.
+    Test: test_fitted_model.py::test_what_acts_in_jumps_is_as_good_as_what_leaves_some_per_cent_less"""
+    dominated: float = 0.1
+    """[relative reduction] On whole runs by which one model dominates another. Why: equals whose fits end at other
+    optima lie some per cent apart there.
+    Test: test_ranking.py::test_what_ties_on_blocks_is_told_apart_by_whole_runs"""
+    tie: float = 1e-4
+    """[relative difference] Of two errors that rounding may decide. Why: refits end within about a hundredth of it.
+    Test: test_tie_breaking.py::test_rounding_changes_no_order"""
+    practically_equal: float = 1.02
+    """[ratio of errors] Of two models that the data cannot tell apart, within which they tie. Why: in a flat valley
+    rounding decides where a refit ends. Test: test_tie_breaking.py::test_rounding_changes_no_order"""
+    hysteretic_tie: float = 1.05
+    """[ratio of errors] Of two such models where one acts in jumps. Why: its refits end that far apart."""
+
+
+@dataclass(frozen=True)
+class Selection:
+    """The search over sets of effects."""
+
+    most: int = 6
+    """[effects] Added at most. Why: more cannot be told apart by a test matrix.
+    Test: test_diagnose.py::test_more_effects_than_there_are_places_for_are_refused"""
+    usual: int = 4
+    """[effects] Added where the user says nothing. Why: machines of the trials lack up to three."""
+    exchanged: int = 3
+    """[effects] Up to which each is compared with everything in its place every time. Why: more take long."""
+    rounds: int = 3
+    """[rounds] Of exchange, and of looking farther. Why: what enters and leaves in a circle ends.
+    Test: test_selection.py::test_of_effects_that_enter_and_leave_in_a_circle_the_best_set_stays"""
+    global_restarts: int = 8
+    """[effects] Of the first ranking started from the whole search space. Why: a model that went far astray makes
+    another effect look better. Test: test_selection.py::test_one_effect_from_anywhere_takes_the_place_of_the_first"""
+    paired: int = 5
+    """[finalists] Tried two at a time. Why: two lags look like a delay, one at a time.
+    Test: test_selection.py::test_two_that_only_together_explain_the_data_are_found_where_a_third_came_first"""
+
+
+@dataclass(frozen=True)
+class Ambiguity:
+    """What the data cannot tell apart."""
+
+    nearly_as_much: float = 0.9
+    """[of the best's reduction, in power] That a member of a group explains where something is unexplained. Why:
+    what is missing may be met a little more by one effect than by another.
+    Test: test_ranking.py::test_what_is_missing_tells_no_two_effects_apart"""
+    bias_of_missing: float = 0.05
+    """[of the unexplained power] That a member of a group may leave beyond the best. Why: an unmodelled effect can
+    bias the comparison by that much. Test: test_ranking.py::test_what_is_missing_tells_no_two_effects_apart"""
+    alternatives: int = 3
+    """[effects] Of one other model that are told. Why: a sentence holds no more."""
+    delay_near: float = 1.05
+    """[ratio of errors] Above which another lag in its place is given up. Why: what cannot come below it is not
+    equal."""
+    pair_near: float = 1.01
+    """[ratio of trial errors] Above which another pair of lags is given up. Why: what leaves more is
+    distinguishable. Test: test_total_delay.py::test_two_lags_that_two_others_stand_for_as_well_are_told_as_pairs"""
+    delay_effort: Way = Way(1e-4, 12, rough=1e-3)
+    """[Way] Of a refit with another lag. Why: only whether it is equal is asked."""
+    delay_models: int = 2
+    """[models] Of the path, the last first, of which the total delay is asked. Why: the last effect may hold the
+    lag in its place."""
+
+
+@dataclass(frozen=True)
+class Verification:
+    """What runs that no fit saw say."""
+
+    deviations: float = 2.0
+    """[standard errors] By which the error rises where runs to verify contradict an effect. Why: one in 40 by
+    chance: it only takes the word found away. Test: test_verification.py::test_chance_contradicts_seldom"""
+    chunk_length: float = 10.0
+    """[correlation times] In a chunk of the bootstrap. Why: chunks are then independent (Künsch 1989).
+    Test: test_verification.py::test_chance_contradicts_seldom"""
+    least_chunks: int = 4
+    """[chunks] Of a run at least. Why: fewer have no scatter."""
+    resamples: int = 400
+    """[resamples] Of the bootstrap. Why: the standard error is then known to 4 %."""
+    rise: float = 1.1
+    """[ratio of verify errors] Of the last model to the best on the path, from which on it is told. Why: less is a
+    matter of chance.
+    Test: test_report.py::test_a_smaller_error_on_verify_runs_on_the_way_is_told_with_what_was_added_since"""
+
+
+@dataclass(frozen=True)
+class LabelChecks:
+    """Runs whose label does not fit their data."""
+
+    outlier: float = 5.0
+    """[robust standard deviations] Of the runs' errors beyond which a run is checked. Why: one in two million by
+    chance. Test: test_diagnose.py::test_a_wrong_label_is_named_with_what_should_stand_there"""
+    least_excess: float = 1.15
+    """[ratio of errors] To the usual one, whatever the deviations are. Why: runs differ by some per cent anyway."""
+    explained: float = 0.5
+    """[of the excess power] That a changed label has to take away. Why: otherwise it is not that label.
+    Test: test_diagnose.py::test_a_wrong_label_is_named_with_what_should_stand_there"""
+    factors: tuple[float, ...] = (0.1, 0.2, 0.33, 0.5, 0.67, 0.8, 0.9, 1.1, 1.25, 1.5, 2.0, 3.0, 5.0, 10.0)
+    """[of the stated value] Tried on a label. Why: from a tenth to ten times."""
+    rounds: int = 3
+    """[rounds] Of refining a label's value. Why: each narrows the range by four."""
+    most: float = 0.2
+    """[of the runs] That may stand out. Why: where more do, it is not their labels."""
+    fewest_runs: int = 5
+    """[runs] From which on labels are checked. Why: the scatter of fewer is not known."""
+    reach: float = 0.15
+    """[of the value or of the change] Around the best value that is searched first. Why: the factors are that far
+    apart."""
+    points: int = 9
+    """[values] In a round. Why: with the narrowing by four no value is missed."""
+    narrowing: float = 4.0
+    """[ratio] Of the range from round to round. Why: nine points over the range overlap."""
+    least_spread: float = 1e-3
+    """[of the logarithm] Added to the deviation of the runs' errors. Why: equal errors have none."""
+    shift_rounds: int = 5
+    """[rounds] Of Gauss-Newton on the shift of a channel. Why: it converges within three."""
+
+
+@dataclass(frozen=True)
+class Conclusion:
+    """What a report tells, and which models it leaves in question."""
+
+    competing: int = 3
+    """[models] Between which the next run is to decide. Why: more make no better experiment."""
+    simpler_terms: float = 1.05
+    """[ratio of errors] That terms alone may leave and still come before those with what was added. Why: they need
+    one effect less. Test: test_stages.py::test_terms_of_the_first_search_stay_where_there_is_no_time_for_the_second"""
+    no_fall: float = 1e-3
+    """[relative reduction] Below which it is said that the error stays. Why: it is shown with three digits."""
+
+
+@dataclass(frozen=True)
+class Criteria:
+    """All of them, a section a stage."""
+
+    estimation: Estimation = Estimation()
+    noise: Noise = Noise()
+    structure: StructureSelection = StructureSelection()
+    screening: Screening = Screening()
+    initial_guesses: InitialGuesses = InitialGuesses()
+    ranking: Ranking = Ranking()
+    cross_validation: CrossValidationFolds = CrossValidationFolds()
+    significance: Significance = Significance()
+    selection: Selection = Selection()
+    ambiguity: Ambiguity = Ambiguity()
+    verification: Verification = Verification()
+    labels: LabelChecks = LabelChecks()
+    conclusion: Conclusion = Conclusion()
+    discovery: Discovery = Discovery()
+    terms: TermShapes = TermShapes()
+
+
+CRITERIA = Criteria()
+"""Those that a diagnosis goes by."""

@@ -1,0 +1,91 @@
+"""Every number that decides in a diagnosis stands once, in the criteria, with unit, meaning, reason and its test."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from dataclasses import FrozenInstanceError, fields
+from pathlib import Path
+
+import pytest
+
+from ident.diagnosis.criteria import CRITERIA
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDER = ROOT / "ident" / "diagnosis"
+FILES = [FOLDER / "criteria.py", FOLDER / "discovery" / "criteria.py"]
+FORM = re.compile(
+    r"\[(?P<unit>[^]]+)\] (?P<meaning>[A-Z].+?)\. Why: (?P<reason>.+?)\.(?: Test: (?P<test>\S+::\s?\S+))?"
+)
+FREE = {0, 1, 2, 0.5}
+ELSEWHERE = {
+    ("label_checks.py", 1.4826): "the deviation of a normal distribution over its median deviation (Hampel 1974)",
+    ("label_checks.py", 1e3): "milliseconds of a second",
+    ("report.py", 100): "per cent of a share",
+    ("tables.py", 4): "digits of a strength in a table",
+    ("discovery/term_library.py", 3): "the power of a cube, in the unit of its term",
+}
+"""Numbers that decide nothing, each with the reason why it stands where it is."""
+WITHOUT_A_TEST = 110
+"""Numbers that no test of their own holds yet: fewer from time to time, never more."""
+
+
+def documented() -> Iterator[tuple[str, str]]:
+    """Each number of the criteria by name, and what is written below it."""
+    for file in FILES:
+        for node in ast.parse(file.read_text(encoding="utf-8")).body:
+            body = node.body if isinstance(node, ast.ClassDef) and node.name != "Criteria" else [node]
+            for one, below in zip(body, [*body[1:], None], strict=True):
+                if isinstance(one, ast.AnnAssign) and isinstance(one.target, ast.Name):
+                    assert isinstance(below, ast.Expr)
+                    assert isinstance(below.value, ast.Constant)
+                    owner = node.name if isinstance(node, ast.ClassDef) else ""
+                    yield f"{owner}.{one.target.id}", " ".join(str(below.value.value).split())
+
+
+def test_each_number_has_a_unit_a_meaning_a_reason_and_a_test_that_is_there():
+    numbers = dict(documented())
+    read = {name: FORM.fullmatch(text) for name, text in numbers.items()}
+    assert not [name for name, found in read.items() if found is None]
+    tests = {name: found["test"].replace(" ", "") for name, found in read.items() if found and found["test"]}
+    assert len(numbers) - len(tests) <= WITHOUT_A_TEST
+    for name, test in tests.items():
+        file, function = test.split("::")
+        assert f"def {function}(" in (ROOT / "tests/diagnosis" / file).read_text(encoding="utf-8"), name
+
+
+def test_every_section_is_part_of_the_criteria_and_none_can_be_changed():
+    sections = [getattr(CRITERIA, one.name) for one in fields(CRITERIA)]
+    count = sum(len(fields(section)) for section in sections)
+    assert count == len(dict(documented()))
+    with pytest.raises(FrozenInstanceError):
+        CRITERIA.selection.most = 7
+
+
+def numbers_of(file: Path) -> Iterator[tuple[int, float]]:
+    """Line and value of each number of a file that is no place in a sequence."""
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    places = {
+        id(inner)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Subscript) or (isinstance(node, ast.Call) and "transpose" in ast.unparse(node.func))
+        for part in ([node.slice] if isinstance(node, ast.Subscript) else node.args)
+        for inner in ast.walk(part)
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and type(node.value) in (int, float) and id(node) not in places:
+            yield node.lineno, node.value
+
+
+def test_no_number_decides_outside_of_the_criteria():
+    """But zero, one, two and a half, and those of a formula or a unit that is cited."""
+    assert len(list(numbers_of(FILES[0]))) > len(FREE)
+    found = {
+        (file.relative_to(FOLDER).as_posix(), value)
+        for file in sorted(FOLDER.rglob("*.py"))
+        if file not in FILES
+        for _, value in numbers_of(file)
+        if value not in FREE
+    }
+    assert found == ELSEWHERE.keys()
