@@ -24,7 +24,8 @@ WITHIN = {
     "effects": [[5], 5, "dead_zone"], "custom": [[5], "some"], "bounds": [{"tau": 5}, {"tau": ("1 ms", object())}],
     "fixed": [{"tau": object()}, {5: 1.0}], "options": [{"population": "many"}, ["population"]],
     "seed": [1.5, "1", True], "budget": ["10 s"],
-    "preprocessing": [{"force_sign": "no"}, ["force_sign"], {5: False}], "model": [5, ["qian2014"]], "method": [5], "load": [None],
+    "preprocessing": [{"force_sign": "no"}, ["force_sign"], {5: False}],
+    "model": [5, ["qian2014"]], "method": [5], "load": [None],
 }  # fmt: skip
 """Of the choices of a fit, some that are wrong inside."""
 STATED = {
