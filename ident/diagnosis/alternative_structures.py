@@ -16,7 +16,7 @@ from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.ranking import rank
 from ident.diagnosis.result import Explanation
-from ident.diagnosis.selection import StepwiseSelection
+from ident.diagnosis.selection import Selection
 from ident.diagnosis.significance import improvement
 from ident.effects.effect import Effect
 from ident.fit.result import FitResult
@@ -63,7 +63,7 @@ def alternative_models(matrix: Matrix, fit: FitResult, custom: Iterable[Effect])
 
 
 def alternative_explanations(
-    known: Iterable[AlternativeModel], selection: StepwiseSelection, tell: Callable[[Progress], None]
+    known: Iterable[AlternativeModel], selection: Selection, tell: Callable[[Progress], None]
 ) -> tuple[Explanation, ...]:
     """What other models explain with one effect as well as the fitted one with what was added, or better."""
     if not selection.added or selection.base.effects:
@@ -73,4 +73,4 @@ def alternative_explanations(
     def report(progress: Progress) -> None:
         tell(replace(progress, stage="other models", expected=()))
 
-    return tuple(told for one in known for told in one.explanations(selection.found, doubted, report))
+    return tuple(told for one in known for told in one.explanations(selection.fitted, doubted, report))

@@ -22,6 +22,7 @@ from ident.diagnosis.discovery.search import TermSearch
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.follow_up import error_budget, next_run
 from ident.diagnosis.label_checks import label_suspects
+from ident.diagnosis.moves import Moves
 from ident.diagnosis.prediction_horizon import longer_horizon
 from ident.diagnosis.report import (
     alternative_sentences,
@@ -43,7 +44,7 @@ from ident.diagnosis.result import (
     Suspect,
     Verdict,
 )
-from ident.diagnosis.selection import StepwiseSelection
+from ident.diagnosis.selection import Selection, select
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.stages import (
     EFFECTS,
@@ -161,7 +162,7 @@ class Diagnoser:
             notes=(*found.notes, *(() if going_on else proposed.notes(self.course.propose)), *self.stages.notes),
         )
 
-    def _selected(self) -> tuple[StepwiseSelection, list[Suspect]]:
+    def _selected(self) -> tuple[Selection, list[Suspect]]:
         """What the catalogue gives, without the runs that are doubted, and these. Raises TimeIsUp before it begins."""
         selection = self._added(self.models)
         doubted = self._doubted(selection)
@@ -192,7 +193,7 @@ class Diagnoser:
 
         return self.stages.attempt(NEXT_RUN, proposed, None)
 
-    def _elsewhere(self, selection: StepwiseSelection) -> tuple[Explanation, ...]:
+    def _elsewhere(self, selection: Selection) -> tuple[Explanation, ...]:
         """What other models explain as well, where there are others."""
         if not self.known or not selection.added or selection.base.effects:
             return ()
@@ -200,7 +201,7 @@ class Diagnoser:
             OTHERS, lambda: alternative_explanations(self.known, selection, self.course.report_progress), ()
         )
 
-    def _late(self, selection: StepwiseSelection) -> Sequence[str]:
+    def _late(self, selection: Selection) -> Sequence[str]:
         """How late the machine answers, where the data do not tell by which lag or delay.
 
         Where with the last effect they do, and something is left, it is told without that: one that makes the valve's
@@ -208,18 +209,18 @@ class Diagnoser:
         """
         self.course.report_progress(Progress(LAGS, 0, 1))
         models, steps = selection.models, [refit for _, refit in selection.ladder() if refit.stable][::-1]
-        for refit in steps[: CRITERIA.ambiguity.delay_models if models.residual_above_noise(selection.found) else 1]:
+        for refit in steps[: CRITERIA.ambiguity.delay_models if models.residual_above_noise(selection.fitted) else 1]:
             if late := total_delay(models, selection.base, refit):
                 without = tuple(name for name in selection.added if name not in refit.effects)
                 return (delay_sentence(late, models.described, without),)
         return ()
 
-    def _pairs(self, selection: StepwiseSelection) -> Sequence[tuple[str, ...]]:
+    def _pairs(self, selection: Selection) -> Sequence[tuple[str, ...]]:
         """Lags and delays of which no two can be told from two others."""
         self.course.report_progress(Progress(LAGS, 0, 1))
-        return lag_ambiguities(selection.models, selection.found, selection.added)
+        return lag_ambiguities(selection.models, selection.fitted, selection.added)
 
-    def _may_propose(self, selection: StepwiseSelection) -> bool:
+    def _may_propose(self, selection: Selection) -> bool:
         """Whether terms that no list holds are wanted where something is left.
 
         Unasked they are not where no more effects were wanted than the few that were found.
@@ -227,11 +228,11 @@ class Diagnoser:
         exhausted = self.course.most >= CRITERIA.selection.usual or len(selection.added) < self.course.most
         return exhausted if self.course.propose is None else self.course.propose
 
-    def _is_proposing(self, selection: StepwiseSelection) -> bool:
+    def _is_proposing(self, selection: Selection) -> bool:
         """Whether they are to be searched for, being wanted: where something is left, or they were asked for."""
-        return self.course.propose is True or selection.models.residual_above_noise(selection.found)
+        return self.course.propose is True or selection.models.residual_above_noise(selection.fitted)
 
-    def _proposed(self, selection: StepwiseSelection) -> DiscoveryResult:
+    def _proposed(self, selection: Selection) -> DiscoveryResult:
         """What no list holds: beside the fitted model as it was and, where that is not all, beside what was found.
 
         What was found may stand for something else: with the term itself it is not needed. The terms of the first
@@ -243,26 +244,26 @@ class Diagnoser:
         both = in_time(lambda: self._of_both_searches(selection, alone))
         return replace(alone, complete=False) if both is None else both
 
-    def _of_both_searches(self, selection: StepwiseSelection, alone: DiscoveryResult) -> DiscoveryResult:
+    def _of_both_searches(self, selection: Selection, alone: DiscoveryResult) -> DiscoveryResult:
         """The terms `alone`, or those in addition to the effects that were found: what leaves less, or is simpler."""
-        alone = alone.instead(selection.found, selection.added, self.models.matrix.of_use("verify"))
+        alone = alone.instead(selection.fitted, selection.added, self.models.matrix.of_use("verify"))
         if not alone.complete or self.models.is_noise(alone.error_with_terms(selection.base.error)):
             return alone
-        further = self._terms_of(selection, selection.found)
-        before, found = (refit.held_out.error for refit in (selection.base, selection.found))
+        further = self._terms_of(selection, selection.fitted)
+        before, found = (refit.held_out.error for refit in (selection.base, selection.fitted))
         with_both = further.error_with_terms(found, "held_out")
         simpler = alone.error_with_terms(before, "held_out") < min(
             with_both * CRITERIA.conclusion.simpler_terms, found
         ) and not _repeated(alone, selection)
         return replace(alone if simpler else further.or_rejected(alone), complete=further.complete)
 
-    def _terms_of(self, selection: StepwiseSelection, refit: FittedModel) -> DiscoveryResult:
+    def _terms_of(self, selection: Selection, refit: FittedModel) -> DiscoveryResult:
         """The terms that a search adds to a refit."""
         asked = self.course.propose is True
         return TermSearch(selection.models, refit, self.course.report_progress, selection.base.effects, asked).run()
 
     def _said(
-        self, selection: StepwiseSelection, doubted: Sequence[Suspect], pairs: Sequence[tuple[str, ...]] = ()
+        self, selection: Selection, doubted: Sequence[Suspect], pairs: Sequence[tuple[str, ...]] = ()
     ) -> Diagnosis:
         """What a search found so far; `pairs` are lags and delays of which no two can be told from two others."""
         steps, base = in_time(selection.ladder) or selection.known_ladder(), selection.base
@@ -290,22 +291,22 @@ class Diagnoser:
         )
 
     def _verdict(
-        self, selection: StepwiseSelection, steps: Steps, doubted: Sequence[Suspect], floor: float | None,
+        self, selection: Selection, steps: Steps, doubted: Sequence[Suspect], floor: float | None,
         pairs: Sequence[tuple[str, ...]],
     ) -> Verdict:  # fmt: skip
         """What is said of what was added."""
         models, added, errors = selection.models, selection.added, steps[-1][1].errors
-        left = in_time(lambda: models.residual_above_noise(selection.found))
+        left = in_time(lambda: models.residual_above_noise(selection.fitted))
         unexplained = True if left is None else left  # nobody knows that it is noise
         if left is None:
             self.stages.miss(NOISE)
-        alone = (tuple(c.effect for c in group) for group in selection.groups.values() if len(group) > 1)
+        alone = (tuple(c.effect for c in group) for group in selection.alternatives.values() if len(group) > 1)
         groups = (*(group for group in alone if not any({*group} <= {*pair} for pair in pairs)), *pairs)
         against = in_time(lambda: tuple(self._contradictions(models, steps)))
         if against is None:
             self.stages.miss(VERIFY)
             against = ()
-        bounded = tuple(name for name in added if models.at_bound(selection.found, name))
+        bounded = tuple(name for name in added if models.at_bound(selection.fitted, name))
         repeats, known = in_time(lambda: models.floors.measured), in_time(lambda: models.floor is not None)
         text = verdict_text(added, groups, doubted, unexplained, errors, selection.base.error, repeats is not False,
                             floor, against, selection.complete, models.described, bounded,
@@ -315,27 +316,28 @@ class Diagnoser:
         against_by = tuple(one.effect for one in against)
         return Verdict(added, stands, against_by, groups, tuple(doubted), unexplained, text, bounded)
 
-    def _added(self, models: CandidateModels) -> StepwiseSelection:
+    def _added(self, models: CandidateModels) -> Selection:
         """The search over these models, or over longer windows where with an effect these are the more likely ones."""
-        selection = self._begun(models)
+        moves = self._moves(models)
         longer = None
         with suppress(TimeIsUp):  # the search ends as it is told so again, with the first of what was found
-            longer = longer_horizon(selection, self.course.report_progress)
+            longer = longer_horizon(moves, self.course.report_progress)
         if longer is not None:
-            found = self._begun(longer.models, longer.start).run()
-            if found.added:
-                return found
-        return selection.run()
+            further = self._moves(longer.models, longer.start)
+            selection = select(further, further.latest)
+            if selection.added:
+                return selection
+        return select(moves, moves.latest)
 
-    def _begun(self, models: CandidateModels, known: FittedModel | None = None) -> StepwiseSelection:
+    def _moves(self, models: CandidateModels, begin: FittedModel | None = None) -> Moves:
         preset = models.model(self.fit.effects)
         start = {preset.parameter(name).in_equations: value for name, value in self.fit.values.items()}
         base = models.refit(tuple(self.fit.effects), start)
         if not base.stable:
             raise Unusable("bad-fit", "the fitted model is unstable on a run", "fit", "fit the model to this matrix")
-        return StepwiseSelection(models, base, self.course.most, self.course.report_progress, self._heard, known=known)
+        return Moves(models, base, self.course.most, self.course.report_progress, self._heard, begin)
 
-    def _heard(self, selection: StepwiseSelection) -> None:
+    def _heard(self, selection: Selection) -> None:
         """Tell of a step."""
         steps = selection.ladder()
         self.course.added = tuple(
@@ -346,21 +348,21 @@ class Diagnoser:
             text = " ".join((found.verdict.text, *not_looked_at(LATER)))
             self.course.publish(replace(found, verdict=replace(found.verdict, text=text), not_looked_at=LATER))
 
-    def _doubted(self, selection: StepwiseSelection) -> list[Suspect]:
+    def _doubted(self, selection: Selection) -> list[Suspect]:
 
         def doubted() -> list[Suspect]:
             self.course.report_progress(Progress("labels", 0, 1))
-            return label_suspects(selection.models, selection.found, selection.models.floors.by_run)
+            return label_suspects(selection.models, selection.fitted, selection.models.floors.by_run)
 
         return self.stages.attempt(LABELS, doubted, [])
 
     # What is said ----------------------------------------------------------------------------------------------
 
-    def _ranked(self, selection: StepwiseSelection, floor: float | None) -> list[Ranked]:
+    def _ranked(self, selection: Selection, floor: float | None) -> list[Ranked]:
         base, models = selection.base, selection.models
-        alike = tuple(candidate.effect for candidate in in_time(selection.alike) or ())
+        alike = tuple(candidate.effect for candidate in in_time(selection.tied_first) or ())
         group = alike if len(alike) > 1 else ()
-        in_question = in_time(selection.weighed) or frozenset()
+        in_question = in_time(selection.in_question) or frozenset()
         before = in_time(lambda: base.held_out.error) or 0.0  # without it nothing was refitted that it is compared with
         with suppress(TimeIsUp):  # side by side, not one by one below
             each(lambda c: _judged(c, c.effect in in_question), selection.ranking)
@@ -434,7 +436,7 @@ def _better_with_fewer(steps: Steps) -> tuple[float, tuple[str, ...]] | None:
     return least, tuple(name for name, _ in steps[errors.index(least) + 1 :] if name)
 
 
-def _repeated(alone: DiscoveryResult, selection: StepwiseSelection) -> bool:
+def _repeated(alone: DiscoveryResult, selection: Selection) -> bool:
     """Whether the first of some terms leaves what an effect that was named leaves alone: it is that, in other words."""
     named = (c.refit.error for c in selection.ranking if c.refit is not None and c.effect in selection.added)
     first = alone.found[0].error["fit"] if alone.found else None

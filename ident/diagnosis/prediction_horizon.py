@@ -16,8 +16,8 @@ import numpy as np
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.moves import Moves
 from ident.diagnosis.ranking import rank
-from ident.diagnosis.selection import StepwiseSelection
 from ident.diagnosis.tie_breaking import stable_ranking
 from ident.fit.windows import likelihood, longer
 from ident.parallel import each
@@ -32,18 +32,19 @@ class LongerHorizon:
     start: FittedModel
 
 
-def longer_horizon(selection: StepwiseSelection, report: Report) -> LongerHorizon | None:
+def longer_horizon(moves: Moves, report: Report) -> LongerHorizon | None:
     """The models over windows by which, with one effect, the records are most likely, where those are longer ones.
 
     Weighed are the finalists of the first ranking over the fitted windows, refitted over longer ones, and what ranks
     first of whole runs. More likely than by the fitted model they are to be beyond chance for the best of all that was
     looked at. None where the fitted windows stay, or leave nothing to explain. Raises TimeIsUp.
     """
-    base, models = selection.base, selection.models
+    base, models = moves.base, moves.models
     horizons = longer(base.fitness, base.point)
     if not horizons or not models.residual_above_noise(base):
         return None
-    carried = [base, *(one.refit for one in selection.look() if one.refit is not None)]
+    ranking = moves.first_ranking(moves.latest).ranking
+    carried = [base, *(one.refit for one in ranking if one.refit is not None)]
     chance = CRITERIA.significance.log_likelihood_gain + float(np.log(len(models.effects) * len(horizons)))
     asked = max(
         _log_likelihood(base, models.memory) + chance, *(_log_likelihood(one, models.memory) for one in carried)

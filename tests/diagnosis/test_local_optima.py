@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from ident.diagnosis import candidate, ranking
-from ident.diagnosis import selection as selecting
+from ident.diagnosis import candidate, moves, ranking
 from ident.diagnosis.candidate import Candidate
+from ident.diagnosis.moves import Moves
 from ident.diagnosis.ranking import rank_each
-from ident.diagnosis.selection import StepwiseSelection
+from ident.diagnosis.selection import add_and_exchange
 
 
 def refit(*effects: str, error: float) -> Any:
@@ -61,21 +62,21 @@ def test_a_model_that_is_known_is_found_anew_where_that_leads_to_a_better_optimu
     assert ranked[0].effect == "saturation"
 
 
-def in_place(selection: StepwiseSelection, rankings: list[list[list[Any]]], monkeypatch: pytest.MonkeyPatch) -> None:
+def in_place(search: Moves, rankings: list[list[list[Any]]], monkeypatch: pytest.MonkeyPatch) -> None:
     """What could stand in the place of each effect, in one round after the other."""
     rounds = iter(rankings)
-    monkeypatch.setattr(selection, "_in_place_of_each", lambda _added: next(rounds))
-    monkeypatch.setattr(selection, "_backward", lambda _latest: False)
-    monkeypatch.setattr(selecting, "improves", lambda less, more: more.error < 0.99 * less.error)
-    monkeypatch.setattr(selecting, "indistinguishable_group", lambda name, _here, _ranking, _noise: [name])
+    monkeypatch.setattr(search, "_in_place_of_each", lambda selection: (selection, next(rounds)))
+    monkeypatch.setattr(search, "_backward", lambda selection, _latest="": (selection, False))
+    monkeypatch.setattr(moves, "improves", lambda less, more: more.error < 0.99 * less.error)
+    monkeypatch.setattr(moves, "indistinguishable_group", lambda name, _here, _ranking, _noise: [name])
 
 
 def test_what_replaces_an_effect_stands_on_its_rung_and_is_weighed_until_nothing_is_replaced(models, monkeypatch):
     """Four effects: the third is replaced, then the fourth found anew; what is left has its groups."""
-    selection = StepwiseSelection(models, refit(error=4.0), 4, lambda *_: None)
+    search = Moves(models, refit(error=4.0), 4, lambda *_: None)
     first = refit("a", "b", "c", "d", error=2.0)
     other, better = refit("a", "b", "d", "e", error=1.5), refit("a", "b", "e", "d", error=1.0)
-    selection.steps.append(first)
+    begun = replace(search.latest, path=(*search.latest.path, first))
 
     def ranked(found: Any, **instead: Any) -> list[list[Any]]:
         return [
@@ -86,10 +87,13 @@ def test_what_replaces_an_effect_stands_on_its_rung_and_is_weighed_until_nothing
 
     second = other.reordered(("a", "b", "e", "d"))
     rounds = [ranked(first, c=("e", other)), ranked(second, d=("d", better)), ranked(better)]
-    in_place(selection, rounds, monkeypatch)
-    assert selection._weighed()
-    assert [step.effects for step in selection.steps[1:]] == [first.effects, second.effects, better.effects]
-    assert selection.found.error == 1.0
-    selection._rounds()
-    assert list(selection.groups) == ["a", "b", "e", "d"]
-    assert not selection._weighed()
+    in_place(search, rounds, monkeypatch)
+    exchanged = search.exchange_pass(begun)
+    assert exchanged is not None
+    assert exchanged.changes == 2
+    assert [step.effects for step in exchanged.path[1:]] == [first.effects, second.effects, better.effects]
+    assert exchanged.fitted.error == 1.0
+    settled = add_and_exchange(search, exchanged)
+    assert list(settled.alternatives) == ["a", "b", "e", "d"]
+    assert search.exchange_pass(settled) is None
+    assert begun.path[-1] is first  # no move changes the selection that it began with

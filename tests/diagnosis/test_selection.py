@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import FrozenInstanceError, dataclass, replace
+from inspect import getsource
 from math import inf
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from ident.diagnosis import candidate
+from ident.diagnosis import candidate, moves
 from ident.diagnosis import selection as selecting
-from ident.diagnosis.selection import StepwiseSelection
+from ident.diagnosis.moves import Moves
+from ident.diagnosis.selection import Selection, select
 
 
 @dataclass(frozen=True)
@@ -113,7 +115,7 @@ class Judged:
             together = {"b", "c"} <= set(refit.effects)
             return Judgement(name, refit, improves=refit.held_out.score < base.held_out.score and not together)
 
-        return selecting.in_rank_order(self, map(judged, names))
+        return moves.in_rank_order(self, map(judged, names))
 
     def rank_each(self, models, bases, report, thorough, **_beside):
         """Each for itself."""
@@ -142,22 +144,27 @@ class Judged:
 
     def stand_in(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """For what a search asks of real refits."""
-        asked = ("rank", "rank_each", "deepened", "indistinguishable", "improves", "distinguishable")
-        for module, names in ((selecting, asked), (candidate, ("indistinguishable", "improvement"))):
+        asked = ("rank", "rank_each", "deepened", "improves", "distinguishable")
+        equal = ("indistinguishable",)
+        for module, names in ((moves, asked), (selecting, equal), (candidate, (*equal, "improvement"))):
             for name in names:
                 monkeypatch.setattr(module, name, getattr(self, name))
+
+
+def selected(judged: Judged) -> Selection:
+    """What a search over such models selects, two effects at most."""
+    search = Moves(judged, judged.refit((), {}), 2, lambda *_: None)  # type: ignore[arg-type]
+    return select(search, search.latest)
 
 
 @pytest.fixture
 def searched(monkeypatch):
     """The additions for given scores and needs."""
 
-    def of(
-        scores: dict[str, float], needed: set[str], far: str = "", late: str = "", off: str = ""
-    ) -> StepwiseSelection:
+    def of(scores: dict[str, float], needed: set[str], far: str = "", late: str = "", off: str = "") -> Selection:
         judged = Judged(scores, needed, far, late, off)
         judged.stand_in(monkeypatch)
-        return StepwiseSelection(judged, judged.refit((), {}), 2, lambda *_: None).run()  # type: ignore[arg-type]
+        return selected(judged)
 
     return of
 
@@ -206,14 +213,14 @@ def test_an_effect_that_was_met_on_the_way_is_ranked_by_what_was_met(searched):
     found = searched(scores, needed={"b"}, far="b")
     assert found.added == ("b",)
     assert [candidate.effect for candidate in found.ranking] == ["b", "a", "c"]
-    assert found.ranking[0].refit is found.found
+    assert found.ranking[0].refit is found.fitted
 
 
 def test_in_question_is_what_ranks_before_the_first_that_helps_and_what_is_as_good(searched):
     """b and c come behind a, which helps: nobody asks more of them."""
     found = searched({"": 1.0, "a": 0.05, "b": 0.7, "c": 0.8, "ab": 0.05}, needed={"a"})
     assert [candidate.effect for candidate in found.ranking] == ["a", "b", "c"]
-    assert found.weighed() == {"a"}
+    assert found.in_question() == {"a"}
 
 
 def test_what_a_replacement_makes_needless_is_taken_out(added):
@@ -246,13 +253,12 @@ def test_the_last_effect_goes_where_its_rung_refitted_does_better_without_it(mon
     judged = Judged(scores | {"b": 2.0, "d": 2.0}, needed={"b", "c"}, far="", late="", off="")
     judged.effects = (*judged.effects, "d")
     judged.stand_in(monkeypatch)
-    selection = StepwiseSelection(judged, judged.refit((), {}), 0, lambda *_: None)  # type: ignore[arg-type]
-    selection.look()
-    selection.steps.append(judged.refit("abcd", {}))
-    selection.groups = {"d": []}
-    found = selection.run()
+    search = Moves(judged, judged.refit((), {}), 0, lambda *_: None)  # type: ignore[arg-type]
+    ranked = search.first_ranking(search.latest)
+    begun = replace(ranked, path=(*ranked.path, judged.refit("abcd", {})), alternatives={"d": []})
+    found = select(search, begun)
     assert (found.added, found.ladder()[-1][1].held_out.score) == (("a", "b", "c"), 0.4)
-    assert "d" not in found.groups
+    assert "d" not in found.alternatives
 
 
 @pytest.mark.parametrize(("left", "floor", "noise"), [(0.05, None, inf), (0.4, None, 0.0), (0.4, 0.1, 0.1)])
@@ -263,8 +269,17 @@ def test_a_group_is_judged_beside_what_is_left_whether_or_not_a_floor_is_known(m
     judged.stand_in(monkeypatch)
     asked: list[float] = []
     monkeypatch.setattr(
-        selecting, "indistinguishable_group", lambda _name, _here, _ranking, noise: asked.append(noise) or []
+        moves, "indistinguishable_group", lambda _name, _here, _ranking, noise: asked.append(noise) or []
     )
-    selection = StepwiseSelection(judged, judged.refit((), {}), 2, lambda *_: None).run()  # type: ignore[arg-type]
-    assert selection.added == ("a",)
+    assert selected(judged).added == ("a",)
     assert set(asked) == {noise}
+
+
+def test_the_loop_is_read_at_a_glance_and_a_selection_is_never_changed():
+    """Forty lines for the search over named moves; what a move makes is another selection."""
+    lines = [line for function in (select, selecting.add_and_exchange) for line in getsource(function).splitlines()]
+    assert len(lines) <= 50
+    assert len(getsource(select).splitlines()) <= 40
+    judged = Judged({"": 1.0}, needed=set(), far="", late="", off="")
+    with pytest.raises(FrozenInstanceError):
+        Moves(judged, judged.refit((), {}), 2, lambda *_: None).latest.path = ()  # type: ignore[arg-type, misc]

@@ -141,7 +141,7 @@ def test_terms_of_the_first_search_stay_where_there_is_no_time_for_the_second(mo
     monkeypatch.setattr(diagnosing, "TermSearch", search)
     monkeypatch.setattr(diagnosing, "_repeated", lambda *_: False)
     errors = [SimpleNamespace(held_out=SimpleNamespace(error=error), error=error, effects=()) for error in (0.5, 0.4)]
-    selection = SimpleNamespace(base=errors[0], found=errors[1], added=("lead",), models=None)
+    selection = SimpleNamespace(base=errors[0], fitted=errors[1], added=("lead",), models=None)
     diagnoser = object.__new__(diagnosing.Diagnoser)
     diagnoser.models = SimpleNamespace(matrix=SimpleNamespace(of_use=lambda _: ()), is_noise=lambda _: False)
     diagnoser.course = SimpleNamespace(propose=True, report_progress=None)

@@ -1,0 +1,317 @@
+"""The moves of a selection: each makes another selection of one, or None where it leads nowhere."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from functools import partial
+from itertools import combinations
+from math import inf
+
+from ident.diagnosis.candidate import Candidate, in_rank_order, indistinguishable_group
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.fitted_model import FittedModel, distinguishable, improves
+from ident.diagnosis.ladder import Ladder, score, without_effect
+from ident.diagnosis.ranking import deepened, rank, rank_each
+from ident.diagnosis.selection import Selection
+from ident.diagnosis.tie_breaking import stable_minimum
+from ident.errors import TimeIsUp
+from ident.parallel import each
+from ident.progress import Progress, Report
+
+
+@dataclass
+class Moves:
+    """What the moves of one search need, and the `latest` selection: it stays where the time is over within a move.
+
+    At most `most` effects are added. `report` may end the search with TimeIsUp, `listener` is told of each new model;
+    `start` is a model with effects that was fitted before.
+    """
+
+    models: CandidateModels
+    base: FittedModel
+    most: int
+    report: Report
+    listener: Callable[[Selection], None] = lambda _selection: None
+    start: FittedModel | None = None
+    _without: dict[tuple[int, str], FittedModel] = field(default_factory=dict)
+    _ranking_so_far: list[Candidate] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.latest = Selection(self.models, self.base, (self.base,), rungs=Ladder(self.models))
+
+    def keep(self, selection: Selection) -> Selection:
+        """Remember a selection as the latest."""
+        self.latest = selection
+        return selection
+
+    def step(self, selection: Selection, fitted: FittedModel) -> Selection:
+        """The selection with one more model on its path, refined until it stays."""
+        selection = self.keep(replace(selection, path=(*selection.path, self.models.converged(fitted))))
+        self.listener(selection)
+        return selection
+
+    def above_floor(self, selection: Selection) -> bool:
+        """Whether the error is above a noise floor that is known."""
+        return self.models.floor is not None and not self.models.at_floor(selection.fitted)
+
+    # Ranking ---------------------------------------------------------------------------------------------------
+
+    def first_ranking(self, selection: Selection) -> Selection:
+        """The selection with the first ranking. Raises TimeIsUp."""
+        if selection.ranking:
+            return selection
+        base, heard = selection.base, self._keep_ranking
+        ranking = rank(self.models, base, self._addable(base), self.report, heard=heard)
+        return self.keep(replace(selection, ranking=tuple(ranking)))
+
+    def with_what_was_met(self, selection: Selection) -> Selection:
+        """Rank by what was met on the path: an effect alone, at a better optimum than the ranking found for it.
+
+        Of a first ranking that was cut off it is how far that came.
+        """
+        selection = self.keep(replace(selection, ranking=selection.ranking or tuple(self._ranking_so_far)))
+        with suppress(TimeIsUp):
+            return self.keep(replace(selection, ranking=self._ranking_by_path(selection)))
+        return selection
+
+    def _ranking_by_path(self, selection: Selection) -> tuple[Candidate, ...]:
+        base = selection.base
+        alone = {fitted.effects[-1]: fitted for fitted in selection.path
+                 if len(fitted.effects) == len(base.effects) + 1}  # fmt: skip
+
+        def by_path(candidate: Candidate) -> Candidate:
+            met, known = alone.get(candidate.effect), candidate.refit
+            better = met is not None and (known is None or met.held_out.score < known.held_out.score)
+            return candidate.refitted(base, met) if better and met is not None else candidate
+
+        return tuple(in_rank_order(self.models, map(by_path, selection.ranking)))
+
+    def _keep_ranking(self, candidates: list[Candidate]) -> None:
+        self._ranking_so_far = candidates
+
+    def _rank(self, base: FittedModel, thorough: bool, strong: bool = False) -> list[Candidate]:
+        return rank(self.models, base, self._addable(base), self.report, thorough, strong)
+
+    def _addable(self, base: FittedModel) -> list[str]:
+        return [name for name in self.models.effects if name not in base.effects]
+
+    # Moves -----------------------------------------------------------------------------------------------------
+
+    def forward(self, selection: Selection) -> Selection | None:
+        """Add the best effect of the ranking while it improves the model, and take out after each what it replaces."""
+        begun = selection
+        while len(selection.added) < self.most:
+            first = len(selection.path) == 1
+            if first:
+                selection = self.first_ranking(selection)
+            ranking = selection.ranking if first else self._rank(selection.fitted, thorough=False)
+            best = next((candidate for candidate in ranking if candidate.improves), None)
+            if first and (known := self._from_start(selection, best)):
+                selection = known
+                continue
+            if best is None or best.refit is None:
+                break
+            if without := self._without_its_effect(selection, best.refit):
+                selection = without
+                continue
+            selection = self.step(selection, best.refit)
+            if first:
+                selection = self.global_restart(selection) or selection
+                continue
+            selection, returned = self._backward(selection, best.effect)
+            if returned:
+                break
+        return None if selection is begun else selection
+
+    def _from_start(self, selection: Selection, best: Candidate | None) -> Selection | None:
+        """Begin with the model that was fitted before, where it is better than the best of the first ranking."""
+        if self.start is None or not self.start.finite or not improves(selection.fitted, self.start):
+            return None
+        if best is not None and best.refit is not None and improves(self.start, best.refit):
+            return None
+        return self.step(selection, self.start)
+
+    def _without_its_effect(self, selection: Selection, refit: FittedModel) -> Selection | None:
+        """Where the model does as well without what was added, that only led to a better optimum: the model there."""
+        name = refit.effects[-1]
+        if not self.models.may_be_dispensable(refit, name):
+            return None
+        less = self.models.refit(refit.effects[:-1], without_effect(refit.values, name))
+        worse = not less.finite or less.held_out.score >= selection.fitted.held_out.score
+        if worse or improves(less, refit):
+            return None
+        base = less if less.effects == selection.base.effects else selection.base
+        return self.step(replace(selection, base=base), less)
+
+    def _backward(self, selection: Selection, latest: str = "") -> tuple[Selection, bool]:
+        """Take out what the model can do without, but the `latest`; true where that leads back to an earlier set.
+
+        What enters and leaves in a circle is of use in one company and of none in another: the best of it stays.
+        """
+        doubted = [name for name in selection.added if name != latest]
+        while doubted:
+            here, tried = selection.fitted, each(partial(self._less, selection), doubted)
+            needless = (i for i, less in enumerate(tried) if less.finite and not improves(less, here))
+            first = next(needless, None)
+            if first is None:
+                break
+            less, doubted = tried[first], doubted[first + 1 :]
+            known = [i for i, fitted in enumerate(selection.path) if set(fitted.effects) == set(less.effects)]
+            selection = self.step(selection, less)
+            if known:
+                return self.step(selection, stable_minimum(selection.path[known[0] :], score)), True
+        return selection, False
+
+    def _less(self, selection: Selection, name: str) -> FittedModel:
+        """The last model without one of its effects, judged."""
+        fitted = selection.fitted
+        known = self._without.get((id(fitted), name))
+        if known is None:
+            effects = tuple(effect for effect in fitted.effects if effect != name)
+            known = self._without[id(fitted), name] = self.models.refit(effects, without_effect(fitted.values, name))
+            _ = known.finite and known.held_out
+        return known
+
+    def exchange(self, selection: Selection) -> Selection:
+        """Exchange the first added effect for a better one in its place, else tell the alternatives of each.
+
+        What came with another, to which it showed the way, may be dispensable by now: that is taken out first.
+        """
+        if len(selection.added) > 1:
+            selection, _ = self._backward(selection)
+        selection, here = replace(selection, alternatives={}), selection.fitted
+        noise = (self.models.floor or 0.0) if self.models.residual_above_noise(here) else inf
+        selection, in_place = self._in_place_of_each(selection)
+        for name, ranking in zip(selection.added, in_place, strict=True):
+            best = next((c for c in ranking if c.refit is not None), None)
+            if best is None or best.refit is None:
+                continue
+            if best.refit.local is not here.local and self._is_better(selection.fitted, name, best):
+                order = tuple(best.effect if one == name else one for one in here.effects)
+                changed = replace(selection, changes=selection.changes + 1)
+                return self._backward(self.step(changed, best.refit.reordered(order)), best.effect)[0]
+            alternatives = {**selection.alternatives, name: indistinguishable_group(name, here, ranking, noise)}
+            selection = self.keep(replace(selection, alternatives=alternatives))
+        return selection
+
+    def _is_better(self, fitted: FittedModel, name: str, other: Candidate) -> bool:
+        """Whether another effect is better in the place of one: at the noise by however little, if beyond chance.
+
+        The same effect found again is at a better optimum.
+        """
+        assert other.refit is not None
+        if other.effect == name:
+            return True
+        simple = self.models.simplicity(other.effect)[0] <= self.models.simplicity(name)[0]
+        at_noise = simple and self.models.at_floor(fitted)
+        return improves(fitted, other.refit) or (at_noise and distinguishable(fitted, other.refit))
+
+    def _in_place_of_each(self, selection: Selection) -> tuple[Selection, list[Sequence[Candidate]]]:
+        """What could stand in the place of each added effect, ranked: for the first what it was chosen from.
+
+        Nothing stands in the place of one without which the model goes astray.
+        """
+        added, ranking = selection.added, selection.ranking
+        if ranking and [*added] == [ranking[0].effect]:
+            first, *others = ranking
+            again = [first.refitted(selection.base, selection.fitted), *others]
+            ranking = tuple(deepened(self.models, selection.base, again))
+            return self.keep(replace(selection, ranking=ranking)), [ranking]
+        bases = each(partial(self._less, selection), added)
+        sound = [(base, self._addable(base)) for base in bases if base.finite]
+        given = selection.fitted
+        ranked = iter(rank_each(self.models, sound, self.report, thorough=False, beside=given) if sound else ())
+        return selection, [next(ranked) if base.finite else [] for base in bases]
+
+    def exchange_pass(self, selection: Selection) -> Selection | None:
+        """Exchange among more effects than are compared every time, until none is exchanged."""
+        if len(selection.added) <= CRITERIA.selection.exchanged or selection.alternatives:
+            return None
+        for _ in range(CRITERIA.selection.rounds):
+            before, selection = selection, self.exchange(selection)
+            if selection.changes == before.changes:
+                break
+        return selection
+
+    def exchange_pass_at_floor(self, selection: Selection) -> Selection | None:
+        """The same where the error is at the noise floor."""
+        return self.exchange_pass(selection) if self.models.at_floor(selection.fitted) else None
+
+    def global_restart(self, selection: Selection) -> Selection | None:
+        """Where the first effect leaves more than noise: restart the leading effects from the whole search space.
+
+        A model that went far astray without an effect makes another one look better from where it is.
+        """
+        if not self.above_floor(selection):
+            return None
+        names = [candidate.effect for candidate in selection.ranking[: CRITERIA.selection.global_restarts]]
+        done = 0
+
+        def restarted(name: str) -> list[FittedModel]:
+            nonlocal done
+            refits = self.models.global_starts((*selection.base.effects, name))
+            done += 1
+            self.report(Progress("looking farther", done, len(names)))
+            return refits
+
+        trials = (refit for refits in each(restarted, names) for refit in refits)
+        return self._best_of(selection, self.models.leading(trials, self.models.trial_error(selection.fitted)))
+
+    def _best_of(self, selection: Selection, trials: Sequence[FittedModel]) -> Selection | None:
+        """Continue with the best of some trials, where it is better beyond chance on all records."""
+        best = stable_minimum(trials, lambda trial: trial.local.error) if trials else None
+        if best is None or not best.local.error < self.models.trial_error(selection.fitted):
+            return None
+        refit = self.models.refit(best.effects, best.values)
+        if not refit.finite or not improves(selection.fitted, refit):
+            return None
+        return self.step(selection, refit)
+
+    def strong_starts(self, selection: Selection) -> Selection | None:
+        """Continue with an effect that improves the model only where its refit begins with a strong one."""
+        if len(selection.added) == self.most:
+            return None
+        ranking = self._rank(selection.fitted, thorough=True, strong=True)
+        best = next((candidate for candidate in ranking if candidate.improves), None)
+        if best is None or best.refit is None:
+            return None
+        changed = replace(selection, changes=selection.changes + 1)
+        without = self._without_its_effect(changed, best.refit)
+        return without or self._backward(self.step(changed, best.refit), best.effect)[0]
+
+    def pair_search(self, selection: Selection) -> Selection | None:
+        """Continue from two finalists of the first ranking at once, where these are better beyond chance.
+
+        One at a time may lead astray: two lags look like a delay, and from there to whatever corrects the difference.
+        """
+        first = selection.path[1].effects[-1] if len(selection.path) > 1 else ""  # the others were tried with it
+        finalists = [c.refit for c in selection.ranking if c.refit is not None and c.effect != first]
+        finalists = finalists[: CRITERIA.selection.paired]
+        if self.most < 2 or len(finalists) < 2:
+            return None
+        pairs, target = list(combinations(finalists, 2)), self.models.trial_error(selection.fitted)
+        trials: list[FittedModel] = []
+        for i, pair in enumerate(pairs):
+            self.report(Progress("trying pairs", i, len(pairs)))
+            trials.append(self.models.pair_trial(*pair, target))
+        return self._best_of(replace(selection, changes=selection.changes + 1), trials)
+
+    def prune_path(self, selection: Selection) -> Selection | None:
+        """End the ladder at the first of its rungs on which the last model does not improve.
+
+        A rung that is refitted from where the search ended may find a better optimum than the model that was added to.
+        Of a model of the path the search has judged: it has to be better, not only as good. Where a model of the path
+        with as few effects is better than that rung, the search goes back to it.
+        """
+        for _, rung in selection.ladder()[1:-1]:
+            judged = any(rung is fitted for fitted in selection.path)
+            asked = rung.finite and (not judged or score(rung) < score(selection.fitted))
+            if asked and not improves(rung, selection.fitted):
+                as_few = [fitted for fitted in selection.path if len(fitted.effects) <= len(rung.effects)]
+                back = stable_minimum([rung, *as_few], score)
+                kept = {name: of for name, of in selection.alternatives.items() if name in back.effects}
+                return self.step(replace(selection, alternatives=kept, changes=selection.changes + 1), back)
+        return None
