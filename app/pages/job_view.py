@@ -31,6 +31,7 @@ class JobPageView:
     error: float | None
     expected: tuple[tuple[str, float], ...]
     added: tuple[tuple[str, float], ...]
+    verdict: str
     problem: str
     facts: tuple[tuple[str, str], ...]
     made: str
@@ -53,6 +54,7 @@ def job_page(job: JobView) -> JobPageView:
         error=job.progress.error,
         expected=tuple((title(one.effect), one.error) for one in job.progress.expected),
         added=tuple((title(one.effect), one.error) for one in job.progress.added),
+        verdict=job.progress.verdict,
         problem=_problem(job.problem),
         facts=settings_facts(job.settings.model_dump()),
         made=job.created_at,

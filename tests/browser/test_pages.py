@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 
 import pytest
@@ -82,6 +83,21 @@ def test_a_running_fit_is_told_to_everybody(page, site, running, screenshots):
     expect(page.locator("[data-step]")).to_contain_text("of 10000", timeout=60_000)
     expect(page.get_by_role("progressbar", name="Progress of the fit")).to_be_visible()
     everywhere(page, screenshots, "running")
+
+
+def test_the_verdict_of_the_catalogue_is_told_while_terms_are_searched_for(page, site, running):
+    """By the events that tell how far the job is; before there is one nothing is shown."""
+    job = site.client.get(f"/jobs/{running}").json()
+    job["progress"] |= {"stage": "terms", "verdict": "The model lacks dead zone <b>."}
+    told = {"content_type": "text/event-stream", "body": f"event: running\ndata: {json.dumps(job)}\n\n"}
+    held = []
+    page.route("**/events", lambda route: held.append(route))  # noqa: PLW0108  a builtin cannot be marked as heard
+    with page.expect_request("**/events"):
+        page.goto(f"{site.address}/fits/{running}")
+    verdict = page.locator(".live [data-verdict]")
+    expect(verdict).to_be_hidden()
+    held[0].fulfill(**told)
+    expect(verdict).to_contain_text("The model lacks dead zone <b>.")
 
 
 def test_the_policy_allows_no_inline_and_no_evaluated_script(page, watch, site):

@@ -14,6 +14,7 @@ function follow(live) {
   const trace = live.querySelector(".trace polyline");
   const sight = live.querySelector("[data-sight]");
   const soFar = live.querySelector("[data-so-far]");
+  const verdict = live.querySelector("[data-verdict]"); // none where the page shows it already
   const seen = [];
 
   function report(progress) {
@@ -32,6 +33,10 @@ function follow(live) {
     }
     if (sight.hidden) list(sight, progress.expected);
     list(soFar, progress.added);
+    if (verdict && progress.verdict) {
+      verdict.lastElementChild.textContent = progress.verdict;
+      verdict.hidden = false;
+    }
   }
 
   // Each event is the job as it is now.
