@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ident.preprocessing.step import Prepared, Step, Threshold
-from ident.run import BENCH, STILL, USES, Run
+from ident.run import BENCH, STILL, Run
 from ident.words.percent import percent
 
 STANDS = Threshold(
@@ -42,7 +42,6 @@ def still_apart(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[str, ...]]:
         still = [run for run in alike if _moved(run) < STANDS.value * moved and run.drive > DRIVEN.value * driven]
         if not any(run.use == "fit" for run in alike if run not in still):
             continue
-        still = [run for run in still if run.use in USES]
         found |= {run.id: replace(run, use=STILL) for run in still}
         said += [_said(run, _moved(run) / moved) for run in still]
     return tuple(found.values()), tuple(said)
