@@ -136,23 +136,17 @@ class Test:
     # The specimen's motion --------------------------------------------------------------------------------------
 
     def motion(self, t: Array) -> tuple[Array, Array, Array]:
-        """Position, speed, acceleration at times from its beginning (s); one that begins at rest grows for a period."""
+        """Position, speed, acceleration at times from its beginning (s), in the middle of the stroke."""
         f, size = self.frequency, self.amplitude
         x, v, a = (size * f**k * one for k, one in enumerate(self.wave(t * f)))
-        if self.begins == "moving":
-            return x, v, a
-        grown = np.clip(t * f, 0.0, 1.0)
-        r = grown**3 * (10 + grown * (6 * grown - 15))
-        dr = f * 30 * grown**2 * (1 - grown) ** 2
-        ddr = f**2 * 60 * grown * (1 - grown) * (1 - 2 * grown)
-        return r * x, r * v + dr * x, r * a + 2 * dr * v + ddr * x
+        return x, v, a
 
     def times(self, samples: NDArray[np.int64]) -> Array:
         """When samples are taken, from the beginning of the motion."""
         before = (SETTLING + self.phase) / self.frequency if self.begins == "moving" else 0.0
         return np.asarray(before + (samples + self.phase) / self.rate)
 
-    def path(self, samples: NDArray[np.int64]) -> Path:
+    def path(self, samples: NDArray[np.int64]) -> Moved:
         """The specimen's motion at samples that ascend, and its turning points."""
         t = self.times(samples)
         turns = self.turning(float(t[-1]))
@@ -160,7 +154,7 @@ class Test:
         order = np.argsort(every, kind="stable")
         rank = np.empty(len(order), dtype=np.int64)
         rank[order] = np.arange(len(order))
-        return Path(*self.motion(t), self.motion(every[order])[0], rank[1 + len(turns) :])
+        return Moved(*self.motion(t), self.motion(every[order])[0], rank[1 + len(turns) :])
 
     def turning(self, end: float) -> Array:
         """When the motion turns, up to a time."""
@@ -223,15 +217,14 @@ class Test:
             driving, name, unit = (x, "displacement", "m") if self.given == "displacement" else (v, "velocity", "m/s")
         else:
             driving = self.command[self.before :]
-            name = "drive_force" if self.machine == "drive" else "command"
-            unit = {"drive": "N", "motor": "V", "loop": "m"}[self.machine]
+            name, unit = "command", {"drive": "N", "motor": "V", "loop": "m"}[self.machine]
         out = {"force": "N", "velocity": "rad/s", "displacement": "m"}[self.output]
         columns = {name: {"column": "u", "unit": unit}, self.output: {"column": "y", "unit": out}}
         runs: list[dict[str, Any]] = []
         for use, rows in (("fit", [0, self.fitted]), ("verify", [self.fitted, self.length])):
             runs.append({
                 "id": use, "file": "test.csv", "rows": rows, "sample_rate": f"{self.rate!r} Hz", "use": use,
-                "output": self.output, "hold": self.hold, "channels": columns,
+                "output": self.output, "hold": self.hold, "channels": {of: dict(one) for of, one in columns.items()},
             } | ({"gain": self.law.Kp} if self.machine == "loop" else {}))  # fmt: skip
         np.savetxt(folder / "test.csv", np.column_stack([driving, self.truth + noise]), delimiter=",", header="u,y",
                    comments="", fmt="%.12g")  # fmt: skip
@@ -257,7 +250,7 @@ STRENGTHS = {
 """In what a specimen's force is linear; the way to a stop, the inverse of the catalogue's strength, is a shape here."""
 
 
-class Path(NamedTuple):
+class Moved(NamedTuple):
     """A specimen's motion at samples; `every` holds all places with the turning points between, `of` the samples'."""
 
     x: Array
@@ -267,7 +260,7 @@ class Path(NamedTuple):
     of: NDArray[np.int64]
 
 
-def specimen_force(test: Test, path: Path) -> Array:
+def specimen_force(test: Test, path: Moved) -> Array:
     """The force that moves a specimen along a path."""
     f, x = test.law, path.x
     force = f.c * path.v + f.k * (x - np.clip(x, -test.free_play, test.free_play)) + f.m * path.a
@@ -275,11 +268,13 @@ def specimen_force(test: Test, path: Path) -> Array:
         size = getattr(f, f"{name}_{strength}")
         if size:
             names = [key for key in f._fields if key.startswith(f"{name}_")]
-            force = force + size * specimen_term(name, {key.removeprefix(f"{name}_"): getattr(f, key) for key in names}, path)
+            force = force + size * specimen_term(
+                name, {key.removeprefix(f"{name}_"): getattr(f, key) for key in names}, path
+            )
     return np.asarray(force)
 
 
-def specimen_term(name: str, shape: Mapping[str, float], path: Path) -> Array:
+def specimen_term(name: str, shape: Mapping[str, float], path: Moved) -> Array:
     """The force of an effect of strength one along a path."""
     x, v = path.x, path.v
     if name == "coulomb_friction":
@@ -351,6 +346,7 @@ def _law(rng: np.random.Generator, machine: str, frequency: float, amplitude: fl
 
 def _shapes(rng: np.random.Generator, name: str) -> dict[str, float]:
     """Shapes, of the sizes of the base's motion: ways of the largest place, speeds of the largest speed."""
+
     def between(low: float, high: float) -> float:
         return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 

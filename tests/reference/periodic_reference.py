@@ -12,8 +12,8 @@ A mass that is driven, in open loop (e = u), or under a position loop (e = Kp (u
 
     w = spool(e)        m v' = Kt w - c v - k x - effect        x' = v
 
-by Kutta's third-order rule with many steps a sample. Dry friction sticks and slips; where the speed changes its sign the
-step ends there, found by a false position, so that a stop or a turning point lies where it is and not at a sample.
+by Kutta's third-order rule with many steps a sample. Dry friction sticks and slips; where the speed changes its sign
+the step ends, found by a false position, so that a standstill or a turning point lies where it is, not at a sample.
 """
 
 from __future__ import annotations
@@ -208,8 +208,10 @@ def late_reading(history, t, h):
 
 
 @njit(cache=True)
-def rates(f, command, linear, rate, t, mode, s, play, x0, zd, zh, history, h, out):
-    """Rates of the states (1/s) at t (s), and what pushes but dry friction; mode: sign of sliding, 0 sticks, 2 no friction."""
+def rates(  # noqa: PLR0912  all equations in one place
+    f, command, linear, rate, t, mode, s, play, x0, zd, zh, history, h, out
+):
+    """Rates of the states at t (s); returns what pushes but dry friction. Modes: ±1 slides, 0 sticks, 2 no friction."""
     late = (t - f.command_delay_T) * rate
     u, du = command_at(command, late, linear), slope_at(command, late, linear) * rate
     y = reading(f, s)
@@ -271,7 +273,9 @@ def kutta(f, command, linear, rate, t, h, mode, s, play, zd, zh, history, step, 
 
 
 @njit(cache=True)
-def drive(f, command, linear, rate, substeps, speed, outputs):
+def drive(  # noqa: PLR0912, PLR0915  the whole story of a step in one place
+    f, command, linear, rate, substeps, speed, outputs
+):
     """Recorded position, or speed where `speed`, of a driven mass at the samples of the command, from rest."""
     h = 1.0 / (rate * substeps)
     s, after, trial = np.zeros(STATES), np.zeros(STATES), np.zeros(STATES)
@@ -313,7 +317,9 @@ def drive(f, command, linear, rate, substeps, speed, outputs):
                             play = p_end
                             break
                         share = clipped((hold - abs(push)) / max(abs(end) - abs(push), 1e-300), 0.0, 1.0)
-                        kutta(f, command, linear, rate, t, share * left, 0, s, play, zd, zh, history, h, k, trial, after)
+                        kutta(
+                            f, command, linear, rate, t, share * left, 0, s, play, zd, zh, history, h, k, trial, after
+                        )
                         for i in range(STATES):
                             s[i] = after[i]
                         t, left = t + share * left, (1 - share) * left
@@ -346,10 +352,10 @@ def drive(f, command, linear, rate, substeps, speed, outputs):
                 if f.specimen_hysteresis_fy > 0:
                     zh = bouc_wen(zh, way, f.specimen_hysteresis_xy, f.specimen_hysteresis_n)
                 if f.backlash_b > 0:
+                    end_t = t + took * (1 - 1e-6)
                     _, play = rates(
-                        f, command, linear, rate, t + took * (1 - 1e-6), mode, after, play, after[X], zd, zh, history, h,
-                        k[0],
-                    )  # fmt: skip
+                        f, command, linear, rate, end_t, mode, after, play, after[X], zd, zh, history, h, k[0]
+                    )
                 for i in range(STATES):
                     s[i] = after[i]
                 t, left = t + took, left - took

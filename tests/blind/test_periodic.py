@@ -1,0 +1,184 @@
+"""Periodic tests: what is drawn, what a test allows before any program runs, and when a verdict is right."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ident.effects import CATALOGUE
+from ident.presets import preset
+from tests.blind.periodic import MACHINES, MODELS, MOST, NOISE, PERIODS, SAMPLES, Test, Wave, drawn
+from tests.blind.periodic_class import (
+    ALIKE,
+    APPLICABLE,
+    BEYOND,
+    EXACT,
+    LARGEST,
+    SHOWN,
+    Allowed,
+    Driven,
+    allowed,
+    completed,
+    fits,
+)
+from tests.blind.periodic_trial import right, table
+from tests.reference.periodic_reference import Law
+
+UNTOLD = {
+    "specimen": ("static_load",),
+    "motor": (
+        "null_bias", "static_load", "specimen_free_play", "specimen_joint", "frame_compliance", "sensor_lag",
+        "acquisition_lag", "sensor_gain", "sensor_nonlinearity",
+    ),
+    "drive": ("static_load", "specimen_free_play", "specimen_joint", "frame_compliance", "sensor_gain"),
+    "loop": ("null_bias", "static_load", "specimen_free_play", "specimen_joint"),
+}  # fmt: skip
+"""What no test can show: offsets, a gain that is free, a specimen where none is, a position that is not recorded."""
+
+
+def damper(**changes: object) -> Test:
+    """A damper moved by a sine of 1 Hz and 20 mm, 50 samples a period, 10 periods, force recorded with 1 % noise."""
+    law = Law(c=500.0, k=900.0, m=0.0)
+    test = Test(1, "specimen", Wave("sine"), 50.0, 10, 1.0, 0.02, "velocity", "at rest", 0.3, 0.01, law)
+    return replace(test, **changes)  # type: ignore[arg-type]
+
+
+def with_effect(test: Test, **values: float) -> Test:
+    """The test with parameters of an effect in its law."""
+    return replace(test, law=test.law._replace(**values))
+
+
+# ------------------------------------------------------------------------------------------------------------ drawing
+
+
+def test_a_seed_draws_the_same_test_and_record_again():
+    one, again, other = (drawn(seed, True) for seed in (7, 7, 8))
+    assert one == again
+    assert one != other
+    assert drawn(7, False) != one
+    first, second = (completed(12, True).measured().runs[0] for _ in range(2))
+    assert np.array_equal(first.measured, second.measured)
+
+
+def test_what_is_drawn_keeps_to_the_limits_and_covers_them():
+    tests = [drawn(seed, True) for seed in range(400)]
+    assert all(SAMPLES[0] <= test.samples <= SAMPLES[1] + 1 for test in tests)
+    assert all(PERIODS[0] - 1 < test.periods <= PERIODS[1] and test.length <= MOST for test in tests)
+    assert all(NOISE[0] <= test.noise <= NOISE[1] for test in tests)
+    whole = np.mean([test.samples == round(test.samples) for test in tests])
+    assert 0.4 < whole < 0.6
+    assert {test.machine for test in tests} == set(MACHINES)
+    assert {(test.machine, test.hidden) for test in tests} == {(m, name) for m, of in MACHINES.items() for name in of}
+    assert {test.wave.kind for test in tests} == {"sine", "triangle", "steps"}
+    assert {test.given for test in tests} == {"displacement", "velocity"}
+
+
+@pytest.mark.parametrize("kind", ["sine", "triangle", "steps"])
+def test_the_rates_of_a_motion_are_its_derivatives(kind):
+    wave = {"sine": Wave("sine"), "triangle": Wave("triangle", 0.2, 0.05), "steps": Wave("steps", 0.05, 0.06)}[kind]
+    test = damper(wave=wave)
+    t = np.linspace(0.0, 1.5, 30_001)
+    x, v, a = test.motion(t)
+    assert x[0] + np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]))]) * t[1] == pytest.approx(x, abs=2e-7)
+    smooth = np.abs(np.diff(a)) < 1e-2 * np.abs(a).max()  # an acceleration that jumps is none in between
+    inside = smooth[1:] & smooth[:-1]
+    assert np.mean(inside) > 0.99
+    assert np.gradient(v, t)[1:-1][inside] == pytest.approx(a[1:-1][inside], abs=1e-3 * np.abs(a).max())
+    assert np.abs(x).max() == pytest.approx(0.02, rel=1e-6)
+
+
+def test_a_motion_turns_where_its_speed_changes_sign():
+    assert np.sort(damper().turning(2.0)) == pytest.approx([0.25, 0.75, 1.25, 1.75], abs=1e-9)
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_every_effect_that_the_catalogue_has_for_a_machine_is_fitted_or_cannot_be_told(machine):
+    model = preset(MODELS[machine])
+    assert {known.name for known in CATALOGUE if model.takes(known)} == {*APPLICABLE[machine], *UNTOLD[machine]}
+
+
+# ------------------------------------------------------------------------------------------------ what a test allows
+
+
+def test_friction_that_yields_over_a_way_is_told_from_dry_friction_only_where_samples_lie_in_it():
+    seen = allowed(with_effect(damper(), presliding_friction_Fd=10.0, presliding_friction_xs=2e-3))
+    assert seen.counts == "hidden"
+    assert seen.names == ("presliding_friction",)
+    unseen = allowed(with_effect(damper(samples=20.0), presliding_friction_Fd=10.0, presliding_friction_xs=2e-6))
+    assert {"coulomb_friction", "presliding_friction"} <= set(unseen.names)
+
+
+def test_on_a_triangle_laws_of_the_speed_are_one():
+    test = damper(wave=Wave("triangle", 0.2495, 0.0005), noise=0.03, begins="moving")
+    assert allowed(with_effect(test, quadratic_damping_c2=3000.0)).counts == "nothing"
+    dry = allowed(with_effect(replace(test, law=Law(k=2000.0)), coulomb_friction_Fc=20.0))
+    assert dry.counts == "nothing"
+
+
+def test_a_stop_that_is_not_reached_and_nothing_are_nothing():
+    assert allowed(damper()).counts == "nothing"
+    assert allowed(with_effect(damper(), end_stop_ks=1e6, end_stop_way=0.021)).counts == "nothing"
+    assert allowed(with_effect(damper(), end_stop_ks=1e5, end_stop_way=0.0195)).names == ("end_stop",)
+
+
+def test_what_is_too_small_is_dropped_and_what_cannot_be_seen_is_nothing():
+    def of(Fc: float) -> Allowed:
+        return allowed(with_effect(damper(), coulomb_friction_Fc=Fc))
+
+    assert [of(size).counts for size in (0.1, 0.8, 25.0)] == ["nothing", "dropped", "hidden"]
+    assert of(0.8).error < BEYOND
+    assert of(0.8).d2[""] > ALIKE
+    assert of(0.8).d2["coulomb_friction"] < EXACT
+
+
+def test_a_class_of_more_than_three_is_dropped():
+    d2 = {"": 900.0, "coulomb_friction": 0.0, "presliding_friction": 1.0, "stribeck_friction": 19.9}
+    assert Allowed(d2, 1000).counts == "hidden"
+    assert len(Allowed(d2, 1000).names) == LARGEST
+    assert Allowed(d2 | {"backlash": 3.0}, 1000).counts == "dropped"
+    assert Allowed(d2 | {"": 0.9 * SHOWN}, 100).counts == "dropped"
+
+
+@pytest.mark.parametrize("seed", [1003, 1004, 1005, 1011])
+def test_the_truth_leaves_nothing_of_itself_and_the_base_the_floors_that_were_wanted(seed):
+    test = completed(seed, True)
+    of = fits(test)
+    assert of.d2(test.hidden) <= EXACT
+    assert of.d2() > SHOWN
+    assert test.sigma == pytest.approx(test.noise * np.std(test.truth))
+
+
+def test_few_periods_stand_for_all():
+    test = completed(1004, True)
+    law = test.law._replace(**{name: 0.0 for name in test.law._fields if name.startswith(test.hidden)})
+    of = Driven(test)
+    some = of.residual(law)
+    all_of_it = of.residual(law, length=test.fitted)
+    assert some @ some == pytest.approx(all_of_it @ all_of_it, rel=0.1)
+    assert len(some) < 0.5 * len(all_of_it)
+
+
+# ------------------------------------------------------------------------------------------------------------- judging
+
+
+def test_a_verdict_is_right_where_the_test_allows_every_name():
+    dry, class_ = "coulomb_friction", ("coulomb_friction", "presliding_friction")
+    assert right([dry], [], dry, class_, "hidden")
+    assert right(["presliding_friction"], [], dry, class_, "hidden")
+    assert not right([dry, "end_stop"], [], dry, class_, "hidden")
+    assert not right([], [], dry, class_, "hidden")
+    assert not right(["end_stop"], [(dry, "end_stop")], dry, class_, "hidden")
+    assert right([], [], "", (), "nothing")
+    assert not right([dry], [], "", (), "nothing")
+
+
+def test_the_table_counts_each_kind_and_what_was_dropped():
+    row = {"machine": "loop", "wave": "sine", "hidden": "backlash", "kind": "hidden", "counts": "hidden"}
+    nothing = row | {"kind": "nothing", "counts": "nothing", "hidden": ""}
+    text = "\n".join(table([row | {"right": True}, row | {"right": False}, row | {"counts": "dropped"},
+                            nothing | {"right": True}]))  # fmt: skip
+    assert "| hidden | all | 1 of 2 | 50.0 (1-99) | 95 |" in text
+    assert "| nothing | all | 1 of 1 | 100.0 (2-100) | 97 |" in text
+    assert "Of 3 tests with something hidden 2 count as hidden, 0 as nothing, 1 (33 %) were dropped" in text
