@@ -44,14 +44,14 @@ MACHINES: dict[str, tuple[str, ...]] = {
     ),
     "drive": (
         "coulomb_friction", "presliding_friction", "stribeck_friction", "quadratic_damping", "cubic_stiffness",
-        "specimen_hysteresis", "end_stop",
+        "end_stop",
     ),
     "loop": (
         "dead_zone", "gain_asymmetry", "backlash", "coulomb_friction", "presliding_friction", "stribeck_friction",
         "quadratic_damping", "cubic_stiffness", "end_stop",
     ),
 }  # fmt: skip
-"""What may be hidden in each machine."""
+"""What may be hidden in each machine; hysteresis and free play are those of a specimen."""
 SPEED_OUT = "motor"  # the machine of which the speed is recorded
 LOOP = "machine:controller=p,load=mass_spring_damper,sensor=displacement"
 MODELS = {"specimen": "specimen", "motor": "motor", "drive": "drive", "loop": LOOP}

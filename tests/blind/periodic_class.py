@@ -85,9 +85,6 @@ CANDIDATES: dict[str, Candidate] = {
     "presliding_friction": Candidate("Fd", "force", (0.2,), (Shape("xs", "way", (3e-3, 0.03, 0.2), 3e-4, 5.0),)),
     "quadratic_damping": Candidate("c2", "force/speed^2", (0.2,)),
     "cubic_stiffness": Candidate("k3", "force/way^3", (0.1, -0.05), both=True),
-    "specimen_hysteresis": Candidate(
-        "fy", "force", (0.2,), (Shape("xy", "way", (0.03, 0.15, 0.6), 3e-3, 5.0), Shape("n", "1", (1.0, 2.5), 1.0, 5.0))
-    ),
     "sensor_lag": Candidate("T", "period", (0.01,), upper=0.5),
     "acquisition_lag": Candidate("T", "period", (0.01,), upper=0.5),
     "sensor_gain": Candidate("g", "1", (0.01,), upper=0.9, both=True),
@@ -102,14 +99,14 @@ CANDIDATES: dict[str, Candidate] = {
 
 _OF_LOAD = (
     "coulomb_friction", "stribeck_friction", "presliding_friction", "quadratic_damping", "cubic_stiffness",
-    "specimen_hysteresis", "position_friction", "end_stop",
+    "position_friction", "end_stop",
 )  # fmt: skip
 _OF_DRIVE = (
     "command_delay", "command_limit", "valve_second_order", "backlash", "dead_zone", "underlap", "gain_asymmetry",
     "flow_saturation",
 )  # fmt: skip
 APPLICABLE: dict[str, tuple[str, ...]] = {
-    "specimen": (*_OF_LOAD, "specimen_free_play"),
+    "specimen": (*_OF_LOAD, "specimen_hysteresis", "specimen_free_play"),
     "motor": (*_OF_DRIVE, *_OF_LOAD),
     "drive": (*_OF_LOAD, "sensor_lag", "acquisition_lag", "sensor_nonlinearity"),
     "loop": (
@@ -484,6 +481,9 @@ def hiding(test: Test, strength: float, scales: Mapping[str, float]) -> Test:
     name, shapes = test.hidden, dict(test.shapes)
     if name == "specimen_free_play":
         return replace(test, free_play=strength * scales["way"])
+    if name == "specimen_hysteresis":
+        own = {"fy": strength * scales["force"], "xy": shapes["xy"] * scales["way"], "n": shapes["n"]}
+        return replace(test, law=test.law._replace(**{f"{name}_{key}": value for key, value in own.items()}))
     how = CANDIDATES[name]
     sign = shapes.pop("sign", 1.0) * (0.2 if name == "cubic_stiffness" and test.shapes["sign"] < 0 else 1.0)
     values = {f"{name}_{how.strength}": sign * strength * scales[how.scale]}

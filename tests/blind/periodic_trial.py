@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections import Counter
 from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -20,12 +19,11 @@ from ident.diagnosis.result import Diagnosis
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.workflows import diagnose, identify
-from tests.blind.campaign import OUT, add, rows
+from tests.blind.campaign import add, rows
 from tests.blind.periodic import MODELS, Test
-from tests.blind.periodic_class import Allowed, allowed
-from tests.blind.table import rate
+from tests.blind.periodic_class import Allowed, allowed, completed
+from tests.blind.table import PERIODIC, periodic
 
-PERIODIC = OUT.with_name("blind-periodic.jsonl")
 _FLOOR = 1.05  # floors that a refit leaves, and is at the floor
 _OTHER = 2.0  # times the true shape, or its inverse: the shape of a refit that did not find it
 _NAMES = {"end_stop": "stiffness", "presliding_friction": "displacement", "stribeck_friction": "speed",
@@ -147,43 +145,6 @@ def show(row: Row) -> None:
     print(f"{mark} {head} → {' '.join(row['named']) or 'nothing'} {row.get('errors', '')} {row['why']}", flush=True)
 
 
-def table(everything: Sequence[Row]) -> Iterable[str]:
-    """What came out: by what counts, by machine, by what was hidden; and the share that was dropped."""
-    counted = [row for row in everything if "right" in row]
-    yield "| counts as | of | right | rate in % (95 % interval) | goal in % |"
-    yield "|---|---|---|---|---|"
-    for counts, goal in (("hidden", 95), ("nothing", 97)):
-        found = [row for row in counted if row["counts"] == counts]
-        yield f"| {counts} | all | {_rate(found)} | {goal} |"
-        for key in ("machine", "wave", "hidden") if counts == "hidden" else ("machine", "wave"):
-            for value in sorted({row[key] for row in found}):
-                yield f"| {counts} | {value} | {_rate([row for row in found if row[key] == value])} | |"
-    hidden = [row for row in everything if row["kind"] == "hidden"]
-    if hidden:
-        out = Counter(row["counts"] for row in hidden)
-        share = 100 * out["dropped"] / len(hidden)
-        yield (
-            f"\nOf {len(hidden)} tests with something hidden {out['hidden']} count as hidden, {out['nothing']} as "
-            f"nothing, {out['dropped']} ({share:.0f} %) were dropped before the program ran."
-        )
-
-
-def missed(everything: Sequence[Row]) -> Iterable[str]:
-    """One line for each verdict that is not right."""
-    for row in everything:
-        if row.get("right") is False:
-            yield (
-                f"* seed {row['seed']} ({row['kind']}): {row['machine']}, {row['wave']}, {row['samples']:g} samples a "
-                f"period, {row['periods']} periods, {100 * row['noise']:.2g} % noise: {row['hidden'] or 'nothing'} "
-                f"hidden, class {', '.join(row['class']) or '–'}; named {', '.join(row['named']) or 'nothing'}; "
-                f"{row['why']}"
-            )
-
-
-def _rate(found: Sequence[Row]) -> str:
-    return rate([{"named": row["right"]} for row in found])
-
-
 def main() -> None:
     """Run what is asked for and is not there yet, and sum up."""
     parser = argparse.ArgumentParser()
@@ -202,7 +163,7 @@ def main() -> None:
             row = trial(seed, asked.kind == "hidden", asked.seconds, asked.dry)
             add(row, asked.out)
             show(row)
-    print("\n".join(table(rows(asked.out))))
+    print("\n".join(periodic(rows(asked.out))))
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ from tests.blind.noises import NOISES
 
 PAGE = OUT.with_suffix(".md")
 LABS = OUT.with_name("blind-labs.jsonl")
+PERIODIC = OUT.with_name("blind-periodic.jsonl")
 Row = dict[str, Any]
 GOALS = {"one full": 97, "one small": 90, "none full": 98, "none small": 98, "two full": 92, "two small": 92,
          "three full": 80, "three small": 80, "outside full": 90, "own full": 100, "label full": 95}  # fmt: skip
@@ -145,6 +146,34 @@ def labs(everything: Sequence[Row]) -> Iterable[str]:
             yield f"\nTaken for another machine: {said}, {row['hidden'] or 'nothing'} hidden: {row['model']}."
 
 
+def periodic(everything: Sequence[Row]) -> Iterable[str]:
+    """Periodic tests: how often what is named is among what the test allows, what was dropped, what was missed."""
+    yield "| counts as | of | right | rate in % (95 % interval) | goal in % |"
+    yield "|---|---|---|---|---|"
+    for counts, goal, keys in (("hidden", 95, ("machine", "wave", "hidden")), ("nothing", 97, ("machine", "wave"))):
+        found = [row for row in everything if "right" in row and row["counts"] == counts]
+        yield f"| {counts} | all | {rate([{'named': row['right']} for row in found])} | {goal} |"
+        for key in keys:
+            for value in sorted({row[key] for row in found}):
+                of = rate([{"named": row["right"]} for row in found if row[key] == value])
+                yield f"| {counts} | {value or 'nothing hidden'} | {of} | |"
+    drawn = [row for row in everything if row["kind"] == "hidden"]
+    if drawn:
+        out = Counter(row["counts"] for row in drawn)
+        yield (
+            f"\nOf {len(drawn)} tests with something hidden {out['hidden']} count as hidden, {out['nothing']} as "
+            f"nothing, {out['dropped']} ({100 * out['dropped'] / len(drawn):.0f} %) were dropped before it ran."
+        )
+    for row in everything:
+        if row.get("right") is False:
+            yield (
+                f"\nMissed: {row['kind']}, seed {row['seed']}, {row['machine']}, {row['wave']}, {row['samples']:g} "
+                f"samples a period, {row['periods']} periods, {100 * row['noise']:.2g} % noise: "
+                f"{row['hidden'] or 'nothing'} hidden, the test allows {', '.join(row['class']) or 'nothing'}; named "
+                f"{', '.join(row['named']) or 'nothing'} ({row['why']})."
+            )
+
+
 def page(everything: Sequence[Row]) -> str:
     """The whole page."""
     tried = [row for row in everything if row.get("reachable", True) and not row.get("void")]
@@ -153,6 +182,7 @@ def page(everything: Sequence[Row]) -> str:
         ("Noise of other kinds", noises, tried), ("One strong effect among weak ones", cluttered, tried),
         ("What was named", confusion, tried),
         ("Unreachable", unreachable, everything), ("Machines that nobody described", labs, rows(LABS)),
+        ("Periodic tests", periodic, rows(PERIODIC)),
     ]  # fmt: skip
     head = (
         "# Blind trials\n\nWritten by `python -m tests.blind.table` from blind-trials.jsonl. Data come from the "
@@ -161,7 +191,14 @@ def page(everything: Sequence[Row]) -> str:
         "listed: not a confident wrong name, unless the error is at the floor; written as an equation: it is named and "
         "the error falls to 1.1 times the floor. A row that is `void`, for the reason that stands there, is not "
         "counted. Machines that nobody described are drawn by `python -m tests.blind.any_trial` from all structures; "
-        "their rows stand in blind-labs.jsonl.\n"
+        "their rows stand in blind-labs.jsonl. Periodic tests, dampers, specimens, drives, motors and position loops "
+        "under sines, triangles and repeated steps, are drawn by `python -m tests.blind.periodic_trial`; their rows "
+        "stand in blind-periodic.jsonl. What such a test allows is decided before the program runs: its own reference "
+        "fits every effect of the catalogue, base and shape free, to the output without noise. The class is every "
+        "effect that leaves d² ≤ 20, the sum of squares over the variance of the noise. A test counts as hidden where "
+        "the base alone leaves d² ≥ 60 and 1.1 floors and the class holds at most three, as nothing where the base "
+        "is in the class; others are dropped. A verdict is right where every name is in the class, or in a group that "
+        "lies in the class and holds the truth.\n"
     )
     return head + "\n".join(f"\n## {title}\n\n" + "\n".join(make(of)) + "\n" for title, make, of in parts)
 
