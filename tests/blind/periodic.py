@@ -1,9 +1,9 @@
 """Periodic tests, drawn at random: dampers and specimens, drives and position loops, and what is hidden in them.
 
-A specimen is moved along a sine, a triangle whose corners a machine rounds, or from hold to hold; the lab records the
-position or the speed, and the force. A drive gets its force, a motor its voltage, a loop its command, as a sine, a
-triangle or steps that repeat. The lab writes one file, of which the first part is to fit and the rest to verify. All
-numbers come from tests/reference/periodic_reference.py; nothing of the program takes part in them.
+A specimen is moved along a sine, a triangle whose corners a machine rounds, or steps at whose ends it creeps; the lab
+records the position or the speed, and the force. A drive gets its force, a motor its voltage, a loop its command, as a
+sine, a triangle or steps that repeat. The lab writes one file, of which the first part is to fit and the rest to
+verify. All numbers come from tests/reference/periodic_reference.py; nothing of the program takes part in them.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ NOISE = (0.002, 0.03)  # standard deviation, of the output's
 FITTED = 0.6  # of the record
 SUBSTEPS = 64  # a sample, of the truth
 SETTLING = 3  # periods that pass before a record that begins in motion
+CREEP = 0.03  # of the speed of a specimen's step: so fast it goes on at its end
 WORTH = (1.3, 8.0)  # error that the base leaves, in floors
 
 MACHINES: dict[str, tuple[str, ...]] = {
@@ -62,13 +63,15 @@ MODELS = {"specimen": "specimen", "motor": "motor", "drive": "drive", "loop": LO
 class Wave:
     """A motion of amplitude one and period one, odd about 0 and about 1/2: x and its first two rates by phase.
 
-    A sine, or a speed that is constant over the phases below `a`, falls in a straight line to zero over `c`, and is
-    zero up to 1/4: a triangle with rounded corners where a + c is 1/4, a motion from hold to hold where it is less.
+    A sine, or a speed that is constant over the phases below `a`, falls in a straight line over `c`, and is a `creep`
+    of it up to 1/4: a triangle with rounded corners where a + c is 1/4 and the creep nothing, else steps at whose ends
+    the machine creeps on. In a standstill nothing would say what dry friction holds.
     """
 
     kind: str
     a: float = 0.0
     c: float = 0.0
+    creep: float = 0.0
 
     def __call__(self, phase: Array) -> tuple[Array, Array, Array]:
         """x, x', x''."""
@@ -78,11 +81,13 @@ class Wave:
         whole = (phase + 0.25) % 1.0 - 0.25  # -1/4 .. 3/4
         falls = whole > 0.25
         u = np.where(falls, 0.5 - whole, whole)  # -1/4 .. 1/4
-        way, side, top = np.abs(u), np.sign(u), 1.0 / (self.a + 0.5 * self.c)
+        way, side, slow = np.abs(u), np.sign(u), 1.0 - self.creep
+        top = 1.0 / (self.a + self.c * (1.0 - 0.5 * slow) + self.creep * (0.25 - self.a - self.c))
         into = np.clip(way - self.a, 0.0, self.c)
-        x = side * top * (np.minimum(way, self.a) + into - 0.5 * into**2 / self.c)
-        v = top * (1.0 - into / self.c) * np.where(falls, -1.0, 1.0)
-        a = np.where((way > self.a) & (way < self.a + self.c), -side * top / self.c, 0.0)
+        beyond = np.maximum(way - self.a - self.c, 0.0)
+        x = side * top * (np.minimum(way, self.a) + into - 0.5 * slow * into**2 / self.c + self.creep * beyond)
+        v = top * (1.0 - slow * into / self.c) * np.where(falls, -1.0, 1.0)
+        a = np.where((way > self.a) & (way < self.a + self.c), -side * top * slow / self.c, 0.0)
         return x, v, a
 
 
@@ -313,7 +318,9 @@ def drawn(seed: int, hidden: bool) -> Test:
     wave = Wave(kind, rng.uniform(-0.5, 0.5))
     if machine == "specimen":
         moving = 0.25 - corner if kind == "triangle" else rng.uniform(0.02, 0.1)
-        wave = Wave(kind, moving, min(corner, 0.22 - moving) if kind == "steps" else corner)
+        wave = Wave(kind, moving, corner)
+        if kind == "steps":
+            wave = Wave(kind, moving, min(corner, 0.22 - moving), CREEP)
     amplitude = {"motor": 10 ** rng.uniform(-0.5, 1), "drive": 10 ** rng.uniform(0, 2.5)}.get(machine, amplitude)
     test = Test(seed, machine, wave, float(samples), periods, float(frequency), float(amplitude),
                 str(rng.choice(["displacement", "velocity"])), begins, float(rng.uniform()), noise,
