@@ -9,7 +9,7 @@ verify. All numbers come from tests/reference/periodic_reference.py; nothing of 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -298,71 +298,3 @@ def specimen_term(name: str, shape: Mapping[str, float], path: Moved) -> Array:
     if name == "presliding_friction":
         return dahl_along(path.every, shape["xs"])[path.of]
     return bouc_wen_along(path.every, shape["xy"], shape["n"])[path.of]
-
-
-# ------------------------------------------------------------------------------------------------------------ drawing
-
-
-def drawn(seed: int, hidden: bool) -> Test:
-    """A test by its seed; the strength of what is hidden is set afterwards, by what it is worth."""
-    rng = np.random.default_rng([51, seed, hidden])
-    machine = str(rng.choice(list(MACHINES)))
-    kind = str(rng.choice(["sine", "triangle", "steps"]))
-    samples = float(np.exp(rng.uniform(*np.log(SAMPLES))))
-    samples = round(samples) if rng.integers(2) else np.floor(samples) + rng.uniform(0.1, 0.9)
-    periods = int(min(np.exp(rng.uniform(*np.log(PERIODS))), MOST / samples))
-    noise = float(np.exp(rng.uniform(*np.log(NOISE))))
-    begins = "at rest" if machine == "motor" or rng.integers(2) else "moving"
-    frequency, amplitude = 10 ** rng.uniform(-1, 1), 10 ** rng.uniform(-2.7, -1)
-    corner = max(2.5 / samples, rng.uniform(0.02, 0.08))
-    wave = Wave(kind, rng.uniform(-0.5, 0.5))
-    if machine == "specimen":
-        moving = 0.25 - corner if kind == "triangle" else rng.uniform(0.02, 0.1)
-        wave = Wave(kind, moving, corner)
-        if kind == "steps":
-            wave = Wave(kind, moving, min(corner, 0.22 - moving), CREEP)
-    amplitude = {"motor": 10 ** rng.uniform(-0.5, 1), "drive": 10 ** rng.uniform(0, 2.5)}.get(machine, amplitude)
-    test = Test(seed, machine, wave, float(samples), periods, float(frequency), float(amplitude),
-                str(rng.choice(["displacement", "velocity"])), begins, float(rng.uniform()), noise,
-                _law(rng, machine, frequency, amplitude))  # fmt: skip
-    if not hidden:
-        return test
-    name = str(rng.choice(MACHINES[machine]))
-    return replace(test, hidden=name, shapes=_shapes(rng, name))
-
-
-def _law(rng: np.random.Generator, machine: str, frequency: float, amplitude: float) -> Law:
-    """A machine that answers within a period or two."""
-    w = 2 * np.pi * frequency
-    if machine == "specimen":
-        size = 10 ** rng.uniform(1, 4)
-        c, k, m = size / (amplitude * w) * np.array([1.0, w, 0.3 / w]) * rng.uniform(0.05, 1.0, 3)
-        spring, mass = rng.integers(3) > 0, rng.integers(2) > 0
-        return Law(c=c, k=k * spring, m=m * mass)
-    m = 10 ** rng.uniform(-2, 2)
-    if machine == "motor":
-        c = m * w / (2 * np.pi * rng.uniform(0.02, 0.4))
-        return Law(m=m, c=c, Kt=c * 10 ** rng.uniform(0, 2))
-    damping = rng.uniform(0.3, 1.2)
-    if machine == "drive":
-        wn = w * np.exp(rng.uniform(np.log(0.7), np.log(8.0)))
-        return Law(m=m, c=2 * damping * wn * m, k=m * wn**2)
-    wn, Kp = w * np.exp(rng.uniform(np.log(2.0), np.log(12.0))), 10 ** rng.uniform(-1, 2)
-    return Law(m=m, c=2 * damping * wn * m, Kt=m * wn**2 / Kp, Kp=Kp)
-
-
-def _shapes(rng: np.random.Generator, name: str) -> dict[str, float]:
-    """Shapes, of the sizes of the base's motion: ways of the largest place, speeds of the largest speed."""
-
-    def between(low: float, high: float) -> float:
-        return float(np.exp(rng.uniform(np.log(low), np.log(high))))
-
-    if name == "presliding_friction":
-        return {"xs": between(0.003, 0.2)}
-    if name == "stribeck_friction":
-        return {"vs": between(0.02, 0.4)}
-    if name == "specimen_hysteresis":
-        return {"xy": between(0.03, 0.5), "n": float(rng.choice([1.0, between(1.0, 4.0)]))}
-    if name == "end_stop":
-        return {"way": float(rng.uniform(0.6, 0.92))}
-    return {"sign": float(rng.choice([-1.0, 1.0]))} if name in ("gain_asymmetry", "cubic_stiffness") else {}

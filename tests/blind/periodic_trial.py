@@ -21,7 +21,8 @@ from ident.fit.settings import Settings
 from ident.workflows import diagnose, identify
 from tests.blind.campaign import add, rows
 from tests.blind.periodic import MODELS, Test
-from tests.blind.periodic_class import Allowed, allowed, completed
+from tests.blind.periodic_class import Allowed, allowed
+from tests.blind.periodic_drawn import completed
 from tests.blind.table import PERIODIC, periodic
 
 _FLOOR = 1.05  # floors that a refit leaves, and is at the floor
