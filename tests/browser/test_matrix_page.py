@@ -88,12 +88,15 @@ def test_a_fit_takes_what_is_chosen(page, site, matrix):
     page.get_by_role("button", name="Start the fit").click()
     expect(page.locator("#start").get_by_role("alert")).to_contain_text("Give both, or neither")
     page.get_by_role("textbox", name="tau to").fill("0.006")
+    page.get_by_text("Preprocessing of the data").click()
+    page.locator("#start").get_by_label("initial state").uncheck()
     page.get_by_text("Which runs fit and which verify").click()
     page.locator("#start").get_by_label(stored["runs"][0]["id"]).uncheck()
     page.get_by_role("button", name="Start the fit").click()
     expect(page.locator("h1")).to_have_text("Fit of SW/1 <b>")
     job = site.client.get(f"/jobs/{page.url.rpartition('/')[2]}").json()
     assert job["settings"]["bounds"] == {"tau": [0.001, 0.006]}
+    assert job["settings"]["preprocessing"] == {"initial_state": False}
     revised = site.client.get(f"/matrices/{job['matrix']}").json()
     assert revised["parent"] == matrix
     assert revised["runs"][0]["use"] == "verify"
