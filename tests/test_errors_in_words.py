@@ -25,7 +25,7 @@ from ident.fit.run_errors import rmse_of, run_error
 from ident.matrix import Matrix
 from ident.residuals.survey import survey
 from ident.run import USES, over_runs
-from ident.words.error import UNSTABLE
+from ident.unstable import UNSTABLE
 from ident.workflows import study
 from schemas.fit import ComparisonView
 from schemas.result import FitResultView

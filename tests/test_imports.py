@@ -108,7 +108,7 @@ def test_what_a_benchmark_or_a_picture_imports_is_there(file):
 
 
 ROOMS = (
-    "errors", "plain", "cached", "progress", "time_budget", "parallel", "words", "beginning", "run", "matrix",
+    "errors", "plain", "cached", "progress", "time_budget", "parallel", "unstable", "words", "beginning", "run", "matrix",
     "parameter", "linear", "statistics", "equations", "units", "stages", "effects", "chain", "presets", "foreign",
     "readers", "custom", "preprocessing", "noise", "checks", "drafts", "simulation", "fit", "comparison", "residuals",
     "design", "diagnosis", "bench", "hybrid", "export", "figures", "synthesis", "workflows",
@@ -197,7 +197,7 @@ def test_there_is_no_loose_file_but_the_basic_words_and_the_workflows():
     """What belongs together stands in a folder."""
     loose = {file.stem for file in files("ident/*.py")} - {"__init__"}
     assert loose == {
-        "errors", "plain", "cached", "progress", "time_budget", "parallel", "beginning", "run", "matrix",
+        "errors", "plain", "cached", "progress", "time_budget", "parallel", "unstable", "beginning", "run", "matrix",
         "parameter", "linear", "workflows",
     }  # fmt: skip
 

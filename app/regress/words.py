@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from app.regress.recheck import Change, Recheck
-from ident.words.error import UNSTABLE
+from ident.unstable import UNSTABLE
 from ident.words.number import trimmed
 from schemas.regression import ChangeView, Outcome, RecheckView
 

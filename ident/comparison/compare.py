@@ -25,8 +25,9 @@ from ident.parallel import each
 from ident.preprocessing import prepare
 from ident.presets import Preset
 from ident.run import USES, Run, over_runs
+from ident.unstable import UNSTABLE, bounded
 from ident.words.engineering import quantity
-from ident.words.error import UNSTABLE, ErrorOf, bounded, first_line
+from ident.words.error import ErrorOf, first_line
 from ident.words.percent import percent
 from ident.words.shown import Listing, Shown
 
@@ -63,7 +64,7 @@ class RunComparison(Shown):
 
     @cached_property
     def error(self) -> float:
-        """Eq. (17): std(x_m − x) / std(x_m), at most :data:`ident.words.error.UNSTABLE`."""
+        """Eq. (17): std(x_m − x) / std(x_m), at most :data:`ident.unstable.UNSTABLE`."""
         return bounded(float(np.std(self._residual) / np.std(self.run.measured)))
 
     @cached_property

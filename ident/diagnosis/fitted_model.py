@@ -24,7 +24,7 @@ from ident.noise.autoregression import prediction_errors
 from ident.noise.effective_sample_size import independent_samples
 from ident.run import Run, over_runs
 from ident.time_budget import in_time
-from ident.words.error import UNSTABLE
+from ident.unstable import UNSTABLE
 from ident.words.plus_minus import NOT_DETERMINED
 
 Array = NDArray[np.float64]

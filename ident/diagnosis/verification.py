@@ -17,7 +17,8 @@ from ident.diagnosis.criteria import CRITERIA, TINY
 from ident.noise.effective_sample_size import independent_samples
 from ident.plain import WHERE_KNOWN
 from ident.run import Run, over_runs
-from ident.words.error import UNSTABLE, error_said, unstable_on
+from ident.unstable import UNSTABLE
+from ident.words.error import error_said, unstable_on
 from ident.words.titles import title
 
 Array = NDArray[np.float64]

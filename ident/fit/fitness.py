@@ -53,7 +53,7 @@ class Fitness(Protocol):
         ...
 
     def errors(self, points: Array) -> Array:
-        """The error at points, (v, p) → (v,), as fast as may be; at most :data:`ident.words.error.UNSTABLE`."""
+        """The error at points, (v, p) → (v,), as fast as may be; at most :data:`ident.unstable.UNSTABLE`."""
         ...
 
     def exact(self, point: Array, sensitivities: bool = True) -> Local:

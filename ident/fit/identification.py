@@ -37,7 +37,7 @@ from ident.preprocessing import off_steps, prepare
 from ident.presets import PRESETS, Preset
 from ident.progress import Progress, Report, silent
 from ident.run import Run
-from ident.words.error import UNSTABLE
+from ident.unstable import UNSTABLE
 from ident.words.nearest import did_you_mean
 
 Array = NDArray[np.float64]

@@ -28,7 +28,7 @@ from ident.matrix import Matrix
 from ident.parallel import cores, each
 from ident.presets import Preset
 from ident.run import Run, over_runs
-from ident.words.error import UNSTABLE
+from ident.unstable import UNSTABLE
 
 Array = NDArray[np.float64]
 Outcome = TypeVar("Outcome")

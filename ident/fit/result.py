@@ -14,8 +14,9 @@ from ident.plain import UNWRITTEN, WHERE_KNOWN, Misfit, read, written
 from ident.presets.description import description
 from ident.presets.record_units import SAMPLE
 from ident.run import USES
+from ident.unstable import UNSTABLE
 from ident.words.engineering import quantity
-from ident.words.error import UNSTABLE, ErrorOf, first_line
+from ident.words.error import ErrorOf, first_line
 from ident.words.shown import Listing, Shown
 
 

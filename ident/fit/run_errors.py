@@ -8,7 +8,7 @@ from typing import Protocol, TypedDict
 import numpy as np
 
 from ident.fit.result import RunError
-from ident.words.error import UNSTABLE, bounded
+from ident.unstable import UNSTABLE, bounded
 
 
 class Rmse(TypedDict):
@@ -36,7 +36,7 @@ def run_error(run: Measured, error: float, offset: float, deviation: float, unit
     """Eq. (17), the offset, the error with the mean counted and the RMSE of a run whose output has this deviation.
 
     RMS(x − x_m)² = std(x − x_m)² + mean(x − x_m)², so that RMS(x − x_m)/std(x_m) = √(error² + offset²). Of a run on
-    which the model is unstable each is bounded by :data:`ident.words.error.UNSTABLE`, and there is no RMSE.
+    which the model is unstable each is bounded by :data:`ident.unstable.UNSTABLE`, and there is no RMSE.
     """
     error = bounded(error)
     if error < UNSTABLE:

@@ -17,7 +17,7 @@ from ident.fit.settings import Settings
 from ident.fit.space import Space
 from ident.presets import Preset
 from ident.progress import Progress, Report
-from ident.words.error import UNSTABLE
+from ident.unstable import UNSTABLE
 from ident.words.nearest import did_you_mean
 
 Array = NDArray[np.float64]

@@ -17,7 +17,7 @@ from ident.fit.simulated_runs import SimulatedRuns
 from ident.fit.space import Space
 from ident.parallel import each
 from ident.run import Run, over_runs
-from ident.words.error import UNSTABLE
+from ident.unstable import UNSTABLE
 
 Array = NDArray[np.float64]
 

@@ -30,7 +30,8 @@ from ident.presets.preset import Combined
 from ident.presets.record_units import SAMPLE
 from ident.run import Run, over_runs
 from ident.simulation.steps import FASTEST, MOST
-from ident.words.error import UNSTABLE, error_said
+from ident.unstable import UNSTABLE
+from ident.words.error import error_said
 from ident.words.plus_minus import determined
 
 _DRAWN = 100  # parameter vectors within their standard errors

@@ -6,18 +6,12 @@ any number. Each rule stands here once, for terminal, notebook, page, figure and
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+from ident.unstable import UNSTABLE
 from ident.words.percent import percent, percent_in_print
 
-UNSTABLE = 1e3
-"""The error of eq. (17), 1, from which on a model counts as unstable on a run; an error is at most so large.
-
-A model that stays bounded leaves what it and the record hold together, a few times the record. A thousand times comes
-only of a growing mode, and how many powers of ten it has grown by says how long the record is, not how wrong the model.
-"""
 MEAN_COUNTS = 1.5
 """The ratio of the error with the mean counted to that without, 1, beyond which both stand wherever the error does.
 
@@ -102,8 +96,3 @@ def error_said(error: float | None, unstable: Sequence[str] = ()) -> str:
 def error_in_print(error: float | None, unstable: Sequence[str] = ()) -> str:
     """The same as pages and reports set it."""
     return ErrorOf(error, unstable=unstable).in_print()
-
-
-def bounded(error: float) -> float:
-    """An error of one run as it is kept: a number at most :data:`UNSTABLE`, so that JSON can hold it."""
-    return min(error, UNSTABLE) if math.isfinite(error) else UNSTABLE

@@ -7,7 +7,7 @@ import pytest
 
 from ident.fit.identification import Identification
 from ident.fit.settings import Settings
-from ident.words.error import UNSTABLE
+from ident.unstable import UNSTABLE
 from ident.workflows import identify
 from tests.acceptance.matrices import as_matrix, records_of
 from tests.reference import qian_reference as reference

@@ -11,7 +11,8 @@ from fastapi.testclient import TestClient
 
 from app.approvals.objections import FAR, Errors, objections
 from app.tables import ActuatorRow, DiagnosisRow, FitRow, MatrixRow, SetRow
-from ident.words.error import UNSTABLE, ErrorOf
+from ident.unstable import UNSTABLE
+from ident.words.error import ErrorOf
 
 API = "/api/v1"
 FLOOR = {"fit": 0.005, "verify": 0.006}

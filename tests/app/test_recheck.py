@@ -12,7 +12,8 @@ from app.regress.junit import junit
 from app.regress.recheck import Change, Recheck, errors, recheck
 from app.regress.words import as_view, told
 from ident.progress import silent
-from ident.words.error import UNSTABLE, ErrorOf
+from ident.unstable import UNSTABLE
+from ident.words.error import ErrorOf
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,7 @@ from ident.fit.simulated_fitness import SimulatedFitness
 from ident.matrix import Actuator, Matrix
 from ident.presets import PRESETS, preset
 from ident.run import Run, Specimen
-from ident.words.error import UNSTABLE
+from ident.unstable import UNSTABLE
 from ident.workflows import identification, identify
 from tests.bench.sets import as_matrix
 from tests.presets.test_composed import RATE, UNITS, drawn, smooth, with_own_outputs

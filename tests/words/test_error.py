@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ident.words.error import MEAN_COUNTS, UNSTABLE, ErrorOf, bounded, error_in_print, error_said, errors_line
+from ident.unstable import UNSTABLE, bounded
+from ident.words.error import MEAN_COUNTS, ErrorOf, error_in_print, error_said, errors_line
 from ident.words.percent import change, percent, percent_in_print
 
 LARGE = re.compile(r"(?<![\d.])\d{4,}(\.\d*)?\s*%|e\+?\d+\s*%")

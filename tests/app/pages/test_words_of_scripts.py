@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from app.pages.rendering import STATIC
-from ident.words.error import UNSTABLE
+from ident.unstable import UNSTABLE
 from ident.words.percent import TIMES
 
 
