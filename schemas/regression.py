@@ -19,7 +19,10 @@ class RegressionRequest(BaseModel):
 
 
 class ChangeView(BaseModel):
-    """A quantity before and now; `after` is null where there is none any more, `relative` where it moved from 0."""
+    """A quantity before and now; `after` is null where there is none any more, `relative` where it moved from 0.
+
+    Its `kind` says whether it is an error, eq. (17), or the value of a parameter.
+    """
 
     quantity: str
     before: float
@@ -27,6 +30,7 @@ class ChangeView(BaseModel):
     std_error: float | None
     relative: float | None
     moved: bool
+    kind: Literal["error", "parameter"] = "parameter"
 
 
 class RecheckView(BaseModel):

@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import Literal
 
 from ident.errors import Unusable
 from ident.fit.result import FitResult
@@ -18,6 +19,9 @@ from ident.workflows import compare, identify
 SHARE = 0.1  # of its standard error: what a parameter may differ by, however exactly the same minimum is found
 
 
+Kind = Literal["error", "parameter"]
+
+
 @dataclass(frozen=True)
 class Change:
     """A quantity that was approved as `before`, give or take its standard error if it has one, and is now `after`."""
@@ -26,6 +30,7 @@ class Change:
     before: float
     after: float
     std_error: float | None = None
+    kind: Kind = "parameter"
 
     @property
     def relative(self) -> float:
@@ -126,6 +131,7 @@ def errors(name: str, stored: FitResult, after: Errors, with_mean: Errors) -> It
         if before is None:
             continue
         now, mean_now, was = after.get(use), with_mean.get(use), stored.error_of(use)
-        yield Change(f"{name} {use}", before, math.nan if now is None else now)
+        yield Change(f"{name} {use}", before, math.nan if now is None else now, kind="error")
         if was.with_mean is not None and (was.mean_counts or ErrorOf(now, mean_now).mean_counts):
-            yield Change(f"{name} with mean {use}", was.with_mean, math.nan if mean_now is None else mean_now)
+            after_mean = math.nan if mean_now is None else mean_now
+            yield Change(f"{name} with mean {use}", was.with_mean, after_mean, kind="error")

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from app.regress.recheck import Change, Recheck
-from ident.unstable import UNSTABLE
+from ident.words.error import ErrorOf
 from ident.words.number import trimmed
 from schemas.regression import ChangeView, Outcome, RecheckView
 
@@ -25,7 +25,7 @@ def _change(one: Change, tolerance: float) -> ChangeView:
     return ChangeView(
         quantity=one.quantity, before=one.before, after=None if math.isnan(one.after) else one.after,
         std_error=one.std_error, relative=one.relative if math.isfinite(one.relative) else None,
-        moved=one.moved(tolerance),
+        moved=one.moved(tolerance), kind=one.kind,
     )  # fmt: skip
 
 
@@ -44,7 +44,7 @@ def told(one: RecheckView) -> str:
 
 def _shown(of: ChangeView, value: float | None) -> str:
     """A value as a plain number; an error from which on the model is unstable on a run is no number."""
-    if value is not None and value >= UNSTABLE and of.quantity.startswith(("error ", "refit error ")):
+    if of.kind == "error" and ErrorOf(value).is_unstable:
         return "unstable"
     return "none" if value is None else f"{value:.5g}"
 

@@ -37,9 +37,9 @@ def written(change: Change) -> dict[str, object]:
 
 
 def read(entry: dict[str, object]) -> Change:
-    """The inverse of `written`."""
-    after = entry["after"]
-    return Change(**{**entry, "after": math.nan if after is None else after})  # type: ignore[arg-type]
+    """The inverse of `written`, of what any version kept: parameters alone have a standard error."""
+    after, kind = entry["after"], "error" if entry.get("std_error") is None else "parameter"
+    return Change(**{"kind": kind, **entry, "after": math.nan if after is None else after})  # type: ignore[arg-type]
 
 
 def _keep(session: Session, job: JobRow, _serial: str, made: State) -> None:

@@ -11,6 +11,7 @@ import pytest
 from app.regress.junit import junit
 from app.regress.recheck import Change, Recheck, errors, recheck
 from app.regress.words import as_view, told
+from app.regress.work import read, written
 from ident.progress import silent
 from ident.unstable import UNSTABLE
 from ident.words.error import ErrorOf
@@ -64,5 +65,17 @@ def test_where_the_mean_counts_its_error_is_rechecked_too_and_an_unstable_model_
     assert changes["error with mean fit"].relative == 1
     alike = SimpleNamespace(error={"fit": 0.02}, error_of=lambda _use: ErrorOf(0.02, 0.021))
     assert [one.quantity for one in errors("error", alike, {"fit": 0.02}, {"fit": 0.021})] == ["error fit"]
-    lost = Recheck("SW-1", "f", (Change("error fit", 0.02, UNSTABLE),), 1e-3, 1.0)
-    assert told(as_view(lost)) == "error fit 0.02 → unstable"
+    (moved,) = errors("error", alike, {"fit": UNSTABLE}, {"fit": UNSTABLE})
+    assert told(as_view(Recheck("SW-1", "f", (moved,), 1e-3, 1.0))) == "error fit 0.02 → unstable"
+
+
+def test_a_parameter_is_a_number_however_it_is_called_and_however_large():
+    """What is an error is said by what made it, not by its name; earlier versions kept only the name."""
+    large = Recheck("SW-1", "f", (Change("error of the sensor", 2e3, 4e3, 1.0),), 1e-3, 1.0)
+    assert told(as_view(large)) == "error of the sensor 2000 → 4000"
+    kept = written(Change("error fit", 0.02, UNSTABLE, kind="error"))
+    for entry in (kept, {name: value for name, value in kept.items() if name != "kind"}):
+        earlier = Recheck("SW-1", "f", (read(entry),), 1e-3, 1.0)
+        assert told(as_view(earlier)) == "error fit 0.02 → unstable"
+    entry = {"quantity": "error of the sensor", "before": 2e3, "after": 4e3, "std_error": 1.0}
+    assert read(entry).kind == "parameter"
