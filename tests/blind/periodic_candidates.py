@@ -33,7 +33,7 @@ class Candidate(NamedTuple):
     both: bool = False
 
 
-_FRICTION = (0.1, 0.5)
+_FRICTION = (0.02, 0.1, 0.5)
 CANDIDATES: dict[str, Candidate] = {
     "command_delay": Candidate("T", "period", (0.01, 0.1), upper=0.5),
     "command_limit": Candidate("a", "1/drive", (1.2, 2.0), upper=20.0),
@@ -43,16 +43,18 @@ CANDIDATES: dict[str, Candidate] = {
     "valve_second_order": Candidate(
         "Tn", "period", (0.01, 0.05), (Shape("zeta", "1", (0.7,), 0.1, 3.0),), upper=0.5
     ),
-    "backlash": Candidate("b", "drive", (0.03, 0.2), upper=0.9),
-    "dead_zone": Candidate("h", "drive", (0.05, 0.3), (Shape("a", "1", (0.0,), -1.0, 1.0, False),), upper=0.9),
-    "underlap": Candidate("h", "drive", (0.05, 0.3), upper=1.0),
+    "backlash": Candidate("b", "drive", (0.01, 0.05, 0.2), upper=0.9),
+    "dead_zone": Candidate("h", "drive", (0.02, 0.08, 0.3), (Shape("a", "1", (0.0,), -1.0, 1.0, False),), upper=0.9),
+    "underlap": Candidate("h", "drive", (0.02, 0.08, 0.3), upper=1.0),
     "gain_asymmetry": Candidate("a", "1", (0.05, -0.05), upper=0.95, both=True),
     "flow_saturation": Candidate("a", "1/drive", (0.3, 1.5), upper=20.0),
     "coulomb_friction": Candidate("Fc", "force", _FRICTION),
-    "stribeck_friction": Candidate("dF", "force", (0.3,), (Shape("vs", "speed", (0.03, 0.15, 0.6), 3e-3, FASTEST),)),
-    "presliding_friction": Candidate("Fd", "force", (0.2,), (Shape("xs", "way", (3e-3, 0.03, 0.2), 3e-4, 5.0),)),
-    "quadratic_damping": Candidate("c2", "force/speed^2", (0.2,)),
-    "cubic_stiffness": Candidate("k3", "force/way^3", (0.1, -0.05), both=True),
+    "stribeck_friction": Candidate(
+        "dF", "force", (0.05, 0.3), (Shape("vs", "speed", (0.03, 0.15, 0.6), 3e-3, FASTEST),)
+    ),
+    "presliding_friction": Candidate("Fd", "force", (0.04, 0.2), (Shape("xs", "way", (3e-3, 0.03, 0.2), 3e-4, 5.0),)),
+    "quadratic_damping": Candidate("c2", "force/speed^2", (0.04, 0.2)),
+    "cubic_stiffness": Candidate("k3", "force/way^3", (0.1, 0.02, -0.05), both=True),
     "sensor_lag": Candidate("T", "period", (0.01,), upper=0.5),
     "acquisition_lag": Candidate("T", "period", (0.01,), upper=0.5),
     "sensor_gain": Candidate("g", "1", (0.01,), upper=0.9, both=True),

@@ -7,7 +7,7 @@ What the mean of the output alone would tell is left out, for the offset of a tr
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,10 +54,10 @@ class Allowed:
         return "hidden" if shown else "dropped"
 
 
-def allowed(test: Test) -> Allowed:
-    """The class of a test; where the base alone will do nothing more is fitted."""
+def allowed(test: Test, among: Sequence[str] = ()) -> Allowed:
+    """The class of a test, or its part `among` some effects; where the base alone will do nothing more is fitted."""
     of = fits(test)
     d2 = {"": of.d2("", ALIKE)}
     if d2[""] > ALIKE:
-        d2 |= {name: of.d2(name, ALIKE) for name in APPLICABLE[test.machine]}
+        d2 |= {name: of.d2(name, ALIKE) for name in among or APPLICABLE[test.machine]}
     return Allowed(d2, test.fitted)

@@ -19,7 +19,7 @@ from tests.reference.periodic_reference import Law, driven
 Array = NDArray[np.float64]
 EXACT = 1.0  # d2 that the truth may leave of itself, simulated with the steps of the fits
 _CYCLE = 100  # samples, at least, of the periods that stand for all
-_EVALUATIONS = 25  # steps of a fit
+_EVALUATIONS = 60  # steps of a fit
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,10 @@ UNTOLD = {
 """What no test can show: offsets, a gain that is free, a specimen where none is, a position that is not recorded."""
 
 
+DRY = ("coulomb_friction", "stribeck_friction", "presliding_friction")
+STOPS = ("coulomb_friction", "cubic_stiffness", "end_stop")
+
+
 def damper(**changes: object) -> Test:
     """A damper moved by a sine of 1 Hz and 20 mm, 50 samples a period, 10 periods, force recorded with 1 % noise."""
     law = Law(c=500.0, k=900.0, m=0.0)
@@ -76,12 +80,13 @@ def test_the_rates_of_a_motion_are_its_derivatives(kind):
     test = damper(wave=wave)
     t = np.linspace(0.0, 1.5, 30_001)
     x, v, a = test.motion(t)
-    assert x[0] + np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]))]) * t[1] == pytest.approx(x, abs=2e-6)
+    integrated = x[0] + np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]))]) * t[1]
+    assert np.abs(integrated - x).max() < 2e-6
     smooth = np.abs(np.diff(a)) < 1e-2 * np.abs(a).max()  # neither where it jumps, nor where the speed turns at once
     smooth &= np.abs(np.diff(v)) < 1e-2 * np.abs(v).max()
     inside = smooth[1:] & smooth[:-1]
     assert np.mean(inside) > 0.99
-    assert np.gradient(v, t)[1:-1][inside] == pytest.approx(a[1:-1][inside], abs=1e-3 * np.abs(a).max())
+    assert np.abs(np.gradient(v, t) - a)[1:-1][inside].max() < 1e-3 * np.abs(a).max()
     assert np.abs(x).max() == pytest.approx(0.02, rel=1e-6)
 
 
@@ -99,11 +104,13 @@ def test_every_effect_that_the_catalogue_has_for_a_machine_is_fitted_or_cannot_b
 
 
 def test_friction_that_yields_over_a_way_is_told_from_dry_friction_only_where_samples_lie_in_it():
-    seen = allowed(with_effect(damper(), presliding_friction_Fd=10.0, presliding_friction_xs=2e-3))
-    assert seen.counts == "hidden"
-    assert seen.names == ("presliding_friction",)
-    unseen = allowed(with_effect(damper(samples=20.0), presliding_friction_Fd=10.0, presliding_friction_xs=2e-6))
-    assert {"coulomb_friction", "presliding_friction"} <= set(unseen.names)
+    yields, at_once = (
+        with_effect(damper(samples=n), presliding_friction_Fd=10.0, presliding_friction_xs=way)
+        for n, way in ((50.0, 2e-3), (20.0, 2e-6))
+    )
+    assert allowed(yields, DRY).names == ("presliding_friction",)
+    assert allowed(yields, DRY).counts == "hidden"
+    assert {"coulomb_friction", "presliding_friction"} <= set(allowed(at_once, DRY).names)
 
 
 def test_on_a_triangle_laws_of_the_speed_are_one():
@@ -116,18 +123,25 @@ def test_on_a_triangle_laws_of_the_speed_are_one():
 def test_a_stop_that_is_not_reached_and_nothing_are_nothing():
     assert allowed(damper()).counts == "nothing"
     assert allowed(with_effect(damper(), end_stop_ks=1e6, end_stop_way=0.021)).counts == "nothing"
-    assert allowed(with_effect(damper(), end_stop_ks=1e5, end_stop_way=0.0195)).names == ("end_stop",)
+    assert allowed(with_effect(damper(), end_stop_ks=1e5, end_stop_way=0.0195), STOPS).names == ("end_stop",)
 
 
 def test_what_is_too_small_is_dropped_and_what_cannot_be_seen_is_nothing():
-    def of(Fc: float) -> Allowed:
-        return allowed(with_effect(damper(), coulomb_friction_Fc=Fc))
-
-    assert [of(size).counts for size in (0.1, 0.4, 25.0)] == ["nothing", "dropped", "hidden"]
-    small = of(0.4)
+    unseen, small, clear = (
+        allowed(with_effect(damper(), coulomb_friction_Fc=size), ("coulomb_friction",)) for size in (0.1, 0.4, 25.0)
+    )
+    assert [one.counts for one in (unseen, small, clear)] == ["nothing", "dropped", "hidden"]
     assert small.error < BEYOND
     assert small.d2[""] > ALIKE
     assert small.d2["coulomb_friction"] < EXACT
+
+
+def test_the_whole_catalogue_leaves_a_class_of_three_for_strong_dry_friction(full):
+    if not full:
+        pytest.skip("a second: run with --full")
+    assert allowed(with_effect(damper(), coulomb_friction_Fc=25.0)).names == (
+        "coulomb_friction", "presliding_friction", "specimen_hysteresis",
+    )  # fmt: skip
 
 
 def test_a_class_of_more_than_three_is_dropped():
@@ -140,7 +154,7 @@ def test_a_class_of_more_than_three_is_dropped():
 
 @pytest.mark.parametrize("seed", [1003, 1004, 1005, 1011])
 def test_the_truth_leaves_nothing_of_itself_and_the_base_the_floors_that_were_wanted(seed):
-    test = completed(seed, True)
+    test = replace(completed(seed, True), periods=6)
     of = fits(test)
     assert of.d2(test.hidden, ALIKE) <= EXACT
     assert of.d2("", ALIKE) > SHOWN
@@ -148,13 +162,13 @@ def test_the_truth_leaves_nothing_of_itself_and_the_base_the_floors_that_were_wa
 
 
 def test_few_periods_stand_for_all():
-    test = completed(1004, True)
+    test = replace(completed(1004, True), periods=15)
     law = test.law._replace(**{name: 0.0 for name in test.law._fields if name.startswith(test.hidden)})
     of = Driven(test)
     some = of.residual(law)
     all_of_it = of.residual(law, length=test.fitted)
     assert some @ some == pytest.approx(all_of_it @ all_of_it, rel=0.1)
-    assert len(some) < 0.5 * len(all_of_it)
+    assert len(some) < 0.7 * len(all_of_it)
 
 
 # ------------------------------------------------------------------------------------------------------------- judging
