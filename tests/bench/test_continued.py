@@ -19,10 +19,10 @@ SAME = 1e-6
 
 
 @pytest.fixture(scope="module")
-def matrix() -> Matrix:
-    """A set of an actuator with a spring that the model does not have."""
+def matrix(full: bool) -> Matrix:
+    """A set of an actuator with a spring that the model does not have; in the short form without the slow sines."""
     truth = reference.scattered(66)._replace(load=0.005)
-    return as_matrix(truth, reference.full_set(truth, 66))
+    return as_matrix(truth, reference.full_set(truth, 66, short=not full))
 
 
 @pytest.fixture(scope="module")
