@@ -57,7 +57,8 @@ def written(value: Any) -> Any:
 
 def _left_out(field: Field[Any], entry: Any) -> bool:
     """Whether a field that is written where it is known holds nothing."""
-    return bool(field.metadata.get("where_known")) and (entry is None or entry is False or entry in ("", (), {}))
+    empty = isinstance(entry, str | tuple | Mapping) and not entry
+    return bool(field.metadata.get("where_known")) and (entry is None or entry is False or empty)
 
 
 @cache
