@@ -24,6 +24,7 @@ class Window:
         self._launch, self._args, self._entrance = launch, [*args, self._mark], entrance
         self._browser: Browser | None = None
         self._made: BrowserContext | None = None
+        self._kept: Page | None = None  # stays open, on an answer that does nothing: making a page takes most of a test
 
     @property
     def context(self) -> BrowserContext:
@@ -32,18 +33,21 @@ class Window:
             self._browser, self._made = self._launch(args=self._args), None
         if self._made is None:
             self._made = self._browser.new_context()
-            self._made.new_page().goto(self._entrance)
+            self._kept = self._made.new_page()
+            self._kept.goto(self._entrance)
+            self._kept.goto(f"{self._entrance.partition('?')[0]}api/v1/ready")
         return self._made
 
     def close(self, page: Page) -> None:
         """Close a page; nothing that it left in the browser is there for the next."""
         with self.in_time():
             page.close()
-            last = self.context.new_page()  # of one that goes on to another page by itself nothing can be asked
-            last.goto(f"{self._entrance.partition('?')[0]}api/v1/ready")
-            last.evaluate("localStorage.clear()")
-            last.close()
-            self.context.clear_permissions()
+            context = self.context  # a new one where the browser was ended
+            assert self._kept is not None
+            self._kept.evaluate(
+                "localStorage.clear()"
+            )  # of the closed one, which may go on by itself, nothing is asked
+            context.clear_permissions()
 
     def renew(self) -> None:
         """Have the next page opened in a context of its own."""
