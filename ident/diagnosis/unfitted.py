@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from importlib.metadata import version
 
 from ident.diagnosis.result import NO_ERRORS, Baseline, Diagnosis, Verdict
@@ -25,7 +26,7 @@ def unranked(matrix: Matrix, fit: FitResult, seconds: float) -> Diagnosis:
     settings = Settings.from_json(dict(fit.settings)) if fit.settings else Settings(model=fit.model)
     baseline = Baseline(error, fit.offset.get("fit"))
     text = "The search was not over: there was no time to look at any effect."
-    return _told(matrix, settings, baseline, floor, text, seconds)
+    return replace(_told(matrix, settings, baseline, floor, text, seconds), preprocessing=fit.preprocessing)
 
 
 def _told(

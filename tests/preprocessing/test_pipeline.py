@@ -17,8 +17,10 @@ from app.cli.diagnose import diagnose as diagnose_command
 from app.cli.fit import fit
 from app.cli.preprocessing_options import switches
 from app.regress.recheck import recomputed, refitted
+from ident.diagnosis.family import ModelFamily
 from ident.diagnosis.recommended import settings_after
 from ident.diagnosis.result import Diagnosis
+from ident.diagnosis.rivals import rivals
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
@@ -154,19 +156,21 @@ def test_a_step_that_is_not_known_is_refused_with_the_nearest_name():
 
 
 OFF = {"command_offset": False}
+HELD = {"c0": 1.0, "m0": 0.1}
+"""Of the cylinder; its gain alone is searched."""
 
 
 @pytest.fixture(scope="module")
 def unprepared() -> tuple[Matrix, FitResult]:
     """A cylinder that drifts under a command of 0, of which the command is taken as it was recorded; and its fit."""
     matrix = test_beginnings.cylinder(1, 0.7)
-    return matrix, identify(matrix, model="motor", preprocessing=OFF)
+    return matrix, identify(matrix, model="motor", fixed=HELD, preprocessing=OFF)
 
 
 def test_a_stored_fit_keeps_its_switches_wherever_it_is_used(unprepared):
     """Compared, refitted, continued, rechecked and diagnosed: the data are taken as the fit took them."""
     matrix, given = unprepared
-    usual = identify(matrix, model="motor")
+    usual = identify(matrix, model="motor", fixed=HELD)
     assert "preprocessing" not in usual.to_json()["settings"]
     assert usual.error["fit"] < 0.5 * given.error["fit"]
     stored = FitResult.from_json(json.loads(json.dumps(given.to_json())))
@@ -182,7 +186,25 @@ def test_a_stored_fit_keeps_its_switches_wherever_it_is_used(unprepared):
     assert changes
     assert not [change for change in changes if change.moved(1e-3)]
     found = diagnose(matrix, stored, most=0, propose=False, seconds=1e-9)
+    assert found.preprocessing == stored.preprocessing
     assert settings_after_of(found).preprocessing == OFF
+
+
+@pytest.mark.usefixtures("few_effects")
+def test_a_diagnosis_takes_the_data_as_its_fit_did_and_says_so(unprepared, full):
+    """In the short form its models alone: the whole of it takes some seconds."""
+    matrix, given = unprepared
+    models = ModelFamily.of(matrix, Settings.from_json(dict(given.settings)))
+    assert models.matrix.preprocessing == given.preprocessing
+    assert np.array_equal(models.matrix.runs[0].command, matrix.runs[0].command)
+    if not full:
+        return
+    found = diagnose(matrix, given, most=0, propose=False)
+    assert found.preprocessing == given.preprocessing
+    assert settings_after(found).preprocessing == OFF
+    assert Diagnosis.from_json(json.loads(json.dumps(found.to_json()))).preprocessing == found.preprocessing
+    assert "preprocessing: The step command_offset of preprocessing is switched off" in str(found)
+    assert rivals(found).preprocessing == OFF
 
 
 def settings_after_of(found: Diagnosis) -> Settings:
@@ -193,7 +215,7 @@ def settings_after_of(found: Diagnosis) -> Settings:
 def test_a_fit_of_an_earlier_version_is_read(unprepared):
     """It says nothing of preprocessing: every step was on."""
     matrix, _ = unprepared
-    data = identify(matrix, model="motor").to_json()
+    data = identify(matrix, model="motor", fixed=HELD).to_json()
     del data["preprocessing"]
     old = FitResult.from_json(data)
     assert old.preprocessing == ()
