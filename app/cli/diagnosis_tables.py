@@ -20,7 +20,7 @@ def show_diagnosis(found: Diagnosis, file: str = "D.json") -> None:
     show(found.listings())
     console = output()
     if found.proposals:
-        from ident.diagnosis.report import proposed_text
+        from ident.diagnosis.sentences import proposed_text
 
         console.print(proposed_text(found.proposals), markup=False)
     if command := next_command(found, file):

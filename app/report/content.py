@@ -10,8 +10,8 @@ from app.report.rows import budget_rows, candidate_rows, curve_rows, group_table
 from ident.checks.check import check
 from ident.custom.definition import preset_with
 from ident.diagnosis.recommended import next_command
-from ident.diagnosis.report import cannot_distinguish
 from ident.diagnosis.result import Diagnosis
+from ident.diagnosis.sentences import cannot_distinguish
 from ident.errors import Unusable
 from ident.figures import figure, ladder, look
 from ident.fit.result import FitResult

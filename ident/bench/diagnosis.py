@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
@@ -15,13 +16,14 @@ from ident.bench.records import Record, bench_set
 from ident.comparison.compare import fitted
 from ident.custom.definition import preset_with
 from ident.diagnosis.budget import SearchBudget
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.parameter_estimate import ParameterEstimate
-from ident.diagnosis.report import verdict_text, why_of_gain
-from ident.diagnosis.result import Baseline, Diagnosis, Ranked, Rung, Verdict
+from ident.diagnosis.result import Baseline, Diagnosis, Ranked, Rung
+from ident.diagnosis.sentences import verdict_text, why_of_gain
 from ident.diagnosis.significance import Improvement, improvement
 from ident.diagnosis.stages import FURTHER, not_looked_at
 from ident.diagnosis.unfitted import unranked
-from ident.diagnosis.verification import standing
+from ident.diagnosis.verdict import Findings, Residual, conclude
 from ident.effects.effect import Effect
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.given import of_model
@@ -31,9 +33,6 @@ from ident.matrix import Matrix
 from ident.presets import preset
 from ident.progress import Expected, Progress
 from ident.time_budget import in_time
-
-_NEAR_FLOOR = 1.25
-"""Times the converter's part of the error, up to which an error is its noise: a reading that rests is off for long."""
 
 
 def diagnose_bench(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], course: SearchBudget) -> Diagnosis:
@@ -86,11 +85,12 @@ class BenchDiagnoser:
         found, group = steps[-1], _alike(first)
         groups = (group,) if len(group) > 1 and group[0] in found.effects else ()
         errors, before = self._errors(found), self._errors(base)
-        unexplained = bool(self.floor["fit"] and (errors["fit"] or 0.0) > _NEAR_FLOOR * self.floor["fit"])
+        residual = Residual(errors["fit"] or 0.0, self.floor["fit"] or None, excess=CRITERIA.noise.bench_excess)
         added = found.effects[len(base.effects) :]
+        verdict = conclude(Findings(added=added, alternatives=groups, residual=residual))
         missing = () if self.complete else (FURTHER,)
         said = verdict_text(
-            added, groups, (), unexplained, errors, float(before["fit"] or 0.0), floor=self.floor["fit"],
+            added, groups, (), verdict.unexplained, errors, float(before["fit"] or 0.0), floor=self.floor["fit"],
             complete=self.complete,
         )  # fmt: skip
         text = " ".join((said, *not_looked_at(missing)))
@@ -100,7 +100,7 @@ class BenchDiagnoser:
             noise_floor={"fit": self.floor["fit"], "held_out": None, "verify": self.floor["verify"]},
             candidates=tuple(self._ranked(c, group, base, i == 0) for i, c in enumerate(first)),
             ladder=tuple(self._rung(step, steps[i - 1] if i else None) for i, step in enumerate(steps)),
-            verdict=Verdict(added, standing(added, unexplained, ()), (), groups, (), unexplained, text),
+            verdict=replace(verdict, text=text),
             proposals=(), complete=self.complete, not_looked_at=missing, seed=self.fit.seed,
             seconds=self.course.seconds_taken,
             version=version("servoident"), data_hash=self.matrix.data_hash,

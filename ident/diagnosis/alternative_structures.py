@@ -44,9 +44,9 @@ class AlternativeModel:
             return
         ranking = rank(models, base, list(models.effects), report, thorough=False)
         refits = [one.refit for one in ranking if one.refit is not None and one.improves]
-        alike = [refit for refit in refits if improvement(refit.held_out, found.held_out).within_chance]
-        better = [refit for refit in alike if improvement(found.held_out, refit.held_out).beyond_chance]
-        for refit in (better or alike)[: CRITERIA.ambiguity.alternatives]:
+        equal = [refit for refit in refits if improvement(refit.held_out, found.held_out).within_chance]
+        better = [refit for refit in equal if improvement(found.held_out, refit.held_out).beyond_chance]
+        for refit in (better or equal)[: CRITERIA.ambiguity.alternatives]:
             yield Explanation(models.given.model, refit.effects, refit.errors, bool(better))
 
 
@@ -63,14 +63,14 @@ def alternative_models(matrix: Matrix, fit: FitResult, custom: Iterable[Effect])
 
 
 def alternative_explanations(
-    known: Iterable[AlternativeModel], selection: Selection, tell: Callable[[Progress], None]
+    known: Iterable[AlternativeModel], selection: Selection, report_progress: Callable[[Progress], None]
 ) -> tuple[Explanation, ...]:
     """What other models explain with one effect as well as the fitted one with what was added, or better."""
     if not selection.added or selection.base.effects:
         return ()
-    doubted = selection.models.left_out
+    left_out = selection.models.left_out
 
     def report(progress: Progress) -> None:
-        tell(replace(progress, stage="other models", expected=()))
+        report_progress(replace(progress, stage="other models", expected=()))
 
-    return tuple(told for one in known for told in one.explanations(selection.fitted, doubted, report))
+    return tuple(explanation for one in known for explanation in one.explanations(selection.fitted, left_out, report))

@@ -14,6 +14,7 @@ from ident.chain.channels import unmeasured
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
+from ident.diagnosis.verdict import Residual, is_noise
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect, off_values
 from ident.errors import Unusable
@@ -195,19 +196,23 @@ class CandidateModels:
 
     def is_noise(self, error: float) -> bool:
         """Whether an error, eq. (17) over the fitted runs, is noise alone."""
-        if self.floor is None:
-            return False
-        chance = CRITERIA.noise.floor_deviations * self.floors.spread(sum(run.length for run in self.runs))
-        return error < (1.0 + CRITERIA.noise.floor_excess + chance) * self.floor
+        return self.floor is not None and is_noise(self._above(self.floor, error))
 
     def residual_above_noise(self, refit: FittedModel) -> bool:
         """Whether the error is still above the noise: its floor, or where that is not known, its lack of memory."""
+        return not is_noise(self.residual(refit))
+
+    def residual(self, refit: FittedModel) -> Residual:
+        """The error of a refit, with its noise floor; where that is not known, with the memory of its residual."""
         if self.floor is not None:
-            return not self.at_floor(refit)
+            return self._above(self.floor, refit.error)
         outputs = refit.fitness.outputs(refit.point)
         residuals = [refit.fitness.left(run, outputs[run.id]) for run in self.runs]
         memory = [float(np.corrcoef(r[1:], r[:-1])[0, 1]) for r in residuals]
-        return bool(np.median(memory) > CRITERIA.noise.noise_correlation)
+        return Residual(refit.error, None, correlation=float(np.median(memory)))
+
+    def _above(self, floor: float, error: float) -> Residual:
+        return Residual(error, floor, self.floors.spread(sum(run.length for run in self.runs)))
 
     def better_optimum(
         self, refit: FittedModel, starts: Sequence[Mapping[str, float]], aim: float = np.inf

@@ -29,9 +29,9 @@ def competing_models(found: Diagnosis, custom: Sequence[Effect] = ()) -> Rivals:
                        "repeat the records on which the effects differ")  # fmt: skip
     models = tuple(_model(found, values, custom) for values in _chosen(found))
     floor = found.noise_floor.get("fit") or 0.0
-    doubted = frozenset(suspect.run for suspect in found.verdict.suspects)
+    suspect_runs = frozenset(suspect.run for suspect in found.verdict.suspects)
     switches = found.settings.get("preprocessing", {})
-    return Rivals(models, floor if 0 < floor < math.inf else NOISE, doubted, switches)
+    return Rivals(models, floor if 0 < floor < math.inf else NOISE, suspect_runs, switches)
 
 
 def _chosen(found: Diagnosis) -> list[Values]:

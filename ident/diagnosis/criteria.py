@@ -74,6 +74,8 @@ class Noise:
     an estimate. Test: test_diagnose.py::test_what_the_catalogue_does_not_hold_is_called_unexplained"""
     floor_deviations: float = 3.0
     """[standard deviations] Of the noise floor that the error may exceed it by. Why: one in 700 by chance."""
+    bench_excess: float = 0.25
+    """[of the floor] The same of the records of a bench. Why: a reading that rests is off for long."""
     noise_correlation: float = 0.5
     """[correlation] Of neighbouring residuals that noise may have where no floor is known. Why: above it the
     residual has a memory. Test: test_diagnose.py::test_repeats_tell_that_what_is_left_is_noise_in_the_band"""
@@ -366,7 +368,7 @@ class Verification:
     rise: float = 1.1
     """[ratio of verify errors] Of the last model to the best on the path, from which on it is told. Why: less is a
     matter of chance.
-    Test: test_report.py::test_a_smaller_error_on_verify_runs_on_the_way_is_told_with_what_was_added_since"""
+    Test: test_sentences.py::test_a_smaller_error_on_verify_runs_on_the_way_is_told_with_what_was_added_since"""
 
 
 @dataclass(frozen=True)

@@ -56,8 +56,8 @@ class FittedModel:
         return self.fitness.exact(point, worth=worth)
 
     def _with_innovations(self, found: CrossValidation) -> CrossValidation:
-        unforetold = self._simulated.innovations(found.squares.shape[1])
-        return replace(found, innovations=unforetold, in_windows=self.fitness.horizon is not None)
+        innovations = self._simulated.innovations(found.squares.shape[1])
+        return replace(found, innovations=innovations, in_windows=self.fitness.horizon is not None)
 
     def reordered(self, effects: tuple[str, ...]) -> FittedModel:
         """The same model with its effects in another order; what is known of it stays known."""

@@ -50,10 +50,10 @@ def label_suspects(models: CandidateModels, fitted: FittedModel, floors: Mapping
     if len(outside) > max(1, CRITERIA.labels.most * len(runs)):
         return []
 
-    def doubt(run: Run) -> Suspect | None:
+    def suspect_of(run: Run) -> Suspect | None:
         return _label_suspect(models, fitted, run, float(np.exp(usual)) * scale[run.id], errors[run.id])
 
-    found = [suspect for suspect in each(doubt, outside) if suspect is not None]
+    found = [suspect for suspect in each(suspect_of, outside) if suspect is not None]
     return sorted(found, key=lambda s: (s.error.usual or 0.0) / (s.error.as_labelled or 1.0))
 
 

@@ -63,8 +63,8 @@ class Moves:
         """The selection with the first ranking. Raises TimeIsUp."""
         if selection.ranking:
             return selection
-        base, heard = selection.base, self._keep_ranking
-        ranking = rank(self.models, base, self._addable(base), self.report, heard=heard)
+        base, listener = selection.base, self._keep_ranking
+        ranking = rank(self.models, base, self._addable(base), self.report, listener=listener)
         return self.keep(replace(selection, ranking=tuple(ranking)))
 
     def with_what_was_met(self, selection: Selection) -> Selection:
@@ -151,14 +151,14 @@ class Moves:
 
         What enters and leaves in a circle is of use in one company and of none in another: the best of it stays.
         """
-        doubted = [name for name in selection.added if name != latest]
-        while doubted:
-            here, tried = selection.fitted, each(partial(self._less, selection), doubted)
+        removable = [name for name in selection.added if name != latest]
+        while removable:
+            here, tried = selection.fitted, each(partial(self._less, selection), removable)
             needless = (i for i, less in enumerate(tried) if less.finite and not improves(less, here))
             first = next(needless, None)
             if first is None:
                 break
-            less, doubted = tried[first], doubted[first + 1 :]
+            less, removable = tried[first], removable[first + 1 :]
             known = [i for i, fitted in enumerate(selection.path) if set(fitted.effects) == set(less.effects)]
             selection = self.step(selection, less)
             if known:
@@ -223,7 +223,7 @@ class Moves:
         bases = each(partial(self._less, selection), added)
         sound = [(base, self._addable(base)) for base in bases if base.finite]
         given = selection.fitted
-        ranked = iter(rank_each(self.models, sound, self.report, thorough=False, beside=given) if sound else ())
+        ranked = iter(rank_each(self.models, sound, self.report, thorough=False, incumbent=given) if sound else ())
         return selection, [next(ranked) if base.finite else [] for base in bases]
 
     def exchange_pass(self, selection: Selection) -> Selection | None:
@@ -308,8 +308,8 @@ class Moves:
         """
         for _, rung in selection.ladder()[1:-1]:
             judged = any(rung is fitted for fitted in selection.path)
-            asked = rung.finite and (not judged or score(rung) < score(selection.fitted))
-            if asked and not improves(rung, selection.fitted):
+            judged_again = rung.finite and (not judged or score(rung) < score(selection.fitted))
+            if judged_again and not improves(rung, selection.fitted):
                 as_few = [fitted for fitted in selection.path if len(fitted.effects) <= len(rung.effects)]
                 back = stable_minimum([rung, *as_few], score)
                 kept = {name: of for name, of in selection.alternatives.items() if name in back.effects}

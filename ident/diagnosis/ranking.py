@@ -25,107 +25,120 @@ Base = tuple[FittedModel, Sequence[str]]
 """A model, and the effects that could be added to it."""
 
 
-Heard = Callable[[list[Candidate]], None]
+Listener = Callable[[list[Candidate]], None]
 """Told of the candidates of one model as far as each has come, while the ranking goes on."""
 
 
-def _unheard(_candidates: list[Candidate]) -> None:
+def _no_listener(_candidates: list[Candidate]) -> None:
     """Keep nothing."""
 
 
 def rank(
     models: CandidateModels, base: FittedModel, names: Sequence[str], report: Report, thorough: bool = True,
-    strong: bool = False, heard: Heard = _unheard,
+    strong: bool = False, listener: Listener = _no_listener,
 ) -> list[Candidate]:  # fmt: skip
     """The candidates, best first.
 
     `thorough`: more are refitted, and also where nothing promises to help. `strong`: from strong effects, too, which a
     promise made with the fitted parameters does not see where these have gone far astray for want of the effect.
     """
-    return rank_each(models, [(base, names)], report, thorough, strong, heard=heard)[0]
+    return rank_each(models, [(base, names)], report, thorough, strong, listener=listener)[0]
 
 
 def rank_each(
     models: CandidateModels, bases: Sequence[Base], report: Report, thorough: bool = True, strong: bool = False,
-    beside: FittedModel | None = None, heard: Heard = _unheard,
+    incumbent: FittedModel | None = None, listener: Listener = _no_listener,
 ) -> list[list[Candidate]]:  # fmt: skip
     """The same for several models, with what is refitted for all of them side by side.
 
     Where only what is about as good as a model `beside` them counts, the others are given up on the way; that model
     itself stands among the candidates as it is, or as a refit from a base finds it, where that is better.
     """
-    promised = [_promised(models, base, names, report) for base, names in bases]
-    heard(_so_far(promised[0]))
+    predicted = [_predictions(models, base, names, report) for base, names in bases]
+    listener(_so_far(predicted[0]))
     models_of = [base for base, _ in bases]
-    contenders = [
+    on_trial = [
         of[: CRITERIA.ranking.contenders] if thorough else _near(models, base, of)
-        for base, of in zip(models_of, promised, strict=True)
+        for base, of in zip(models_of, predicted, strict=True)
     ]
-    sure, done = CRITERIA.ranking.finalists if thorough else 2, 0
-    asked = {base.effects: _asked(models, base, beside) for base in models_of}
-    anew = CRITERIA.ranking.found_again * models.trial_error(beside) if beside is not None else np.inf
+    finalists_at_least, done = CRITERIA.ranking.finalists if thorough else 2, 0
+    targets = {base.effects: _target(models, base, incumbent) for base in models_of}
+    below_incumbent = CRITERIA.ranking.found_again * models.trial_error(incumbent) if incumbent is not None else np.inf
 
     def trial(base: FittedModel, prediction: Prediction) -> Candidate:
         nonlocal done
-        aim = anew if _is(base, prediction, beside) else asked[base.effects]
+        aim = below_incumbent if _is_incumbent(base, prediction, incumbent) else targets[base.effects]
         candidate = _tried(models, base, prediction, aim, strong)
         done += 1
-        report(Progress("trying", done, sum(map(len, contenders)) + sure * len(bases)))
+        report(Progress("trying", done, sum(map(len, on_trial)) + finalists_at_least * len(bases)))
         return candidate
 
     tried = [
-        in_rank_order(models, [one for one in ones if not _is(base, one.prediction, beside) or _comes_below(one, anew)])
-        for base, ones in zip(models_of, _in_turn(models, models_of, promised, contenders, trial), strict=True)
+        in_rank_order(
+            models,
+            [
+                one
+                for one in ones
+                if not _is_incumbent(base, one.prediction, incumbent) or _comes_below(one, below_incumbent)
+            ],
+        )
+        for base, ones in zip(models_of, _in_turn(models, models_of, predicted, on_trial, trial), strict=True)
     ]
-    heard(_so_far(promised[0], tried[0]))
-    finalists = [_finalists(models, base, ones, sure) for base, ones in zip(models_of, tried, strict=True)]
+    listener(_so_far(predicted[0], tried[0]))
+    finalists = [
+        _finalists(models, base, ones, finalists_at_least) for base, ones in zip(models_of, tried, strict=True)
+    ]
 
     def final(base: FittedModel, candidate: Candidate) -> Candidate:
         nonlocal done
         confirmed = _confirmed(models, base, candidate)
         done += 1
-        report(Progress("confirming", done, sum(map(len, contenders)) + sum(map(len, finalists))))
+        report(Progress("confirming", done, sum(map(len, on_trial)) + sum(map(len, finalists))))
         return confirmed
 
     found = [in_rank_order(models, ones) for ones in _side_by_side(final, models_of, finalists)]
-    heard(_so_far(promised[0], tried[0], found[0]))
+    listener(_so_far(predicted[0], tried[0], found[0]))
     report(Progress("confirming", done, done + 1))
     deeper = CRITERIA.ranking.multistart_finalists if thorough else 1
-    elsewhere = partial(_elsewhere, models, asked if beside else {})
-    farther = _side_by_side(elsewhere, models_of, [ones[:deeper] for ones in found])
+    multistart = partial(_multistart, models, targets if incumbent else {})
+    restarted = _side_by_side(multistart, models_of, [ones[:deeper] for ones in found])
     return [
-        _joined(models, base, of, stages, beside)
-        for base, of, *stages in zip(models_of, promised, tried, found, farther, strict=True)
+        _joined(models, base, of, stages, incumbent)
+        for base, of, *stages in zip(models_of, predicted, tried, found, restarted, strict=True)
     ]
 
 
-def _so_far(promised: Sequence[Prediction], *stages: Sequence[Candidate]) -> list[Candidate]:
+def _so_far(predicted: Sequence[Prediction], *stages: Sequence[Candidate]) -> list[Candidate]:
     """The candidates by how far they came, those that came as far by their score."""
     came = {one.effect: one for one in chain(*stages)}
-    listed = [came.get(one.effect, Candidate(one)) for one in promised]
+    listed = [came.get(one.effect, Candidate(one)) for one in predicted]
     return sorted(listed, key=lambda one: (one.stage, one.score))
 
 
 def _in_turn(
-    models: CandidateModels, bases: Sequence[FittedModel], promised: Sequence[Sequence[Prediction]],
-    contenders: list[list[Prediction]], trial: Callable[[FittedModel, Prediction], Candidate],
+    models: CandidateModels, bases: Sequence[FittedModel], predicted: Sequence[Sequence[Prediction]],
+    on_trial: list[list[Prediction]], trial: Callable[[FittedModel, Prediction], Candidate],
 ) -> list[list[Candidate]]:  # fmt: skip
     """A trial of each base's contenders, to which what they pass over is added, and then of that."""
-    first = _side_by_side(trial, bases, contenders)
-    passed_over = [_passed_over(models, *of) for of in zip(bases, promised, first, strict=True)]
-    contenders += passed_over
-    second = _side_by_side(trial, bases, passed_over)
+    first = _side_by_side(trial, bases, on_trial)
+    overlooked = [_overlooked(models, *of) for of in zip(bases, predicted, first, strict=True)]
+    on_trial += overlooked
+    second = _side_by_side(trial, bases, overlooked)
     return [[*ones, *more] for ones, more in zip(first, second, strict=True)]
 
 
 def _joined(
-    models: CandidateModels, base: FittedModel, promised: Sequence[Prediction], stages: Sequence[Sequence[Candidate]],
-    beside: FittedModel | None,
+    models: CandidateModels, base: FittedModel, predicted: Sequence[Prediction], stages: Sequence[Sequence[Candidate]],
+    incumbent: FittedModel | None,
 ) -> list[Candidate]:  # fmt: skip
     """The candidates as far as each came; the model `beside` the base as it is, unless it was found anew and better."""
     came = {one.effect: one for one in chain(*stages)}
-    came |= {one.effect: one for one in _met(base, promised, beside) if not _is_better(came.get(one.effect), one)}
-    return in_rank_order(models, [came.get(one.effect, Candidate(one)) for one in promised])
+    came |= {
+        one.effect: one
+        for one in _incumbent_as_candidate(base, predicted, incumbent)
+        if not _is_better(came.get(one.effect), one)
+    }
+    return in_rank_order(models, [came.get(one.effect, Candidate(one)) for one in predicted])
 
 
 def deepened(models: CandidateModels, base: FittedModel, ranking: Sequence[Candidate]) -> list[Candidate]:
@@ -133,15 +146,15 @@ def deepened(models: CandidateModels, base: FittedModel, ranking: Sequence[Candi
     if not _is_quick(models, base):
         return list(ranking)
     finalists, rest = ranking[: CRITERIA.ranking.finalists], ranking[CRITERIA.ranking.finalists :]
-    farther = each(partial(_elsewhere, models, {}, base), finalists[CRITERIA.ranking.multistart_finalists :])
-    return in_rank_order(models, [*finalists[: CRITERIA.ranking.multistart_finalists], *farther, *rest])
+    restarted = each(partial(_multistart, models, {}, base), finalists[CRITERIA.ranking.multistart_finalists :])
+    return in_rank_order(models, [*finalists[: CRITERIA.ranking.multistart_finalists], *restarted, *rest])
 
 
 def _tried(models: CandidateModels, base: FittedModel, prediction: Prediction, aim: float, strong: bool) -> Candidate:
     """A candidate after its first refit, which has to come below `aim`; from strong effects, too, where asked."""
     refit = models.trial((*base.effects, prediction.effect), prediction.starts, aim)
     if strong:
-        other = models.multistart(refit, _strong(models, base, refit), min(aim, refit.local.error))
+        other = models.multistart(refit, _strong_starts(models, base, refit), min(aim, refit.local.error))
         refit = stable_minimum([refit, other], lambda r: r.local.error)
     return Candidate(prediction, refit if refit.finite else None)
 
@@ -162,7 +175,7 @@ def _side_by_side(
     return [[made for (of, _, _), made in zip(todo, done, strict=True) if of == number] for number in range(len(bases))]
 
 
-def _promised(models: CandidateModels, base: FittedModel, names: Sequence[str], report: Report) -> list[Prediction]:
+def _predictions(models: CandidateModels, base: FittedModel, names: Sequence[str], report: Report) -> list[Prediction]:
     """What every effect promises, the best first."""
     report(Progress("predicting", 0, 1))
     found = stable_ranking(predict(models, base, sorted(names, key=models.simplicity)), lambda one: one.after.score)
@@ -171,36 +184,40 @@ def _promised(models: CandidateModels, base: FittedModel, names: Sequence[str], 
     return found
 
 
-def _finalists(models: CandidateModels, base: FittedModel, tried: Sequence[Candidate], sure: int) -> list[Candidate]:
+def _finalists(
+    models: CandidateModels, base: FittedModel, tried: Sequence[Candidate], finalists_at_least: int
+) -> list[Candidate]:
     """Those of the trials that are refitted to every sample: the first, and what is as good and promises anything.
 
     As good as the best of them or, in a small matrix, as the last: rounding does not choose between these.
     """
     best = tried[0].score if tried else 0.0
     as_last = (
-        CRITERIA.significance.practically_equal * tried[sure - 1].score
-        if len(tried) > sure and _is_quick(models, base)
+        CRITERIA.significance.practically_equal * tried[finalists_at_least - 1].score
+        if len(tried) > finalists_at_least and _is_quick(models, base)
         else 0.0
     )
     good = min(
         max(CRITERIA.ranking.close_trial * best, as_last), (1.0 - CRITERIA.ranking.promising) * models.trial_error(base)
     )
-    return [one for i, one in enumerate(tried) if one.trial and (i < sure or one.score < good)]
+    return [one for i, one in enumerate(tried) if one.trial and (i < finalists_at_least or one.score < good)]
 
 
-def _met(base: FittedModel, predictions: Sequence[Prediction], beside: FittedModel | None) -> list[Candidate]:
+def _incumbent_as_candidate(
+    base: FittedModel, predictions: Sequence[Prediction], incumbent: FittedModel | None
+) -> list[Candidate]:
     """The candidate, if any, with which a base is the model that stands beside it."""
     found = []
     for one in predictions:
-        if beside is not None and _is(base, one, beside):
-            known = beside.reordered((*base.effects, one.effect))
+        if incumbent is not None and _is_incumbent(base, one, incumbent):
+            known = incumbent.reordered((*base.effects, one.effect))
             found.append(Candidate(one, known).refitted(base, known))
     return found
 
 
-def _is(base: FittedModel, prediction: Prediction, beside: FittedModel | None) -> bool:
+def _is_incumbent(base: FittedModel, prediction: Prediction, incumbent: FittedModel | None) -> bool:
     """Whether a base with a predicted effect is the model that stands beside it."""
-    return beside is not None and {*base.effects, prediction.effect} == set(beside.effects)
+    return incumbent is not None and {*base.effects, prediction.effect} == set(incumbent.effects)
 
 
 def _comes_below(candidate: Candidate, error: float) -> bool:
@@ -208,32 +225,32 @@ def _comes_below(candidate: Candidate, error: float) -> bool:
     return candidate.trial is not None and candidate.trial.local.error < error
 
 
-def _is_better(anew: Candidate | None, known: Candidate) -> bool:
+def _is_better(again: Candidate | None, known: Candidate) -> bool:
     """Whether a model that is known was found anew, at a better optimum."""
     assert known.refit is not None
     return (
-        anew is not None
-        and anew.refit is not None
-        and anew.refit.error < CRITERIA.ranking.found_again * known.refit.error
+        again is not None
+        and again.refit is not None
+        and again.refit.error < CRITERIA.ranking.found_again * known.refit.error
     )
 
 
-def _asked(models: CandidateModels, base: FittedModel, beside: FittedModel | None) -> float:
+def _target(models: CandidateModels, base: FittedModel, incumbent: FittedModel | None) -> float:
     """The error below which a trial has to come to be of use, on the beginnings of the records."""
     return (
         (1.0 - CRITERIA.ranking.promising) * models.trial_error(base)
-        if beside is None
-        else CRITERIA.ranking.close_trial * models.trial_error(beside)
+        if incumbent is None
+        else CRITERIA.ranking.close_trial * models.trial_error(incumbent)
     )
 
 
 def _near(models: CandidateModels, base: FittedModel, predictions: Sequence[Prediction]) -> list[Prediction]:
     """The contenders for a further effect: those that promise anything near what the best promises."""
     near = CRITERIA.ranking.near_best * predictions[0].after.error
-    return [p for p in predictions if _promises(p) and p.after.error < near][: _few(models, base)]
+    return [p for p in predictions if _is_worth_a_trial(p) and p.after.error < near][: _few(models, base)]
 
 
-def _passed_over(
+def _overlooked(
     models: CandidateModels, base: FittedModel, predictions: Sequence[Prediction], tried: Sequence[Candidate]
 ) -> list[Prediction]:  # fmt: skip
     """What promises anything near what was found, where those that promised most found less than that."""
@@ -241,7 +258,9 @@ def _passed_over(
     near = CRITERIA.ranking.near_best * min(found / models.trial_error(base), 1.0)
     done = {one.effect for one in tried}
     return [
-        p for p in predictions[: _few(models, base)] if _promises(p) and p.remaining < near and p.effect not in done
+        p
+        for p in predictions[: _few(models, base)]
+        if _is_worth_a_trial(p) and p.remaining < near and p.effect not in done
     ]
 
 
@@ -260,26 +279,26 @@ def _is_quick(models: CandidateModels, base: FittedModel) -> bool:
     return steps * sum(run.length for run in models.runs) < CRITERIA.ranking.quick_steps
 
 
-def _elsewhere(
-    models: CandidateModels, asked: Mapping[tuple[str, ...], float], base: FittedModel, candidate: Candidate
+def _multistart(
+    models: CandidateModels, targets: Mapping[tuple[str, ...], float], base: FittedModel, candidate: Candidate
 ) -> Candidate:  # fmt: skip
     """The candidate, refitted from other strengths too where its error stays above the noise: there are local optima.
 
     Given up is what does not come below what is `asked` beside a base.
     """
-    refit, aim = candidate.refit, asked.get(base.effects, np.inf)
+    refit, aim = candidate.refit, targets.get(base.effects, np.inf)
     if refit is None or models.at_floor(refit):
         return candidate
-    starts = [*_strong(models, base, refit), *_shaken(models, refit)]
+    starts = [*_strong_starts(models, base, refit), *_perturbed_starts(models, refit)]
     for _ in range(CRITERIA.ranking.multistart_rounds):
         other = models.better_optimum(refit, starts, aim)
         if other is None:
             break
-        refit, starts = other, _shaken(models, other)
+        refit, starts = other, _perturbed_starts(models, other)
     return candidate if refit is candidate.refit else candidate.refitted(base, refit)
 
 
-def _strong(models: CandidateModels, base: FittedModel, refit: FittedModel) -> list[dict[str, float]]:
+def _strong_starts(models: CandidateModels, base: FittedModel, refit: FittedModel) -> list[dict[str, float]]:
     """The model without the effect that a refit added, and that effect at large strengths of the refit's sign."""
     symbol = models.strength(refit.effects[-1])
     lower, upper = refit.fitness.space.bounds({**refit.values, **base.values})[symbol]
@@ -289,7 +308,7 @@ def _strong(models: CandidateModels, base: FittedModel, refit: FittedModel) -> l
     return [{**base.values, **shape, symbol: share * end} for share in CRITERIA.ranking.strong_starts]
 
 
-def _shaken(models: CandidateModels, refit: FittedModel) -> list[dict[str, float]]:
+def _perturbed_starts(models: CandidateModels, refit: FittedModel) -> list[dict[str, float]]:
     """The model of a refit, with the effect that it added weaker and stronger: what plays or sticks has optima nearby.
 
     Between two of them lies where one more reversal of the way shows in the record.
@@ -302,7 +321,7 @@ def _shaken(models: CandidateModels, refit: FittedModel) -> list[dict[str, float
     ]
 
 
-def _promises(prediction: Prediction) -> bool:
+def _is_worth_a_trial(prediction: Prediction) -> bool:
     """Whether a prediction is worth a refit: by a part of what is asked for in the end."""
     return prediction.reduction > CRITERIA.ranking.promising or (
         prediction.offset_likelihood_gain > CRITERIA.ranking.offset_gain

@@ -1,239 +1,152 @@
-"""What a diagnosis says, in sentences."""
+"""What a diagnosis reports: the ranking, the ladder and the verdict with its sentences, as data."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import replace
+from functools import partial
+from importlib.metadata import version
+from typing import Any
 
 from ident.diagnosis.candidate import Candidate
+from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.discovery.proposal import Proposal
-from ident.diagnosis.result import Explanation, Suspect
-from ident.diagnosis.significance import Improvement
-from ident.diagnosis.total_delay import TotalDelay
-from ident.diagnosis.verification import Contradiction
+from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.ladder import Rungs
+from ident.diagnosis.result import NO_ERRORS, Baseline, Diagnosis, Errors, Ranked, Rung
+from ident.diagnosis.selection import Selection
+from ident.diagnosis.sentences import verdict_text, why
+from ident.diagnosis.significance import improvement
+from ident.diagnosis.verdict import Findings, conclude, contradiction
 from ident.effects.effect import Effect
-from ident.fit.result import Combination
-from ident.presets.record_units import SAMPLE
-from ident.words.error import error_said, unstable_on
-from ident.words.percent import percent
-from ident.words.titles import title
-
-_BOUNDED = (
-    "The strength of {} ended at the bound of its search: it may be larger, or stand for something else. Bounds of "
-    "your own let it go farther."
-)
-
-_TELLS_APART = (
-    "It does better on stretches of the runs that it was fitted to, but on whole runs that were left out the error "
-    "rises from {} to {}: it tells runs apart, and does not explain them."
-)
-
-_DRIFT = (
-    "as much is left that the record's own past does not foretell: it follows a drift, or what disturbances added up "
-    "to, and does not explain it."
-)
+from ident.errors import TimeIsUp
+from ident.fit.result import FitResult
+from ident.parallel import each
+from ident.time_budget import in_time
 
 
-def why(
-    candidate: Candidate, effect: Effect, before: float, floor: float | None, best: bool, weighed: bool = True
-) -> str:
-    """Why the data speak for or against an effect; `before` is the held-out error without it.
-
-    Of one that was not `weighed` nobody asked whether it holds from run to run.
-    """
-    if candidate.refit is None or candidate.gain is None:
-        share = 100 * candidate.prediction.reduction
-        return f"Predicted to take {share:.2g} % off the error, less than others; it was not refitted."
-    if weighed and candidate.gain.beyond_chance and not candidate.generalises:
-        return _TELLS_APART.format(*map(error_said, candidate.between_runs))
-    return why_of_gain(candidate.gain, effect, (before, candidate.refit.held_out.error), floor, best)
-
-
-def why_of_gain(
-    gain: Improvement, effect: Effect, errors: tuple[float, float], floor: float | None, best: bool
-) -> str:  # fmt: skip
-    """The same of an effect that was refitted; `errors` are those on held-out data without it and with it."""
-    change = "On data held out from the fit the error goes from {} to {}".format(*map(error_said, errors))
-    if gain.tracks_drift and not gain.beyond_chance:
-        return f"{change}, but {_DRIFT}"
-    if not gain.beyond_chance:
-        return (
-            f"{change}, {gain.deviations:.1f} standard errors: no more than chance. It would show as: {effect.looks}."
-        )
-    near = f", with the noise floor at {percent(floor)}" if floor is not None else ""
-    first = "No other effect does better. " if best else ""
-    if gain.innovation_gain_significant and not gain.worthwhile:
-        nats = gain.innovation_likelihood_gain
-        foretold = f"of whole runs {nats:.3g} nats less is left that their own past does not foretell"
-        return f"{first}{change} over windows; {foretold}. It shows as: {effect.looks}."
-    if abs(gain.reduction) < CRITERIA.conclusion.no_fall:
-        return f"{first}The error stays, but the runs' offsets become explained: {effect.looks}."
-    return f"{change}{near}. {first}It shows as: {effect.looks}."
-
-
-def verdict_text(
-    added: Sequence[str], groups: Sequence[tuple[str, ...]], suspects: Sequence[Suspect], unexplained: bool,
-    errors: Mapping[str, float | None], before: float, repeats: bool = True, floor: float | None = None,
-    against: Sequence[Contradiction] = (), complete: bool = True, described: Callable[[str], str] = title,
-    bounded: Sequence[str] = (), fewer: tuple[float, Sequence[str]] | None = None, unstable: Sequence[str] = (),
-) -> str:  # fmt: skip
-    """The verdict in a few sentences, what speaks against it first.
-
-    Without `repeats` nobody knows how much noise lies in the command's band. Not `complete`, the search was stopped.
-    `described` tells what an effect is the first time that it is named; `bounded` are those whose strength ended at the
-    bound of its search. `fewer` is the error on verify runs without the last of what was added, where it is
-    smaller there; `unstable` are the verify runs on which the model is unstable with it.
-    """
-    named = _described_once(described)
-    parts = [one.sentence(named(one.effect)) for one in against]
-    if not complete:
-        parts.append("The search was not over: what else is missing, and what could stand in the place of what was "
-                     "found, was not looked at.")  # fmt: skip
-    if added:
-        parts.append(_helps([*map(named, added)], bool(against) or unexplained, before, errors, fewer,
-                            unstable))  # fmt: skip
-    elif not complete:
-        parts.append(f"No effect was confirmed that lowers the error of {error_said(before)}.")
-    elif not unexplained and floor is None:
-        parts.append(f"Nothing is seen to be missing: the residual, {error_said(before)}, has no memory from sample to "
-                     "sample. How much of it is noise is not known.")  # fmt: skip
-    elif not unexplained:
-        parts.append(f"Nothing is missing: the error of {error_said(before)} is the noise's.")
-    else:
-        parts.append(f"No effect of the catalogue lowers the error of {error_said(before)} beyond chance.")
-    parts += [_BOUNDED.format(named(name)) for name in bounded]
-    chance = "chance, or than what is left could have made" if unexplained else "chance"
-    parts += [
-        f"This matrix {cannot_distinguish(group, added, named)}; their refits differ by less than {chance}."
-        for group in groups
-    ]
-    for suspect in suspects:
-        parts.append(f"Run {suspect.run} is doubted ({suspect.what}): {suspect.evidence}.")
-    if unexplained:
-        parts.append(
-            "Something is left that none of the listed effects explains." if complete else "Something is left."
-        )
-        if not repeats:
-            parts.append("No command was measured twice: part of it may be noise in the command's band, "
-                         "which a repeated run would tell.")  # fmt: skip
-    return " ".join(parts)
-
-
-def cannot_distinguish(group: Sequence[str], added: Sequence[str], described: Callable[[str], str] = title) -> str:
-    """What data cannot do of a group of effects of which one was added, or two that stand for two others as well."""
-    what = "which two these are of" if len({*group} & {*added}) == 2 else "apart"
-    return f"cannot tell {what}: {', '.join(map(described, group))}"
-
-
-def _helps(
-    named: Sequence[str], doubted: bool, before: float, errors: Mapping[str, float | None],
-    fewer: tuple[float, Sequence[str]] | None, unstable: Sequence[str],
-) -> str:  # fmt: skip
-    names = _listed(named)
-    them = "it" if len(named) == 1 else "them"
-    lacks = "What helps on the fitted runs is" if doubted else "The model lacks"
-    verify = errors.get("verify")
-    told = "" if verify is None else f" ({error_said(verify)} on verify runs{_with_fewer(fewer)})"
-    told = f" ({unstable_on(unstable)})" if unstable else told
-    fell = f"from {error_said(before)} to {error_said(errors['fit'])}"
-    return f"{lacks} {names}: with {them} the error falls {fell}{told}."
-
-
-def _listed(names: Sequence[str]) -> str:
-    *others, last = names
-    return f"{', '.join(others)} and {last}" if others else last
-
-
-def _with_fewer(of: tuple[float, Sequence[str]] | None) -> str:
-    return "" if of is None else f", {error_said(of[0])} without {', '.join(map(title, of[1]))}"
-
-
-def alternative_sentences(elsewhere: Sequence[Explanation]) -> Iterator[str]:
-    """What other models explain better, or as well, in a sentence each; nothing where there is none."""
-    told = {better: [_alternative(one) for one in elsewhere if one.better is better] for better in (True, False)}
-    if told[True]:
-        yield f"Another model explains more: {', '.join(told[True])} (--model)."
-    if told[False]:
-        yield f"These data cannot tell it from other models: {', '.join(told[False])}."
-
-
-def dispensable_sentence(names: Sequence[str]) -> Iterator[str]:
-    """Which effects only stood for what a search proposes, in a sentence."""
-    if names:
-        needed = "are not needed: they stood" if len(names) > 1 else "is not needed: it stood"
-        listed = _listed([*map(title, names)])
-        yield f"Beside what a search proposes beyond the catalogue {listed} {needed} for that."
-
-
-def horizon_sentence(fitted: float | None, horizon: float | None) -> Iterator[str]:
-    """Over what errors are those of the diagnosis, where these are not the windows of the fit."""
-    over = "whole runs" if horizon is None else f"windows of {horizon:.3g} s"
-    yield (
-        f"These are errors over {over}, where the fit was made over windows of {fitted or 0.0:.3g} s: chosen without "
-        "what was found, those forgave what it adds up to."
+def report(fit: FitResult, models: CandidateModels, selection: Selection, steps: Rungs, found: Findings) -> Diagnosis:
+    """The diagnosis of a fit by what a selection found; `models` are those of all runs, `steps` its ladder."""
+    base = selection.base
+    unknown: Errors = {**NO_ERRORS, **fit.noise_floor}
+    floor = in_time(lambda: selection.models.floors.of_use(selection.models.matrix)) or unknown
+    ladder = _ladder(steps, selection.added)
+    verdict = replace(conclude(found), text=_text(selection, steps, found, floor["fit"]))
+    return Diagnosis(
+        model=fit.model,
+        effects=base.effects,
+        baseline=Baseline(dict(ladder[0].error), base.offset, base.errors_with_mean, base.unstable),
+        noise_floor=floor,
+        horizon=selection.models.horizon,
+        memory=selection.models.memory,
+        left_out=tuple(run.id for run in models.matrix.runs if run.id in selection.models.left_out),
+        candidates=tuple(_ranked(selection, floor["fit"])),
+        ladder=tuple(ladder),
+        verdict=verdict,
+        proposals=(),
+        complete=selection.complete,
+        seed=fit.seed,
+        version=version("servoident"),
+        data_hash=models.matrix.data_hash,
+        preprocessing=models.matrix.preprocessing,
+        settings=dict(fit.settings),
     )
 
 
-def delay_sentence(late: TotalDelay, described: Callable[[str], str] = title, without: Sequence[str] = ()) -> str:
-    """How late the machine answers `without` some effects, and what the data cannot tell it from, in a sentence."""
-    names = ", ".join((f"{late.parameter.name} ({late.parameter.meaning})", *map(described, late.in_place)))
-    before = f", {_seconds(late.before)} by the fitted model" if late.before else ""
-    begin = f"Without {', '.join(map(title, without))} a slow" if without else "A slow"
-    return (
-        f"{begin} command is answered {_seconds(late.fitted)} late{before}; "
-        f"by which lag or delay these data cannot tell: {names}."
+def _text(selection: Selection, steps: Rungs, found: Findings, floor: float | None) -> str:
+    """The verdict in sentences."""
+    models, verdict = selection.models, conclude(found)
+    against = tuple(filter(None, map(contradiction, found.verify)))
+    repeats = in_time(lambda: models.floors.measured)
+    fewer = None if against else better_with_fewer(steps)
+    return verdict_text(
+        found.added, verdict.indistinguishable, found.suspects, verdict.unexplained, steps[-1][1].errors,
+        selection.base.error, repeats is not False, floor, against, selection.complete, models.described,
+        found.at_bound, fewer, steps[-1][1].unstable.get("verify", ()),
+    )  # fmt: skip
+
+
+def better_with_fewer(steps: Rungs) -> tuple[float, tuple[str, ...]] | None:
+    """The least error on verify runs on the way, and what was added since; None where the last is about as small."""
+    errors = [refit.errors["verify"] for _, refit in steps]
+    last, least = errors[-1], min((error for error in errors if error is not None), default=None)
+    if last is None or least is None or last < CRITERIA.verification.rise * least:
+        return None
+    return least, tuple(name for name, _ in steps[errors.index(least) + 1 :] if name)
+
+
+def _ranked(selection: Selection, floor: float | None) -> list[Ranked]:
+    base, models = selection.base, selection.models
+    tied = tuple(candidate.effect for candidate in in_time(selection.tied_first) or ())
+    group = tied if len(tied) > 1 else ()
+    in_question = in_time(selection.in_question) or frozenset()
+    before = in_time(lambda: base.held_out.error) or 0.0  # without it nothing was refitted that it is compared with
+    with suppress(TimeIsUp):  # side by side, not one by one below
+        each(lambda c: _judged(c, c.effect in in_question), selection.ranking)
+    listed = []
+    for i, candidate in enumerate(selection.ranking):
+        refit, effect = candidate.refit, models.effects[candidate.effect]
+        asked = candidate.effect in in_question and in_time(partial(getattr, candidate, "generalises")) is not None
+        listed.append(Ranked(
+            effect=candidate.effect,
+            error=refit.errors if refit else dict(NO_ERRORS),
+            offset=refit.held_out.offset if refit else None,
+            predicted_error=base.error * candidate.prediction.remaining,
+            parameters=refit.parameters if refit else {},
+            group=group if candidate.effect in group else (),
+            error_with_mean=refit.errors_with_mean if refit else {},
+            unstable=refit.unstable if refit else {},
+            evidence=_evidence(candidate, effect, asked),
+            why=why(candidate, effect, before, floor, i == 0, asked),
+        ))  # fmt: skip
+    return listed
+
+
+def _judged(candidate: Candidate, in_question: bool) -> tuple[object, object]:
+    """What is told of a candidate and takes simulations, which it keeps."""
+    return candidate.refit and candidate.refit.errors, in_question and candidate.improves
+
+
+def _evidence(candidate: Candidate, effect: Effect, in_question: bool) -> dict[str, Any]:
+    """The figures behind a candidate; whether it holds from run to run is asked of those in question."""
+    gain = candidate.gain
+    return {
+        "predicted_fall": candidate.prediction.reduction,
+        "confirmed": candidate.refit is not None,
+        "fall": gain.reduction if gain else None,
+        "deviations": gain.deviations if gain else None,
+        "nats": gain.log_likelihood_gain if gain else None,
+        "nats_without_best_run": gain.log_likelihood_gain_without_best if gain else None,
+        "offset_nats": gain.offset_likelihood_gain if gain else None,
+        "unforetold_nats": gain.innovation_likelihood_gain if gain else None,
+        "beyond_chance": gain.beyond_chance if gain else None,
+        "carries_over": candidate.generalises if in_question and gain and gain.beyond_chance else None,
+        "looks": effect.looks,
+    }
+
+
+def _ladder(steps: Rungs, added: Sequence[str]) -> list[Rung]:
+    """The rungs, and without figures those of what was `added` that there was no time to refit."""
+    known, rungs = dict(steps), [rung_of(None, None, steps[0][1])]
+    before: FittedModel | None = steps[0][1]
+    for name in added:
+        refit = known.get(name)
+        rungs.append(Rung(added=name, error=dict(NO_ERRORS)) if refit is None else rung_of(name, before, refit))
+        before = refit
+    return rungs
+
+
+def rung_of(added: str | None, before: FittedModel | None, refit: FittedModel) -> Rung:
+    """One rung, on top of the one `before` where that is known."""
+    compared = before is not None and before.stable and refit.stable
+    gain = in_time(lambda: improvement(before.held_out, refit.held_out)) if before and compared else None
+    return Rung(
+        added=added,
+        error=refit.errors,
+        offset=in_time(lambda: refit.held_out.offset) if refit.stable else None,
+        nats=gain.log_likelihood_gain if gain else None,
+        parameters=refit.parameters,
+        error_with_mean=refit.errors_with_mean,
+        unstable=refit.unstable,
     )
-
-
-def _seconds(of: Combination) -> str:
-    return f"{of.value:.3g} ± {of.std_error:.2g} {'samples' if of.unit == SAMPLE else 's'}"
-
-
-def _alternative(one: Explanation) -> str:
-    name = f"{one.machine} with {title(one.effects[-1])}" if one.effects else one.machine
-    return f"{name}, {error_said(one.error['fit'])}" if one.better else name
-
-
-def proposed_text(terms: Sequence[Proposal]) -> str:
-    """What a search beyond the catalogue proposes, in a sentence: no part of the verdict."""
-    told = "; ".join(one.equation + (f" ({one.meaning})" if one.meaning else "") for one in terms)
-    last = terms[-1]
-    on_verify = last.error_of("verify")
-    verify = f" ({on_verify.said()} on verify runs)" if on_verify.error is not None else ""
-    verify = f" ({on_verify.said()})" if on_verify.is_unstable else verify
-    doubt = ", a hypothesis" if any(one.hypothesis for one in terms) else ""
-    doubt += ", at last a free curve" if any(one.free_curve for one in terms) else ""
-    instead = f" in place of {', '.join(map(title, last.instead_of))}" if last.instead_of else ""
-    it = "it" if len(terms) == 1 else "them"
-    against = [one.contradicted.sentence(one.equation) for one in terms if one.contradicted and not _mended(one, last)]
-    return " ".join([
-        *against,
-        f"Beyond the catalogue a search proposes{doubt}{instead}: {told}.",
-        f"With {it} the error is {error_said(last.error['fit'])}{verify}.",
-        *(_alone(one) for one in terms if _mended(one, last)),
-    ])  # fmt: skip
-
-
-def _mended(one: Proposal, last: Proposal) -> bool:
-    """Whether the terms that came after one bring down the error on verify runs that it raised."""
-    left = last.error.get("verify")
-    return one.contradicted is not None and left is not None and left < one.contradicted.before
-
-
-def _alone(one: Proposal) -> str:
-    against = one.contradicted
-    assert against is not None
-    return f"With {one.equation} but without those after it {against.rise}."
-
-
-def _described_once(described: Callable[[str], str]) -> Callable[[str], str]:
-    """The name of an effect with what it is told by the first time, bare then."""
-    told: set[str] = set()
-
-    def named(effect: str) -> str:
-        if effect in told:
-            return title(effect)
-        told.add(effect)
-        return described(effect)
-
-    return named

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from ident.diagnosis.discovery.proposal import Proposal, from_json
@@ -145,24 +145,6 @@ class Verdict:
     at_bound: tuple[str, ...] = ()
     elsewhere: tuple[Explanation, ...] = ()
     stood_in: tuple[str, ...] = ()
-
-    def without(self, needless: Sequence[str]) -> Verdict:
-        """The verdict once a term is known beside which effects of it are needless: it names them no more."""
-        if not needless:
-            return self
-        named = tuple(name for name in self.effects if name not in needless)
-        against = tuple(name for name in self.contradicted_by if name not in needless)
-        cleared = "stand_in" if self.standing == "contradicted" and not against else self.standing
-        return replace(
-            self,
-            effects=named,
-            standing=cleared if named else "nothing",
-            contradicted_by=against,
-            indistinguishable=tuple(
-                group for group in self.indistinguishable if not {*group} & {*self.effects} & {*needless}
-            ),
-            stood_in=tuple(needless),
-        )
 
 
 @dataclass(frozen=True, kw_only=True)

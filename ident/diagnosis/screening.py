@@ -73,23 +73,23 @@ class Prediction:
 
 def predict(models: CandidateModels, base: FittedModel, names: Sequence[str]) -> list[Prediction]:
     """What adding each effect to the refitted model promises, in the order of the names."""
-    sight = _Sensitivities.of(models, base)
-    found = each(lambda group: _predicted(sight, base, group), models.groups(base.effects, names))
+    given = _Sensitivities.of(models, base)
+    found = each(lambda group: _predicted(given, base, group), models.groups(base.effects, names))
     return sorted(chain.from_iterable(found), key=lambda prediction: names.index(prediction.effect))
 
 
-def _predicted(sight: _Sensitivities, base: FittedModel, names: Sequence[str]) -> list[Prediction]:
+def _predicted(given: _Sensitivities, base: FittedModel, names: Sequence[str]) -> list[Prediction]:
     """The predictions of effects that one chain holds; strengths are added where a threshold was jumped over."""
-    models, fitness = sight.models, sight.models.fitness((*base.effects, *names), CRITERIA.screening.samples)
+    models, fitness = given.models, given.models.fitness((*base.effects, *names), CRITERIA.screening.samples)
     off = {symbol: value for symbol, value in models.off.items() if symbol not in base.values}
     known = {name: value for name, value in {**off, **base.values}.items() if name in fitness.space.order}
     trials = [trial for name in names for trial in _trials(models, base, fitness.space, name, known)]
-    found = sight.with_effects(fitness, known, trials)
+    found = given.with_effects(fitness, known, trials)
     between = found.thresholds()
-    every = [found, sight.with_effects(fitness, known, between)] if between else [found]
-    before = sight.before
+    every = [found, given.with_effects(fitness, known, between)] if between else [found]
+    before = given.before
     best = {trial.effect: (before, np.zeros(len(base.point) + 1), trial) for trial in reversed(trials)}
-    for trial, after, step in chain.from_iterable(seen.predicted_fits() for seen in every):
+    for trial, after, step in chain.from_iterable(responses_of.predicted_fits() for responses_of in every):
         if after.score < (1.0 - CRITERIA.screening.score_tolerance) * best[trial.effect][0].score:
             best[trial.effect] = after, step, trial
     return [
@@ -97,7 +97,7 @@ def _predicted(sight: _Sensitivities, base: FittedModel, names: Sequence[str]) -
             name,
             after,
             before,
-            len(sight.gram),
+            len(given.gram),
             (*_refit_starts(models, base, trial, step), *_from_records(models, base, fitness.space, name, known)),
         )
         for name, (after, step, trial) in ((name, best[name]) for name in names)
@@ -150,8 +150,8 @@ class _Sensitivities:
     @cached_property
     def before(self) -> PredictedFit:
         """Without any effect."""
-        ((outlook, _),) = _after(self.gram[None], self.means[None], self.records, self.point, len(self.point))
-        return outlook
+        ((fit_without, _),) = _after(self.gram[None], self.means[None], self.records, self.point, len(self.point))
+        return fit_without
 
 
 @dataclass(frozen=True)
@@ -187,15 +187,15 @@ class _EffectResponses:
         return float(self.responses.power[:, trial].sum())
 
     def _after(self, trials: Sequence[int]) -> Iterator[tuple[PredictedFit, Array]]:
-        p, sight, responses = len(self.sensitivities.point), self.sensitivities, self.responses
+        p, given, responses = len(self.sensitivities.point), self.sensitivities, self.responses
         old = [*range(p), p + 1]  # the effect's share stands behind the parameters, the residual last
-        gram = np.empty((len(trials), len(sight.gram), p + 2, p + 2))
-        gram[:, :, *np.ix_(old, old)] = sight.gram
+        gram = np.empty((len(trials), len(given.gram), p + 2, p + 2))
+        gram[:, :, *np.ix_(old, old)] = given.gram
         gram[:, :, old, p] = gram[:, :, p, old] = responses.products[:, :, trials].transpose(2, 0, 1)
         gram[:, :, p, p] = responses.power[:, trials].T
         means = np.empty(gram.shape[:3])
-        means[..., old], means[..., p] = sight.means, responses.means[:, trials].T
-        return _after(gram, means, sight.records, sight.point, p)
+        means[..., old], means[..., p] = given.means, responses.means[:, trials].T
+        return _after(gram, means, given.records, given.point, p)
 
 
 def _refit_starts(

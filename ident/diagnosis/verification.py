@@ -56,20 +56,39 @@ class Contradiction:
         return f"the error on verify runs rises from {error_said(self.before)} to {error_said(self.after)}"
 
 
-def contradiction(
-    effect: str, runs: Sequence[Run], before: Sequence[Array], after: Sequence[Array]
-) -> Contradiction | None:
-    """Whether the error of eq. (17) over `runs` rises by more than two of its standard errors; None where not.
+@dataclass(frozen=True)
+class VerifyChange:
+    """The error on runs to verify without an effect and with it, and the standard error of the difference.
 
-    `before` and `after` are what the model leaves of each run without the effect and with it, (n,), less its mean or
-    over windows. The standard error
-    is that of the difference, by a bootstrap over chunks of ten correlation times (Künsch 1989), at least four a run.
+    `after` is None where the model is `unstable` on these runs with the effect, and was not without.
+    """
+
+    effect: str
+    before: float
+    after: float | None
+    std_error: float = 0.0
+    unstable: tuple[str, ...] = ()
+
+    def contradiction(self) -> Contradiction:
+        """That the runs to verify speak against the effect, with the number of standard errors."""
+        rise = None if self.after is None else (self.after - self.before) / max(self.std_error, TINY)
+        return Contradiction(self.effect, self.before, self.after, rise, unstable=self.unstable)
+
+
+def verify_change(
+    effect: str, runs: Sequence[Run], before: Sequence[Array], after: Sequence[Array]
+) -> VerifyChange | None:
+    """How the error of eq. (17) over `runs` changes with an effect; None where the model is unstable without it.
+
+    `before` and `after` are the residuals of each run without the effect and with it, (n,), less their mean or over
+    windows. The standard error is that of the difference, by a bootstrap over chunks of ten correlation times (Künsch
+    1989), at least four a run.
     """
     if _unstable(runs, before):
         return None
     if unstable := _unstable(runs, after):
         sizes = [float(np.std(r) / np.std(run.measured)) for run, r in zip(runs, before, strict=True)]
-        return Contradiction(effect, float(over_runs(sizes, runs)), None, None, unstable=unstable)
+        return VerifyChange(effect, float(over_runs(sizes, runs)), None, unstable=unstable)
     random = np.random.default_rng(0)
     drawn = {
         "before": np.empty((len(runs), CRITERIA.verification.resamples)),
@@ -87,10 +106,7 @@ def contradiction(
             whole[name][i] = np.sqrt(np.mean(residual**2)) / size
     change = over_runs(drawn["after"], runs) - over_runs(drawn["before"], runs)
     first, last = (float(over_runs(whole[name], runs)) for name in ("before", "after"))
-    error = float(np.std(change))
-    if not last - first > CRITERIA.verification.deviations * error:
-        return None
-    return Contradiction(effect, first, last, (last - first) / max(error, TINY))
+    return VerifyChange(effect, first, last, float(np.std(change)))
 
 
 def _unstable(runs: Sequence[Run], left: Sequence[Array]) -> tuple[str, ...]:
@@ -111,12 +127,3 @@ def _chunks(residual: Array) -> list[slice]:
         )
     )
     return [slice(first, min(first + length, n)) for first in range(0, n, length)]
-
-
-def standing(added: Sequence[str], unexplained: bool, against: Sequence[Contradiction], sure: bool = True) -> Standing:
-    """How what was added stands; not `sure`, nobody can say that nothing is left."""
-    if not added:
-        return "nothing"
-    if against:
-        return "contradicted"
-    return "found" if sure and not unexplained else "stand_in"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ident.diagnosis.candidate_models import CandidateModels
-from ident.diagnosis.ranking import _strong
+from ident.diagnosis.ranking import _strong_starts
 from ident.fit.levenberg_marquardt import Way
 from ident.fit.settings import Settings
 from ident.workflows import diagnose, identify
@@ -50,7 +50,7 @@ def test_strong_starts_lie_within_the_bounds_of_the_model_that_they_begin_from()
     models, still = CandidateModels.of(lab.measured(), Settings(model="qian2014")), Way(most=0)
     base = models.refit((), {p.in_equations: p.value for p in models.preset.parameters}, way=still)
     refit = models.refit(("coulomb_friction",), base.values | {"c0": 9.0 * base.values["c0"]}, way=still)
-    starts, symbol = _strong(models, base, refit), models.strength("coulomb_friction")
+    starts, symbol = _strong_starts(models, base, refit), models.strength("coulomb_friction")
     points = np.array([refit.space.point({**start, **refit.space.fixed}) for start in starts])
     begun = refit.space.values(points)[symbol]
     assert begun == pytest.approx([start[symbol] for start in starts])

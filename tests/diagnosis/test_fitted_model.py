@@ -12,6 +12,7 @@ from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.diagnose import Diagnoser
 from ident.diagnosis.discovery.search import TermSearch
 from ident.diagnosis.fitted_model import FittedModel, indistinguishable
+from ident.diagnosis.report import _ladder
 from ident.effects import effect
 from ident.fit.levenberg_marquardt import Way, promise
 
@@ -157,9 +158,9 @@ def test_a_rung_at_which_the_model_is_unstable_tells_no_error_and_the_next_one_n
     sound, unstable = refit("at rest", 0.1), refit("at rest", np.inf, promised=np.inf)
     sound.__dict__["held_out"] = judged(0.1).held_out
     course = SearchBudget(most=4)
-    diagnoser = Diagnoser(None, None, course)
+    diagnoser = Diagnoser(None, None, None, (), course)
     steps = [(None, sound), ("dead_zone", unstable), ("backlash", sound), ("null_bias", sound)]
-    assert [rung.error["fit"] for rung in diagnoser._ladder(steps)] == [0.1, None, 0.1, 0.1]
-    assert [rung.nats for rung in diagnoser._ladder(steps)] == [None, None, None, 0.0]
-    diagnoser._heard(SimpleNamespace(ladder=lambda: steps))
+    assert [rung.error["fit"] for rung in _ladder(steps, [name for name, _ in steps if name])] == [0.1, None, 0.1, 0.1]
+    assert [rung.nats for rung in _ladder(steps, [name for name, _ in steps if name])] == [None, None, None, 0.0]
+    diagnoser._publish_step(SimpleNamespace(ladder=lambda: steps))
     assert [one.effect for one in course.added] == ["backlash", "null_bias"]

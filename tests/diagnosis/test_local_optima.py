@@ -45,17 +45,21 @@ def test_a_model_that_is_known_is_found_anew_where_that_leads_to_a_better_optimu
         return Candidate(prediction, refit(*effects, error=ends[prediction.effect]))
 
     for name, made in {
-        "_promised": lambda *_: predictions, "_near": lambda *_: predictions, "_passed_over": lambda *_: [],
+        "_predictions": lambda *_: predictions, "_near": lambda *_: predictions, "_overlooked": lambda *_: [],
         "_tried": tried,
         "_confirmed": lambda _models, base, one: one.refitted(base, one.trial),
-        "_elsewhere": lambda _models, _asked, _base, one: one,
+        "_multistart": lambda _models, _asked, _base, one: one,
     }.items():  # fmt: skip
         monkeypatch.setattr(ranking, name, made)
     monkeypatch.setattr(candidate, "improvement", lambda *_: None)
     monkeypatch.setattr(candidate, "indistinguishable", lambda *_: False)
     found = refit("saturation", "stiction", error=1.0)
     (ranked,) = rank_each(
-        models, [(refit("stiction", error=2.0), ("saturation", "other"))], lambda _: None, thorough=False, beside=found
+        models,
+        [(refit("stiction", error=2.0), ("saturation", "other"))],
+        lambda _: None,
+        thorough=False,
+        incumbent=found,
     )
     by_name = {one.effect: one.refit.error for one in ranked if one.refit is not None}
     assert by_name == {"saturation": error, "other": 1.1}

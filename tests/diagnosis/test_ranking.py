@@ -110,8 +110,8 @@ def test_where_the_boldest_promise_is_not_kept_more_is_tried(monkeypatch, kept, 
         return Candidate(prediction, found)
 
     for name, made in {
-        "_promised": lambda *_: predictions, "_tried": refitted, "_few": lambda *_: 12,
-        "_confirmed": lambda _models, _base, one: one, "_elsewhere": lambda _models, _asked, _base, one: one,
+        "_predictions": lambda *_: predictions, "_tried": refitted, "_few": lambda *_: 12,
+        "_confirmed": lambda _models, _base, one: one, "_multistart": lambda _models, _asked, _base, one: one,
     }.items():  # fmt: skip
         monkeypatch.setattr(f"ident.diagnosis.ranking.{name}", made)
     models: Any = SimpleNamespace(simplicity=lambda name: (1, name), trial_error=lambda _base: 1.0)
@@ -130,6 +130,6 @@ def test_what_leaves_as_much_as_the_last_finalist_is_one_in_a_small_matrix(monke
     ]
     models: Any = SimpleNamespace(trial_error=lambda _base: 1.0)
     base: Any = None
-    assert len(_finalists(models, base, trials, sure=5)) == refitted
+    assert len(_finalists(models, base, trials, finalists_at_least=5)) == refitted
     nothing_more: Any = SimpleNamespace(trial_error=lambda _base: 0.404)
-    assert len(_finalists(nothing_more, base, trials, sure=5)) == 5
+    assert len(_finalists(nothing_more, base, trials, finalists_at_least=5)) == 5

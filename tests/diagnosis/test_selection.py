@@ -105,7 +105,7 @@ class Judged:
         """An effect has one parameter of its own name."""
         return effect
 
-    def rank(self, _models, base, names, _report, _thorough=True, strong=False, **_heard):
+    def rank(self, _models, base, names, _report, _thorough=True, strong=False, **_listener):
         """An effect helps where the score falls."""
 
         def judged(name):
@@ -117,7 +117,7 @@ class Judged:
 
         return moves.in_rank_order(self, map(judged, names))
 
-    def rank_each(self, models, bases, report, thorough, **_beside):
+    def rank_each(self, models, bases, report, thorough, **_incumbent):
         """Each for itself."""
         return [self.rank(models, base, names, report, thorough, strong=False) for base, names in bases]
 

@@ -8,8 +8,10 @@ from types import SimpleNamespace
 
 import pytest
 
+from ident.diagnosis import ambiguity
 from ident.diagnosis import diagnose as diagnosing
 from ident.diagnosis.budget import SearchBudget
+from ident.diagnosis.discovery import discover
 from ident.diagnosis.discovery.discovery_result import DiscoveryResult
 from ident.diagnosis.result import Diagnosis, Verdict
 from ident.diagnosis.stages import ERROR_BUDGET, LAGS, NEXT_RUN, TERMS, Stages
@@ -36,9 +38,10 @@ def failing(*_given, **_named):
 @pytest.mark.usefixtures("few_effects", "survives")
 def test_the_catalogues_verdict_stands_whatever_fails_later(monkeypatch, caplog):
     """Lags, error budget, next run and terms at once: each has its note, and its traceback in the log."""
-    for name in ("total_delay", "error_budget", "next_run"):
+    monkeypatch.setattr(ambiguity, "total_delay", failing)
+    for name in ("error_budget", "next_run"):
         monkeypatch.setattr(diagnosing, name, failing)
-    monkeypatch.setattr(diagnosing.TermSearch, "run", failing)
+    monkeypatch.setattr(discover.TermSearch, "run", failing)
     heard: list[Diagnosis] = []
     found = diagnose(matrix(), most=1, propose=True, found=heard.append)
     assert found.verdict.effects == ("dead_zone",)
@@ -136,16 +139,15 @@ def test_terms_of_the_first_search_stay_where_there_is_no_time_for_the_second(mo
             return SimpleNamespace(run=lambda: next(searches))
         finally:
             if second == "not begun":
-                monkeypatch.setattr(diagnosing, "TermSearch", no_time_left)
+                monkeypatch.setattr(discover, "TermSearch", no_time_left)
 
-    monkeypatch.setattr(diagnosing, "TermSearch", search)
-    monkeypatch.setattr(diagnosing, "_repeated", lambda *_: False)
+    monkeypatch.setattr(discover, "TermSearch", search)
+    monkeypatch.setattr(discover, "_is_a_selected_effect", lambda *_: False)
     errors = [SimpleNamespace(held_out=SimpleNamespace(error=error), error=error, effects=()) for error in (0.5, 0.4)]
     selection = SimpleNamespace(base=errors[0], fitted=errors[1], added=("lead",), models=None)
-    diagnoser = object.__new__(diagnosing.Diagnoser)
-    diagnoser.models = SimpleNamespace(matrix=SimpleNamespace(of_use=lambda _: ()), is_noise=lambda _: False)
-    diagnoser.course = SimpleNamespace(propose=True, report_progress=None)
-    found = diagnoser._proposed(selection)
+    selection.models = SimpleNamespace(matrix=SimpleNamespace(of_use=lambda _: ()), is_noise=lambda _: False)
+    budget = SimpleNamespace(propose=True, report_progress=None)
+    found = discover.terms_of(selection.models, selection, budget)
     assert found.found == (term,)
     assert not found.complete
 

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from ident.diagnosis.candidate_models import CandidateModels
-from ident.diagnosis.report import delay_sentence, verdict_text
+from ident.diagnosis.sentences import delay_sentence, verdict_text
 from ident.diagnosis.total_delay import lag_ambiguities, total_delay
 from ident.fit.settings import Settings
 from ident.matrix import Matrix

@@ -9,7 +9,8 @@ import pytest
 from scipy.signal import lfilter
 
 from ident.diagnosis.result import Diagnosis
-from ident.diagnosis.verification import contradiction, standing
+from ident.diagnosis.verdict import contradiction
+from ident.diagnosis.verification import Contradiction, verify_change
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.run import Run
@@ -29,22 +30,27 @@ def run_of(seed: int) -> Run:
     return Run(f"r{seed}", "", 100.0, {"command": output, "displacement": output})
 
 
+def judged(*of) -> Contradiction | None:
+    """Whether the residuals of some runs with an effect contradict it."""
+    return contradiction(verify_change(*of))
+
+
 def test_an_error_that_rises_beyond_chance_is_a_contradiction_and_one_that_falls_is_not():
     runs = [run_of(1), run_of(2)]
     before = [residual(i, 0.1) for i in (3, 4)]
     worse, better = [1.5 * r for r in before], [0.8 * r for r in before]
-    found = contradiction("lead", runs, before, worse)
+    found = judged("lead", runs, before, worse)
     assert found is not None
     assert (found.before, found.after) == pytest.approx((0.1, 0.15), rel=0.05)
     assert found.deviations > 2
-    assert contradiction("lead", runs, before, better) is None
+    assert judged("lead", runs, before, better) is None
 
 
 def test_a_run_that_cannot_be_followed_with_an_effect_is_a_contradiction_and_one_that_never_could_is_not():
     runs, before = [run_of(1), run_of(2)], [residual(i, 0.1) for i in (3, 4)]
     lost = [before[0], before[1] * np.nan]
-    found = contradiction("lead", runs, before, lost)
-    grown = contradiction("lead", runs, before, [before[0], before[1] * 1e104])  # a number, and yet no error
+    found = judged("lead", runs, before, lost)
+    grown = judged("lead", runs, before, [before[0], before[1] * 1e104])  # a number, and yet no error
     assert grown is not None
     assert (grown.after, grown.unstable) == (None, (runs[1].id,))
     assert found is not None
@@ -54,14 +60,14 @@ def test_a_run_that_cannot_be_followed_with_an_effect_is_a_contradiction_and_one
         f"With lead the model is unstable on run {runs[1].id}, the error on verify runs was {percent(found.before)}: "
         "it may stand for something else."
     )
-    assert contradiction("lead", runs, lost, before) is None
-    assert contradiction("lead", runs, lost, lost) is None
+    assert judged("lead", runs, lost, before) is None
+    assert judged("lead", runs, lost, lost) is None
 
 
 def test_chance_contradicts_seldom():
     """Residuals of one size that know nothing of each other: two standard errors, on one side."""
     runs = [run_of(1)]
-    count = sum(contradiction("lead", runs, [residual(2 * i, 0.1)], [residual(2 * i + 1, 0.1)]) is not None
+    count = sum(judged("lead", runs, [residual(2 * i, 0.1)], [residual(2 * i + 1, 0.1)]) is not None
                 for i in range(200))  # fmt: skip
     assert count <= 12
 
@@ -97,11 +103,6 @@ def test_the_standing_is_read_back_and_an_unknown_one_is_refused(other):
     assert Diagnosis.from_json({**written, "verdict": {"effects": []}}).verdict.standing is None  # of an older version
     with pytest.raises(Unusable, match="is none of found, stand_in, contradicted, nothing"):
         Diagnosis.from_json({**written, "verdict": {**written["verdict"], "standing": "sure"}})
-
-
-def test_what_may_be_larger_than_was_searched_is_not_called_found():
-    assert standing(("lead",), False, ()) == "found"
-    assert standing(("lead",), False, (), sure=False) == "stand_in"
 
 
 def test_with_nothing_missing_nothing_stands():

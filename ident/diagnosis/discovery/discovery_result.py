@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 from ident.diagnosis.discovery.proposal import Errors, Proposal
 from ident.diagnosis.fitted_model import FittedModel
-from ident.diagnosis.verification import contradiction
+from ident.diagnosis.verdict import contradiction
+from ident.diagnosis.verification import verify_change
 from ident.run import Run
 from ident.words.error import error_said
 from ident.words.titles import title
@@ -101,7 +102,11 @@ class DiscoveryResult:
             return self
         *terms, last = (replace(one, instead_of=tuple(named)) for one in self.found)
         name = str(last.effect["name"])
-        against = contradiction(name, runs, other.residuals(runs), self.refit.residuals(runs)) if runs else None
+        against = (
+            contradiction(verify_change(name, runs, other.residuals(runs), self.refit.residuals(runs)))
+            if runs
+            else None
+        )
         if against is not None:
             last = replace(last, contradicted=replace(against, instead_of=tuple(named)))
         return replace(self, found=(*terms, last))

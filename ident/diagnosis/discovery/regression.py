@@ -66,10 +66,10 @@ class Regression:
         found = []
         while len(rest):
             first = rest[0]
-            alike = np.abs(self.products[first, rest]) > CRITERIA.discovery.same_class * size[first] * size[rest]
-            alike[0] = True
-            found.append(sorted(int(i) for i in rest[alike]))
-            rest = rest[~alike]
+            same_class = np.abs(self.products[first, rest]) > CRITERIA.discovery.same_class * size[first] * size[rest]
+            same_class[0] = True
+            found.append(sorted(int(i) for i in rest[same_class]))
+            rest = rest[~same_class]
         return found
 
 

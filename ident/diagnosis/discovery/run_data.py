@@ -89,16 +89,16 @@ def signal_paths(
     """
     broken = injected(preset.core, at)
     found: dict[object, Response] = {}
-    for record, key in zip(runs, map(_alike, runs), strict=True):
+    for record, key in zip(runs, map(_linear_model_key, runs), strict=True):
         if key not in found:
             model = linear_model(broken, values, record.run, actuator)
             if not all(np.all(np.isfinite(of)) for of in (model.A, model.B, model.C, model.D)):
                 return None
             found[key] = Response.of([model], record.rate)
-    return [found[key] for key in map(_alike, runs)]
+    return [found[key] for key in map(_linear_model_key, runs)]
 
 
-def _alike(record: RunData) -> object:
+def _linear_model_key(record: RunData) -> object:
     """What records have in common that have one linear model."""
     run = record.run
     return run.specimen, run.gain, run.output, record.rate

@@ -38,7 +38,8 @@ from ident.diagnosis.discovery.term_to_effect import (
 from ident.diagnosis.fitted_model import FittedModel, generalises
 from ident.diagnosis.significance import improvement
 from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
-from ident.diagnosis.verification import Contradiction, contradiction
+from ident.diagnosis.verdict import contradiction
+from ident.diagnosis.verification import Contradiction, verify_change
 from ident.equations.mathml import mathml
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.levenberg_marquardt import Way
@@ -210,7 +211,11 @@ class TermSearch:
     def _contradiction(self, name: str, before: FittedModel) -> Contradiction | None:
         """Whether runs to verify speak against the latest term."""
         runs = self.models.matrix.of_use("verify")
-        return contradiction(name, runs, before.residuals(runs), self.base.residuals(runs)) if runs else None
+        return (
+            contradiction(verify_change(name, runs, before.residuals(runs), self.base.residuals(runs)))
+            if runs
+            else None
+        )
 
     def _proposal(
         self, candidate: TermCandidate, seen: CandidateTerms, name: str, gained: float, bar: float, hypothesis: bool

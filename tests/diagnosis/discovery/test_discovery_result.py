@@ -11,9 +11,9 @@ import pytest
 from ident.diagnosis.discovery.discovery_result import DiscoveryResult, RejectedTerm
 from ident.diagnosis.discovery.proposal import Proposal
 from ident.diagnosis.fitted_model import FittedModel
-from ident.diagnosis.report import dispensable_sentence, proposed_text
-from ident.diagnosis.result import Verdict
-from ident.diagnosis.verification import Contradiction
+from ident.diagnosis.sentences import dispensable_sentence, proposed_text
+from ident.diagnosis.verdict import Findings, conclude
+from ident.diagnosis.verification import Contradiction, VerifyChange
 from ident.run import Run
 
 TIMES = np.arange(2000) / 1000.0
@@ -105,13 +105,16 @@ def test_what_the_terms_do_without_is_named_no_more() -> None:
     term = replace(found(0.1).found[-1], beside=("entrained_air",))
     needless = DiscoveryResult(found=(term,)).dispensable(named)
     assert needless == ("one_way_leakage", "gain_asymmetry")
-    groups = (("entrained_air",), ("gain_asymmetry", "null_bias"))
-    before = Verdict(named, "contradicted", ("gain_asymmetry",), groups, unexplained=True)
-    after = before.without(needless)
+    before = Findings(
+        added=named,
+        alternatives=(("entrained_air", "backlash"), ("gain_asymmetry", "null_bias")),
+        verify=(VerifyChange("gain_asymmetry", 0.1, None),),
+    )
+    after = conclude(replace(before, dispensable=needless))
     assert (after.effects, after.stood_in) == (("entrained_air",), needless)
     assert (after.standing, after.contradicted_by) == ("stand_in", ())
-    assert after.indistinguishable == (("entrained_air",),)
-    assert before.without(named).standing == "nothing"
+    assert after.indistinguishable == (("entrained_air", "backlash"),)
+    assert conclude(replace(before, dispensable=named)).standing == "nothing"
     told = "one way leakage and gain asymmetry are not needed: they stood for that."
     assert next(dispensable_sentence(needless)).endswith(told)
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from ident.diagnosis.candidate_models import CandidateModels
-from ident.diagnosis.diagnose import _better_with_fewer
 from ident.diagnosis.discovery.proposal import Proposal
-from ident.diagnosis.report import proposed_text, verdict_text, why_of_gain
+from ident.diagnosis.report import better_with_fewer
+from ident.diagnosis.sentences import proposed_text, verdict_text, why_of_gain
 from ident.diagnosis.significance import Improvement
 from ident.diagnosis.verification import Contradiction
 from ident.effects import EFFECTS
@@ -114,11 +114,11 @@ def test_a_smaller_error_on_verify_runs_on_the_way_is_told_with_what_was_added_s
         return SimpleNamespace(errors={"fit": 0.1, "held_out": 0.1, "verify": verify})
 
     way = [(None, refit(0.217)), ("flow_saturation", refit(0.0405)), ("dead_zone", refit(0.0641))]
-    fewer = _better_with_fewer(way)
+    fewer = better_with_fewer(way)
     assert fewer == (0.0405, ("dead_zone",))
     errors = {"fit": 0.0279, "verify": 0.0641}
     text = verdict_text(("flow_saturation", "dead_zone"), (), (), True, errors, 0.22, fewer=fewer)
     assert "to 2.79 % (6.41 % on verify runs, 4.05 % without dead zone)." in text
-    assert _better_with_fewer([*way[:2], ("dead_zone", refit(0.044))]) is None
-    assert _better_with_fewer([(None, refit(None)), ("dead_zone", refit(None))]) is None
-    assert _better_with_fewer([(None, refit(0.03)), *way[1:]]) == (0.03, ("flow_saturation", "dead_zone"))
+    assert better_with_fewer([*way[:2], ("dead_zone", refit(0.044))]) is None
+    assert better_with_fewer([(None, refit(None)), ("dead_zone", refit(None))]) is None
+    assert better_with_fewer([(None, refit(0.03)), *way[1:]]) == (0.03, ("flow_saturation", "dead_zone"))

@@ -1,0 +1,104 @@
+"""What challenges a selection: its noise, runs to verify, other effects, lags and machines that explain as well."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.diagnosis.alternative_structures import AlternativeModel, alternative_explanations
+from ident.diagnosis.budget import SearchBudget
+from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.ladder import Rungs
+from ident.diagnosis.result import Explanation, Suspect
+from ident.diagnosis.selection import Selection
+from ident.diagnosis.sentences import delay_sentence
+from ident.diagnosis.stages import LAGS, NOISE, OTHERS, VERIFY, Stages
+from ident.diagnosis.total_delay import lag_ambiguities, total_delay
+from ident.diagnosis.verdict import Findings
+from ident.diagnosis.verification import VerifyChange, verify_change
+from ident.progress import Progress
+from ident.time_budget import in_time
+
+Names = tuple[str, ...]
+
+
+def challenged(
+    selection: Selection, steps: Rungs, suspects: Sequence[Suspect], stages: Stages, lag_pairs: Sequence[Names] = (),
+    elsewhere: Sequence[Explanation] = (),
+) -> Findings:  # fmt: skip
+    """What is found of a selection: its noise, its verify runs, its bounds; with what other stages found of it."""
+    models, fitted = selection.models, selection.fitted
+    residual = in_time(lambda: models.residual(fitted))
+    if residual is None:
+        stages.miss(NOISE)
+    verify = in_time(lambda: tuple(_verify_changes(selection, steps)))
+    if verify is None:
+        stages.miss(VERIFY)
+    return Findings(
+        added=selection.added,
+        alternatives=tuple(tuple(one.effect for one in group) for group in selection.alternatives.values()),
+        lag_pairs=tuple(lag_pairs),
+        residual=residual,
+        verify=verify or (),
+        at_bound=tuple(name for name in selection.added if models.at_bound(fitted, name)),
+        suspects=tuple(suspects),
+        elsewhere=tuple(elsewhere),
+    )
+
+
+def _verify_changes(selection: Selection, steps: Rungs) -> Iterator[VerifyChange]:
+    """How the error on verify runs changes with each effect of the ladder."""
+    runs = selection.models.matrix.of_use("verify")
+    if not runs:
+        return
+    before: list[NDArray[np.float64]] | None = None
+    for added, refit in steps:
+        if not refit.stable:
+            continue  # a rung of the ladder that no search stood on
+        after = refit.residuals(runs)
+        if added and before and (change := verify_change(added, runs, before, after)):
+            yield change
+        before = after
+
+
+def other_machines(
+    known: Sequence[AlternativeModel], selection: Selection, stages: Stages, budget: SearchBudget
+) -> tuple[Explanation, ...]:
+    """What other machines explain as well, where there are others."""
+    if not known or not selection.added or selection.base.effects:
+        return ()
+    explained = partial(alternative_explanations, known, selection, budget.report_progress)
+    return stages.attempt(OTHERS, explained, ())
+
+
+def delay_sentences(selection: Selection, stages: Stages, budget: SearchBudget) -> Sequence[str]:
+    """How late the machine answers, where the data do not tell by which lag or delay."""
+    return stages.attempt(LAGS, lambda: _delay_sentences(selection, budget), ())
+
+
+def lag_pairs(selection: Selection, stages: Stages, budget: SearchBudget) -> Sequence[Names]:
+    """Lags and delays of which no two can be told from two others."""
+
+    def pairs() -> Sequence[Names]:
+        budget.report_progress(Progress(LAGS, 0, 1))
+        return lag_ambiguities(selection.models, selection.fitted, selection.added)
+
+    return stages.attempt(LAGS, pairs, ())
+
+
+def _delay_sentences(selection: Selection, budget: SearchBudget) -> Sequence[str]:
+    """The sentence on the total delay of the last model; else, where something remains, of the one before it.
+
+    An effect that makes the valve's lag another, as its stiction, holds this lag in its place.
+    """
+    budget.report_progress(Progress(LAGS, 0, 1))
+    models, steps = selection.models, [refit for _, refit in selection.ladder() if refit.stable][::-1]
+    asked = CRITERIA.ambiguity.delay_models if models.residual_above_noise(selection.fitted) else 1
+    for refit in steps[:asked]:
+        if late := total_delay(models, selection.base, refit):
+            without = tuple(name for name in selection.added if name not in refit.effects)
+            return (delay_sentence(late, models.described, without),)
+    return ()

@@ -1,0 +1,77 @@
+"""Terms that no catalogue holds, in addition to the given model and, where that is not all, to the selected one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ident.diagnosis.budget import SearchBudget
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.discovery.discovery_result import DiscoveryResult
+from ident.diagnosis.discovery.search import TermSearch
+from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.selection import Selection
+from ident.diagnosis.stages import TERMS, Stages
+from ident.time_budget import in_time
+
+INCOMPLETE = DiscoveryResult(complete=False)
+
+
+def is_searched(selection: Selection, stages: Stages, budget: SearchBudget) -> bool:
+    """Whether terms are searched for: they are wanted, and something remains or they were asked for.
+
+    Unasked they are not wanted where no more effects were than the few that were selected.
+    """
+    exhausted = budget.most >= CRITERIA.selection.usual or len(selection.added) < budget.most
+    if not (exhausted if budget.propose is None else budget.propose):
+        return False
+    asked = budget.propose is True
+    return stages.attempt(TERMS, lambda: asked or selection.models.residual_above_noise(selection.fitted), False)
+
+
+def discovered(models: CandidateModels, selection: Selection, stages: Stages, budget: SearchBudget) -> DiscoveryResult:
+    """The terms that were found, as far as there was time; `models` are those of all runs."""
+    terms = stages.attempt(TERMS, lambda: terms_of(models, selection, budget), INCOMPLETE)
+    if not terms.complete:
+        stages.miss(TERMS)
+    return terms
+
+
+def terms_of(models: CandidateModels, selection: Selection, budget: SearchBudget) -> DiscoveryResult:
+    """Terms in addition to the given model and, where that is not all, to the selected one.
+
+    What was selected may stand for something else: with the term itself it is not needed. The terms of the first
+    search stay where there is no time for the second.
+    """
+    alone = _search(selection, selection.base, budget)
+    if not selection.added:
+        return alone
+    both = in_time(lambda: _of_both_searches(models, selection, alone, budget))
+    return replace(alone, complete=False) if both is None else both
+
+
+def _of_both_searches(
+    models: CandidateModels, selection: Selection, alone: DiscoveryResult, budget: SearchBudget
+) -> DiscoveryResult:
+    """The terms `alone`, or those in addition to the selected effects: the smaller error, or the simpler model."""
+    alone = alone.instead(selection.fitted, selection.added, models.matrix.of_use("verify"))
+    if not alone.complete or models.is_noise(alone.error_with_terms(selection.base.error)):
+        return alone
+    further = _search(selection, selection.fitted, budget)
+    before, selected = (refit.held_out.error for refit in (selection.base, selection.fitted))
+    most = min(further.error_with_terms(selected, "held_out") * CRITERIA.conclusion.simpler_terms, selected)
+    simpler = alone.error_with_terms(before, "held_out") < most and not _is_a_selected_effect(alone, selection)
+    return replace(alone if simpler else further.or_rejected(alone), complete=further.complete)
+
+
+def _search(selection: Selection, refit: FittedModel, budget: SearchBudget) -> DiscoveryResult:
+    """The terms that a search adds to a model."""
+    asked = budget.propose is True
+    return TermSearch(selection.models, refit, budget.report_progress, selection.base.effects, asked).run()
+
+
+def _is_a_selected_effect(alone: DiscoveryResult, selection: Selection) -> bool:
+    """Whether the first term has the error of a selected effect alone: it is that effect, in other words."""
+    named = (c.refit.error for c in selection.ranking if c.refit is not None and c.effect in selection.added)
+    first = alone.found[0].error["fit"] if alone.found else None
+    return first is not None and any(abs(first - error) <= CRITERIA.significance.tie * error for error in named)

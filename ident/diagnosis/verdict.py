@@ -1,0 +1,119 @@
+"""The verdict of a diagnosis: a pure function of its findings. The whole rule stands on this page.
+
+What is *named* is what the selection added, but for what the model does as well without beside confirmed terms. The
+residual is *unexplained* unless it is noise. How the verdict stands: *nothing* is named; *contradicted* by runs to
+verify; *found*, the residual is noise; else a *stand_in*, for something remains. So it may where a strength ended at
+the bound of its search and no noise floor is known. A *group* are effects that the data cannot tell apart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from ident.diagnosis.criteria import CRITERIA, Criteria
+from ident.diagnosis.result import Explanation, Suspect, Verdict
+from ident.diagnosis.verification import Contradiction, Standing, VerifyChange
+
+Names = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Residual:
+    """The error on the estimation data and what is known of its noise.
+
+    `floor` is the error that noise alone makes, None where it is not known, and `spread` its relative standard
+    deviation. `correlation` is that of neighbouring residuals, asked where no floor is known. `excess` is the share of
+    the floor by which the error may exceed it, where that is another than usual: of a bench.
+    """
+
+    error: float
+    floor: float | None
+    spread: float = 0.0
+    correlation: float = 0.0
+    excess: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Findings:
+    """What the stages of a diagnosis found, in numbers and names.
+
+    `added` are the effects of the selection, in their order; `alternatives` for each the effects that are
+    indistinguishable from it, itself included; `lag_pairs` two added lags with those that stand for both as well.
+    `residual` is None where there was no time to ask whether it is noise. `verify` has the change by each added effect;
+    `at_bound` are those whose strength ended at the bound of its search, `dispensable` those that the model does as
+    well without beside confirmed terms. `suspects` are runs whose label is doubted, `elsewhere` what other machines
+    explain as well.
+    """
+
+    added: Names = ()
+    alternatives: Sequence[Names] = ()
+    lag_pairs: Sequence[Names] = ()
+    residual: Residual | None = None
+    verify: Sequence[VerifyChange] = ()
+    at_bound: Names = ()
+    dispensable: Names = ()
+    suspects: Sequence[Suspect] = field(default=())
+    elsewhere: Sequence[Explanation] = field(default=())
+
+
+def is_noise(residual: Residual, criteria: Criteria = CRITERIA) -> bool:
+    """Whether the error is noise alone: no further above its floor than chance; without a floor, without a memory."""
+    if residual.floor is None:
+        return not residual.correlation > criteria.noise.noise_correlation
+    excess = criteria.noise.floor_excess if residual.excess is None else residual.excess
+    return residual.error < (1.0 + excess + criteria.noise.floor_deviations * residual.spread) * residual.floor
+
+
+def contradicts(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
+    """Whether runs to verify speak against an effect: the error rises beyond chance, or the model is unstable there."""
+    return change.after is None or change.after - change.before > criteria.verification.deviations * change.std_error
+
+
+def contradiction(change: VerifyChange | None) -> Contradiction | None:
+    """That runs to verify contradict what an effect or a term stands for, where they do."""
+    return None if change is None or not contradicts(change) else change.contradiction()
+
+
+def conclude(found: Findings, criteria: Criteria = CRITERIA) -> Verdict:
+    """The verdict that follows from the findings; its sentences are the report's."""
+    named = tuple(name for name in found.added if name not in found.dispensable)
+    contradicted = tuple(change.effect for change in found.verify if contradicts(change, criteria))
+    against = tuple(name for name in contradicted if name not in found.dispensable)
+    return Verdict(
+        effects=named,
+        standing=_standing(found, named, against, bool(contradicted), criteria),
+        contradicted_by=against,
+        indistinguishable=_groups(found),
+        suspects=tuple(found.suspects),
+        unexplained=_unexplained(found, criteria),
+        at_bound=found.at_bound,
+        elsewhere=tuple(found.elsewhere),
+        stood_in=found.dispensable,
+    )
+
+
+def _unexplained(found: Findings, criteria: Criteria) -> bool:
+    """Whether something remains, whatever was added: nobody knows that it is noise where that was not asked."""
+    return found.residual is None or not is_noise(found.residual, criteria)
+
+
+def _standing(
+    found: Findings, named: Names, against: Names, was_contradicted: bool, criteria: Criteria
+) -> Standing:  # fmt: skip
+    """How what is named stands; what only a dispensable effect was contradicted by is a stand-in."""
+    floor_known = found.residual is not None and found.residual.floor is not None
+    if not named:
+        return "nothing"
+    if against:
+        return "contradicted"
+    if was_contradicted or _unexplained(found, criteria) or (found.at_bound and not floor_known):
+        return "stand_in"
+    return "found"
+
+
+def _groups(found: Findings) -> tuple[Names, ...]:
+    """Effects that the data cannot tell apart: those of a lag pair count once, none is of a dispensable effect."""
+    alone = (group for group in found.alternatives if len(group) > 1)
+    groups = (*(group for group in alone if not any({*group} <= {*pair} for pair in found.lag_pairs)), *found.lag_pairs)
+    return tuple(group for group in groups if not {*group} & {*found.added} & {*found.dispensable})

@@ -1,0 +1,74 @@
+"""The verdict is a function of the findings alone: each case worked out by hand from the rule on its page."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from ident.diagnosis.criteria import Criteria, Noise
+from ident.diagnosis.verdict import Findings, Residual, conclude, is_noise
+from ident.diagnosis.verification import VerifyChange
+
+NOISE, FAR = Residual(0.0101, 0.01, spread=0.001), Residual(0.02, 0.01, spread=0.001)
+FALLS, RISES = VerifyChange("lead", 0.1, 0.09, 0.001), VerifyChange("lead", 0.1, 0.103, 0.001)
+LEAD = Findings(added=("lead",), residual=NOISE, verify=(FALLS,))
+
+
+@pytest.mark.parametrize(
+    ("found", "standing", "unexplained"),
+    [
+        (LEAD, "found", False),
+        (replace(LEAD, residual=FAR), "stand_in", True),
+        (replace(LEAD, residual=None), "stand_in", True),  # nobody had time to ask
+        (replace(LEAD, verify=(RISES,)), "contradicted", False),
+        (replace(LEAD, verify=(replace(RISES, std_error=0.002),)), "found", False),  # 1.5 standard errors
+        (replace(LEAD, verify=(VerifyChange("lead", 0.1, None),)), "contradicted", False),  # unstable with it
+        (replace(LEAD, at_bound=("lead",)), "found", False),
+        (replace(LEAD, at_bound=("lead",), residual=Residual(0.01, None, correlation=0.1)), "stand_in", False),
+        (Findings(residual=NOISE), "nothing", False),
+        (Findings(residual=FAR), "nothing", True),
+        (replace(LEAD, dispensable=("lead",)), "nothing", False),
+    ],
+)
+def test_how_a_verdict_stands(found, standing, unexplained):
+    verdict = conclude(found)
+    assert (verdict.standing, verdict.unexplained) == (standing, unexplained)
+
+
+def test_what_only_a_dispensable_effect_was_contradicted_by_is_a_stand_in():
+    """Two effects, and runs to verify that speak against one: beside confirmed terms that one is not needed."""
+    two = replace(LEAD, added=("lead", "lag"), verify=(RISES,))
+    assert conclude(two).contradicted_by == ("lead",)
+    cleared = conclude(replace(two, dispensable=("lead",)))
+    assert (cleared.effects, cleared.standing, cleared.contradicted_by) == (("lag",), "stand_in", ())
+    assert cleared.stood_in == ("lead",)
+
+
+@pytest.mark.parametrize(
+    ("residual", "noise"),
+    [
+        (Residual(0.01019, 0.01), True),  # 2 % above the floor
+        (Residual(0.01021, 0.01), False),
+        (Residual(0.0104, 0.01, spread=0.007), True),  # 2 % and three deviations
+        (Residual(0.0124, 0.01, excess=0.25), True),
+        (Residual(0.01, None, correlation=0.4), True),
+        (Residual(0.01, None, correlation=0.6), False),
+    ],
+)
+def test_an_error_is_noise_up_to_its_floor_and_chance(residual, noise):
+    assert is_noise(residual) is noise
+
+
+def test_other_criteria_lead_to_another_verdict():
+    assert conclude(replace(LEAD, residual=FAR), Criteria(noise=Noise(floor_excess=1.5))).standing == "found"
+
+
+def test_a_group_is_told_once_and_never_with_what_is_dispensable():
+    """Lag and delay stand in a group each and in a pair: the pair says it all."""
+    found = Findings(
+        added=("lag", "delay", "play"), alternatives=(("lag", "lead"), ("delay",), ("play", "dead_zone")),
+        lag_pairs=(("lag", "delay", "lead"),), residual=FAR,
+    )  # fmt: skip
+    assert conclude(found).indistinguishable == (("play", "dead_zone"), ("lag", "delay", "lead"))
+    assert conclude(replace(found, dispensable=("play",))).indistinguishable == (("lag", "delay", "lead"),)
