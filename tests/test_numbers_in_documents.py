@@ -94,7 +94,7 @@ def of_diagnosis() -> Iterator[Tie]:
     yield D, "white noise could not tell apart by {}, are its group", (word(CRITERIA.significance.indistinguishable),)
     yield D, "beside the best stands what takes {} of what it takes", (PARTS[CRITERIA.ambiguity.nearly_as_much],)
     yield D, "no more than {} of the unexplained rest", (PARTS[CRITERIA.ambiguity.bias_of_missing],)
-    yield D, "Then {} others of the first ranking, two at a time", (word(CRITERIA.selection.paired),)
+    yield D, "Then {} others of the first ranking, two at a time", (word(CRITERIA.selection.pair_finalists),)
     yield D, "If the error stays more than {} % above the noise floor", (per_cent(CRITERIA.noise.floor_excess),)
     yield D, "rises with an effect by more than {} of its standard errors", (word(CRITERIA.verification.deviations),)
     yield D, "a bootstrap over chunks of {} correlation times", (word(CRITERIA.verification.chunk_length),)

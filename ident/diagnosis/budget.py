@@ -29,7 +29,7 @@ class SearchBudget:
     propose: bool | None = None
 
     def __post_init__(self) -> None:
-        self._sight: tuple[Expected, ...] = ()
+        self._first_expected: tuple[Expected, ...] = ()
         self._verdict = ""
         self._stopped_by: list[BaseException] = []
 
@@ -43,8 +43,8 @@ class SearchBudget:
 
         Raises TimeIsUp once the time is over, or the report has said so.
         """
-        self._sight = self._sight or progress.expected
-        known = replace(progress, expected=self._sight, added=self.added, verdict=self._verdict)
+        self._first_expected = self._first_expected or progress.expected
+        known = replace(progress, expected=self._first_expected, added=self.added, verdict=self._verdict)
         try:
             self.report(known)
         except TimeIsUp:

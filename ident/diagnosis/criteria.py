@@ -190,7 +190,7 @@ class Ranking:
     strong_starts: tuple[float, ...] = (1.0, 0.6, 0.3)
     """[of the largest strength] From which a refit begins, too. Why: a fit that lacks the effect may have gone far
     astray. Test: test_far_starts.py::test_strong_starts_lie_within_the_bounds_of_the_model_that_they_begin_from"""
-    shaken_starts: tuple[float, ...] = (0.5, 0.7, 1.4, 2.0)
+    perturbed_starts: tuple[float, ...] = (0.5, 0.7, 1.4, 2.0)
     """[of the fitted strength] From which a refit begins, too. Why: play and stiction have optima nearby, one for
     each reversal."""
     multistart_rounds: int = 4
@@ -320,7 +320,7 @@ class Selection:
     global_restarts: int = 8
     """[effects] Of the first ranking started from the whole search space. Why: a model that went far astray makes
     another effect look better. Test: test_selection.py::test_one_effect_from_anywhere_takes_the_place_of_the_first"""
-    paired: int = 5
+    pair_finalists: int = 5
     """[finalists] Tried two at a time. Why: two lags look like a delay, one at a time.
     Test: test_selection.py::test_two_that_only_together_explain_the_data_are_found_where_a_third_came_first"""
 

@@ -159,7 +159,7 @@ def _without(
     seen: dict[bytes, Local] = {point.tobytes(): here}
 
     def better(trial: Array, least: float) -> Local | None:
-        there = seen[trial.tobytes()] = evaluate(trial, lambda promised: _partly(promised, used).error < least)
+        there = seen[trial.tobytes()] = evaluate(trial, lambda predicted: _partly(predicted, used).error < least)
         part = _partly(there, used)
         return part if part.error < least else None
 

@@ -103,8 +103,8 @@ class FittedModel:
         found = _Simulated.of(self.fitness, self.point)
         if not self._moving or self._confirms(found):
             return found
-        anew = _Simulated.of(self.fitness.fresh(self.fitness.runs), self.point)
-        return anew if self._confirms(anew) else found
+        again = _Simulated.of(self.fitness.fresh(self.fitness.runs), self.point)
+        return again if self._confirms(again) else found
 
     @property
     def error(self) -> float:

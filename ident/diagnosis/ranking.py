@@ -317,7 +317,7 @@ def _perturbed_starts(models: CandidateModels, refit: FittedModel) -> list[dict[
     lower, upper = refit.fitness.space.bounds(refit.values)[symbol]
     return [
         {**refit.values, symbol: float(np.clip(s * refit.values[symbol], lower, upper))}
-        for s in CRITERIA.ranking.shaken_starts
+        for s in CRITERIA.ranking.perturbed_starts
     ]
 
 

@@ -32,7 +32,7 @@ _log.addHandler(logging.NullHandler())  # a user reads the note
 class Stages:
     """The stages of one diagnosis, and `notes` for the reader on those that there was no time for, or that failed."""
 
-    course: SearchBudget
+    budget: SearchBudget
     notes: list[str] = field(default_factory=list)
     _missed: set[str] = field(default_factory=set)
 
@@ -44,12 +44,12 @@ class Stages:
     def attempt(self, stage: str, make: Callable[[], Made], instead: Made) -> Made:
         """What a stage makes; where it runs out of time, or fails, `instead`. What the caller stops it by is raised."""
         try:
-            self.course.budget.check()
+            self.budget.budget.check()
             return make()
         except TimeIsUp:
             self.miss(stage)
         except Exception as error:
-            if self.course.is_stopped_by(error):
+            if self.budget.is_stopped_by(error):
                 raise
             self._failed(stage, error)
         return instead
