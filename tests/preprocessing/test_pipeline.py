@@ -17,10 +17,10 @@ from app.cli.diagnose import diagnose as diagnose_command
 from app.cli.fit import fit
 from app.cli.preprocessing_options import switches
 from app.regress.recheck import recomputed, refitted
-from ident.diagnosis.family import ModelFamily
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.competing_models import competing_models
 from ident.diagnosis.recommended import settings_after
 from ident.diagnosis.result import Diagnosis
-from ident.diagnosis.rivals import rivals
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
@@ -194,7 +194,7 @@ def test_a_stored_fit_keeps_its_switches_wherever_it_is_used(unprepared):
 def test_a_diagnosis_takes_the_data_as_its_fit_did_and_says_so(unprepared, full):
     """In the short form its models alone: the whole of it takes some seconds."""
     matrix, given = unprepared
-    models = ModelFamily.of(matrix, Settings.from_json(dict(given.settings)))
+    models = CandidateModels.of(matrix, Settings.from_json(dict(given.settings)))
     assert models.matrix.preprocessing == given.preprocessing
     assert np.array_equal(models.matrix.runs[0].command, matrix.runs[0].command)
     if not full:
@@ -204,7 +204,7 @@ def test_a_diagnosis_takes_the_data_as_its_fit_did_and_says_so(unprepared, full)
     assert settings_after(found).preprocessing == OFF
     assert Diagnosis.from_json(json.loads(json.dumps(found.to_json()))).preprocessing == found.preprocessing
     assert "preprocessing: The step command_offset of preprocessing is switched off" in str(found)
-    assert rivals(found).preprocessing == OFF
+    assert competing_models(found).preprocessing == OFF
 
 
 def settings_after_of(found: Diagnosis) -> Settings:
