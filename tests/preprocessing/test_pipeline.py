@@ -132,7 +132,7 @@ def test_every_step_says_what_it_does_and_why_its_numbers_are_what_they_are():
 def test_the_manual_and_the_command_line_name_every_step_in_order():
     told = (Path(__file__).parents[2] / "docs" / "matrix.md").read_text(encoding="utf-8")
     assert (
-        tuple(re.findall(r"^\| `(\w+)` \|.*\|.*\|.*\|$", told.split("### What is done to the data")[1], re.M)) == NAMES
+        tuple(re.findall(r"^\| `(\w+)` \|.*\|.*\|.*\|$", told.split("## What is done to the data")[1], re.M)) == NAMES
     )
     for command, names in ((fit, NAMES), (diagnose_command, NAMES), (check, ("run_exclusion",))):
         given = [name for name in signature(command).parameters if name.startswith("no_")]
