@@ -33,7 +33,7 @@ class Candidate(NamedTuple):
     both: bool = False
 
 
-_FRICTION = (0.02, 0.1, 0.5)
+_FRICTION = (0.01, 0.04, 0.12, 0.3, 0.6, 1.0)
 CANDIDATES: dict[str, Candidate] = {
     "command_delay": Candidate("T", "period", (0.01, 0.1), upper=0.5),
     "command_limit": Candidate("a", "1/drive", (1.2, 2.0), upper=20.0),
@@ -50,9 +50,11 @@ CANDIDATES: dict[str, Candidate] = {
     "flow_saturation": Candidate("a", "1/drive", (0.3, 1.5), upper=20.0),
     "coulomb_friction": Candidate("Fc", "force", _FRICTION),
     "stribeck_friction": Candidate(
-        "dF", "force", (0.05, 0.3), (Shape("vs", "speed", (0.03, 0.15, 0.6), 3e-3, FASTEST),)
+        "dF", "force", (0.05, 0.2, 0.6), (Shape("vs", "speed", (0.03, 0.15, 0.6), 3e-3, FASTEST),)
     ),
-    "presliding_friction": Candidate("Fd", "force", (0.04, 0.2), (Shape("xs", "way", (3e-3, 0.03, 0.2), 3e-4, 5.0),)),
+    "presliding_friction": Candidate(
+        "Fd", "force", (0.04, 0.15, 0.5), (Shape("xs", "way", (3e-3, 0.03, 0.2), 3e-4, 5.0),)
+    ),
     "quadratic_damping": Candidate("c2", "force/speed^2", (0.04, 0.2)),
     "cubic_stiffness": Candidate("k3", "force/way^3", (0.1, 0.02, -0.05), both=True),
     "sensor_lag": Candidate("T", "period", (0.01,), upper=0.5),
@@ -60,7 +62,7 @@ CANDIDATES: dict[str, Candidate] = {
     "sensor_gain": Candidate("g", "1", (0.01,), upper=0.9, both=True),
     "position_friction": Candidate("Fx", "force/way^2", _FRICTION),
     "end_stop": Candidate(
-        "ks", "force/way", (3.0,),
+        "ks", "force/way", (1.0, 10.0),
         (Shape("way", "way", (0.7, 0.85, 0.95), 0.2, 1.2), Shape("xm", "way", (0.0,), -0.3, 0.3, False)),
     ),
     "sensor_nonlinearity": Candidate("s", "1/way^2", (0.05,), both=True),

@@ -83,7 +83,7 @@ def said(test: Test, decided: Allowed, found: Diagnosis) -> Row:
     }  # fmt: skip
     row: Row = {
         "named": list(named), "groups": [list(group) for group in groups], "standing": found.verdict.standing,
-        "unexplained": found.verdict.unexplained, "candidates": floors,
+        "unexplained": found.verdict.unexplained, "complete": found.complete, "candidates": floors,
         "errors": {use: round((found.ladder[-1].error.get(use) or 0.0) / test.noise, 3) for use in ("fit", "verify")},
         "floor": round((found.noise_floor["fit"] or 0.0) / test.noise, 3),
         "linear": round((found.ladder[0].error.get("fit") or 0.0) / test.noise, 3),
