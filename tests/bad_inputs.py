@@ -13,6 +13,7 @@ import zipfile
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -288,6 +289,17 @@ def compressed_mat5(inside: bytes) -> Make:
     return with_mat5(struct.pack("<II", 15, len(packed)) + packed)
 
 
+@cache
+def swollen_mat5() -> Make:
+    """One that holds 200 MB of zeros: to pack them takes a second, so it is done once it is wanted."""
+    return compressed_mat5(struct.pack("<II", 14, 1000) + bytes(200 << 20))
+
+
+def mat5_bomb(matrix: MatrixFolder) -> Path:
+    """Some kilobytes that swell when they are read."""
+    return swollen_mat5()(matrix)
+
+
 BAD_MATRICES = (
     Bad("not a zip", "not-a-zip", archive_of(b"not a zip at all")),
     Bad("an empty zip file", "not-a-zip", archive_of(b"")),
@@ -325,7 +337,7 @@ BAD_MATRICES = (
     Bad("npz bomb", "broken-npz", with_npz(npy("(400,)", data=bytes(16 << 20)))),
     Bad("object arrays in npz", "object-array", object_array),
     Bad("Parquet bomb", "too-large", large_parquet),
-    Bad("MAT bomb", "broken-mat", compressed_mat5(struct.pack("<II", 14, 1000) + bytes(200 << 20))),
+    Bad("MAT bomb", "broken-mat", mat5_bomb),
     *(Bad(f"truncated {kind}", f"broken-{code}", truncated(kind)) for kind, code in (
         ("mat5", "mat"), ("mat4", "mat"), ("mat73", "hdf5"), ("h5", "hdf5"), ("tdms", "tdms"), ("parquet", "parquet"),
         ("npz", "npz"))),

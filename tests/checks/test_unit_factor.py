@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -129,25 +130,31 @@ def ramp(name: str, rate: float, seconds: float) -> Run:
     return Run(name, "", rate, channels, dict.fromkeys(channels, "m"), gain=7.0)
 
 
-NOISE = [record(f"n{seed}", seed) for seed in range(3)]
-MEANT = {
-    "a recorder ten times slower": [*NOISE, record("slow", 4, rate=409.6, n=819)],
-    "and ten times as long, its command as much slower": [*NOISE, record("slow", 4, rate=409.6, band=8.0)],
-    "sweeps of 10 and 100 s": [sweep("a", 10, 30), sweep("b", 10, 30), sweep("c", 100, 30), sweep("d", 10, 3)],
-    "a slow static test": [*NOISE, ramp("static", 40.96, 200), ramp("static-2", 4096.0, 20)],
-    "decades of amplitude, each repeated": [record(f"r{k}", k, rms=10.0 ** -(2 + k // 2)) for k in range(6)],
-    "decades of amplitude, the last one once": [record(f"r{k}", k, rms=10.0 ** -(2 + k // 2)) for k in range(5)],
-    "decades of amplitude, each once": [record(f"r{k}", k, rms=10.0**-k) for k in (2, 3, 4)],
-    "a stated amplitude": [*NOISE, replace(record("large", 4, rms=1e-2), amplitude=1e-2)],
-    "a gain that was as much smaller": [*NOISE, replace(record("large", 4, rms=1e-2), gain=0.7)],
-    "runs of other kinds": [*NOISE, replace(record("large", 4, rms=1e-2), kind="multisine")],
-    "two amplitudes of no unit's factor": [*NOISE, record("large", 4, rms=5e-3)],
+def noise() -> list[Run]:
+    """Three runs alike."""
+    return [record(f"n{seed}", seed) for seed in range(3)]
+
+
+MEANT: dict[str, Callable[[], list[Run]]] = {
+    "a recorder ten times slower": lambda: [*noise(), record("slow", 4, rate=409.6, n=819)],
+    "and ten times as long, its command as much slower": lambda: [*noise(), record("slow", 4, rate=409.6, band=8.0)],
+    "sweeps of 10 and 100 s": lambda: [sweep("a", 10, 30), sweep("b", 10, 30), sweep("c", 100, 30), sweep("d", 10, 3)],
+    "a slow static test": lambda: [*noise(), ramp("static", 40.96, 200), ramp("static-2", 4096.0, 20)],
+    "decades of amplitude, each repeated": lambda: [record(f"r{k}", k, rms=10.0 ** -(2 + k // 2)) for k in range(6)],
+    "decades of amplitude, the last one once": lambda: [
+        record(f"r{k}", k, rms=10.0 ** -(2 + k // 2)) for k in range(5)
+    ],
+    "decades of amplitude, each once": lambda: [record(f"r{k}", k, rms=10.0**-k) for k in (2, 3, 4)],
+    "a stated amplitude": lambda: [*noise(), replace(record("large", 4, rms=1e-2), amplitude=1e-2)],
+    "a gain that was as much smaller": lambda: [*noise(), replace(record("large", 4, rms=1e-2), gain=0.7)],
+    "runs of other kinds": lambda: [*noise(), replace(record("large", 4, rms=1e-2), kind="multisine")],
+    "two amplitudes of no unit's factor": lambda: [*noise(), record("large", 4, rms=5e-3)],
 }
 
 
 @pytest.mark.parametrize("name", MEANT)
 def test_what_was_meant_is_not_doubted(name):
-    assert doubts(MEANT[name]) == []
+    assert doubts(MEANT[name]()) == []
 
 
 @pytest.mark.parametrize("times", WRONG)
@@ -205,7 +212,7 @@ def test_a_fit_that_explains_hardly_anything_names_the_unit():
     """Of the run that is doubted; where none is, that a unit may be wrong."""
     causes = "; ".join(unit_causes(misread().runs))
     assert causes.startswith("a wrong unit: run units_b is sampled at 1e+06 Hz")
-    assert unit_causes(NOISE) == ["a wrong unit of a channel or of the time"]
+    assert unit_causes(noise()) == ["a wrong unit of a channel or of the time"]
 
 
 def test_a_fit_of_a_run_whose_time_has_a_wrong_unit_says_so_first():
