@@ -40,24 +40,22 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 LONGEST = (
-    "diagnosis/test_diagnose", "bench/test_procedures", "bench/test_recovery", "bench/test_calibration",
-    "browser/test_workbench", "browser/test_linked", "browser/test_pages",
-    "diagnosis/discovery/test_free_curves", "test_project", "faults/test_workers", "cli/test_postgresql",
-    "app/test_hybrid", "app/test_own_effects", "test_site", "app/test_contract", "fit/test_fifth_order",
-    "app/test_older_database", "cli/test_service_commands", "test_wheel", "test_windows", "test_additions",
-    "bench/test_diagnosis", "bench/test_acceptance", "bench/test_continued", "diagnosis/test_total_delay",
-    "diagnosis/test_time_budget", "test_readme", "app/test_adding", "readers/test_random_tables",
-    "effects/test_every_pair", "acceptance/test_any_lab", "presets/test_composed", "diagnosis/test_structure_selection",
-    "browser/test_proposals", "browser/test_matrix_page", "diagnosis/test_far_starts", "fit/test_disturbance",
-    "fit/test_beginnings", "cli/test_any_machine", "presets/test_machines", "app/test_diagnoses",
-    "diagnosis/test_measured", "diagnosis/discovery/test_search", "cli/test_diagnose",
-    "acceptance/test_identification", "bench/test_model", "effects/test_contract", "app/test_bench",
-    "bench/test_figures", "cli/test_commands", "fit/test_recovery", "bench/test_identification",
-    "residuals/test_curves", "faults/test_kill", "fit/test_nonlinear_core", "fit/test_outputs",
-    "fit/test_custom_fit", "figures/test_figures", "acceptance/test_measured",
-    "reference/test_nonlinear_reference", "effects/test_pairs",
+    "browser/test_workbench", "browser/test_monkey", "app/test_hybrid", "diagnosis/test_total_delay", "test_project",
+    "bench/test_acceptance", "cli/test_service_commands", "cli/test_postgresql", "faults/test_workers",
+    "test_readme", "test_site", "diagnosis/test_time_budget", "app/test_own_effects", "faults/test_kill",
+    "test_windows", "acceptance/test_measured", "test_additions", "cli/test_effects", "fit/test_fifth_order",
+    "test_wheel", "diagnosis/test_structure_selection", "app/test_older_database", "diagnosis/discovery/test_search",
+    "app/test_contract", "diagnosis/discovery/test_free_curves", "cli/test_commands", "app/test_diagnoses",
+    "app/backup/test_backup", "readers/test_random_tables", "app/test_bench", "fit/test_end_stops",
+    "presets/test_machines", "diagnosis/test_diagnose", "test_notebooks", "fit/test_beginnings",
+    "bench/test_procedures", "acceptance/test_identification", "bench/test_recovery", "fit/test_windows",
+    "bench/test_diagnosis", "bench/test_figures", "cli/test_diagnose", "bench/test_identification",
+    "effects/test_contract", "faults/test_mixed_load", "effects/test_every_pair", "app/test_service",
+    "cli/test_any_machine", "bench/test_continued", "checks/test_check", "app/test_adding", "app/access/test_roles",
+    "faults/test_older_jobs", "acceptance/test_rounding", "residuals/test_curves", "bench/test_calibration",
+    "readers/test_damage", "app/test_demo", "readers/test_lab_formats", "hybrid/test_what_if",
 )  # fmt: skip
-"""Files that take longest, the longest first."""
+"""Files that take longest, the longest first; the files of the browser stay together and go with their first."""
 
 OWN_SERVICE = "tests/browser/test_workbench.py"
 """Has a service of its own, and takes so long that it has a worker to itself."""
