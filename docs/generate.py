@@ -5,8 +5,11 @@ from __future__ import annotations
 import ast
 import inspect
 import json
+import re
 import sys
 from collections.abc import Iterable, Iterator
+from dataclasses import fields
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +17,10 @@ import typer
 
 from app.cli.program import program
 from app.main import routed
+from ident.diagnosis.criteria import CRITERIA
 from ident.effects import CATALOGUE
 from ident.equations.equation import Equation
+from ident.fit.levenberg_marquardt import Way
 from ident.parameter import Parameter
 from ident.presets import PRESETS, Preset
 
@@ -29,7 +34,7 @@ def pages() -> dict[str, str]:
     """Every generated page by file name."""
     return {
         "cli.md": command_line(), "models.md": models(), "errors.md": errors(), "http.md": over_http(),
-        "openapi.json": document(),
+        "openapi.json": document(), "criteria.md": criteria(),
     }  # fmt: skip
 
 
@@ -152,6 +157,44 @@ def parameters(of: Iterable[Parameter]) -> list[str]:
     """Parameters as a table."""
     rows = [(f"`{p.name}`", p.symbol, p.unit, f"{p.lower:g} … {p.upper:g}", f"{p.value:g}", p.meaning) for p in of]
     return [*table(("name", "symbol", "unit", "bounds", "default", "meaning"), rows), ""]
+
+
+CRITERIA_HEAD = (
+    "Every number that decides in a [diagnosis](diagnosis.md), by the stage that it decides in, as",
+    "`ident/diagnosis/criteria.py` has it. Read a row as: value, unit, what it is.",
+)
+
+
+def criteria() -> str:
+    """Every number of a diagnosis, by stage, with its unit, its meaning and its reason."""
+    lines = ["# The numbers of a diagnosis", NOTE, "", *CRITERIA_HEAD, ""]
+    for section in fields(CRITERIA):
+        of = getattr(CRITERIA, section.name)
+        below = documented(Path(inspect.getfile(type(of))), type(of).__name__)
+        rows = []
+        for one in fields(of):
+            unit, meaning, reason = below[one.name]
+            value = getattr(of, one.name)
+            shown = f"{value.most} steps, to {value.converged:g}" if isinstance(value, Way) else str(value)
+            rows.append((one.name.replace("_", " "), shown, unit, meaning, reason))
+        title = section.name.replace("_", " ").capitalize()
+        lines += [f"## {title}", "", inspect.getdoc(type(of)) or "", ""]
+        lines += [*table(("number", "value", "unit", "what it is", "why"), rows), ""]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def documented(file: Path, section: str) -> dict[str, tuple[str, str, str]]:
+    """What is written below each number of a section: its unit, its meaning and its reason."""
+    found = {}
+    for node in ast.parse(file.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.ClassDef) and node.name == section:
+            for one, below in pairwise(node.body):
+                if isinstance(one, ast.AnnAssign) and isinstance(below, ast.Expr):
+                    text = " ".join(str(ast.literal_eval(below.value)).split())
+                    parts = re.fullmatch(r"\[([^]]+)\] (.+?)\. Why: (.+?)\.(?: Test: .*)?", text)
+                    assert parts, f"{file}: {text}"
+                    found[str(ast.unparse(one.target))] = (parts[1], parts[2], parts[3])
+    return found
 
 
 def errors() -> str:

@@ -7,6 +7,7 @@ is changed in code, or a phrase that is rewritten, fails here until both agree. 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -66,47 +67,55 @@ def _paper_generations() -> int:
 def of_diagnosis() -> Iterator[Tie]:
     """What decides in a diagnosis."""
     D = "diagnosis.md"
-    yield D, "all {} effects in about a second", (len(EFFECTS),)
+    yield D, "All {} effects take about a second", (len(EFFECTS),)
     yield D, "The first {} are told at once", (word(CRITERIA.ranking.told_at_once),)
     yield D, "at {} strengths over its range", (word(len(CRITERIA.screening.strengths)),)
     yield (
         D,
-        "leaves more than {} times what that promises is no result",
+        "is more than {} times what these predict is no result",
         (plain(CRITERIA.estimation.simulation_excess),),
     )
     yield (
         D,
-        "takes at least {} per cent off the error of the fitted records",
+        "takes at least {} per cent off the error of the estimation data",
         (word(100 * CRITERIA.significance.worthwhile),),
     )
-    yield D, "{} of it on held-out chunks, too", (PARTS[CRITERIA.significance.worthwhile_held_out],)
+    yield D, "and {} of it on held-out chunks, too", (PARTS[CRITERIA.significance.worthwhile_held_out],)
     yield (
         D,
-        "the {} that promised most are begun anew from {} points",
+        "the {} that predicted most are started from {} points",
         (word(CRITERIA.selection.global_restarts), CRITERIA.estimation.global_points),
     )
     yield D, "The {} best points of each take three steps", (word(CRITERIA.estimation.global_starts),)
     yield (
         D,
-        "differ by less than {} standard errors, and whose outputs",
+        "differ by less than {} standard errors are indistinguishable",
         (word(CRITERIA.significance.indistinguishable),),
     )
-    yield D, "white noise could not tell apart by {}, are its group", (word(CRITERIA.significance.indistinguishable),)
-    yield D, "beside the best stands what takes {} of what it takes", (PARTS[CRITERIA.ambiguity.nearly_as_much],)
-    yield D, "no more than {} of the unexplained rest", (PARTS[CRITERIA.ambiguity.bias_of_missing],)
-    yield D, "Then {} others of the first ranking, two at a time", (word(CRITERIA.selection.pair_finalists),)
-    yield D, "If the error stays more than {} % above the noise floor", (per_cent(CRITERIA.noise.floor_excess),)
-    yield D, "rises with an effect by more than {} of its standard errors", (word(CRITERIA.verification.deviations),)
-    yield D, "a bootstrap over chunks of {} correlation times", (word(CRITERIA.verification.chunk_length),)
-    yield D, "What differs by less than {} % of an error is a tie", (per_cent(CRITERIA.significance.tie),)
     yield (
         D,
-        "whose errors differ by less than {} %, since one in a flat valley",
+        "white noise could not separate their outputs by {} either",
+        (word(CRITERIA.significance.indistinguishable),),
+    )
+    yield D, "a member explains at least {} of what the best explains", (PARTS[CRITERIA.ambiguity.nearly_as_much],)
+    yield D, "no more than {} of the unexplained power", (PARTS[CRITERIA.ambiguity.bias_of_missing],)
+    yield (
+        D,
+        "started from strong effects. Then {} others of the first ranking are tried two at a time",
+        (word(CRITERIA.selection.pair_finalists),),
+    )
+    yield D, "if the error is more than {} % above the noise floor", (per_cent(CRITERIA.noise.floor_excess),)
+    yield D, "rises with it by more than {} of its standard errors", (word(CRITERIA.verification.deviations),)
+    yield D, "a bootstrap over chunks of {} correlation times", (word(CRITERIA.verification.chunk_length),)
+    yield D, "Errors that differ by less than {} % are a tie", (per_cent(CRITERIA.significance.tie),)
+    yield (
+        D,
+        "whose errors differ by less than {} %: in a flat valley",
         (beyond(CRITERIA.significance.practically_equal),),
     )
     yield (
         D,
-        "But one that leaves {} more than another, beyond chance, of whole",
+        "An effect that is {} worse than another on whole runs, beyond chance",
         (PARTS[CRITERIA.significance.dominated],),
     )
     yield D, "Terms that explain the same (cosine above {})", (plain(CRITERIA.discovery.same_class),)
@@ -118,7 +127,7 @@ def of_diagnosis() -> Iterator[Tie]:
     )
     yield D, "place, form and shape that were looked at) + {} nats", (plain(CRITERIA.discovery.log_likelihood_gain),)
     yield D, "Of fewer than {} runs all do all three", (word(CRITERIA.discovery.fewest_runs),)
-    yield D, "the next term sought beside it, {} at most", (word(CRITERIA.discovery.most),)
+    yield D, "The next term is sought in addition to it, {} at most", (word(CRITERIA.discovery.most),)
     yield D, "hats at {} quantiles of the signal", (word(len(CRITERIA.discovery.knots)),)
     yield D, "the {} groups that explain most are refitted", (word(CRITERIA.discovery.curves),)
     yield D, "of {}, {} or {} times its slowest other time constant", tuple(plain(t) for t in windows._TIMES)
@@ -234,3 +243,10 @@ def test_a_number_in_a_document_is_the_code_s(document: str, phrase: str, number
     """The phrase with the code's numbers stands in the document."""
     text = " ".join((ROOT / document).read_text(encoding="utf-8").split())
     assert phrase.replace("{shares}", "{0}").format(*numbers) in text, f"docs/{document} says otherwise"
+
+
+def test_a_diagnosis_is_told_in_short_sentences() -> None:
+    """At most twenty words in the mean."""
+    text = (ROOT / "diagnosis.md").read_text(encoding="utf-8")
+    sentences = [one for one in re.split(r"(?<=[.!?])\s+|\n\s*\n", text) if one.strip()]
+    assert sum(len(one.split()) for one in sentences) <= 20 * len(sentences)
