@@ -39,8 +39,8 @@ def rank(
 ) -> list[Candidate]:  # fmt: skip
     """The candidates, best first.
 
-    `thorough`: more are refitted, and also where nothing promises to help. `strong`: from strong effects, too, which a
-    promise made with the fitted parameters does not see where these have gone far astray for want of the effect.
+    `thorough`: more are refitted, and also where no prediction is worth it. `strong`: from strong effects, too. A
+    prediction from the fitted parameters does not see these where the parameters, without the effect, went far astray.
     """
     return rank_each(models, [(base, names)], report, thorough, strong, listener=listener)[0]
 
@@ -51,8 +51,8 @@ def rank_each(
 ) -> list[list[Candidate]]:  # fmt: skip
     """The same for several models, with what is refitted for all of them side by side.
 
-    Where only what is about as good as a model `beside` them counts, the others are given up on the way; that model
-    itself stands among the candidates as it is, or as a refit from a base finds it, where that is better.
+    With an `incumbent`, a model that each base is a part of, only candidates about as good as that count, and others
+    are given up on the way. It is among the candidates as it is, or as a refit from a base finds it, if that is better.
     """
     predicted = [_predictions(models, base, names, report) for base, names in bases]
     listener(_so_far(predicted[0]))
@@ -73,16 +73,14 @@ def rank_each(
         report(Progress("trying", done, sum(map(len, on_trial)) + finalists_at_least * len(bases)))
         return candidate
 
+    trials = _in_turn(models, models_of, predicted, on_trial, trial)
+
+    def counts(base: FittedModel, one: Candidate) -> bool:
+        return not _is_incumbent(base, one.prediction, incumbent) or _comes_below(one, below_incumbent)
+
     tried = [
-        in_rank_order(
-            models,
-            [
-                one
-                for one in ones
-                if not _is_incumbent(base, one.prediction, incumbent) or _comes_below(one, below_incumbent)
-            ],
-        )
-        for base, ones in zip(models_of, _in_turn(models, models_of, predicted, on_trial, trial), strict=True)
+        in_rank_order(models, [one for one in ones if counts(base, one)])
+        for base, ones in zip(models_of, trials, strict=True)
     ]
     listener(_so_far(predicted[0], tried[0]))
     finalists = [
