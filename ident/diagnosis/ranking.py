@@ -57,10 +57,8 @@ def rank_each(
     predicted = [_predictions(models, base, names, report) for base, names in bases]
     listener(_so_far(predicted[0]))
     models_of = [base for base, _ in bases]
-    on_trial = [
-        of[: CRITERIA.ranking.contenders] if thorough else _near(models, base, of)
-        for base, of in zip(models_of, predicted, strict=True)
-    ]
+    near = (_near(models, *of) for of in zip(models_of, predicted, strict=True))
+    on_trial = [of[: CRITERIA.ranking.contenders] for of in predicted] if thorough else list(near)
     finalists_at_least, done = CRITERIA.ranking.finalists if thorough else 2, 0
     targets = {base.effects: _target(models, base, incumbent) for base in models_of}
     below_incumbent = CRITERIA.ranking.found_again * models.trial_error(incumbent) if incumbent is not None else np.inf
@@ -74,18 +72,12 @@ def rank_each(
         return candidate
 
     trials = _in_turn(models, models_of, predicted, on_trial, trial)
-
-    def counts(base: FittedModel, one: Candidate) -> bool:
-        return not _is_incumbent(base, one.prediction, incumbent) or _comes_below(one, below_incumbent)
-
     tried = [
-        in_rank_order(models, [one for one in ones if counts(base, one)])
+        in_rank_order(models, _that_count(base, ones, incumbent, below_incumbent))
         for base, ones in zip(models_of, trials, strict=True)
     ]
     listener(_so_far(predicted[0], tried[0]))
-    finalists = [
-        _finalists(models, base, ones, finalists_at_least) for base, ones in zip(models_of, tried, strict=True)
-    ]
+    finalists = [_finalists(models, *of, finalists_at_least) for of in zip(models_of, tried, strict=True)]
 
     def final(base: FittedModel, candidate: Candidate) -> Candidate:
         nonlocal done
@@ -104,6 +96,13 @@ def rank_each(
         _joined(models, base, of, stages, incumbent)
         for base, of, *stages in zip(models_of, predicted, tried, found, restarted, strict=True)
     ]
+
+
+def _that_count(
+    base: FittedModel, trials: Sequence[Candidate], incumbent: FittedModel | None, error: float
+) -> list[Candidate]:  # fmt: skip
+    """The trials; that of the incumbent itself only where it is below an error, at a better optimum."""
+    return [one for one in trials if not _is_incumbent(base, one.prediction, incumbent) or _comes_below(one, error)]
 
 
 def _so_far(predicted: Sequence[Prediction], *stages: Sequence[Candidate]) -> list[Candidate]:
