@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 
 import pytest
 
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.sentences import delay_sentence, verdict_text
 from ident.diagnosis.total_delay import lag_ambiguities, total_delay
+from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.workflows import diagnose, identify
@@ -18,9 +20,15 @@ from tests.fit.test_windows import LAG, cylinder
 SETTINGS = Settings(model="open_valve")
 
 
-def judged(matrix: Matrix):
+@cache
+def fitted(wander: float) -> tuple[Matrix, FitResult]:
+    """A cylinder whose records wander by so much a sample, and its fit."""
+    matrix = cylinder(4, wander=wander)
+    return matrix, identify(matrix, SETTINGS)
+
+
+def judged(matrix: Matrix, fit: FitResult):
     """The lag of the fitted model, and what does as well in its place."""
-    fit = identify(matrix, SETTINGS)
     over = (fit.window.horizon, fit.window.memory) if fit.window else (None, None)
     models = CandidateModels.of(matrix, SETTINGS, (), *over)
     refit = models.refit((), {models.preset.parameter(name).in_equations: v for name, v in fit.values.items()})
@@ -28,7 +36,7 @@ def judged(matrix: Matrix):
 
 
 def test_where_disturbances_hide_the_shape_of_the_answer_lag_and_delay_are_one_group():
-    late = judged(cylinder(4, wander=3e-3))
+    late = judged(*fitted(3e-3))
     assert late.parameter.name == "tau"
     assert {"command_delay", "acquisition_lag"} <= set(late.in_place)
     assert abs(late.found.value - LAG) < 4 * late.found.std_error
@@ -43,13 +51,12 @@ def test_where_disturbances_hide_the_shape_of_the_answer_lag_and_delay_are_one_g
 
 
 def test_a_clean_record_tells_a_lag_from_a_delay():
-    late = judged(cylinder(4, wander=0.0))
+    late = judged(*fitted(0.0))
     assert late is None or "command_delay" not in late.in_place
 
 
 def test_a_diagnosis_says_it():
-    matrix = cylinder(4, wander=3e-3)
-    found = diagnose(matrix, identify(matrix, SETTINGS), most=1, propose=False)
+    found = diagnose(*fitted(3e-3), most=1, propose=False)
     assert "by which lag or delay these data cannot tell: tau" in found.verdict.text
 
 
