@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from ident.diagnosis.discovery.criteria import Discovery, TermShapes
 from ident.fit.levenberg_marquardt import Way
 
-TINY = 1e-300
+TINY: float = 1e-300
 """[1] A logarithm's or a quotient's argument is kept above it. Why: the smallest normal number is 2e-308."""
-EPSILON = 1e-12
+EPSILON: float = 1e-12
 """[of a size] A relative error below it is taken as this. Why: rounding of a sum of ten thousand terms."""
 
 
