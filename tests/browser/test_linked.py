@@ -117,6 +117,17 @@ def test_run_and_band_are_picked_by_keyboard_alone(page, site, fitted):
     page.keyboard.press("Tab")
     answered(page, BODE, "low=2")
     assert "low=2" in page.url
+    page.get_by_label("To (Hz)").focus()
+    page.keyboard.type("-1")  # which no logarithmic axis has: the field says so, and the figures stay
+    page.keyboard.press("Tab")
+    assert "high" not in page.url
+    assert page.get_by_label("To (Hz)").evaluate("field => field.validationMessage")
+
+
+def test_a_frequency_of_the_address_that_no_axis_has_is_none(page, site, fitted):
+    opened(page, f"{site.address}/fits/{fitted}?low=-1&high=50")
+    answered(page, BODE, "high=50")
+    expect(page.get_by_label("From (Hz)")).to_have_value("")
 
 
 def test_a_band_upside_down_is_refused_with_the_remedy(page, site, watch, fitted):

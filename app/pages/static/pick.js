@@ -4,6 +4,8 @@ const form = document.querySelector("#pick");
 const NAMES = ["run", "low", "high", "figure"];
 const here = new URLSearchParams(location.search);
 const state = Object.fromEntries(NAMES.map((name) => [name, here.get(name) ?? ""]));
+// An address may be written by hand: a frequency that a logarithmic axis cannot have is none.
+for (const name of ["low", "high"]) if (!(Number(state[name]) > 0)) state[name] = "";
 
 export function picked() {
   return state;
@@ -26,6 +28,7 @@ function fill() {
 }
 
 form?.addEventListener("change", () => {
+  if (!form.reportValidity()) return;
   const { run, low, high } = Object.fromEntries(new FormData(form));
   pick({ run, low, high });
 });
