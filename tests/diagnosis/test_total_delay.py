@@ -39,7 +39,7 @@ def test_where_disturbances_hide_the_shape_of_the_answer_lag_and_delay_are_one_g
     late = judged(*fitted(3e-3))
     assert late.parameter.name == "tau"
     assert {"command_delay", "acquisition_lag"} <= set(late.in_place)
-    assert abs(late.found.value - LAG) < 4 * late.found.std_error
+    assert abs(late.fitted.value - LAG) < 4 * late.fitted.std_error
     said = delay_sentence(late)
     assert re.search(r"answered 0\.1\d* ± 0\.0\d+ s late", said)
     assert "tau" in said
