@@ -153,11 +153,27 @@ class InitialGuesses:
     product_points: int = 5
     """[points] For each line of a signal that is multiplied by another of its kind. Why: the product reaches to four
     times the band of the two."""
-    along_range: tuple[float, ...] = (0.25, 0.5, 0.75)
-    """[of an axis] Where a searched shape begins. Why: three starts reach all optima of a smooth one."""
+    along_range: tuple[float, ...] = (0.2, 0.4, 0.6, 0.8)
+    """[of an axis] Where a searched shape begins. Why: a width is felt over about a fifth of four decades.
+    Test: test_free_shapes.py::test_two_searches_from_other_places_end_alike"""
     spectrum_points: int = 4
     """[points] Of a spectrum for each that the record resolves. Why: a peak between two is not missed.
     Test: test_initial_guesses.py::test_the_lines_of_what_does_not_pulsate_are_the_same_at_every_sample_rate"""
+
+
+@dataclass(frozen=True)
+class FreeWidths:
+    """When the widths of an effect are identified with its strength."""
+
+    agrees: float = 0.01
+    """[of an error] Within which two ends are one optimum: a search from two starts has converged. Why: ends of one
+    optimum differ by less than 1e-4, optima of what acts in jumps by some per cent.
+    Test: test_free_shapes.py::test_two_searches_from_other_places_end_alike"""
+    missed: float = 1.1
+    """[ratio of errors] Of a refit over its prediction, above which it is begun again elsewhere. Why: a prediction is
+    a step towards an optimum."""
+    tried: int = 3
+    """[effects] That promise most with free widths and are refitted. Why: each is refitted from several places."""
 
 
 @dataclass(frozen=True)
@@ -426,6 +442,7 @@ class Criteria:
     structure: StructureSelection = StructureSelection()
     screening: Screening = Screening()
     initial_guesses: InitialGuesses = InitialGuesses()
+    free_widths: FreeWidths = FreeWidths()
     ranking: Ranking = Ranking()
     cross_validation: CrossValidationFolds = CrossValidationFolds()
     significance: Significance = Significance()

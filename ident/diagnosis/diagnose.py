@@ -161,7 +161,9 @@ class Diagnoser:
             terms_left_out=terms.left_out,
             complete=not missing,
             not_looked_at=missing,
-            notes=(*(() if still_searching else terms.notes(self.budget.propose)), *self.stages.notes),
+            notes=(
+                *catalogue.notes, *(() if still_searching else terms.notes(self.budget.propose)), *self.stages.notes,
+            ),  # fmt: skip
         )
 
     def _with_follow_up(self, diagnosis: Diagnosis) -> Diagnosis:

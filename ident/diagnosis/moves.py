@@ -13,6 +13,7 @@ from ident.diagnosis.candidate import Candidate, in_rank_order, indistinguishabl
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel, distinguishable, improves
+from ident.diagnosis.free_shapes import with_free_shapes, with_free_widths
 from ident.diagnosis.ladder import Ladder, score, without_effect
 from ident.diagnosis.ranking import deepened, rank, rank_each
 from ident.diagnosis.selection import Selection
@@ -56,6 +57,10 @@ class Moves:
     def above_floor(self, selection: Selection) -> bool:
         """Whether the error is above a noise floor that is known."""
         return self.models.floor is not None and not self.models.at_floor(selection.fitted)
+
+    def residual_above_noise(self, selection: Selection) -> bool:
+        """Whether something is left, also where nobody knows the noise floor."""
+        return self.models.residual_above_noise(selection.fitted)
 
     # Ranking ---------------------------------------------------------------------------------------------------
 
@@ -298,6 +303,24 @@ class Moves:
             self.report(Progress("trying pairs", i, len(pairs)))
             trials.append(self.models.pair_trial(*pair, target))
         return self._best_of(replace(selection, changes=selection.changes + 1), trials)
+
+    def free_widths(self, selection: Selection) -> Selection | None:
+        """Begin again with an effect whose widths are free, where it is better than any with the usual ones."""
+        refits = [c.refit for c in selection.ranking if c.refit is not None]
+        best = stable_minimum([selection.base, *refits], score)
+        names = self._addable(selection.base)
+        refit = with_free_widths(self.models, selection.base, best, names) if self.most else None
+        if refit is None:
+            return None
+        self.models = with_free_shapes(self.models, refit.effects[-1:])
+        rungs, changes = Ladder(self.models), selection.changes + 1
+        return self.step(replace(selection, models=self.models, rungs=rungs, changes=changes), refit)
+
+    def better_of(self, before: Selection, after: Selection) -> Selection:
+        """Of two selections the one that ends better; the search continues with its models."""
+        best = after if score(after.fitted) < score(before.fitted) else before
+        self.models = best.models
+        return self.keep(best)
 
     def prune_path(self, selection: Selection) -> Selection | None:
         """End the ladder at the first of its rungs on which the last model does not improve.

@@ -13,6 +13,7 @@ from ident.diagnosis.candidate import Candidate
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.free_shapes import bounds_of_freed, held_widths
 from ident.diagnosis.ladder import Rungs
 from ident.diagnosis.result import NO_ERRORS, Baseline, Diagnosis, Errors, Ranked, Rung
 from ident.diagnosis.selection import Selection
@@ -24,6 +25,7 @@ from ident.errors import TimeIsUp
 from ident.fit.result import FitResult
 from ident.parallel import each
 from ident.time_budget import in_time
+from ident.words.engineering import quantity
 
 
 def report(fit: FitResult, models: CandidateModels, selection: Selection, steps: Rungs, found: Findings) -> Diagnosis:
@@ -50,8 +52,28 @@ def report(fit: FitResult, models: CandidateModels, selection: Selection, steps:
         version=version("servoident"),
         data_hash=models.matrix.data_hash,
         preprocessing=models.matrix.preprocessing,
-        settings=dict(fit.settings),
+        settings=_settings(fit, models, selection),
+        notes=_held(selection),
     )
+
+
+def _settings(fit: FitResult, models: CandidateModels, selection: Selection) -> dict[str, Any]:
+    """Those of the fit, with the bounds of the widths that were freed: a fit that begins here searches there, too."""
+    freed = bounds_of_freed(selection.fitted, selection.models.effects)
+    usual = {p.name for effect in models.effects.values() for p in effect.added if p.searched}
+    bounds = {name: list(of) for name, of in freed.items() if name not in usual}
+    settings = dict(fit.settings)
+    if not bounds:
+        return settings
+    return {"model": fit.model, **settings, "bounds": {**settings.get("bounds", {}), **bounds}}
+
+
+def _held(selection: Selection) -> tuple[str, ...]:
+    """What is said of widths of added effects that kept their usual values."""
+    fitted, preset = selection.fitted, selection.fitted.fitness.preset
+    widths = held_widths(fitted, {name: selection.models.effects[name] for name in selection.added}).items()
+    values = [f"{name} = {quantity(value, preset.unit(preset.parameter(name)))}" for name, value in widths]
+    return (f"Held at the usual value, which these data did not ask to change: {', '.join(values)}.",) if values else ()
 
 
 def _text(selection: Selection, steps: Rungs, found: Findings, floor: float | None) -> str:

@@ -82,7 +82,8 @@ def _predicted(given: _Sensitivities, base: FittedModel, names: Sequence[str]) -
     """The predictions of effects that one chain holds; strengths are added where a threshold was jumped over."""
     models, fitness = given.models, given.models.fitness((*base.effects, *names), CRITERIA.screening.samples)
     off = {symbol: value for symbol, value in models.off.items() if symbol not in base.values}
-    known = {name: value for name, value in {**off, **base.values}.items() if name in fitness.space.order}
+    held = {name: value for name, value in fitness.space.fixed.items() if name not in base.values}
+    known = {name: value for name, value in {**off, **base.values, **held}.items() if name in fitness.space.order}
     trials = [trial for name in names for trial in _trials(models, base, fitness.space, name, known)]
     found = given.with_effects(fitness, known, trials)
     between = found.thresholds()

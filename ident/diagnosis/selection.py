@@ -3,7 +3,8 @@
 Forward: the best of the ranking is added while it improves the model beyond chance; backward: what the model can do
 without since is taken out. Then each effect that was added is compared with everything that could stand in its place:
 a better one is exchanged for it, those that are indistinguishable from it are its alternatives. Where all of this ends
-above the noise, strong effects are tried, far from where the search stands, and two at a time in the place of one.
+above the noise, strong effects are tried, far from where the search stands, and two at a time in the place of one; then
+it begins again with an effect whose widths are free.
 """
 
 from __future__ import annotations
@@ -84,6 +85,8 @@ def select(moves: Moves, selection: Selection) -> Selection:
             if moves.above_floor(selection):
                 farther = look_farther(selection) or selection
                 selection = add_and_exchange(moves, farther) if farther.changes > selection.changes else farther
+        if moves.residual_above_noise(selection) and (freed := moves.free_widths(selection)):
+            selection = moves.better_of(selection, add_and_exchange(moves, freed))
         for _ in range(CRITERIA.selection.rounds):
             farther = moves.prune_path(selection) or moves.exchange_pass_at_floor(selection) or selection
             if farther.changes == selection.changes:

@@ -1,0 +1,94 @@
+"""Widths of effects are identified with the strength where the data tell them: dampers with Dahl's friction."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from ident.diagnosis import candidate_models, moves
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.free_shapes import freed_refit, is_width, with_free_shapes, with_widths
+from ident.diagnosis.screening import predict
+from ident.effects import CATALOGUE
+from ident.fit.settings import Settings
+from ident.workflows import diagnose, identify
+from tests.diagnosis.damper import Damper
+
+WAY = "presliding_friction.displacement"
+FEW = ("coulomb_friction", "presliding_friction", "quadratic_damping", "position_friction", "end_stop")
+
+
+@pytest.fixture(autouse=True)
+def _few_frictions(monkeypatch, full):
+    """In the short form five effects are ranked, two of which are what a wrong width was taken for."""
+    if not full:
+        monkeypatch.setattr(
+            candidate_models, "CATALOGUE", tuple(e for e in candidate_models.CATALOGUE if e.name in FEW)
+        )
+
+
+def refitted(damper: Damper):
+    """The refit with a free width, of a damper with friction; the models, and what was fitted without."""
+    matrix = damper.matrix()
+    fit = identify(matrix, model="specimen")
+    models = CandidateModels.of(matrix, Settings("specimen"))
+    base = models.refit((), {models.preset.parameter(n).in_equations: e.value for n, e in fit.parameters.items()})
+    free = with_free_shapes(models, ["presliding_friction"])
+    return free, base, predict(free, base, ["presliding_friction"])[0]
+
+
+def test_the_width_of_a_friction_is_found_and_nothing_is_put_in_its_place():
+    """A hundredth of the motion's deviation; held at a fifth, friction of position and an end stop were named."""
+    damper = Damper()
+    matrix = damper.matrix()
+    found = diagnose(matrix, identify(matrix, model="specimen"), propose=False)
+    assert found.verdict.effects == ("presliding_friction",)
+    of = found.candidates[0].parameters
+    assert of[WAY].value == pytest.approx(damper.displacement, rel=0.1)
+    assert of["presliding_friction.force"].value == pytest.approx(damper.friction, rel=0.03)
+    assert found.ladder[-1].error["held_out"] < 1.1 * damper.noise
+    again = identify(matrix, start=found)  # the fit that begins there searches the width, too
+    assert again.error["fit"] == pytest.approx(found.ladder[-1].error["fit"], rel=0.01)
+    assert not again.parameters[WAY].fixed
+
+
+@pytest.mark.parametrize("share", [0.003, 0.03, 0.1])
+def test_two_searches_from_other_places_end_alike(share):
+    """From a prediction and from the other end of the range, for widths of two decades."""
+    damper = replace(Damper(), displacement=share * 0.03, seed=int(1000 * share))
+    free, base, prediction = refitted(damper)
+    first = freed_refit(free, base, prediction)
+    turned = [{**start, "presliding_friction__displacement": 3e-3} for start in prediction.starts]
+    second = freed_refit(free, base, replace(prediction, starts=tuple(turned)))
+    assert first.error == pytest.approx(second.error, rel=CRITERIA.free_widths.agrees)
+    assert first.values["presliding_friction__displacement"] == pytest.approx(damper.displacement, rel=0.1)
+
+
+def test_a_width_that_the_data_do_not_determine_is_not_freed():
+    """Ten samples pass it at once: a friction that builds up at once explains as much."""
+    free, base, prediction = refitted(replace(Damper(), displacement=1e-6, rate=50.0))
+    assert freed_refit(free, base, prediction) is None
+
+
+def test_nothing_is_freed_where_the_usual_values_explain_the_data(monkeypatch):
+    """A damper whose friction builds up over a fifth of its motion's deviation."""
+    damper = Damper()
+    damper = replace(damper, displacement=0.2 * damper.amplitude / 2**0.5)
+    monkeypatch.setattr(moves, "with_free_widths", lambda *_: pytest.fail("searched for nothing"))
+    found = diagnose(damper.matrix(), identify(damper.matrix(), model="specimen"), propose=False)
+    assert found.verdict.effects == ("presliding_friction",)
+    assert any(WAY in note and "Held" in note for note in found.notes)
+
+
+def test_what_a_user_holds_stays_held():
+    models = CandidateModels.of(Damper().matrix(), Settings("specimen", fixed={WAY: 1e-4}))
+    assert with_widths(models, models.effects) == []
+
+
+def test_a_width_has_one_sign():
+    """What may have either is an effect of its own, as the offset before a dead zone that its skew is."""
+    widths = {p.name for effect in CATALOGUE for p in effect.added[1:] if is_width(p)}
+    assert {"presliding_friction.displacement", "stribeck_friction.speed"} <= widths
+    assert not {"dead_zone.skew", "end_stop.middle", "end_stop.stiffness", "supply_ripple.phase"} & widths
