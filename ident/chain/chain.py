@@ -137,6 +137,17 @@ class Chain:
         return tuple(equation.target for equation in self.equations if equation.is_memory)
 
     @cached_property
+    def remembered(self) -> tuple[str, ...]:
+        """Names of the memories that go on from their own past, as a friction's, and not only copy a signal."""
+        own = (equation for equation in self.equations if equation.is_memory)
+        return tuple(equation.target for equation in own if f"{equation.target}__old" in equation.names)
+
+    @property
+    def begun(self) -> tuple[str, ...]:
+        """What a run that starts moving begins in: the states, then by how much what remembers is off its rest."""
+        return (*self.states, *self.remembered)
+
+    @cached_property
     def symbols(self) -> tuple[str, ...]:
         """What the equations read but do not define: parameters and conditions."""
         defined = {equation.target for equation in self.equations} | {f"{name}__old" for name in self.memories}

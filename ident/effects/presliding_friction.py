@@ -25,6 +25,7 @@ PRESLIDING_FRICTION = Effect(
             "way over which the force builds up",
             relative=0.2,
             of_motion=True,
+            sets_steps=True,
         ),
     ),
     looks="rounded hysteresis at every amplitude; at small motion a spring rather than a stop",

@@ -16,7 +16,16 @@ SPECIMEN_HYSTERESIS = Effect(
     units={"S": "N"},
     shape=(
         Parameter(
-            "yield_displacement", "xy", "m", 1e-5, 1e-2, 5e-4, "displacement at yield", relative=0.2, of_motion=True
+            "yield_displacement",
+            "xy",
+            "m",
+            1e-5,
+            1e-2,
+            5e-4,
+            "displacement at yield",
+            relative=0.2,
+            of_motion=True,
+            sets_steps=True,
         ),
         Parameter("exponent", "n", "1", 1.0, 5.0, 1.0, "sharpness of the yield"),
     ),

@@ -86,7 +86,7 @@ class Sensitivities:
             remove = removal(gram, len(strides), totals)
             return [_Columns(*parts) for parts in zip(Z, gram, remove, totals.tolist(), strict=True)]
 
-        todo = list(fitness.together(len(strides) + 1 + len(fitness.chain.states)))
+        todo = list(fitness.together(len(strides) + 1 + len(fitness.chain.begun)))
         parts = zip(todo, each(of_share, todo), strict=True)
         columns = {run.id: found for runs, part in parts for run, found in zip(runs, part, strict=True)}
         return cls(fitness, strides, columns)

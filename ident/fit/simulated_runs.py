@@ -31,7 +31,7 @@ from ident.presets import Preset
 from ident.run import Run
 from ident.simulation.equilibrium import equilibrium
 from ident.simulation.simulate import Simulation
-from ident.simulation.steps import Modes, steps_needed
+from ident.simulation.steps import Modes, steps_at_reversals, steps_needed
 
 Array = NDArray[np.float64]
 _TOGETHER = 1024  # lanes simulated in one go: what is done once for all of them costs little
@@ -109,7 +109,7 @@ class SimulatedRuns:
         found: dict[str, NormalMatrices] = {}
         settling, pending = Settling(), self.runs if runs is None else runs
         for _ in range(1 if len(strides) else ROUNDS):
-            todo = list(self.together(len(strides) + 1 + len(self.chain.states), of=pending))
+            todo = list(self.together(len(strides) + 1 + len(self.chain.begun), of=pending))
             parts = each(lambda runs: self._normal_matrices(runs, values, strides, steps), todo)
             for some, part in zip(todo, parts, strict=True):
                 found.update((run.id, moments) for run, moments in zip(some, part, strict=True))
@@ -231,8 +231,8 @@ class SimulatedRuns:
         return found
 
     def start(self, run: Run) -> Array:
-        """The states in which a run begins, (n,), those that were recorded as they were."""
-        found, recorded = self.starts.get(run.id, np.zeros(len(self.chain.states))).copy(), self._recorded(run)
+        """What a run begins in, (n,), see :attr:`Chain.begun`: states that were recorded as they were."""
+        found, recorded = self.starts.get(run.id, np.zeros(len(self.chain.begun))).copy(), self._recorded(run)
         found[list(recorded)] = list(recorded.values())
         return found
 
@@ -246,7 +246,7 @@ class SimulatedRuns:
         if run.begins != "moving":
             return np.empty(0, np.intp)
         recorded = self._recorded(run)
-        return np.array([state for state in range(len(self.chain.states)) if state not in recorded], np.intp)
+        return np.array([state for state in range(len(self.chain.begun)) if state not in recorded], np.intp)
 
     def begin(self, values: Mapping[str, float]) -> None:
         """Take the first states that are not known yet from the linear model at `values`."""
@@ -263,7 +263,7 @@ class SimulatedRuns:
         model = linear_model(self.preset.core, values, run, self.matrix.actuator)
         self.sizes = np.maximum(self.sizes, model.sizes(self.band)[0] * run.drive)
         guesses = [first_state(run, model), *(() if self.preset.is_linear else model.standing_at(run.measured[0]))]
-        start = np.zeros((1, len(guesses), len(self.chain.states)))
+        start = np.zeros((1, len(guesses), len(self.chain.begun)))
         start[..., [self.chain.states.index(name) for name in self.preset.core.states]] = guesses
         if len(guesses) == 1:
             return list(start[0])
@@ -292,7 +292,7 @@ class SimulatedRuns:
     @cached_property
     def _reach(self) -> Array:
         """A small step of each state: of the size that it has in the core, or of the output's for others."""
-        reach = np.full(len(self.chain.states), np.mean([np.std(run.measured) for run in self.runs]))
+        reach = np.full(len(self.chain.begun), np.mean([np.std(run.measured) for run in self.runs]))
         known = [self.chain.states.index(name) for name in self.preset.core.states]
         reach[known] = np.where(self.sizes > 0, self.sizes, reach[known])
         return np.asarray(_REACH * reach)
@@ -320,7 +320,21 @@ class SimulatedRuns:
         on = [effect for effect in self.preset.effects if kinks and self._is_on(effect, values)]
         least = self.preset.steps if kinks and not self.roughly else 1
         needed = [steps_needed(of or self.chain, found, hold, on, band, least) for hold, band in kinds]
+        if not self.roughly:
+            ways = (p for effect in on for p in effect.added[1:] if p.sets_steps)
+            needed += [steps_at_reversals(self._turned, values[way.in_equations]) for way in ways]
         return np.asarray(np.max(needed, axis=0))
+
+    @cached_property
+    def _turned(self) -> float:
+        """The way, m, that the largest acceleration of any run covers in a sample: that of a sine up to the band."""
+        speeds = [
+            (np.std(run.channels["velocity"]) if "velocity" in run.channels else self.band * np.std(of))
+            / run.sample_rate**2
+            for run in self.matrix.runs
+            if (of := run.channels.get("displacement", run.channels.get("velocity"))) is not None
+        ]
+        return float(np.sqrt(2.0) * self.band * max(speeds, default=0.0))
 
     def fastest(self, values: Mapping[str, Array], of: Chain | None = None) -> Modes:
         """Each vector's fastest mode in radians a sample, of the linear core and the effects at small signals.

@@ -54,7 +54,8 @@ class Simulation:
     """Runs of one length and sample rate, each with `v` parameter vectors, side by side.
 
     `values` maps every symbol of the chain to an array that broadcasts to (runs, v); `start` holds the states at the
-    first sample, (runs, v, n), zero where None; `steps` divides the sample time.
+    first sample, (runs, v, n), zero where None, and may hold what :attr:`Chain.begun` has beside them; `steps` divides
+    the sample time.
     """
 
     chain: Chain
@@ -166,6 +167,10 @@ class Simulation:
             for i, name in enumerate(self.chain.states):
                 rows[built.states[name]] = _filled(self.start[..., i].ravel(), lanes)
             self._settle(rows, built, values, inputs[INPUT].first)
+            for i, name in enumerate(
+                self.chain.begun[len(self.chain.states) : self.start.shape[-1]], len(self.chain.states)
+            ):
+                rows[built.memories[name]] += _filled(self.start[..., i].ravel(), lanes)
         elif set(READABLE) & set(self.chain.symbols):  # what remembers a pressure begins with what it was
             self._settle(rows, built, values, np.zeros(lanes))
         return rows.reshape(built.rows, -1, LANES).transpose(1, 0, 2).ravel()

@@ -12,6 +12,7 @@ from ident.chain.chain import INPUT_RATE, Chain
 from ident.chain.exact_lags import with_exact_lags
 from ident.effects.effect import Effect
 
+Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]
 FINE = 0.4  # radians or time constants a step: the largest eigenvalue times the step, above which steps are divided
 _STIFF = 1.0  # the same for a mode so fast that it does nothing but follow; from 2.6 a step would go astray
@@ -19,7 +20,22 @@ _RINGING = 14.4  # times its damping: the fifth power of the step of a Runge-Kut
 _FOLLOWING = 4.0  # times the band of the commands: where such modes begin
 _KINKED = 0.3  # radians a sample of the band for which an effect says how many steps its kinks ask for
 MOST = 32  # steps a sample
+_SHARE = 0.1
+"""Of a way over which a force builds up, the way that may be covered in a step about a reversal: where in a step the
+motion turned is not known. Five times as much puts the way off by 2 %."""
+_AT_REVERSALS = 8
+"""Steps a sample at most for reversals: of a way so short that it asks for more the samples hardly tell the length."""
 FASTEST = FINE * MOST  # radians a sample of the fastest mode that is followed closely; one beyond is said
+
+
+def steps_at_reversals(turned: float, ways: Array) -> NDArray[np.int64]:
+    """Steps a sample, a power of two, for ways (m, v) over which forces build up.
+
+    `turned` is the way a T² that the motion's largest acceleration a covers in a sample T. In n steps a reversal is
+    missed by a T²/n² at most.
+    """
+    needed = np.sqrt(turned / (_SHARE * np.maximum(np.abs(ways), 1e-300)))
+    return np.asarray(2 ** np.ceil(np.log2(np.clip(needed, 1.0, _AT_REVERSALS))), dtype=np.int64)
 
 
 def fastest_mode(chain: Chain, values: Mapping[str, Any], output: str) -> Modes:
