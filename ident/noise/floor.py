@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ident.matrix import Matrix
 from ident.noise.effective_sample_size import independent_samples
+from ident.noise.periodic import EFFICIENCY, fundamental, periodic_noise
 from ident.noise.power_density import power_density
 from ident.noise.repeats import Repeat, repeated
 from ident.parallel import each
@@ -30,16 +31,26 @@ def noise_floor(run: Run, band: float) -> float | None:
     """Standard deviation of white measurement noise over that of the measured output; None where it cannot be told.
 
     The power density of the record above `band` (rad/s, where the command ends) is taken for the noise's at all
-    frequencies: exact for white noise, a lower bound for noise that lives in the band.
+    frequencies: exact for white noise, a lower bound for noise that lives in the band. Of a record that a periodic
+    command made it is what differs between samples of one phase.
     """
     nyquist, clear = run.sample_rate / 2, _CLEAR * band / (2 * np.pi)
     if clear > (1 - _LEAST) * nyquist or run.length < 256:
         return None
+    periodic = None if "command" not in run.channels else periodic_noise(run.command, run.measured, run.sample_rate)
+    if periodic is not None:
+        return periodic / float(np.std(run.measured))
     segment = min(run.length, 8192)
     frequency, power = power_density(run.measured, run.sample_rate, segment)
     # Kinks of friction and dead zones reach far beyond the command's band; half-way up they are gone.
     density = float(np.mean(power[(frequency > max(clear, nyquist / 2)) & (frequency < 0.98 * nyquist)]))
     return float(np.sqrt(density * nyquist) / np.std(run.measured))
+
+
+def _told_by(run: Run) -> float:
+    """How many independent samples tell the noise of a run without a repeat."""
+    periodic = "command" in run.channels and fundamental(run.command, run.sample_rate) is not None
+    return run.length * (EFFICIENCY if periodic else _UPPER_HALF)
 
 
 def by_spectrum(runs: Sequence[Run], band: float) -> list[float | None]:
@@ -104,7 +115,7 @@ def noise_floors(runs: Sequence[Run], band: float, left_out: Collection[str] = (
 
 def _of_one_output(runs: Sequence[Run], pairs: Sequence[Repeat], band: float) -> Floors:
     if not pairs:
-        degrees_of_freedom = _UPPER_HALF * sum(run.length for run in runs if run.use == "fit")
+        degrees_of_freedom = sum(_told_by(run) for run in runs if run.use == "fit")
         seen = zip(runs, by_spectrum(runs, band), strict=True)
         return Floors({run.id: floor for run, floor in seen}, max(degrees_of_freedom, 1.0))
     differences = [pair.difference() for pair in pairs]

@@ -1,0 +1,96 @@
+"""The noise of a record of a periodic command: what differs between samples of one phase.
+
+Friction, play and stops bend a periodic motion sharply. What they do reaches as far in frequency as the record does,
+and what lies beyond half of the sample rate is folded back between the lines, so that no part of the spectrum shows
+the noise alone. Sorted by their phase φ the samples of all periods lie on one curve, and each is compared with the line
+through its neighbours,
+
+    e_i = y_i − w y_{i−1} − (1 − w) y_{i+1},   w = (φ_{i+1} − φ_i)/(φ_{i+1} − φ_{i−1}),   var e = σ² (1 + w² + (1 − w)²)
+
+(Gasser, Sroka and Jennen-Steinmetz 1986). The median of |e| does not see the few samples about a jump.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+PERIODS = 4
+"""Periods from which a record tells what repeats."""
+EFFICIENCY = 0.25
+"""Independent samples that an estimate is worth, over those that it is made of: a median of residuals that have two of
+three samples in common."""
+_PERIODS_OF_A_THIRD, _SAMPLES_OF_A_THIRD = 4.5, 256
+"""Of a record, from which each third is looked at by itself: the first may hold a start."""
+_NOT_REPEATED = 0.05
+"""Of a periodic command's standard deviation what differs between samples of one phase, at most: a sensor's noise."""
+_FUNDAMENTAL, _MAIN_LOBE = 0.5, 3
+"""Of a periodic command's power what its highest line has, at least, within so many bins: of repeated steps 0.8."""
+_NORMAL = 0.6745  # the median of |e| over the standard deviation, of normal noise
+
+
+def fundamental(signal: Array, sample_rate: float) -> float | None:
+    """The frequency, Hz, of the periods of which a signal is made; None where it is not periodic or has too few.
+
+    That of the highest line, corrected by how its phase goes on from the first half of the record to the second, and to
+    where the samples differ least from others of their phase.
+    """
+    n = len(signal)
+    spectrum = np.abs(np.fft.rfft(_windowed(signal))) ** 2
+    highest = int(np.argmax(spectrum[1:])) + 1
+    line = spectrum[max(highest - _MAIN_LOBE, 1) : highest + _MAIN_LOBE + 1].sum()
+    if highest < PERIODS or highest >= n // 4 or line < _FUNDAMENTAL * spectrum[1:].sum():
+        return None
+    cycles = highest + _between_bins(spectrum, highest)  # a record
+    half = n // 2
+    turn = np.exp(-2j * np.pi * cycles * np.arange(half) / n)
+    first, second = (_windowed(signal[at : at + half]) @ turn for at in (0, half))
+    cycles += float(np.angle(second / first * np.exp(-2j * np.pi * cycles * half / n))) * n / (2 * np.pi * half)
+    return cycles * sample_rate / n if not_repeated(signal, cycles / n) < _NOT_REPEATED * np.std(signal) else None
+
+
+def periodic_noise(command: Array, measured: Array, sample_rate: float) -> float | None:
+    """The standard deviation of what a record does not repeat; None where its command is not periodic.
+
+    The median over thirds of it, where these are long enough: a start is no noise. Of each the less of what differs at
+    the whole record's periods and at its own, which those of a generator that drifts are.
+    """
+    base = fundamental(command, sample_rate)
+    if base is None:
+        return None
+    count = 3 if len(command) > 3 * max(_PERIODS_OF_A_THIRD * sample_rate / base, _SAMPLES_OF_A_THIRD) else 1
+    found = []
+    for u, y in zip(np.array_split(command, count), np.array_split(measured, count), strict=True):
+        periods = {base, fundamental(u, sample_rate) or base}
+        found.append(min(not_repeated(y, period / sample_rate) for period in periods))
+    return float(np.median(found))
+
+
+def not_repeated(signal: Array, frequency: float) -> float:
+    """The standard deviation of what differs between samples of one phase; `frequency` is in periods a sample.
+
+    Without a drift, the slope of the differences of neighbours over the times between them.
+    """
+    phase = np.mod(frequency * np.arange(len(signal)), 1.0)
+    order = np.argsort(phase, kind="stable")
+    apart, y = np.diff(order), signal[order]
+    y = y - (np.diff(y) @ apart / (apart @ apart)) * order
+    before, after = np.diff(phase[order])[:-1], np.diff(phase[order])[1:]
+    both = before + after
+    w = np.where(both > 0, after / np.where(both > 0, both, 1.0), 0.5)
+    e = (y[1:-1] - w * y[:-2] - (1.0 - w) * y[2:]) / np.sqrt(1.0 + w**2 + (1.0 - w) ** 2)
+    return float(np.median(np.abs(e)) / _NORMAL)
+
+
+def _windowed(signal: Array) -> Array:
+    """A signal less its mean under Blackman's window, whose side lobes lie 58 dB below its main lobe."""
+    phase = 2 * np.pi * np.arange(len(signal)) / len(signal)
+    return np.asarray((signal - signal.mean()) * (0.42 - 0.5 * np.cos(phase) + 0.08 * np.cos(2 * phase)))
+
+
+def _between_bins(power: Array, highest: int) -> float:
+    """By how many bins a line is off the highest bin: the top of a parabola through the logarithms of three."""
+    left, top, right = np.log(np.maximum(power[highest - 1 : highest + 2], 1e-300))
+    bend = left - 2 * top + right
+    return float(0.5 * (left - right) / bend) if bend < 0 else 0.0
