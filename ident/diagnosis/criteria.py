@@ -171,7 +171,7 @@ class FreeWidths:
     Test: test_free_shapes.py::test_two_searches_from_other_places_end_alike"""
     missed: float = 1.1
     """[ratio of errors] Of a refit over its prediction, above which it is begun again elsewhere. Why: a prediction is
-    a step towards an optimum."""
+    a step towards an optimum. Test: test_free_shapes.py::test_an_end_above_its_prediction_is_begun_again"""
     tried: int = 3
     """[effects] That promise most with free widths and are refitted. Why: each is refitted from several places."""
 

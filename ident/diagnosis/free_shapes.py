@@ -78,7 +78,7 @@ def freed_refit(models: CandidateModels, base: FittedModel, prediction: Predicti
     name, effects = prediction.effect, (*base.effects, prediction.effect)
     ends = [models.trial(effects, prediction.starts)]
     starts = _elsewhere(models, ends[0], name)
-    while starts and not _converged(ends, prediction):
+    while starts and not converged(ends, prediction):
         ends.append(models.refit(effects, starts.pop(0), CRITERIA.estimation.trial_samples, CRITERIA.estimation.trial))
     best = stable_minimum(ends, lambda end: end.local.error)
     refit = models.converged(models.refit(effects, best.values)) if best.finite else best
@@ -108,7 +108,7 @@ def held_widths(refit: FittedModel, effects: Mapping[str, Effect]) -> dict[str, 
     return {p.name: refit.space.fixed[p.in_equations] for p in held}
 
 
-def _converged(ends: Sequence[FittedModel], prediction: Prediction) -> bool:
+def converged(ends: Sequence[FittedModel], prediction: Prediction) -> bool:
     """Whether the two best ends agree, and come to what was predicted."""
     errors = sorted(end.local.error for end in ends)
     if len(errors) < 2 or not np.isfinite(errors[1]):

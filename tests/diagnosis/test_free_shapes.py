@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
 from ident.diagnosis import candidate_models, moves
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.free_shapes import freed_refit, is_width, with_free_shapes, with_widths
+from ident.diagnosis.free_shapes import converged, freed_refit, is_width, with_free_shapes, with_widths
 from ident.diagnosis.screening import predict
 from ident.effects import CATALOGUE
 from ident.fit.settings import Settings
@@ -64,6 +65,17 @@ def test_two_searches_from_other_places_end_alike(share):
     second = freed_refit(free, base, replace(prediction, starts=tuple(turned)))
     assert first.error == pytest.approx(second.error, rel=CRITERIA.free_widths.agrees)
     assert first.values["presliding_friction__displacement"] == pytest.approx(damper.displacement, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("errors", "predicted", "over"),
+    [((0.1,), 0.1, False), ((0.1, 0.1005), 0.095, True), ((0.1, 0.105), 0.1, False), ((0.1, 0.1005), 0.08, False)],
+)
+def test_an_end_above_its_prediction_is_begun_again(errors, predicted, over):
+    """Alone, alike and as predicted, not alike, alike but a quarter above what was predicted."""
+    ends = [SimpleNamespace(local=SimpleNamespace(error=error)) for error in errors]
+    prediction = SimpleNamespace(after=SimpleNamespace(error=predicted))
+    assert converged(ends, prediction) is over
 
 
 def test_a_width_that_the_data_do_not_determine_is_not_freed():

@@ -45,6 +45,7 @@ class Judged:
 
     effects = ("a", "b", "c")
     floor = 0.1
+    freed = ""
 
     def __init__(self, scores: dict[str, float], needed: set[str], far: str, late: str, off: str) -> None:
         self.off = off
@@ -142,9 +143,17 @@ class Judged:
         """Whether of two at the noise one leaves less."""
         return better.held_out.score < worse.held_out.score
 
+    def with_free_widths(self, _models, _base, _best, _names):
+        """The effect that does better with its widths free, where there is one."""
+        return self.refit((self.freed,), {}) if self.freed else None
+
+    def with_free_shapes(self, _models, _names):
+        """The same models: what is free shows in their scores alone."""
+        return self
+
     def stand_in(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """For what a search asks of real refits."""
-        asked = ("rank", "rank_each", "deepened", "improves", "distinguishable")
+        asked = ("rank", "rank_each", "deepened", "improves", "distinguishable", "with_free_widths", "with_free_shapes")
         equal = ("indistinguishable",)
         for module, names in ((moves, asked), (selecting, equal), (candidate, (*equal, "improvement"))):
             for name in names:
@@ -245,6 +254,14 @@ def test_one_effect_from_anywhere_takes_the_place_of_the_first(added):
     """b, which no start near the fit leads to, explains alone what a did not."""
     scores = {"": 1.0, "a": 0.7, "b": 0.05, "c": 0.8, "ab": 0.05}
     assert added(scores, needed={"b"}, far="b") == {"b"}
+
+
+@pytest.mark.parametrize(("left", "added_then"), [(0.2, {"c"}), (0.7, {"a"})])
+def test_a_search_that_begins_with_free_widths_is_kept_where_it_ends_better(added, monkeypatch, left, added_then):
+    """With its usual width the third effect leads nowhere; the first leaves half, which is no noise."""
+    monkeypatch.setattr(Judged, "freed", "c")
+    scores = {"": 1.0, "a": 0.5, "b": 0.9, "c": left, "ab": 0.5, "ac": left, "bc": left}
+    assert added(scores, needed=set("abc")) == added_then
 
 
 def test_the_last_effect_goes_where_its_rung_refitted_does_better_without_it(monkeypatch):
