@@ -58,9 +58,9 @@ class Moves:
         """Whether the error is above a noise floor that is known."""
         return self.models.floor is not None and not self.models.at_floor(selection.fitted)
 
-    def residual_above_noise(self, selection: Selection) -> bool:
-        """Whether something is left, also where nobody knows the noise floor."""
-        return self.models.residual_above_noise(selection.fitted)
+    def may_lack_width(self, selection: Selection) -> bool:
+        """Whether another width of one effect may explain more, or as much as several effects."""
+        return len(selection.added) > 1 or self.models.residual_above_noise(selection.fitted)
 
     # Ranking ---------------------------------------------------------------------------------------------------
 
@@ -317,8 +317,12 @@ class Moves:
         return self.step(replace(selection, models=self.models, rungs=rungs, changes=changes), refit)
 
     def better_of(self, before: Selection, after: Selection) -> Selection:
-        """Of two selections the one that ends better; the search continues with its models."""
-        best = after if score(after.fitted) < score(before.fitted) else before
+        """The selection after, where it is better beyond chance or has fewer effects and is no worse, else that before.
+
+        The search continues with its models.
+        """
+        fewer = len(after.added) < len(before.added) and not improves(after.fitted, before.fitted)
+        best = after if fewer or improves(before.fitted, after.fitted) else before
         self.models = best.models
         return self.keep(best)
 

@@ -85,7 +85,7 @@ def select(moves: Moves, selection: Selection) -> Selection:
             if moves.above_floor(selection):
                 farther = look_farther(selection) or selection
                 selection = add_and_exchange(moves, farther) if farther.changes > selection.changes else farther
-        if moves.residual_above_noise(selection) and (freed := moves.free_widths(selection)):
+        if moves.may_lack_width(selection) and (freed := moves.free_widths(selection)):
             selection = moves.better_of(selection, add_and_exchange(moves, freed))
         for _ in range(CRITERIA.selection.rounds):
             farther = moves.prune_path(selection) or moves.exchange_pass_at_floor(selection) or selection

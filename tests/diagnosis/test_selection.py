@@ -264,6 +264,13 @@ def test_a_search_that_begins_with_free_widths_is_kept_where_it_ends_better(adde
     assert added(scores, needed=set("abc")) == added_then
 
 
+def test_one_effect_with_another_width_takes_the_place_of_two_that_explain_as_much(added, monkeypatch):
+    """Two effects reach the noise; a third alone does so, too, with its width free."""
+    monkeypatch.setattr(Judged, "freed", "c")
+    scores = {"": 1.0, "a": 0.5, "b": 0.9, "c": 0.05, "ab": 0.05, "ac": 0.05, "bc": 0.05}
+    assert added(scores, needed={"a", "b"}) == {"c"}
+
+
 def test_the_last_effect_goes_where_its_rung_refitted_does_better_without_it(monkeypatch):
     """Four effects were added one by one; without the last, refitted from where the search ended, less is left."""
     scores = {"": 1.0, "a": 0.9, "ab": 0.7, "abc": 0.4, "abcd": 0.5} | dict.fromkeys(("bcd", "acd", "abd"), 2.0)
