@@ -57,12 +57,12 @@ def with_free_widths(
 ) -> FittedModel | None:
     """The best refit of a base and one of the effects with its widths free, where that improves on the `best` so far.
 
-    Only those are refitted whose prediction, from places along their ranges, comes below the error of the best.
+    Only those are refitted whose prediction, from places along their ranges, comes near the error of the best.
     """
     names = with_widths(models, names)
     if not names:
         return None
-    free, asked = with_free_shapes(models, names), models.trial_error(best)
+    free, asked = with_free_shapes(models, names), CRITERIA.ranking.near_best * models.trial_error(best)
     promising = sorted(predict(free, base, names), key=lambda one: one.after.error)
     promising = [one for one in promising if one.after.error < asked][: CRITERIA.free_widths.tried]
     refits = [freed_refit(free, base, one) for one in promising]

@@ -36,10 +36,11 @@ def scale_of(effect: Effect, parameter: Parameter, sizes: Mapping[str, str]) -> 
     text, reach = _SCALES.get(parameter.unit, _OWN)
     if parameter.of_motion:
         text, reach = _OF_MOTION[parameter.unit]
+    logarithmic = parameter.searched and parameter.logarithmic
     if effect.own or reach is None or ("F" in text and not sizes["F"]):
-        return Scale.by_bounds(parameter, logarithmic=False)
+        return Scale.by_bounds(parameter, logarithmic=logarithmic)
     text = re.sub(r"\b[DZFT]\b", lambda found: f"({sizes[found[0]]})", text)
     lower = -reach if parameter.lower < 0 else 0.0
     if parameter.searched:  # as many decades as between its bounds
         lower = reach * parameter.lower / parameter.upper
-    return Scale(parameter.in_equations, text, lower, reach, logarithmic=parameter.searched and parameter.logarithmic)
+    return Scale(parameter.in_equations, text, lower, reach, logarithmic=logarithmic)

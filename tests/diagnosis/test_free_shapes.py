@@ -10,10 +10,11 @@ import pytest
 from ident.diagnosis import candidate_models, moves
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.free_shapes import converged, freed_refit, is_width, with_free_shapes, with_widths
+from ident.diagnosis.free_shapes import converged, freed, freed_refit, is_width, with_free_shapes, with_widths
 from ident.diagnosis.screening import predict
 from ident.effects import CATALOGUE
 from ident.fit.settings import Settings
+from ident.presets import preset
 from ident.workflows import diagnose, identify
 from tests.diagnosis.damper import Damper
 
@@ -97,6 +98,15 @@ def test_nothing_is_freed_where_the_usual_values_explain_the_data(monkeypatch):
 def test_what_a_user_holds_stays_held():
     models = CandidateModels.of(Damper().matrix(), Settings("specimen", fixed={WAY: 1e-4}))
     assert with_widths(models, models.effects) == []
+
+
+def test_a_width_is_searched_over_decades():
+    """Whatever it is measured by: within its own bounds, as a speed is, or by the motion."""
+    for name in ("stribeck_friction", "presliding_friction"):
+        effect = freed(next(effect for effect in CATALOGUE if effect.name == name))
+        model = preset("drive").with_effects((effect,))
+        (scale,) = (s for s in model.scales if s.name == effect.added[1].in_equations)
+        assert scale.logarithmic
 
 
 def test_a_width_has_one_sign():
