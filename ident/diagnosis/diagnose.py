@@ -162,8 +162,10 @@ class Diagnoser:
             complete=not missing,
             not_looked_at=missing,
             notes=(
-                *catalogue.notes, *(() if still_searching else terms.notes(self.budget.propose)), *self.stages.notes,
-            ),  # fmt: skip
+                *catalogue.notes,
+                *(() if still_searching else terms.notes(self.budget.propose)),
+                *self.stages.notes,
+            ),
         )
 
     def _with_follow_up(self, diagnosis: Diagnosis) -> Diagnosis:
