@@ -1,0 +1,88 @@
+"""What the best of many candidates gains by chance: the bar that a gain has to pass.
+
+Surrogates of a residual have its energy in every spectral line or harmonic, and phases drawn at random: what a candidate
+explains of them is chance. The candidates are screened as they are first looked at, linearly: beside the sensitivities
+to the fitted parameters, which are taken off, each column is fitted by itself, weighted by the disturbance, and the one
+that explains most gains G. The bar is the 95 % point of that over 200 surrogates. However many candidates there are, and
+however alike, thousands cost a product of matrices; that is the correction for the number of models looked at
+(Westfall and Young 1993).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.diagnosis.disturbance import Disturbance
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+_FLAT = 1e-9  # of the largest column: what the sensitivities explain altogether
+
+
+def bar(
+    residuals: Sequence[Array], sensitivities: Sequence[Array], candidates: Sequence[Array], disturbance: Disturbance,
+    seed: int = 0,
+) -> float:  # fmt: skip
+    """The gain (nats) that the best of the candidates makes by chance, but for one in twenty.
+
+    Of each run the residual (n,) of the model that may be extended, its sensitivities (n, p) to the parameters, and the
+    responses (n, k) of its output to each candidate. Without a candidate there is nothing to choose: 0.
+    """
+    if not candidates or not candidates[0].shape[1]:
+        return 0.0
+    bands = disturbance.bands
+    signals = [
+        np.column_stack([r, J, D]) / record.size
+        for r, J, D, record in zip(residuals, sensitivities, candidates, bands.records, strict=True)
+    ]
+    parts = [run.coefficients(of) for run, of in zip(bands.runs, signals, strict=True)]
+    band = np.concatenate([run.band for run in bands.runs])
+    weights = np.sqrt(_weights(disturbance)[band])
+    weighted = np.concatenate(parts) * weights[:, None]
+    p = sensitivities[0].shape[1]
+    known = _orthonormal(_real(weighted[:, 1 : 1 + p]))
+    columns = _real(weighted[:, 1 + p :])
+    columns = _unit(columns - known @ (known.T @ columns), columns)
+    if not columns.shape[1]:
+        return 0.0
+    random = np.random.default_rng(seed)
+    sizes, scale = np.abs(weighted[:, 0]), np.concatenate([weights, weights])
+    twice = np.concatenate([band, band])
+    gains = []
+    for _ in range(bands.criteria.surrogates):
+        drawn = _real(sizes * np.exp(2j * np.pi * random.random(len(sizes))))
+        drawn = drawn - known @ (known.T @ drawn)
+        shares = columns.T @ drawn
+        best = int(np.argmax(np.abs(shares)))
+        left = drawn - shares[best] * columns[:, best]
+        before, after = (np.bincount(twice, (of / scale) ** 2, bands.size) for of in (drawn, left))
+        gains.append(disturbance.gain(before, after))
+    return float(np.quantile(gains, 1.0 - bands.criteria.chance))
+
+
+def _weights(disturbance: Disturbance) -> Array:
+    """c_b / S_b, of a band without anything 1."""
+    there = disturbance.energy > 0
+    return np.where(there, disturbance.counted / np.where(there, disturbance.energy, 1.0), 1.0)
+
+
+def _real(parts: Complex) -> Array:
+    """Complex coefficients (m, …) as real ones (2 m, …)."""
+    return np.concatenate([parts.real, parts.imag])
+
+
+def _orthonormal(columns: Array) -> Array:
+    if not columns.shape[1]:
+        return columns
+    U, size, _ = np.linalg.svd(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300), full_matrices=False)
+    return np.asarray(U[:, size > _FLAT * size[0]])
+
+
+def _unit(columns: Array, before: Array) -> Array:
+    """Columns of length 1, without those of which the sensitivities leave nothing."""
+    size, whole = np.linalg.norm(columns, axis=0), np.linalg.norm(before, axis=0)
+    kept = (whole > 0) & (size > np.sqrt(_FLAT) * whole)
+    return columns[:, kept] / size[kept]

@@ -1,0 +1,172 @@
+"""The one comparison of two fitted models, and what it lets one say.
+
+Compared are the residuals of free simulations (over the prediction horizon where a machine integrates) on data that the
+fits did not see: blocks or whole runs that were left out in turn. Three questions are asked of a difference.
+
+*Is it real?* The gain, in nats, is that of a coarsened likelihood (Miller and Dunson 2019) under one disturbance spectrum
+common to all models (:mod:`ident.diagnosis.disturbance`),
+
+    G = ν/2 ln(V before / V after)
+
+where ν counts what is distinct, never samples: five and a hundred periods of one sine have the same ν. It has to pass the
+bar, the 95 % point of the largest gain that any candidate makes of residuals with the same spectrum and random phases
+(:mod:`ident.diagnosis.chance`): that is the correction for the number of models looked at.
+
+*Does it matter?* The share of the explainable power, that above the noise, which the change takes,
+
+    ρ = (P before − P after) / (P before − P noise)
+
+with P the power of the error over that of the output, averaged over runs: what a user is shown, squared. Its error comes
+from blocks of ten correlation times of the difference, or from whole runs (:mod:`ident.diagnosis.blocks`).
+
+*Does it hold everywhere?* No condition of the tests, and neither half of the records, may lose beyond its error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.diagnosis.blocks import BlockMean, block_mean
+from ident.diagnosis.disturbance import Disturbance
+from ident.diagnosis.energy_bands import EnergyBands, Record
+from ident.diagnosis.evidence_criteria import EVIDENCE_CRITERIA, EvidenceCriteria
+from ident.noise.autoregression import prediction_errors
+from ident.noise.effective_sample_size import independent_samples
+
+Array = NDArray[np.float64]
+Model = TypeVar("Model", bound=Hashable)
+HALVES = ("first half", "second half")
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What speaks for the model `after` against the model `before`, on data that neither was fitted to.
+
+    `gain` is G (nats), `distinct` ν. `before`, `after` and `noise` are powers of the error over that of the output,
+    averaged over runs; `difference` is before − after with its error, `parts` the same of each condition and of each
+    half. `apart` is the power between the two outputs, `resolved` that which the noise would tell apart. `parameters`
+    are the numbers of free parameters.
+    """
+
+    gain: float
+    distinct: float
+    before: float
+    after: float
+    noise: float
+    difference: BlockMean
+    parts: Mapping[Hashable, BlockMean]
+    apart: float
+    resolved: float
+    parameters: tuple[int, int] = (0, 0)
+
+    @property
+    def explainable(self) -> float:
+        """The power that the first model leaves above the noise."""
+        return max(self.before - self.noise, 0.0)
+
+    @property
+    def share(self) -> BlockMean:
+        """ρ with its error; nothing of it where the first model leaves but the noise."""
+        if not self.explainable > 0:
+            return BlockMean(0.0, float("inf"), self.difference.blocks)
+        scale = 1.0 / self.explainable
+        return BlockMean(scale * self.difference.mean, scale * self.difference.error, self.difference.blocks)
+
+
+def compare(
+    before: Sequence[Array], after: Sequence[Array], records: Sequence[Record], disturbance: Disturbance | None = None,
+    parameters: tuple[int, int] = (0, 0), criteria: EvidenceCriteria = EVIDENCE_CRITERIA,
+) -> Evidence:  # fmt: skip
+    """Compare two models by their residuals (n,) of each run on data that was left out of their fits.
+
+    The residuals are in the unit of the outputs, less their mean where the zero is not known. `disturbance` is the
+    spectrum common to all models that are looked at, of which the two are members; without one these two are all.
+    Raises ValueError where the residuals are not those of the records.
+    """
+    if not len(before) == len(after) == len(records):
+        raise ValueError(f"residuals of {len(before)} and {len(after)} runs, {len(records)} records")
+    if disturbance is None:
+        bands = EnergyBands(tuple(records), tuple(map(len, before)), criteria)
+        disturbance = Disturbance.of(bands, (before, after))
+    energies = [disturbance.bands.energies(residuals) for residuals in (before, after)]
+    scaled = [[r / of.size for r, of in zip(side, records, strict=True)] for side in (before, after)]
+    powers = [float(np.mean([np.mean(r**2) for r in side])) for side in scaled]
+    gained = [one**2 - other**2 for one, other in zip(*scaled, strict=True)]
+    between = [one - other for one, other in zip(*scaled, strict=True)]
+    noise = _noise_power(records, scaled, disturbance)
+    return Evidence(
+        gain=disturbance.gain(*energies),
+        distinct=disturbance.distinct,
+        before=powers[0],
+        after=powers[1],
+        noise=noise,
+        difference=block_mean(gained, criteria),
+        parts=_parts(gained, records, criteria),
+        apart=float(np.mean([np.mean(d**2) for d in between])),
+        resolved=criteria.resolution
+        * noise
+        / max(sum(map(independent_samples, scaled[int(powers[1] < powers[0])])), 1),
+        parameters=parameters,
+    )
+
+
+def improves(evidence: Evidence, bar: float, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
+    """Whether the second model explains more: beyond the bar of chance, and by a share that matters beyond its error."""
+    return evidence.gain > bar and evidence.share.above(criteria.share, criteria)
+
+
+def generalises(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
+    """Whether no condition and no half loses beyond its error, and by a share of the explainable power that matters."""
+    least = -criteria.share * evidence.explainable
+    return not any(part.below(least, criteria) for part in evidence.parts.values())
+
+
+def indistinguishable(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
+    """Whether the data cannot tell which model is right: as good but for chance, and outputs near to each other.
+
+    Near is what the noise does not tell apart, or a twentieth of what the better one leaves above the noise.
+    """
+    left = max(min(evidence.before, evidence.after) - evidence.noise, 0.0)
+    near = evidence.apart <= max(criteria.separation * left, evidence.resolved)
+    difference = evidence.difference
+    as_good = not (difference.above(0.0, criteria) or difference.below(0.0, criteria))
+    return near and (as_good or evidence.apart <= evidence.resolved)
+
+
+def dominated(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
+    """Whether the second model is worse than the first beyond chance, by a share that matters of what it leaves."""
+    left = max(evidence.after - evidence.noise, 0.0)
+    return evidence.difference.below(-criteria.share * left, criteria)
+
+
+def _parts(
+    gained: Sequence[Array], records: Sequence[Record], criteria: EvidenceCriteria
+) -> dict[Hashable, BlockMean]:  # fmt: skip
+    """The difference on each condition, where there are several, and on each half of the records."""
+    conditions: dict[Hashable, list[Array]] = {}
+    for one, record in zip(gained, records, strict=True):
+        conditions.setdefault(record.condition, []).append(one)
+    found: dict[Hashable, BlockMean] = {}
+    if len(conditions) > 1:
+        found |= {condition: block_mean(series, criteria) for condition, series in conditions.items()}
+    halves = ([one[: len(one) // 2] for one in gained], [one[len(one) // 2 :] for one in gained])
+    return found | {name: block_mean(half, criteria) for name, half in zip(HALVES, halves, strict=True)}
+
+
+def _noise_power(records: Sequence[Record], scaled: Sequence[Sequence[Array]], disturbance: Disturbance) -> float:
+    """The power of the noise averaged over runs: as stated, between the periods, else what its past does not predict."""
+    bands, found = disturbance.bands, []
+    for i, (run, record) in enumerate(zip(bands.runs, records, strict=True)):
+        if record.period is not None:
+            rest = run.first + run.bands - 1
+            found.append(float(disturbance.noise[rest] / bands.degrees[rest]))
+        elif record.floor is not None:
+            found.append(record.floor)
+        else:
+            found.append(min(float(np.mean(prediction_errors(side[i]) ** 2)) for side in scaled))
+    return min(float(np.mean(found)), *(float(np.mean([np.mean(r**2) for r in side])) for side in scaled))

@@ -1,0 +1,132 @@
+"""The numbers by which two fitted models are compared: name, value, unit, meaning, reason, and the test that holds it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields
+from typing import Any, NamedTuple
+
+_TESTS = "tests/diagnosis/test_evidence.py::"
+
+
+def _number(value: Any, unit: str, meaning: str, reason: str, test: str) -> Any:
+    """A field of :class:`EvidenceCriteria` with what has to be said of it."""
+    return field(default=value, metadata={"unit": unit, "meaning": meaning, "reason": reason, "test": _TESTS + test})
+
+
+class Criterion(NamedTuple):
+    """A number that decides something, with its unit, meaning, reason and the test that fails where it is wrong."""
+
+    name: str
+    value: float
+    unit: str
+    meaning: str
+    reason: str
+    test: str
+
+
+@dataclass(frozen=True)
+class EvidenceCriteria:
+    """Every number of the comparison of two fitted models."""
+
+    # What is distinct ------------------------------------------------------------------------------------------------
+    degrees_of_a_band: float = _number(
+        30.0, "degrees of freedom", "most of the degrees of freedom of a band that count as distinct",
+        "An unmodelled term repeats itself in every sample of a band, so that more samples say nothing new about it; "
+        "10 to 100 rank alike on the corpus of docs/decisions/evidence.md.",
+        "test_a_hundred_times_the_samples_of_the_same_structural_error_do_not_add_evidence",
+    )  # fmt: skip
+    bands_of_an_octave: float = _number(
+        4.0, "bands", "bands of an octave of a record that is not periodic",
+        "Finer than the peaks of a damped machine, wide enough that the energy of a band is steady.",
+        "test_what_a_drift_adds_to_both_models_takes_no_evidence_away",
+    )  # fmt: skip
+    lines_of_a_band: int = _number(
+        4, "spectral lines", "fewest spectral lines of a band",
+        "The energy of a band of fewer than eight degrees of freedom scatters by more than half of itself.",
+        "test_the_bar_is_passed_by_chance_as_often_as_it_says",
+    )  # fmt: skip
+    harmonics: int = _number(
+        40, "harmonics", "most harmonics of a periodic test that are told apart; the others count with the noise",
+        "Dry friction under a sine has 1 % of its power, the tolerance below, beyond the fortieth.",
+        "test_five_periods_and_a_hundred_give_the_same_evidence_against_a_wrong_model",
+    )  # fmt: skip
+    tolerance: float = _number(
+        0.01, "1", "share of the explainable power that no model is asked to explain",
+        "An effect that takes less than a hundredth of what could be explained is not worth a parameter; without it "
+        "the kinks of a useful model in bands that hold nothing else outweigh what it explains.",
+        "test_a_model_that_explains_most_gains_though_its_kinks_reach_into_empty_bands",
+    )  # fmt: skip
+
+    # What is chance --------------------------------------------------------------------------------------------------
+    surrogates: int = _number(
+        200, "residuals", "residuals with random phases, of which the largest gains give the bar",
+        "The 95 % point of so many is known to three points of a per cent.",
+        "test_the_bar_is_passed_by_chance_as_often_as_it_says",
+    )  # fmt: skip
+    chance: float = _number(
+        0.05, "1", "how often chance may pass the bar, or a difference its error",
+        "The custom of the field; corrected for the number of candidates, as the bar is that of the largest gain.",
+        "test_the_bar_is_passed_by_chance_as_often_as_it_says",
+    )  # fmt: skip
+    correlation_times: float = _number(
+        10.0, "correlation times", "length of a block",
+        "Means of blocks so long are independent to a tenth of their variance (Flegal and Jones 2010).",
+        "test_the_error_of_a_difference_holds_for_correlated_residuals",
+    )  # fmt: skip
+    whole_runs: int = _number(
+        4, "runs", "runs from which on whole runs are the blocks",
+        "What differs from run to run shows between runs only; of fewer than four their scatter tells nothing.",
+        "test_what_only_one_of_many_runs_asks_for_does_not_improve",
+    )  # fmt: skip
+    most_blocks: int = _number(
+        64, "blocks", "most blocks of a record",
+        "Student's critical value hardly falls beyond, and longer blocks are safer.",
+        "test_the_error_of_a_difference_holds_for_correlated_residuals",
+    )  # fmt: skip
+
+    # What matters ----------------------------------------------------------------------------------------------------
+    share: float = _number(
+        0.01, "1", "least share of the explainable power that an effect has to take",
+        "Less is not worth a parameter, however certain.",
+        "test_a_gain_of_less_than_a_hundredth_of_the_explainable_power_does_not_improve",
+    )  # fmt: skip
+    separation: float = _number(
+        0.05, "1", "power between two outputs over the power that the better one leaves above the noise",
+        "What is missing from both may have turned the order of two outputs so near to each other.",
+        "test_two_models_that_leave_as_much_but_look_different_are_told_apart",
+    )  # fmt: skip
+    resolution: float = _number(
+        36.0, "noise variances", "energy between two outputs that white noise does not tell apart",
+        "Outputs f, g are three standard deviations apart where |f − g|² = 36 σ²: half of |f − g| over σ is the "
+        "deviation of the likelihood ratio, taken from either side.",
+        "test_two_models_whose_outputs_the_noise_hides_are_indistinguishable",
+    )  # fmt: skip
+
+    # How sure --------------------------------------------------------------------------------------------------------
+    learning_rate: float = _number(
+        0.15, "1", "factor of a gain in the logarithm of a model's weight",
+        "Fitted to the training seeds of docs/decisions/evidence.md and frozen.",
+        "test_probabilities_are_frozen",
+    )  # fmt: skip
+    effect_prior: float = _number(
+        5.0, "nats", "what the logarithm of a model's weight falls by with each effect",
+        "Fitted to the training seeds of docs/decisions/evidence.md and frozen.",
+        "test_probabilities_are_frozen",
+    )  # fmt: skip
+    unlisted_share: float = _number(
+        0.5, "1", "gain of an unlisted effect over the largest gain that any model could reach",
+        "Fitted to the training seeds of docs/decisions/evidence.md, with the true effects taken off the list.",
+        "test_probabilities_are_frozen",
+    )  # fmt: skip
+
+    def listed(self) -> Iterator[Criterion]:
+        """Every number with what is to be said of it, in the order above."""
+        for one in fields(self):
+            of = one.metadata
+            yield Criterion(
+                one.name, float(getattr(self, one.name)), of["unit"], of["meaning"], of["reason"], of["test"]
+            )
+
+
+EVIDENCE_CRITERIA = EvidenceCriteria()
