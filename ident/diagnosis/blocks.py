@@ -2,9 +2,9 @@
 
     mean of the blocks ± t s / √k       s their standard deviation, t Student's of k − 1 degrees of freedom
 
-With a fixed number of blocks that is the limit of the studentised mean of any stationary series, whatever its spectrum
-(Kiefer and Vogelsang 2005; Ibragimov and Müller 2010). Of nested or other models that are both wrong the mean difference
-of their losses is judged so (Vuong 1989).
+With a fixed number of blocks that is the limit of the studentised mean of any stationary series, whatever its
+spectrum (Kiefer and Vogelsang 2005; Ibragimov and Müller 2010). So the mean difference of the losses of two models is
+judged, nested or not, of which both may be wrong (Vuong 1989).
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
 """What the best of many candidates gains by chance: the bar that a gain has to pass.
 
-Surrogates of a residual have its energy in every spectral line or harmonic, and phases drawn at random: what a candidate
-explains of them is chance. The candidates are screened as they are first looked at, linearly: beside the sensitivities
-to the fitted parameters, which are taken off, each column is fitted by itself, weighted by the disturbance, and the one
-that explains most gains G. The bar is the 95 % point of that over 200 surrogates. However many candidates there are, and
-however alike, thousands cost a product of matrices; that is the correction for the number of models looked at
-(Westfall and Young 1993).
+Surrogates of a residual have its energy in every spectral line or harmonic, and phases drawn at random: what a
+candidate explains of them is chance. The candidates are screened as they are first looked at, linearly: in addition to
+the sensitivities to the fitted parameters, which are taken off, each response is fitted by itself, weighted by the
+disturbance, and the one that explains most gains G. The bar is the 95 % point of that over 200 surrogates. However many
+candidates there are, and however alike, they cost a product of matrices. This is the correction for the number of
+models looked at (Westfall and Young 1993).
 """
 
 from __future__ import annotations
@@ -14,11 +14,13 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ident.diagnosis.disturbance import Disturbance
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+_TOGETHER = 25  # surrogates at a time: records may be long
 _FLAT = 1e-9  # of the largest column: what the sensitivities explain altogether
 
 
@@ -48,18 +50,19 @@ def bar(
     columns = _unit(columns - known @ (known.T @ columns), columns)
     if not columns.shape[1]:
         return 0.0
-    random = np.random.default_rng(seed)
-    sizes, scale = np.abs(weighted[:, 0]), np.concatenate([weights, weights])
-    twice = np.concatenate([band, band])
-    gains = []
-    for _ in range(bands.criteria.surrogates):
-        drawn = _real(sizes * np.exp(2j * np.pi * random.random(len(sizes))))
-        drawn = drawn - known @ (known.T @ drawn)
+    random, sizes = np.random.default_rng(seed), np.abs(weighted[:, 0])
+    places = np.tile(band, 2), np.arange(2 * len(band))
+    in_bands = csr_array((np.tile(weights**-2.0, 2), places), shape=(bands.size, 2 * len(band)))
+    gains: list[float] = []
+    while (count := min(bands.criteria.surrogates - len(gains), _TOGETHER)) > 0:
+        drawn = _real(sizes[:, None] * np.exp(2j * np.pi * random.random((len(sizes), count))))
+        drawn -= known @ (known.T @ drawn)
         shares = columns.T @ drawn
-        best = int(np.argmax(np.abs(shares)))
-        left = drawn - shares[best] * columns[:, best]
-        before, after = (np.bincount(twice, (of / scale) ** 2, bands.size) for of in (drawn, left))
-        gains.append(disturbance.gain(before, after))
+        best = np.argmax(np.abs(shares), axis=0)
+        left = drawn - columns[:, best] * shares[best, np.arange(count)]
+        for before, after in zip((in_bands @ drawn**2).T, (in_bands @ left**2).T, strict=True):
+            own = Disturbance.of_energies(bands, np.array([before, after]), disturbance.floors)
+            gains.append(own.gain(before, after))
     return float(np.quantile(gains, 1.0 - bands.criteria.chance))
 
 
@@ -85,4 +88,4 @@ def _unit(columns: Array, before: Array) -> Array:
     """Columns of length 1, without those of which the sensitivities leave nothing."""
     size, whole = np.linalg.norm(columns, axis=0), np.linalg.norm(before, axis=0)
     kept = (whole > 0) & (size > np.sqrt(_FLAT) * whole)
-    return columns[:, kept] / size[kept]
+    return np.asarray(columns[:, kept] / size[kept])

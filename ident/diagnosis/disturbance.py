@@ -1,15 +1,15 @@
 """One disturbance spectrum, common to all models that are compared, and the loss that it weighs.
 
-What no model explains, a drift of the sensor or a term that no list holds, must not decide between models. Its energy in
-each band is at most what the best of them leaves there, and at least the noise; a hundredth of what could be explained is
-asked of no model, spread over all that is distinct:
+What no model explains, a drift of the sensor or a term that no list holds, must not decide between models. Its energy
+in each band is what the best of them leaves there, and at least the noise. To it a part of the mean level comes of what
+could be explained: else the kinks of a useful model, in bands that hold nothing, would outweigh what it explains.
 
     S_b = max(min_m E_b(m), F_b) + ε X c_b / Σ c      X = Σ_b max(E_b(reference) − F_b, 0), of each condition
     V(m) = Σ_b c_b max(E_b(m), F_b) / S_b / ν         ν = Σ_b c_b
 
 with E_b the energies, c_b what is distinct (:mod:`ident.diagnosis.energy_bands`), F_b = f d_b the energy of the noise.
-It is the likelihood of Whittle (1953) with a fitted discrepancy, of which the logarithm is taken over all bands at once,
-as the level of the disturbance is not known. Of a periodic test the noise is told by what does not repeat.
+It is the likelihood of Whittle (1953) with a fitted discrepancy; the logarithm is of all bands at once, as the level of
+the disturbance is not known.
 """
 
 from __future__ import annotations
@@ -21,34 +21,45 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.diagnosis.energy_bands import EnergyBands
+from ident.noise.autoregression import prediction_errors
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Disturbance:
-    """The spectrum: expected energies (bands,) of it, and of the noise alone, over the `bands`."""
+    """The spectrum: expected energies (bands,) of it, and of the noise alone, over the `bands`.
+
+    `floors` are the variances of the noise of each run over the power of its output, (runs,).
+    """
 
     bands: EnergyBands
     energy: Array
     noise: Array
+    floors: Array
 
     @classmethod
     def of(cls, bands: EnergyBands, compared: Sequence[Sequence[Array]], reference: int = 0) -> Disturbance:
         """That of models by their residuals, one of them, the `reference`, the model without any of the effects."""
         energies = np.array([bands.energies(residuals) for residuals in compared])
-        least = energies.min(axis=0)
-        noise = _noise(bands, least)
+        best = compared[int(np.argmin(energies.sum(axis=1)))]
+        return cls.of_energies(bands, energies, _floors(bands, energies.min(axis=0), best), reference)
+
+    @classmethod
+    def of_energies(cls, bands: EnergyBands, energies: Array, floors: Array, reference: int = 0) -> Disturbance:
+        """That of models by their energies (models, bands)."""
+        noise = bands.white(floors)
         explainable = np.maximum(energies[reference] - noise, 0.0)
         conditions = int(bands.condition.max()) + 1
         of_condition = np.bincount(bands.condition, explainable, conditions)
         distinct = np.bincount(bands.condition, bands.distinct, conditions)
         share = bands.criteria.tolerance * of_condition / np.maximum(distinct, 1.0)
-        return cls(bands, np.maximum(least, noise) + share[bands.condition] * bands.distinct, noise)
+        expected = np.maximum(energies.min(axis=0), noise) + share[bands.condition] * bands.distinct
+        return cls(bands, expected, noise, floors)
 
     @property
     def counted(self) -> Array:
-        """c_b of the bands in which there is anything, (bands,): a mean that is taken off says nothing."""
+        """c_b of the bands in which there is anything, (bands,)."""
         return np.where(self.energy > 0, self.bands.distinct, 0.0)
 
     @property
@@ -56,38 +67,33 @@ class Disturbance:
         """ν: how much of the data is distinct."""
         return float(self.counted.sum())
 
-    def loss(self, residuals: Sequence[Array]) -> float:
-        """V of a model: 1 or less where it leaves nothing but the disturbance."""
-        return self.loss_of(self.bands.energies(residuals))
-
-    def loss_of(self, energies: Array) -> float:
-        """V of a model by its energies (bands,)."""
+    def loss(self, energies: Array) -> float:
+        """V of a model by its energies (bands,): 1 or less where it leaves nothing but the disturbance."""
         shares = np.maximum(energies, self.noise) / np.where(self.energy > 0, self.energy, 1.0)
         return float(self.counted @ shares) / self.distinct
 
     def gain(self, before: Array, after: Array) -> float:
-        """G = ν/2 ln(V before / V after) of the energies of two models, in nats."""
-        return 0.5 * self.distinct * float(np.log(self.loss_of(before) / self.loss_of(after)))
+        """G = ν/2 ln(V before / V after) of the energies (bands,) of two models, in nats; 0 where there are none."""
+        losses = (self.loss(before), self.loss(after)) if self.distinct else (1.0, 1.0)
+        return 0.5 * self.distinct * float(np.log(losses[0] / losses[1])) if min(losses) > 0 else 0.0
 
-    @property
-    def reachable(self) -> Array:
-        """The energies (bands,) of a model that leaves the noise alone, or where it is not known the disturbance."""
-        return np.where(self.noise > 0, np.minimum(self.noise, self.energy), self.energy)
+    def most(self, before: Array) -> float:
+        """The gain of a model that left nothing but the noise."""
+        return self.gain(before, self.noise)
 
 
-def _noise(bands: EnergyBands, least: Array) -> Array:
-    """F_b: the stated floor, of a periodic test what does not repeat; nothing where neither is known."""
-    found = np.zeros(bands.size)
-    between: dict[int, tuple[float, float]] = {}
-    for run, record in zip(bands.runs, bands.records, strict=True):
+def _floors(bands: EnergyBands, least: Array, best: Sequence[Array]) -> Array:
+    """f of each run: as stated; of a periodic test what does not repeat; else what the past does not predict.
+
+    The latter is of the residuals of the best model, and less than the noise where that is coloured.
+    """
+    found = []
+    for run, record, residual in zip(bands.runs, bands.records, best, strict=True):
         if record.period is not None:
             rest = run.first + run.bands - 1
-            between[run.first] = (float(least[rest]), float(bands.degrees[rest]))
-            continue
-        found += (record.floor or 0.0) * run.degrees(bands.size)
-    for run in bands.runs:
-        if run.first in between:
-            energy, degrees = between[run.first]
-            own = slice(run.first, run.first + run.bands)
-            found[own] = energy / max(degrees, 1.0) * bands.degrees[own]
-    return found
+            found.append(float(least[rest] / max(bands.degrees[rest], 1.0)))
+        elif record.floor is not None:
+            found.append(record.floor)
+        else:
+            found.append(float(np.mean(prediction_errors(residual / record.size) ** 2)))
+    return np.array(found)

@@ -4,13 +4,14 @@ A residual r (n,) of a run whose output has the standard deviation s is cut into
 
     r / s = Σ_b r_b,      E_b = Σ_t r_b²,      expected of white noise of variance f s²:  f d_b
 
-with d_b the degrees of freedom of a band. The mean is a band of one. A test with a period of T samples (any real number)
-has a band of two for each harmonic h / T, and one for all that does not repeat; other records have bands of a quarter of
-an octave. Runs of one condition are pooled, so that a test which is cut in two, or repeated, stays one.
+with d_b the degrees of freedom of a band. The mean is a band of one. A test with a period of T samples (any real
+number) has a band of two for each harmonic h / T, and one for all that does not repeat; other records have bands of a
+quarter of an octave. Runs of one condition are pooled: a test which is cut in two, or repeated, stays one.
 
 How much of it is distinct is another thing: a term that no model has repeats itself in every period, and in every
-sample of a band. A harmonic has two distinct degrees of freedom however many periods were measured, and any other band
-c_b = 1 / (1/d_b + 1/α): all of a few, at most α of many, as a coarsened likelihood counts samples (Miller and Dunson 2019).
+sample of a band. A harmonic has two distinct degrees of freedom however many periods were measured; with them, or with
+the d_b of any other band, c_b = 1 / (1/d_b + 1/α) are distinct: all of a few, at most α of many, as a coarsened
+likelihood counts samples (Miller and Dunson 2019).
 """
 
 from __future__ import annotations
@@ -80,6 +81,12 @@ class EnergyBands:
         for run in self.runs:
             found[run.first : run.first + run.bands] = run.condition
         return found
+
+    def white(self, variances: Array) -> Array:
+        """The energies (bands,) of white noise with so much of the power of each run's output, (runs,)."""
+        return sum(
+            (f * run.degrees(self.size) for f, run in zip(variances, self.runs, strict=True)), np.zeros(self.size)
+        )
 
     def energies(self, residuals: Sequence[Array]) -> Array:
         """E_b (bands,) of the residuals of all runs, in the outputs' unit."""
@@ -155,7 +162,7 @@ class _Bands:
         """Two for each complex line, one for those that are real."""
         weights = np.full(len(lines), 2.0)
         weights[0] = 1.0
-        return np.bincount(lines, weights, count)
+        return np.asarray(np.bincount(lines, weights, count), dtype=np.float64)
 
 
 @dataclass(frozen=True)
@@ -227,7 +234,7 @@ def _spectrum(signals: Array) -> Complex:
     found[0] /= np.sqrt(2.0)
     if n % 2 == 0:
         found[-1] /= np.sqrt(2.0)
-    return found
+    return np.asarray(found, dtype=np.complex128)
 
 
 def _edges(n: int, criteria: EvidenceCriteria) -> Array:
@@ -242,5 +249,5 @@ def _edges(n: int, criteria: EvidenceCriteria) -> Array:
 
 
 def _harmonics(n: int, period: float, criteria: EvidenceCriteria) -> int:
-    """How many harmonics of a test of n samples are told apart: below half the sample rate, a quarter of the samples."""
+    """How many harmonics are told apart of n samples: below half the sample rate, with a quarter of the degrees."""
     return max(1, min(criteria.harmonics, int(np.ceil(period / 2.0)) - 1, n // 8))

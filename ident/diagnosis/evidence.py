@@ -3,21 +3,21 @@
 Compared are the residuals of free simulations (over the prediction horizon where a machine integrates) on data that the
 fits did not see: blocks or whole runs that were left out in turn. Three questions are asked of a difference.
 
-*Is it real?* The gain, in nats, is that of a coarsened likelihood (Miller and Dunson 2019) under one disturbance spectrum
-common to all models (:mod:`ident.diagnosis.disturbance`),
+*Is it real?* The gain, in nats, is that of a coarsened likelihood (Miller and Dunson 2019) under one disturbance
+spectrum common to all models (:mod:`ident.diagnosis.disturbance`),
 
     G = ν/2 ln(V before / V after)
 
-where ν counts what is distinct, never samples: five and a hundred periods of one sine have the same ν. It has to pass the
-bar, the 95 % point of the largest gain that any candidate makes of residuals with the same spectrum and random phases
-(:mod:`ident.diagnosis.chance`): that is the correction for the number of models looked at.
+where ν counts what is distinct, never samples: five and a hundred periods of one sine have the same ν. It has to pass
+the bar, the 95 % point of the largest gain that any candidate makes of residuals with the same spectrum and random
+phases (:mod:`ident.diagnosis.chance`): that is the correction for the number of models looked at.
 
 *Does it matter?* The share of the explainable power, that above the noise, which the change takes,
 
     ρ = (P before − P after) / (P before − P noise)
 
-with P the power of the error over that of the output, averaged over runs: what a user is shown, squared. Its error comes
-from blocks of ten correlation times of the difference, or from whole runs (:mod:`ident.diagnosis.blocks`).
+with P the power of the error over that of the output, averaged over runs: what a user is shown, squared. Its error
+comes from blocks of ten correlation times of the difference, or from whole runs (:mod:`ident.diagnosis.blocks`).
 
 *Does it hold everywhere?* No condition of the tests, and neither half of the records, may lose beyond its error.
 """
@@ -35,7 +35,6 @@ from ident.diagnosis.blocks import BlockMean, block_mean
 from ident.diagnosis.disturbance import Disturbance
 from ident.diagnosis.energy_bands import EnergyBands, Record
 from ident.diagnosis.evidence_criteria import EVIDENCE_CRITERIA, EvidenceCriteria
-from ident.noise.autoregression import prediction_errors
 from ident.noise.effective_sample_size import independent_samples
 
 Array = NDArray[np.float64]
@@ -47,13 +46,14 @@ HALVES = ("first half", "second half")
 class Evidence:
     """What speaks for the model `after` against the model `before`, on data that neither was fitted to.
 
-    `gain` is G (nats), `distinct` ν. `before`, `after` and `noise` are powers of the error over that of the output,
-    averaged over runs; `difference` is before − after with its error, `parts` the same of each condition and of each
-    half. `apart` is the power between the two outputs, `resolved` that which the noise would tell apart. `parameters`
-    are the numbers of free parameters.
+    `gain` is G (nats), `most` the gain of a model that left nothing but the noise, `distinct` ν. `before`, `after` and
+    `noise` are powers of the error over that of the output, averaged over runs; `difference` is before − after with its
+    error, `parts` the same of each condition and of each half. `apart` is the power between the two outputs, `resolved`
+    that which the noise would tell apart. `parameters` are the numbers of free parameters.
     """
 
     gain: float
+    most: float
     distinct: float
     before: float
     after: float
@@ -98,9 +98,10 @@ def compare(
     powers = [float(np.mean([np.mean(r**2) for r in side])) for side in scaled]
     gained = [one**2 - other**2 for one, other in zip(*scaled, strict=True)]
     between = [one - other for one, other in zip(*scaled, strict=True)]
-    noise = _noise_power(records, scaled, disturbance)
+    noise = min(float(np.mean(disturbance.floors)), *powers)
     return Evidence(
         gain=disturbance.gain(*energies),
+        most=disturbance.most(energies[0]),
         distinct=disturbance.distinct,
         before=powers[0],
         after=powers[1],
@@ -116,8 +117,13 @@ def compare(
 
 
 def improves(evidence: Evidence, bar: float, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether the second model explains more: beyond the bar of chance, and by a share that matters beyond its error."""
-    return evidence.gain > bar and evidence.share.above(criteria.share, criteria)
+    """Whether the second model explains more than chance does, and a share that matters, beyond its error.
+
+    The `bar` is that of :func:`ident.diagnosis.chance.bar`. Where a residual has few harmonics a random phase is often
+    met by some candidate, and the bar comes near to all that can be gained: what gains most of that passes, too.
+    """
+    real = evidence.gain > min(bar, criteria.unlisted_share * evidence.most) and evidence.gain > 0
+    return real and evidence.share.above(criteria.share, criteria)
 
 
 def generalises(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
@@ -156,17 +162,3 @@ def _parts(
         found |= {condition: block_mean(series, criteria) for condition, series in conditions.items()}
     halves = ([one[: len(one) // 2] for one in gained], [one[len(one) // 2 :] for one in gained])
     return found | {name: block_mean(half, criteria) for name, half in zip(HALVES, halves, strict=True)}
-
-
-def _noise_power(records: Sequence[Record], scaled: Sequence[Sequence[Array]], disturbance: Disturbance) -> float:
-    """The power of the noise averaged over runs: as stated, between the periods, else what its past does not predict."""
-    bands, found = disturbance.bands, []
-    for i, (run, record) in enumerate(zip(bands.runs, records, strict=True)):
-        if record.period is not None:
-            rest = run.first + run.bands - 1
-            found.append(float(disturbance.noise[rest] / bands.degrees[rest]))
-        elif record.floor is not None:
-            found.append(record.floor)
-        else:
-            found.append(min(float(np.mean(prediction_errors(side[i]) ** 2)) for side in scaled))
-    return min(float(np.mean(found)), *(float(np.mean([np.mean(r**2) for r in side])) for side in scaled))

@@ -1,4 +1,4 @@
-"""The numbers by which two fitted models are compared: name, value, unit, meaning, reason, and the test that holds it."""
+"""The numbers by which two fitted models are compared: name, value, unit, meaning, reason and test."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class EvidenceCriteria:
         30.0, "degrees of freedom", "most of the degrees of freedom of a band that count as distinct",
         "An unmodelled term repeats itself in every sample of a band, so that more samples say nothing new about it; "
         "10 to 100 rank alike on the corpus of docs/decisions/evidence.md.",
-        "test_a_hundred_times_the_samples_of_the_same_structural_error_do_not_add_evidence",
+        "test_a_hundred_times_the_samples_are_no_hundred_times_the_evidence",
     )  # fmt: skip
     bands_of_an_octave: float = _number(
         4.0, "bands", "bands of an octave of a record that is not periodic",
@@ -48,13 +48,13 @@ class EvidenceCriteria:
     )  # fmt: skip
     harmonics: int = _number(
         40, "harmonics", "most harmonics of a periodic test that are told apart; the others count with the noise",
-        "Dry friction under a sine has 1 % of its power, the tolerance below, beyond the fortieth.",
+        "Dry friction under a sine has 1 % of its power beyond the fortieth.",
         "test_five_periods_and_a_hundred_give_the_same_evidence_against_a_wrong_model",
     )  # fmt: skip
     tolerance: float = _number(
-        0.01, "1", "share of the explainable power that no model is asked to explain",
-        "An effect that takes less than a hundredth of what could be explained is not worth a parameter; without it "
-        "the kinks of a useful model in bands that hold nothing else outweigh what it explains.",
+        0.3, "1", "least level of the disturbance, over the mean level of what could be explained",
+        "Without it the kinks of a useful model, in bands that hold nothing, outweigh what it explains; 0.01 to 1 rank "
+        "alike on the corpus of docs/decisions/evidence.md.",
         "test_a_model_that_explains_most_gains_though_its_kinks_reach_into_empty_bands",
     )  # fmt: skip
 

@@ -3,8 +3,9 @@
     ln w = η G − κ k        of a model with k effects and the gain G over the model without any
     ln w = η λ G_most       of something unlisted, G_most the gain of a model that left nothing but the noise
 
-Something unlisted explains everything, and is charged for it by a share of its gain; a listed effect has to come as far.
-η, κ and λ were fitted on training seeds (docs/decisions/evidence.md) and are frozen: of what is said at p a share p is right.
+Something unlisted explains everything, and is charged for it by a share of its gain: a listed effect has to come as
+far. η, κ and λ were fitted on training seeds (docs/decisions/evidence.md) and are frozen: of what is said at p a share
+p is right.
 """
 
 from __future__ import annotations
