@@ -47,15 +47,22 @@ class BlockMean:
 
 def block_mean(series: Sequence[Array], criteria: EvidenceCriteria) -> BlockMean:
     """The mean over runs of the means of their series (n,): runs are the blocks where there are several."""
-    if len(series) >= criteria.whole_runs:
-        return _of([float(np.mean(one)) for one in series], [1.0] * len(series))
-    means: list[float] = []
-    weights: list[float] = []
-    for one in series:
-        parts = _blocks(one, criteria)
-        means += [float(np.mean(part)) for part in parts]
-        weights += [len(part) / len(one) for part in parts]
-    return _of(means, weights)
+    return _of(*_means(series, _blocks(series, criteria)))
+
+
+def block_ratio(part: Sequence[Array], whole: Sequence[Array], criteria: EvidenceCriteria) -> BlockMean:
+    """The mean of one series over that of another, with the error of a ratio (Cochran 1977, 6.4).
+
+    That is the error of the mean of part − ratio × whole, over that of the whole: blocks of another size, in which the
+    same share is taken, add none to it. It is infinite where the whole has no mean above zero.
+    """
+    blocks = _blocks(part, criteria)
+    (parts, weights), (wholes, _) = _means(part, blocks), _means(whole, blocks)
+    scale = float(weights @ wholes)
+    if not scale > 0:
+        return BlockMean(0.0, float("inf"), len(parts))
+    ratio = float(weights @ parts) / scale
+    return BlockMean(ratio, _of(parts - ratio * wholes, weights).error / scale, len(parts))
 
 
 def correlation_time(series: Array) -> float:
@@ -70,16 +77,27 @@ def correlation_time(series: Array) -> float:
     return max(float(summed[ends[0]] if len(ends) else summed.max()), 1.0)
 
 
-def _blocks(series: Array, criteria: EvidenceCriteria) -> list[Array]:
-    length = criteria.correlation_times * correlation_time(series)
-    count = int(np.clip(len(series) / length, 2, criteria.most_blocks))
-    return np.array_split(series, min(count, len(series)))
+def _blocks(series: Sequence[Array], criteria: EvidenceCriteria) -> list[int]:
+    """Into how many blocks the series of each run is cut."""
+    if len(series) >= criteria.whole_runs:
+        return [1] * len(series)
+    lengths = [criteria.correlation_times * correlation_time(one) for one in series]
+    counts = [
+        int(np.clip(len(one) / length, 2, criteria.most_blocks)) for one, length in zip(series, lengths, strict=True)
+    ]
+    return [min(count, len(one)) for count, one in zip(counts, series, strict=True)]
 
 
-def _of(means: Sequence[float], weights: Sequence[float]) -> BlockMean:
-    shares = np.asarray(weights) / np.sum(weights)
-    values = np.asarray(means)
-    mean, k = float(shares @ values), len(values)
+def _means(series: Sequence[Array], blocks: Sequence[int]) -> tuple[Array, Array]:
+    """The mean of each block, and its weight: each run counts alike."""
+    parts = [np.array_split(one, count) for one, count in zip(series, blocks, strict=True)]
+    means = [float(np.mean(part)) for of_run in parts for part in of_run]
+    weights = [len(part) / len(one) / len(series) for one, of_run in zip(series, parts, strict=True) for part in of_run]
+    return np.array(means), np.array(weights)
+
+
+def _of(values: Array, weights: Array) -> BlockMean:
+    mean, k = float(weights @ values), len(values)
     if k < 2:
         return BlockMean(mean, float("inf"), k)
-    return BlockMean(mean, float(np.sqrt(np.sum((shares * (values - mean)) ** 2) * k / (k - 1))), k)
+    return BlockMean(mean, float(np.sqrt(np.sum((weights * (values - mean)) ** 2) * k / (k - 1))), k)

@@ -15,7 +15,7 @@ the disturbance is not known.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,8 +74,14 @@ class Disturbance:
 
     def gain(self, before: Array, after: Array) -> float:
         """G = ν/2 ln(V before / V after) of the energies (bands,) of two models, in nats; 0 where there are none."""
-        losses = (self.loss(before), self.loss(after)) if self.distinct else (1.0, 1.0)
+        losses = (self.loss(before), self.loss(after)) if self.distinct > 0 else (1.0, 1.0)
         return 0.5 * self.distinct * float(np.log(losses[0] / losses[1])) if min(losses) > 0 else 0.0
+
+    def without(self, run: int) -> Disturbance:
+        """That of the other runs alone."""
+        own = self.bands.runs[run].degrees(self.bands.size)
+        left = 1.0 - own / np.maximum(self.bands.degrees, 1.0)
+        return replace(self, energy=np.where(left > 0, left * self.energy, 0.0), noise=left * self.noise)
 
     def most(self, before: Array) -> float:
         """The gain of a model that left nothing but the noise."""

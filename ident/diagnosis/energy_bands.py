@@ -90,10 +90,14 @@ class EnergyBands:
 
     def energies(self, residuals: Sequence[Array]) -> Array:
         """E_b (bands,) of the residuals of all runs, in the outputs' unit."""
-        found = np.zeros(self.size)
-        for run, residual, record in zip(self.runs, residuals, self.records, strict=True):
+        return np.asarray(self.by_run(residuals).sum(axis=0))
+
+    def by_run(self, residuals: Sequence[Array]) -> Array:
+        """The part of each run in these, (runs, bands)."""
+        found = np.zeros((len(self.records), self.size))
+        for i, (run, residual, record) in enumerate(zip(self.runs, residuals, self.records, strict=True)):
             parts = run.coefficients(np.asarray(residual, dtype=np.float64)[:, None] / record.size)[:, 0]
-            found += np.bincount(run.band, np.abs(parts) ** 2, self.size)
+            found[i] = np.bincount(run.band, np.abs(parts) ** 2, self.size)
         return found
 
     @cached_property

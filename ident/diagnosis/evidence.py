@@ -10,7 +10,8 @@ spectrum common to all models (:mod:`ident.diagnosis.disturbance`),
 
 where ν counts what is distinct, never samples: five and a hundred periods of one sine have the same ν. It has to pass
 the bar, the 95 % point of the largest gain that any candidate makes of residuals with the same spectrum and random
-phases (:mod:`ident.diagnosis.chance`): that is the correction for the number of models looked at.
+phases (:mod:`ident.diagnosis.chance`): that is the correction for the number of models looked at. Of four runs or more
+it has to pass without the run that gains most, too: what one run alone asks for is a doubt about that run.
 
 *Does it matter?* The share of the explainable power, that above the noise, which the change takes,
 
@@ -31,7 +32,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.blocks import BlockMean, block_mean
+from ident.diagnosis.blocks import BlockMean, block_mean, block_ratio
 from ident.diagnosis.disturbance import Disturbance
 from ident.diagnosis.energy_bands import EnergyBands, Record
 from ident.diagnosis.evidence_criteria import EVIDENCE_CRITERIA, EvidenceCriteria
@@ -46,19 +47,22 @@ HALVES = ("first half", "second half")
 class Evidence:
     """What speaks for the model `after` against the model `before`, on data that neither was fitted to.
 
-    `gain` is G (nats), `most` the gain of a model that left nothing but the noise, `distinct` ν. `before`, `after` and
-    `noise` are powers of the error over that of the output, averaged over runs; `difference` is before − after with its
-    error, `parts` the same of each condition and of each half. `apart` is the power between the two outputs, `resolved`
-    that which the noise would tell apart. `parameters` are the numbers of free parameters.
+    `gain` is G (nats), `without` the same without the run that gains most, `most` the gain of a model that left nothing
+    but the noise, `distinct` ν. `before`, `after` and `noise` are powers of the error over that of the output, averaged
+    over runs; `difference` is before − after and `share` ρ, with their errors; `parts` are the differences on each
+    condition and each half. `apart` is the power between the two outputs, `resolved` that which the noise would tell
+    apart. `parameters` are the numbers of free parameters.
     """
 
     gain: float
+    without: float
     most: float
     distinct: float
     before: float
     after: float
     noise: float
     difference: BlockMean
+    share: BlockMean
     parts: Mapping[Hashable, BlockMean]
     apart: float
     resolved: float
@@ -68,14 +72,6 @@ class Evidence:
     def explainable(self) -> float:
         """The power that the first model leaves above the noise."""
         return max(self.before - self.noise, 0.0)
-
-    @property
-    def share(self) -> BlockMean:
-        """ρ with its error; nothing of it where the first model leaves but the noise."""
-        if not self.explainable > 0:
-            return BlockMean(0.0, float("inf"), self.difference.blocks)
-        scale = 1.0 / self.explainable
-        return BlockMean(scale * self.difference.mean, scale * self.difference.error, self.difference.blocks)
 
 
 def compare(
@@ -93,20 +89,24 @@ def compare(
     if disturbance is None:
         bands = EnergyBands(tuple(records), tuple(map(len, before)), criteria)
         disturbance = Disturbance.of(bands, (before, after))
-    energies = [disturbance.bands.energies(residuals) for residuals in (before, after)]
+    by_run = [disturbance.bands.by_run(residuals) for residuals in (before, after)]
+    energies = [of.sum(axis=0) for of in by_run]
     scaled = [[r / of.size for r, of in zip(side, records, strict=True)] for side in (before, after)]
     powers = [float(np.mean([np.mean(r**2) for r in side])) for side in scaled]
     gained = [one**2 - other**2 for one, other in zip(*scaled, strict=True)]
     between = [one - other for one, other in zip(*scaled, strict=True)]
     noise = min(float(np.mean(disturbance.floors)), *powers)
+    excess = [one**2 - floor for one, floor in zip(scaled[0], disturbance.floors, strict=True)]
     return Evidence(
-        gain=disturbance.gain(*energies),
+        gain=disturbance.gain(energies[0], energies[1]),
+        without=_without(disturbance, by_run[0], by_run[1]),
         most=disturbance.most(energies[0]),
         distinct=disturbance.distinct,
         before=powers[0],
         after=powers[1],
         noise=noise,
         difference=block_mean(gained, criteria),
+        share=block_ratio(gained, excess, criteria),
         parts=_parts(gained, records, criteria),
         apart=float(np.mean([np.mean(d**2) for d in between])),
         resolved=criteria.resolution
@@ -122,8 +122,8 @@ def improves(evidence: Evidence, bar: float, criteria: EvidenceCriteria = EVIDEN
     The `bar` is that of :func:`ident.diagnosis.chance.bar`. Where a residual has few harmonics a random phase is often
     met by some candidate, and the bar comes near to all that can be gained: what gains most of that passes, too.
     """
-    real = evidence.gain > min(bar, criteria.unlisted_share * evidence.most) and evidence.gain > 0
-    return real and evidence.share.above(criteria.share, criteria)
+    asked = max(min(bar, criteria.unlisted_share * evidence.most), 0.0)
+    return min(evidence.gain, evidence.without) > asked and evidence.share.above(criteria.share, criteria)
 
 
 def generalises(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
@@ -148,6 +148,16 @@ def dominated(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA
     """Whether the second model is worse than the first beyond chance, by a share that matters of what it leaves."""
     left = max(evidence.after - evidence.noise, 0.0)
     return evidence.difference.below(-criteria.share * left, criteria)
+
+
+def _without(disturbance: Disturbance, before: Array, after: Array) -> float:
+    """The gain without the run that gains most, of the energies (runs, bands); of few runs that of all."""
+    if len(before) < disturbance.bands.criteria.whole_runs:
+        return disturbance.gain(before.sum(axis=0), after.sum(axis=0))
+    weights = np.where(disturbance.energy > 0, disturbance.counted / np.maximum(disturbance.energy, 1e-300), 0.0)
+    best = int(np.argmax((before - after) @ weights))
+    others = np.arange(len(before)) != best
+    return disturbance.without(best).gain(before[others].sum(axis=0), after[others].sum(axis=0))
 
 
 def _parts(

@@ -36,8 +36,8 @@ def white(rng: np.random.Generator, n: int) -> Array:
 
 def slow(rng: np.random.Generator, n: int, keeps: float = 0.9) -> Array:
     """A signal of power 1 that remembers: AR(1)."""
-    steps = np.sqrt(1 - keeps**2) * rng.standard_normal(n)
-    return np.asarray(lfilter([1.0], [1.0, -keeps], steps, zi=[keeps * rng.standard_normal()])[0])
+    steps: Array = np.sqrt(1 - keeps**2) * rng.standard_normal(n)
+    return np.asarray(lfilter([1.0], [1.0, -keeps], steps, zi=[keeps * rng.standard_normal()])[0], dtype=np.float64)
 
 
 def periodic(
