@@ -5,7 +5,7 @@ in each band is what the best of them leaves there, and at least the noise. To i
 could be explained: else the kinks of a useful model, in bands that hold nothing, would outweigh what it explains.
 
     S_b = max(min_m E_b(m), F_b) + ε X c_b / Σ c      X = Σ_b max(E_b(reference) − F_b, 0), of each condition
-    V(m) = Σ_b c_b max(E_b(m), F_b) / S_b / ν         ν = Σ_b c_b
+    V(m) = Σ_b c_b max(E_b(m), F_b) / S_b / Σ c      1/ν = 1/Σ c + 1/ν_max
 
 with E_b the energies, c_b what is distinct (:mod:`ident.diagnosis.energy_bands`), F_b = f d_b the energy of the noise.
 It is the likelihood of Whittle (1953) with a fitted discrepancy; the logarithm is of all bands at once, as the level of
@@ -65,12 +65,17 @@ class Disturbance:
     @property
     def distinct(self) -> float:
         """ν: how much of the data is distinct."""
+        return self._all / (1.0 + self._all / self.bands.criteria.degrees_in_all)
+
+    @property
+    def _all(self) -> float:
+        """Σ c_b."""
         return float(self.counted.sum())
 
     def loss(self, energies: Array) -> float:
         """V of a model by its energies (bands,): 1 or less where it leaves nothing but the disturbance."""
         shares = np.maximum(energies, self.noise) / np.where(self.energy > 0, self.energy, 1.0)
-        return float(self.counted @ shares) / self.distinct
+        return float(self.counted @ shares) / self._all
 
     def gain(self, before: Array, after: Array) -> float:
         """G = ν/2 ln(V before / V after) of the energies (bands,) of two models, in nats; 0 where there are none."""
@@ -84,8 +89,9 @@ class Disturbance:
         return replace(self, energy=np.where(left > 0, left * self.energy, 0.0), noise=left * self.noise)
 
     def most(self, before: Array) -> float:
-        """The gain of a model that left nothing but the noise."""
-        return self.gain(before, self.noise)
+        """The gain of a model that left nothing but the noise, as far as that is known for sure."""
+        surely = self.bands.criteria.floor_margin**2 * self.noise
+        return self.gain(np.maximum(before, surely), surely)
 
 
 def _floors(bands: EnergyBands, least: Array, best: Sequence[Array]) -> Array:

@@ -36,6 +36,12 @@ class EvidenceCriteria:
         "10 to 100 rank alike on the corpus of docs/decisions/evidence.md.",
         "test_a_hundred_times_the_samples_are_no_hundred_times_the_evidence",
     )  # fmt: skip
+    degrees_in_all: float = _number(
+        100.0, "degrees of freedom", "most of the degrees of freedom of all bands together that count as distinct",
+        "What no model has is not independent from band to band and run to run either; 30 to 300 are as well "
+        "calibrated on the corpus, none at all is not.",
+        "test_a_hundred_times_the_samples_are_no_hundred_times_the_evidence",
+    )  # fmt: skip
     bands_of_an_octave: float = _number(
         4.0, "bands", "bands of an octave of a record that is not periodic",
         "Finer than the peaks of a damped machine, wide enough that the energy of a band is steady.",
@@ -56,6 +62,12 @@ class EvidenceCriteria:
         "Without it the kinks of a useful model, in bands that hold nothing, outweigh what it explains; 0.01 to 1 rank "
         "alike on the corpus of docs/decisions/evidence.md.",
         "test_a_model_that_explains_most_gains_though_its_kinks_reach_into_empty_bands",
+    )  # fmt: skip
+
+    floor_margin: float = _number(
+        1.02, "1", "error over its noise floor up to which it may be noise alone",
+        "Neither repeats nor spectra tell a floor nearer than 2 % (docs/diagnosis.md, step 7).",
+        "test_an_error_within_two_per_cent_of_the_floor_leaves_nothing_to_gain",
     )  # fmt: skip
 
     # What is chance --------------------------------------------------------------------------------------------------
@@ -105,17 +117,22 @@ class EvidenceCriteria:
 
     # How sure --------------------------------------------------------------------------------------------------------
     learning_rate: float = _number(
-        0.15, "1", "factor of a gain in the logarithm of a model's weight",
+        0.25, "1", "factor of a gain in the logarithm of a model's weight",
         "Fitted to the training seeds of docs/decisions/evidence.md and frozen.",
         "test_probabilities_are_frozen",
     )  # fmt: skip
     effect_prior: float = _number(
-        5.0, "nats", "what the logarithm of a model's weight falls by with each effect",
+        4.9, "1", "by how much the logarithm of a model's weight falls with each effect",
         "Fitted to the training seeds of docs/decisions/evidence.md and frozen.",
         "test_probabilities_are_frozen",
     )  # fmt: skip
     unlisted_share: float = _number(
-        0.5, "1", "gain of an unlisted effect over the largest gain that any model could reach",
+        0.71, "1", "share of what is left to be gained that something unlisted is credited with",
+        "Fitted to the training seeds of docs/decisions/evidence.md, with the true effects taken off the list.",
+        "test_probabilities_are_frozen",
+    )  # fmt: skip
+    unlisted_prior: float = _number(
+        2.8, "1", "by how much the logarithm of a model's weight falls with something unlisted",
         "Fitted to the training seeds of docs/decisions/evidence.md, with the true effects taken off the list.",
         "test_probabilities_are_frozen",
     )  # fmt: skip
