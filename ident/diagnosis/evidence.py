@@ -120,9 +120,9 @@ def improves(evidence: Evidence, bar: float, criteria: EvidenceCriteria = EVIDEN
     """Whether the second model explains more than chance does, and a share that matters, beyond its error.
 
     The `bar` is that of :func:`ident.diagnosis.chance.bar`. Where a residual has few harmonics a random phase is often
-    met by some candidate, and the bar comes near to all that can be gained: what gains most of that passes, too.
+    met by some candidate, and the bar comes near to all that can be gained: what gains half of that passes, too.
     """
-    asked = max(min(bar, criteria.unlisted_share * evidence.most), 0.0)
+    asked = max(min(bar, criteria.reaches * evidence.most), 0.0)
     return min(evidence.gain, evidence.without) > asked and evidence.share.above(criteria.share, criteria)
 
 

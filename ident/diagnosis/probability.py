@@ -4,8 +4,10 @@
     ln w = η (G + λ G_left) − κ k − κ_u       of the same with something unlisted, G_left what is left to be gained
 
 Something unlisted explains all that is left, and is charged for it by a share of its gain and by its prior: a listed
-effect has to come as far. So a model that only stands for what is missing loses to something unlisted. η, κ, λ and κ_u
-were fitted on training seeds (docs/decisions/evidence.md) and are frozen: of what is said at p a share p is right.
+effect has to come as far. So a model that only stands for what is missing loses to something unlisted. All gains are
+under one disturbance spectrum, with the model without any effect as its reference: then G + G_left is the same for all.
+η, κ, λ and κ_u were fitted on training seeds (docs/decisions/evidence.md) and are frozen: of what is said at p a share
+p is right.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ident.diagnosis.evidence import Evidence
 from ident.diagnosis.evidence_criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 
 Effects = frozenset[str]
@@ -23,7 +26,7 @@ NOTHING: Effects = frozenset()
 
 @dataclass(frozen=True)
 class Probabilities:
-    """Of each set of effects, whether something unlisted acts too or not; and of something unlisted."""
+    """Of each set of effects, whether something unlisted acts too or not; of something unlisted; and of neither."""
 
     models: Mapping[Effects, float]
     unlisted: float
@@ -37,20 +40,21 @@ class Probabilities:
 
 
 def probabilities(
-    gains: Mapping[Effects, tuple[float, float]], criteria: EvidenceCriteria = EVIDENCE_CRITERIA
-) -> Probabilities:
-    """The probabilities of models by their gain over the model without any effect, and what is left to be gained.
+    compared: Mapping[Effects, Evidence], criteria: EvidenceCriteria = EVIDENCE_CRITERIA
+) -> Probabilities:  # fmt: skip
+    """The probabilities of models by what speaks for them against the model without any effect.
 
-    Both are in nats: the gain added up along the steps that lead to a model, and `most` of the evidence from there.
-    `nothing` is that of the model without any effect and without anything unlisted.
+    That model is among them, compared with itself. Raises ValueError where it is missing.
     """
-    of = criteria
-    alone = np.array([of.learning_rate * gain - of.effect_prior * len(names) for names, (gain, _) in gains.items()])
-    left = np.array([max(most, 0.0) for _, most in gains.values()])
-    beside = alone + of.learning_rate * of.unlisted_share * left - of.unlisted_prior
-    logs = np.array([alone, beside])
+    if NOTHING not in compared:
+        raise ValueError("the model without any effect is missing")
+    most = compared[NOTHING].most
+    gains = np.array([evidence.gain for evidence in compared.values()])
+    left = np.maximum(most - np.maximum(gains, 0.0), 0.0)
+    alone = criteria.learning_rate * gains - criteria.effect_prior * np.array([len(effects) for effects in compared])
+    with_unlisted = alone + criteria.learning_rate * criteria.unlisted_share * left - criteria.unlisted_prior
+    logs = np.array([alone, with_unlisted])
     weights = np.exp(logs - logs.max())
     weights /= weights.sum()
-    models = dict(zip(gains, weights.sum(axis=0).tolist(), strict=True))
-    nothing = float(weights[0, list(gains).index(NOTHING)]) if NOTHING in gains else 0.0
-    return Probabilities(models, float(weights[1].sum()), nothing)
+    models = dict(zip(compared, weights.sum(axis=0).tolist(), strict=True))
+    return Probabilities(models, float(weights[1].sum()), float(weights[0, list(compared).index(NOTHING)]))
