@@ -182,15 +182,16 @@ class _Broadband(_Bands):
     @cached_property
     def band(self) -> Indices:
         frequency = np.arange(self.n // 2 + 1) / self.n
-        within = np.searchsorted(self.edges[1:], frequency * (1 + 1e-12), side="right") + 1
-        within[0] = 0
-        return np.asarray(self.first + np.minimum(within, self.bands - 1), dtype=np.intp)
+        within = np.searchsorted(self.edges[1:], frequency * (1 + 1e-12), side="right")
+        return np.asarray(self.first + within, dtype=np.intp)
 
     def coefficients(self, signals: Array) -> Complex:
         return _spectrum(signals)
 
     def degrees(self, count: int) -> Array:
-        return self._counted(self.band, count)
+        found = self._counted(self.band, count)
+        found[self.band[-1]] -= 1.0 - self.n % 2  # the line at half the sample rate is real
+        return found
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ class EvidenceCriteria:
         30.0, "degrees of freedom", "most of the degrees of freedom of a band that count as distinct",
         "An unmodelled term repeats itself in every sample of a band, so that more samples say nothing new about it; "
         "10 to 100 rank alike on the corpus of docs/decisions/evidence.md.",
-        "test_a_hundred_times_the_samples_are_no_hundred_times_the_evidence",
+        "test_what_lies_in_a_few_lines_is_not_lost_among_those_of_a_long_record",
     )  # fmt: skip
     degrees_in_all: float = _number(
         100.0, "degrees of freedom", "most of the degrees of freedom of all bands together that count as distinct",
@@ -45,12 +45,12 @@ class EvidenceCriteria:
     bands_of_an_octave: float = _number(
         4.0, "bands", "bands of an octave of a record that is not periodic",
         "Finer than the peaks of a damped machine, wide enough that the energy of a band is steady.",
-        "test_what_a_drift_adds_to_both_models_takes_no_evidence_away",
+        "test_bands_are_a_quarter_of_an_octave_and_have_eight_degrees_of_freedom_at_least",
     )  # fmt: skip
     lines_of_a_band: int = _number(
         4, "spectral lines", "fewest spectral lines of a band",
         "The energy of a band of fewer than eight degrees of freedom scatters by more than half of itself.",
-        "test_the_bar_is_passed_by_chance_as_often_as_it_says",
+        "test_bands_are_a_quarter_of_an_octave_and_have_eight_degrees_of_freedom_at_least",
     )  # fmt: skip
     harmonics: int = _number(
         40, "harmonics", "most harmonics of a periodic test that are told apart; the others count with the noise",
@@ -74,7 +74,7 @@ class EvidenceCriteria:
     surrogates: int = _number(
         200, "residuals", "residuals with random phases, of which the largest gains give the bar",
         "The 95 % point of so many is known to three points of a per cent.",
-        "test_the_bar_is_passed_by_chance_as_often_as_it_says",
+        "test_the_bar_hardly_hangs_on_the_random_phases",
     )  # fmt: skip
     chance: float = _number(
         0.05, "1", "how often chance may pass the bar, or a difference its error",

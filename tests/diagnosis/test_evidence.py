@@ -104,7 +104,24 @@ def test_a_hundred_times_the_samples_are_no_hundred_times_the_evidence() -> None
     for n in (1000, 100_000):
         before = white(rng, n)
         gains.append(compare([before], [0.95 * before], [Record(1.0)]).gain)
-    assert gains[1] < 6.0 * gains[0]
+    assert gains[1] < 2.0 * gains[0]
+
+
+def test_what_lies_in_a_few_lines_is_not_lost_among_those_of_a_long_record() -> None:
+    """Every band says as much as it has to say, not as many samples as it has; seed 17."""
+    rng = np.random.default_rng(17)
+    noise = white(rng, 100_000)
+    slowly = NOISE * np.sin(2 * np.pi * 30 * np.arange(len(noise)) / len(noise))
+    assert compare([noise + slowly], [noise], [WHITE]).gain > 60
+
+
+def test_bands_are_a_quarter_of_an_octave_and_have_eight_degrees_of_freedom_at_least() -> None:
+    """But for the mean, which has one; all of them have as many as there are samples."""
+    bands = EnergyBands((Record(1.0),), (4096,))
+    assert bands.degrees.sum() == pytest.approx(4096)
+    assert 8 <= bands.degrees[1:-1].min() <= 10
+    widths = bands.degrees[20:-1]
+    assert widths[1:] / widths[:-1] == pytest.approx(2**0.25, rel=0.1)
 
 
 def test_a_test_that_is_cut_in_two_is_one_test() -> None:
@@ -122,7 +139,7 @@ def test_a_test_that_is_cut_in_two_is_one_test() -> None:
 @pytest.mark.parametrize("colour", [0.0, 0.9])
 def test_the_bar_is_passed_by_chance_as_often_as_it_says(colour: float, full: bool) -> None:
     """The best of thirty columns fitted to noise passes in about one of twenty; seeds 100 and up."""
-    count, n, passed = (1000 if full else 40), 300, 0
+    count, n, passed = (1000 if full else 20), 200, 0
     criteria = replace(EVIDENCE_CRITERIA, surrogates=EVIDENCE_CRITERIA.surrogates if full else 100)
     bands = EnergyBands((Record(1.0),), (n,), criteria)
     for seed in range(100, 100 + count):
@@ -136,9 +153,18 @@ def test_the_bar_is_passed_by_chance_as_often_as_it_says(colour: float, full: bo
     assert passed <= count * 0.05 + 3 * np.sqrt(count * 0.05)
 
 
+def test_the_bar_hardly_hangs_on_the_random_phases() -> None:
+    """The bars of eight seeds scatter by less than a tenth; seeds 0 to 7."""
+    rng, n = np.random.default_rng(18), 200
+    columns, before = np.array([slow(rng, n, 0.8) for _ in range(30)]).T, white(rng, n)
+    common = Disturbance.of(EnergyBands((WHITE,), (n,)), [[before], [before]])
+    bars = [bar([before], [np.empty((n, 0))], [columns], common, seed) for seed in range(8)]
+    assert np.std(bars) < 0.1 * np.mean(bars)
+
+
 def test_an_effect_worth_three_deviations_above_the_floor_is_found_among_thirty(full: bool) -> None:
     """d² = 60 and 1.1 times the floor: found nearly always, and by a share that matters; seeds 500 and up."""
-    count, n, found = (400 if full else 20), 300, 0
+    count, n, found = (400 if full else 12), 300, 0
     for seed in range(500, 500 + count):
         rng = np.random.default_rng(seed)
         columns = np.array([slow(rng, n, 0.8) for _ in range(30)]).T
@@ -190,12 +216,13 @@ def test_a_gain_of_less_than_a_hundredth_of_the_explainable_power_does_not_impro
 
 def test_the_error_of_a_difference_holds_for_correlated_residuals(full: bool) -> None:
     """The interval of a mean of AR(0.95) holds zero about nineteen times in twenty; seeds 800 and up."""
-    count = 1000 if full else 100
+    count = 1000 if full else 60
     held = 0
     for seed in range(800, 800 + count):
         found = block_mean([slow(np.random.default_rng(seed), 1500, 0.95)], EVIDENCE_CRITERIA)
         held += not (found.above(0.0, EVIDENCE_CRITERIA) or found.below(0.0, EVIDENCE_CRITERIA))
     assert held >= 0.87 * count
+    assert block_mean([white(np.random.default_rng(8), 20_000)], EVIDENCE_CRITERIA).blocks > 50
 
 
 def test_what_only_one_of_many_runs_asks_for_does_not_improve() -> None:
@@ -250,6 +277,8 @@ def test_two_models_that_leave_as_much_but_look_different_are_told_apart() -> No
     here, there = (np.sin(3 * phase) + side * 0.1 * np.cos(3 * phase) for side in (1, -1))
     noise = periodic(30, 0.0, seed=12)[0]
     assert indistinguishable(compare([here + noise], [there + noise], [Record(1.0, period=87.3)]))
+    here, there = (np.sin(3 * phase) + side * 0.2 * np.cos(3 * phase) for side in (1, -1))
+    assert not indistinguishable(compare([here + noise], [there + noise], [Record(1.0, period=87.3)]))
 
 
 def test_a_member_that_is_worse_beyond_its_error_is_dominated() -> None:
@@ -288,7 +317,7 @@ def test_probabilities_are_frozen() -> None:
     assert (found.effects["a"], found.effects["b"], found.unlisted, found.nothing) == pytest.approx(FROZEN, abs=5e-4)
 
 
-FROZEN = (0.0, 0.0, 0.0, 0.0)
+FROZEN = (0.8226, 0.0681, 0.1309, 0.0)
 
 
 def test_what_reaches_the_noise_passes_where_one_harmonic_is_all_there_is() -> None:
@@ -310,7 +339,7 @@ def test_an_error_within_two_per_cent_of_the_floor_leaves_nothing_to_gain() -> N
     """However many samples there are: the floor is not known nearer; seed 14."""
     rng = np.random.default_rng(14)
     residual = [white(rng, 20_000)]
-    for error, expected in ((1.015, True), (1.3, False)):
+    for error, expected in ((1.015, True), (1.08, False)):
         worse = [error * residual[0]]
         evidence = compare(worse, worse, [WHITE])
         assert (evidence.most < 2.0) is expected
