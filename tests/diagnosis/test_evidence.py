@@ -203,6 +203,15 @@ def test_a_model_that_explains_most_gains_though_its_kinks_reach_into_empty_band
     assert compare([before + noise], [kinks + noise], record, criteria=without).gain < 0
 
 
+def test_a_true_effect_is_told_from_one_that_leaves_a_quarter_of_a_harmonic() -> None:
+    """The least level of the disturbance does not hide what tells relatives apart; seed 1."""
+    (lacking, most), (_, all_of_it) = periodic(20, 0.2, left=0.5), periodic(20, 0.2)
+    record = (Record(1.0, period=87.3),)
+    common = Disturbance.of(EnergyBands(record, (len(lacking),)), [[lacking], [most], [all_of_it]])
+    gains = [compare([lacking], [after], record, common).gain for after in (most, all_of_it)]
+    assert gains[1] > 2.2 * gains[0]
+
+
 def test_a_gain_of_less_than_a_hundredth_of_the_explainable_power_does_not_improve() -> None:
     """However certain: structural error makes every stretch agree; seed 7."""
     for left, expected in ((0.999, False), (0.9, True)):
