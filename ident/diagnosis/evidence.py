@@ -120,9 +120,11 @@ def improves(evidence: Evidence, bar: float, criteria: EvidenceCriteria = EVIDEN
     """Whether the second model explains more than chance does, and a share that matters, beyond its error.
 
     The `bar` is that of :func:`ident.diagnosis.chance.bar`. Where a residual has few harmonics a random phase is often
-    met by some candidate, and the bar comes near to all that can be gained: what gains half of that passes, too.
+    met by some candidate, and the bar comes near to all that can be gained: what gains half of that passes, too, if
+    that is worth its prior, η G > κ of :mod:`ident.diagnosis.probability`.
     """
-    asked = max(min(bar, criteria.reaches * evidence.most), 0.0)
+    worth_its_prior = criteria.effect_prior / criteria.learning_rate
+    asked = min(bar, max(criteria.reaches * evidence.most, worth_its_prior))
     return min(evidence.gain, evidence.without) > asked and evidence.share.above(criteria.share, criteria)
 
 

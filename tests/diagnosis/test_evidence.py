@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from ident.diagnosis.blocks import block_mean
+from ident.diagnosis.blocks import BlockMean, block_mean
 from ident.diagnosis.chance import bar
 from ident.diagnosis.disturbance import Disturbance
 from ident.diagnosis.energy_bands import EnergyBands, Record
@@ -305,6 +305,13 @@ def gaining(most: float, **gains: float) -> dict[frozenset[str], Evidence]:
     plain = compare([noise], [noise], [WHITE])
     named = {frozenset(name): replace(plain, gain=gain, most=most) for name, gain in gains.items()}
     return {NOTHING: replace(plain, gain=0.0, most=most), **named}
+
+
+def test_where_next_to_nothing_can_be_gained_the_bar_holds() -> None:
+    """The way round the bar is for what reaches the noise from afar."""
+    near = replace(gaining(1.0, a=1.0)[frozenset("a")], without=1.0, share=BlockMean(0.5, 0.01, 20))
+    assert improves(near, 0.9)
+    assert not improves(near, 1.1)
 
 
 def test_probabilities_are_those_of_the_models_and_sum_to_one() -> None:
