@@ -1,4 +1,4 @@
-"""Shapes of effects that are identified together with the strength, where the data tell them.
+"""Shapes of effects that are identified together with the strength, where the data determine them.
 
 A shape that is held at its usual value is another effect: a friction that builds up over a fifth of the motion is no
 friction that builds up over a hundredth. While the usual values explain a record nothing is gained by freeing them.
@@ -63,11 +63,11 @@ def with_free_widths(
     if not names:
         return None
     free, asked = with_free_shapes(models, names), CRITERIA.ranking.near_best * models.trial_error(best)
-    promising = sorted(predict(free, base, names), key=lambda one: one.after.error)
-    promising = [one for one in promising if one.after.error < asked][: CRITERIA.free_widths.tried]
-    refits = [freed_refit(free, base, one) for one in promising]
-    known = [refit for refit in refits if refit is not None and improves(best, refit)]
-    return stable_minimum(known, lambda refit: refit.held_out.score) if known else None
+    promising = sorted(predict(free, base, names), key=lambda prediction: prediction.after.error)
+    promising = [prediction for prediction in promising if prediction.after.error < asked][: CRITERIA.free_widths.tried]
+    refits = [freed_refit(free, base, prediction) for prediction in promising]
+    better = [refit for refit in refits if refit is not None and improves(best, refit)]
+    return stable_minimum(better, lambda refit: refit.held_out.score) if better else None
 
 
 def freed_refit(models: CandidateModels, base: FittedModel, prediction: Prediction) -> FittedModel | None:
@@ -82,16 +82,16 @@ def freed_refit(models: CandidateModels, base: FittedModel, prediction: Predicti
         ends.append(models.refit(effects, starts.pop(0), CRITERIA.estimation.trial_samples, CRITERIA.estimation.trial))
     best = stable_minimum(ends, lambda end: end.local.error)
     refit = models.converged(models.refit(effects, best.values)) if best.finite else best
-    return refit if refit.finite and told(refit, models.effects[name]) else None
+    return refit if refit.finite and determined(refit, models.effects[name]) else None
 
 
-def told(refit: FittedModel, effect: Effect) -> bool:
+def determined(refit: FittedModel, effect: Effect) -> bool:
     """Whether the data determine every free width of an effect, within the bounds."""
     names = [p.in_equations for p in effect.added[1:] if p.in_equations in refit.space.names]
     errors = {name: refit.deviation(name) for name in names}
     inside = not any(refit.space.at_bound(name, refit.point) for name in names)
-    known = (error is not None and error < DETERMINED * abs(refit.values[name]) for name, error in errors.items())
-    return bool(names) and inside and all(known)
+    certain = (error is not None and error < DETERMINED * abs(refit.values[name]) for name, error in errors.items())
+    return bool(names) and inside and all(certain)
 
 
 def bounds_of_freed(refit: FittedModel, effects: Mapping[str, Effect]) -> dict[str, tuple[float, float]]:
@@ -130,7 +130,7 @@ def _elsewhere(models: CandidateModels, refit: FittedModel, name: str) -> list[d
             point[axis] = place
             values = {key: float(value[0]) for key, value in space.values(point[None]).items()}
             starts.append((abs(place - float(refit.point[axis])), {**refit.values, **values}))
-    return [start for _, start in sorted(starts, key=lambda one: one[0])]
+    return [start for _, start in sorted(starts, key=lambda start: start[0])]
 
 
 def _is_free(parameter: Parameter, space: Space) -> bool:

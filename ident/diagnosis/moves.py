@@ -181,7 +181,7 @@ class Moves:
         return known
 
     def exchange(self, selection: Selection) -> Selection:
-        """Exchange the first added effect for a better one in its place, else tell the alternatives of each.
+        """Exchange the first added effect for a better one in its place, else name the alternatives of each.
 
         What came with another, to which it showed the way, may be dispensable by now: that is taken out first.
         """

@@ -9,11 +9,9 @@ import pytest
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from ident.diagnosis.blocks import BlockMean, block_mean
-from ident.diagnosis.chance import bar
-from ident.diagnosis.disturbance import Disturbance
-from ident.diagnosis.energy_bands import EnergyBands, Record
-from ident.diagnosis.evidence import (
+from ident.diagnosis.evidence.blocks import BlockMean, block_mean
+from ident.diagnosis.evidence.chance import bar
+from ident.diagnosis.evidence.comparison import (
     Evidence,
     compare,
     dominated,
@@ -21,8 +19,10 @@ from ident.diagnosis.evidence import (
     improves,
     indistinguishable,
 )
-from ident.diagnosis.evidence_criteria import EVIDENCE_CRITERIA, EvidenceCriteria
-from ident.diagnosis.probability import NOTHING, probabilities
+from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
+from ident.diagnosis.evidence.disturbance import Disturbance
+from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
+from ident.diagnosis.evidence.probability import NOTHING, probabilities
 
 Array = NDArray[np.float64]
 NOISE = 0.01  # of the output's deviation

@@ -97,6 +97,27 @@ class EvidenceCriteria:
         "test_the_error_of_a_difference_holds_for_correlated_residuals",
     )  # fmt: skip
 
+    correlation_window: float = _number(
+        5.0, "correlation times", "over which the correlations of a series are summed to its correlation time",
+        "The automatic window of Sokal (1997): fewer leave out a part of the sum, more add noise.",
+        "test_the_error_of_a_difference_holds_for_correlated_residuals",
+    )  # fmt: skip
+    samples_of_a_harmonic: int = _number(
+        8, "samples", "of a record for each harmonic that is told apart",
+        "A harmonic has two degrees of freedom: so three quarters of them stay for the noise between.",
+        "test_five_periods_and_a_hundred_give_the_same_evidence_against_a_wrong_model",
+    )  # fmt: skip
+    dependent: float = _number(
+        1e-9, "of the largest column", "what is left of a response below which the sensitivities explain all of it",
+        "Rounding of products of ten thousand samples; its root for a norm.",
+        "test_the_bar_is_passed_by_chance_as_often_as_it_says",
+    )  # fmt: skip
+    surrogates_at_once: int = _number(
+        25, "residuals", "surrogates that lie in memory together",
+        "Records may have a hundred thousand samples: 25 of them take 40 MB.",
+        "test_the_bar_is_passed_by_chance_as_often_as_it_says",
+    )  # fmt: skip
+
     # What matters ----------------------------------------------------------------------------------------------------
     share: float = _number(
         0.01, "1", "least share of the explainable power that an effect has to take",
@@ -145,10 +166,10 @@ class EvidenceCriteria:
 
     def listed(self) -> Iterator[Criterion]:
         """Every number with what is to be said of it, in the order above."""
-        for one in fields(self):
-            of = one.metadata
+        for number in fields(self):
+            of = number.metadata
             yield Criterion(
-                one.name, float(getattr(self, one.name)), of["unit"], of["meaning"], of["reason"], of["test"]
+                number.name, float(getattr(self, number.name)), of["unit"], of["meaning"], of["reason"], of["test"]
             )
 
 

@@ -4,7 +4,7 @@ Surrogates of a residual have its energy in every spectral line or harmonic, and
 candidate explains of them is chance. The candidates are screened as they are first looked at, linearly: in addition to
 the sensitivities to the fitted parameters, which are taken off, each response is fitted by itself, weighted by the
 disturbance, and the one that explains most gains G. The bar is the 95 % point of that over 200 surrogates. However many
-candidates there are, and however alike, they cost a product of matrices. This is the correction for the number of
+candidates there are, and however similar, they cost a product of matrices. This is the correction for the number of
 models looked at (Westfall and Young 1993).
 """
 
@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ident.diagnosis.disturbance import Disturbance
+from ident.diagnosis.criteria import TINY
+from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
+from ident.diagnosis.evidence.disturbance import Disturbance
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-_TOGETHER = 25  # surrogates at a time: records may be long
-_FLAT = 1e-9  # of the largest column: what the sensitivities explain altogether
 
 
 def bar(
@@ -45,22 +45,22 @@ def bar(
     weights = np.sqrt(_weights(disturbance)[band])
     weighted = np.concatenate(parts) * weights[:, None]
     p = sensitivities[0].shape[1]
-    known = _orthonormal(_real(weighted[:, 1 : 1 + p]))
+    parameter_space = _orthonormal(_real(weighted[:, 1 : 1 + p]))
     columns = _real(weighted[:, 1 + p :])
-    columns = _unit(columns - known @ (known.T @ columns), columns)
+    columns = _unit(columns - parameter_space @ (parameter_space.T @ columns), columns)
     if not columns.shape[1]:
         return 0.0
     random, sizes = np.random.default_rng(seed), np.abs(weighted[:, 0])
     places = np.tile(band, 2), np.arange(2 * len(band))
     in_bands = csr_array((np.tile(weights**-2.0, 2), places), shape=(bands.size, 2 * len(band)))
     gains: list[float] = []
-    while (count := min(bands.criteria.surrogates - len(gains), _TOGETHER)) > 0:
+    while (count := min(bands.criteria.surrogates - len(gains), bands.criteria.surrogates_at_once)) > 0:
         drawn = _real(sizes[:, None] * np.exp(2j * np.pi * random.random((len(sizes), count))))
-        drawn -= known @ (known.T @ drawn)
+        drawn -= parameter_space @ (parameter_space.T @ drawn)
         shares = columns.T @ drawn
         best = np.argmax(np.abs(shares), axis=0)
-        left = drawn - columns[:, best] * shares[best, np.arange(count)]
-        for before, after in zip((in_bands @ drawn**2).T, (in_bands @ left**2).T, strict=True):
+        remaining = drawn - columns[:, best] * shares[best, np.arange(count)]
+        for before, after in zip((in_bands @ drawn**2).T, (in_bands @ remaining**2).T, strict=True):
             own = Disturbance.of_energies(bands, np.array([before, after]), disturbance.floors)
             gains.append(own.gain(before, after))
     return float(np.quantile(gains, 1.0 - bands.criteria.chance))
@@ -80,12 +80,12 @@ def _real(parts: Complex) -> Array:
 def _orthonormal(columns: Array) -> Array:
     if not columns.shape[1]:
         return columns
-    U, size, _ = np.linalg.svd(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300), full_matrices=False)
-    return np.asarray(U[:, size > _FLAT * size[0]])
+    U, size, _ = np.linalg.svd(columns / np.maximum(np.linalg.norm(columns, axis=0), TINY), full_matrices=False)
+    return np.asarray(U[:, size > EVIDENCE_CRITERIA.dependent * size[0]])
 
 
 def _unit(columns: Array, before: Array) -> Array:
     """Columns of length 1, without those of which the sensitivities leave nothing."""
     size, whole = np.linalg.norm(columns, axis=0), np.linalg.norm(before, axis=0)
-    kept = (whole > 0) & (size > np.sqrt(_FLAT) * whole)
-    return np.asarray(columns[:, kept] / size[kept])
+    independent = (whole > 0) & (size > np.sqrt(EVIDENCE_CRITERIA.dependent) * whole)
+    return np.asarray(columns[:, independent] / size[independent])

@@ -4,21 +4,22 @@ Compared are the residuals of free simulations (over the prediction horizon wher
 fits did not see: blocks or whole runs that were left out in turn. Three questions are asked of a difference.
 
 *Is it real?* The gain, in nats, is that of a coarsened likelihood (Miller and Dunson 2019) under one disturbance
-spectrum common to all models (:mod:`ident.diagnosis.disturbance`),
+spectrum common to all models (:mod:`ident.diagnosis.evidence.disturbance`),
 
     G = ν/2 ln(V before / V after)
 
 where ν counts what is distinct, never samples: five and a hundred periods of one sine have the same ν. It has to pass
 the bar, the 95 % point of the largest gain that any candidate makes of residuals with the same spectrum and random
-phases (:mod:`ident.diagnosis.chance`): that is the correction for the number of models looked at. Of four runs or more
-it has to pass without the run that gains most, too: what one run alone asks for is a doubt about that run.
+phases (:mod:`ident.diagnosis.evidence.chance`): that is the correction for the number of models looked at. Of four runs
+or more it has to pass without the run that gains most, too: what one run alone asks for is a doubt about that run.
 
 *Does it matter?* The share of the explainable power, that above the noise, which the change takes,
 
     ρ = (P before − P after) / (P before − P noise)
 
 with P the power of the error over that of the output, averaged over runs: what a user is shown, squared. Its error
-comes from blocks of ten correlation times of the difference, or from whole runs (:mod:`ident.diagnosis.blocks`).
+comes from blocks of ten correlation times of the difference, or from whole runs
+(:mod:`ident.diagnosis.evidence.blocks`).
 
 *Does it hold everywhere?* No condition of the tests, and neither half of the records, may lose beyond its error.
 """
@@ -32,10 +33,11 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.blocks import BlockMean, block_mean, block_ratio
-from ident.diagnosis.disturbance import Disturbance
-from ident.diagnosis.energy_bands import EnergyBands, Record
-from ident.diagnosis.evidence_criteria import EVIDENCE_CRITERIA, EvidenceCriteria
+from ident.diagnosis.criteria import TINY
+from ident.diagnosis.evidence.blocks import BlockMean, block_mean, block_ratio
+from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
+from ident.diagnosis.evidence.disturbance import Disturbance
+from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
 from ident.noise.effective_sample_size import independent_samples
 
 Array = NDArray[np.float64]
@@ -93,10 +95,10 @@ def compare(
     energies = [of.sum(axis=0) for of in by_run]
     scaled = [[r / of.size for r, of in zip(side, records, strict=True)] for side in (before, after)]
     powers = [float(np.mean([np.mean(r**2) for r in side])) for side in scaled]
-    gained = [one**2 - other**2 for one, other in zip(*scaled, strict=True)]
-    between = [one - other for one, other in zip(*scaled, strict=True)]
+    gained = [first**2 - second**2 for first, second in zip(*scaled, strict=True)]
+    between = [first - second for first, second in zip(*scaled, strict=True)]
     noise = min(float(np.mean(disturbance.floors)), *powers)
-    excess = [one**2 - floor for one, floor in zip(scaled[0], disturbance.floors, strict=True)]
+    excess = [residual**2 - floor for residual, floor in zip(scaled[0], disturbance.floors, strict=True)]
     return Evidence(
         gain=disturbance.gain(energies[0], energies[1]),
         without=_without(disturbance, by_run[0], by_run[1]),
@@ -119,9 +121,9 @@ def compare(
 def improves(evidence: Evidence, bar: float, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
     """Whether the second model explains more than chance does, and a share that matters, beyond its error.
 
-    The `bar` is that of :func:`ident.diagnosis.chance.bar`. Where a residual has few harmonics a random phase is often
-    met by some candidate, and the bar comes near to all that can be gained: what gains half of that passes, too, if
-    that is worth its prior, η G > κ of :mod:`ident.diagnosis.probability`.
+    The `bar` is that of :func:`ident.diagnosis.evidence.chance.bar`. Where a residual has few harmonics a random
+    phase is often met by some candidate, and the bar comes near to all that can be gained: what
+    gains half of that passes, too, if that is worth its prior, η G > κ of :mod:`ident.diagnosis.evidence.probability`.
     """
     worth_its_prior = criteria.effect_prior / criteria.learning_rate
     asked = min(bar, max(criteria.reaches * evidence.most, worth_its_prior))
@@ -135,12 +137,12 @@ def generalises(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITER
 
 
 def indistinguishable(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether the data cannot tell which model is right: as good but for chance, and outputs near to each other.
+    """Whether the data leave open which model is right: as good but for chance, and outputs near to each other.
 
-    Near is what the noise does not tell apart, or a twentieth of what the better one leaves above the noise.
+    Near is what the noise does not separate, or a twentieth of what the better one leaves above the noise.
     """
-    left = max(min(evidence.before, evidence.after) - evidence.noise, 0.0)
-    near = evidence.apart <= max(criteria.separation * left, evidence.resolved)
+    excess = max(min(evidence.before, evidence.after) - evidence.noise, 0.0)
+    near = evidence.apart <= max(criteria.separation * excess, evidence.resolved)
     difference = evidence.difference
     as_good = not (difference.above(0.0, criteria) or difference.below(0.0, criteria))
     return near and (as_good or evidence.apart <= evidence.resolved)
@@ -148,15 +150,15 @@ def indistinguishable(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_
 
 def dominated(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
     """Whether the second model is worse than the first beyond chance, by a share that matters of what it leaves."""
-    left = max(evidence.after - evidence.noise, 0.0)
-    return evidence.difference.below(-criteria.share * left, criteria)
+    excess = max(evidence.after - evidence.noise, 0.0)
+    return evidence.difference.below(-criteria.share * excess, criteria)
 
 
 def _without(disturbance: Disturbance, before: Array, after: Array) -> float:
     """The gain without the run that gains most, of the energies (runs, bands); of few runs that of all."""
     if len(before) < disturbance.bands.criteria.whole_runs:
         return disturbance.gain(before.sum(axis=0), after.sum(axis=0))
-    weights = np.where(disturbance.energy > 0, disturbance.counted / np.maximum(disturbance.energy, 1e-300), 0.0)
+    weights = np.where(disturbance.energy > 0, disturbance.counted / np.maximum(disturbance.energy, TINY), 0.0)
     best = int(np.argmax((before - after) @ weights))
     others = np.arange(len(before)) != best
     return disturbance.without(best).gain(before[others].sum(axis=0), after[others].sum(axis=0))
@@ -167,10 +169,10 @@ def _parts(
 ) -> dict[Hashable, BlockMean]:  # fmt: skip
     """The difference on each condition, where there are several, and on each half of the records."""
     conditions: dict[Hashable, list[Array]] = {}
-    for one, record in zip(gained, records, strict=True):
-        conditions.setdefault(record.condition, []).append(one)
+    for series, record in zip(gained, records, strict=True):
+        conditions.setdefault(record.condition, []).append(series)
     found: dict[Hashable, BlockMean] = {}
     if len(conditions) > 1:
         found |= {condition: block_mean(series, criteria) for condition, series in conditions.items()}
-    halves = ([one[: len(one) // 2] for one in gained], [one[len(one) // 2 :] for one in gained])
+    halves = ([run[: len(run) // 2] for run in gained], [run[len(run) // 2 :] for run in gained])
     return found | {name: block_mean(half, criteria) for name, half in zip(HALVES, halves, strict=True)}

@@ -16,10 +16,9 @@ import numpy as np
 import scipy  # stats, which takes half a second to load, is loaded where it is first used
 from numpy.typing import NDArray
 
-from ident.diagnosis.evidence_criteria import EvidenceCriteria
+from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 
 Array = NDArray[np.float64]
-_WINDOW = 5.0  # correlation times over which correlations are summed: the automatic window of Sokal (1997)
 
 
 @dataclass(frozen=True)
@@ -66,14 +65,14 @@ def block_ratio(part: Sequence[Array], whole: Sequence[Array], criteria: Evidenc
 
 
 def correlation_time(series: Array) -> float:
-    """1 + 2 Σ ρ_k in samples, at least 1: the sum ends where it is a fifth of the lag."""
+    """1 + 2 Σ ρ_k in samples, at least 1: the sum ends at so many times itself (Sokal 1997)."""
     n, centred = len(series), series - np.mean(series)
     length = 1 << (2 * n - 1).bit_length()
     correlation = np.fft.irfft(np.abs(np.fft.rfft(centred, length)) ** 2, length)[: max(n // 2, 1)]
     if not correlation[0] > 0:
         return 1.0
     summed = 2.0 * np.cumsum(correlation / correlation[0]) - 1.0
-    ends = np.flatnonzero(np.arange(len(summed)) >= _WINDOW * summed)
+    ends = np.flatnonzero(np.arange(len(summed)) >= EVIDENCE_CRITERIA.correlation_window * summed)
     return max(float(summed[ends[0]] if len(ends) else summed.max()), 1.0)
 
 
@@ -81,18 +80,18 @@ def _blocks(series: Sequence[Array], criteria: EvidenceCriteria) -> list[int]:
     """Into how many blocks the series of each run is cut."""
     if len(series) >= criteria.whole_runs:
         return [1] * len(series)
-    lengths = [criteria.correlation_times * correlation_time(one) for one in series]
+    lengths = [criteria.correlation_times * correlation_time(run) for run in series]
     counts = [
-        int(np.clip(len(one) / length, 2, criteria.most_blocks)) for one, length in zip(series, lengths, strict=True)
+        int(np.clip(len(run) / length, 2, criteria.most_blocks)) for run, length in zip(series, lengths, strict=True)
     ]
-    return [min(count, len(one)) for count, one in zip(counts, series, strict=True)]
+    return [min(count, len(run)) for count, run in zip(counts, series, strict=True)]
 
 
 def _means(series: Sequence[Array], blocks: Sequence[int]) -> tuple[Array, Array]:
-    """The mean of each block, and its weight: each run counts alike."""
-    parts = [np.array_split(one, count) for one, count in zip(series, blocks, strict=True)]
+    """The mean of each block, and its weight: each run counts as much."""
+    parts = [np.array_split(run, count) for run, count in zip(series, blocks, strict=True)]
     means = [float(np.mean(part)) for of_run in parts for part in of_run]
-    weights = [len(part) / len(one) / len(series) for one, of_run in zip(series, parts, strict=True) for part in of_run]
+    weights = [len(part) / len(run) / len(series) for run, of_run in zip(series, parts, strict=True) for part in of_run]
     return np.array(means), np.array(weights)
 
 

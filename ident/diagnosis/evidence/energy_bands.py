@@ -23,7 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
-from ident.diagnosis.evidence_criteria import EVIDENCE_CRITERIA, EvidenceCriteria
+from ident.diagnosis.criteria import EPSILON
+from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -34,9 +35,10 @@ Indices = NDArray[np.intp]
 class Record:
     """What a comparison has to know of a run.
 
-    `size` is the standard deviation of its output, in the output's unit. `condition` tells what is another test (its
-    amplitude, frequency, direction, specimen, and its sample rate) from a repetition. `period` is that of a periodic
-    test, in samples; None of others. `floor` is the variance of the noise over size², None where it is not known.
+    `size` is the standard deviation of its output, in the output's unit. `condition` is what differs between tests and
+    not between repetitions of one: amplitude, frequency, direction, specimen, sample rate. `period` is that of a
+    periodic test, in samples; None of others. `floor` is the variance of the noise over size², None where it is not
+    known.
     """
 
     size: float
@@ -182,7 +184,7 @@ class _Broadband(_Bands):
     @cached_property
     def band(self) -> Indices:
         frequency = np.arange(self.n // 2 + 1) / self.n
-        within = np.searchsorted(self.edges[1:], frequency * (1 + 1e-12), side="right")
+        within = np.searchsorted(self.edges[1:], frequency * (1 + EPSILON), side="right")
         return np.asarray(self.first + within, dtype=np.intp)
 
     def coefficients(self, signals: Array) -> Complex:
@@ -211,8 +213,8 @@ class _Periodic(_Bands):
 
     @cached_property
     def band(self) -> Indices:
-        rest = np.full(self.n // 2 + 1, self.harmonics + 1)
-        return np.asarray(self.first + np.concatenate([np.arange(self.harmonics + 1), rest]), dtype=np.intp)
+        remainder = np.full(self.n // 2 + 1, self.harmonics + 1)
+        return np.asarray(self.first + np.concatenate([np.arange(self.harmonics + 1), remainder]), dtype=np.intp)
 
     @cached_property
     def _basis(self) -> Array:
@@ -223,8 +225,8 @@ class _Periodic(_Bands):
 
     def coefficients(self, signals: Array) -> Complex:
         shares = self._basis.T @ signals
-        rest = signals - self._basis @ shares
-        return np.concatenate([shares[:1], shares[1::2] + 1j * shares[2::2], _spectrum(rest)])
+        remainder = signals - self._basis @ shares
+        return np.concatenate([shares[:1], shares[1::2] + 1j * shares[2::2], _spectrum(remainder)])
 
     def degrees(self, count: int) -> Array:
         found = self._counted(self.band[: self.harmonics + 1], count)
@@ -254,5 +256,5 @@ def _edges(n: int, criteria: EvidenceCriteria) -> Array:
 
 
 def _harmonics(n: int, period: float, criteria: EvidenceCriteria) -> int:
-    """How many harmonics are told apart of n samples: below half the sample rate, with a quarter of the degrees."""
-    return max(1, min(criteria.harmonics, int(np.ceil(period / 2.0)) - 1, n // 8))
+    """How many harmonics are separated of n samples: below half the sample rate, with a quarter of the degrees."""
+    return max(1, min(criteria.harmonics, int(np.ceil(period / 2.0)) - 1, n // criteria.samples_of_a_harmonic))

@@ -7,9 +7,9 @@ could be explained: else the kinks of a useful model, in bands that hold nothing
     S_b = max(min_m E_b(m), F_b) + ε X c_b / Σ c      X = Σ_b max(E_b(reference) − F_b, 0), of each condition
     V(m) = Σ_b c_b max(E_b(m), F_b) / S_b / Σ c      1/ν = 1/Σ c + 1/ν_max
 
-with E_b the energies, c_b what is distinct (:mod:`ident.diagnosis.energy_bands`), F_b = f d_b the energy of the noise.
-It is the likelihood of Whittle (1953) with a fitted discrepancy; the logarithm is of all bands at once, as the level of
-the disturbance is not known.
+with E_b the energies, c_b what is distinct (:mod:`ident.diagnosis.evidence.energy_bands`), F_b = f d_b the energy of
+the noise. It is the likelihood of Whittle (1953) with a fitted discrepancy. The logarithm is of all bands at once: the
+level of the disturbance is not known.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.energy_bands import EnergyBands
+from ident.diagnosis.evidence.energy_bands import EnergyBands
 from ident.noise.autoregression import prediction_errors
 
 Array = NDArray[np.float64]
@@ -85,11 +85,11 @@ class Disturbance:
     def without(self, run: int) -> Disturbance:
         """That of the other runs alone."""
         own = self.bands.runs[run].degrees(self.bands.size)
-        left = 1.0 - own / np.maximum(self.bands.degrees, 1.0)
-        return replace(self, energy=np.where(left > 0, left * self.energy, 0.0), noise=left * self.noise)
+        remaining = 1.0 - own / np.maximum(self.bands.degrees, 1.0)
+        return replace(self, energy=np.where(remaining > 0, remaining * self.energy, 0.0), noise=remaining * self.noise)
 
     def most(self, before: Array) -> float:
-        """The gain of a model that left nothing but the noise, as far as that is known for sure."""
+        """The gain of a model that leaves nothing but the noise, as far as that is known for sure."""
         surely = self.bands.criteria.floor_margin**2 * self.noise
         return self.gain(np.maximum(before, surely), surely)
 
@@ -102,8 +102,8 @@ def _floors(bands: EnergyBands, least: Array, best: Sequence[Array]) -> Array:
     found = []
     for run, record, residual in zip(bands.runs, bands.records, best, strict=True):
         if record.period is not None:
-            rest = run.first + run.bands - 1
-            found.append(float(least[rest] / max(bands.degrees[rest], 1.0)))
+            others = run.first + run.bands - 1
+            found.append(float(least[others] / max(bands.degrees[others], 1.0)))
         elif record.floor is not None:
             found.append(record.floor)
         else:

@@ -1,9 +1,9 @@
 """How probable each of some models is, and how probable it is that something unlisted acts.
 
     ln w = η G − κ k                          of a model with k effects and the gain G over the model without any
-    ln w = η (G + λ G_left) − κ k − κ_u       of the same with something unlisted, G_left what is left to be gained
+    ln w = η (G + λ G_left) − κ k − κ_u       of the same with something unlisted, G_left what can still be gained
 
-Something unlisted explains all that is left, and is charged for it by a share of its gain and by its prior: a listed
+Something unlisted explains everything else, and is charged for it by a share of its gain and by its prior: a listed
 effect has to come as far. So a model that only stands for what is missing loses to something unlisted. All gains are
 under one disturbance spectrum, with the model without any effect as its reference: then G + G_left is the same for all.
 η, κ, λ and κ_u were fitted on training seeds (docs/decisions/evidence.md) and are frozen: of what is said at p a share
@@ -17,8 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ident.diagnosis.evidence import Evidence
-from ident.diagnosis.evidence_criteria import EVIDENCE_CRITERIA, EvidenceCriteria
+from ident.diagnosis.evidence.comparison import Evidence
+from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 
 Effects = frozenset[str]
 NOTHING: Effects = frozenset()
@@ -50,9 +50,9 @@ def probabilities(
         raise ValueError("the model without any effect is missing")
     most = compared[NOTHING].most
     gains = np.array([evidence.gain for evidence in compared.values()])
-    left = np.maximum(most - np.maximum(gains, 0.0), 0.0)
+    remaining = np.maximum(most - np.maximum(gains, 0.0), 0.0)
     alone = criteria.learning_rate * gains - criteria.effect_prior * np.array([len(effects) for effects in compared])
-    with_unlisted = alone + criteria.learning_rate * criteria.unlisted_share * left - criteria.unlisted_prior
+    with_unlisted = alone + criteria.learning_rate * criteria.unlisted_share * remaining - criteria.unlisted_prior
     logs = np.array([alone, with_unlisted])
     weights = np.exp(logs - logs.max())
     weights /= weights.sum()
