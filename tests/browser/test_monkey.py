@@ -24,6 +24,7 @@ SEED = 50
 FEW, MANY = 3, 100  # actions on a page: in the short form, and with --full
 FIELDS = 4  # of a form that is filled in before it is sent
 PATIENCE = 1500.0  # ms for an element that something else may cover, or that is gone
+LOADED = 5000.0  # ms for a page: one that an earlier click keeps from loading is asked for again
 SETTLED = 40.0  # ms in which an answer to an action may come
 CONTROLS = "a[href], button, summary, input, select, textarea, [role=tab], [tabindex='0'], th button"
 SPARED = "form.out button"  # signing out: of a stranger there is nothing to be seen but the page that signs in
@@ -149,6 +150,7 @@ def test_every_page_of_the_service_is_visited():
 def test_random_clicks_and_forms_are_answered(name, cage, zoo, filled, tmp_path, full):
     seen, random = Seen(), np.random.default_rng([SEED, PAGES.index(name)])
     page = cage.context.new_page()
+    page.set_default_timeout(LOADED)
     seen.listen(page)
     address = zoo.address + filled[name]
     visit(page, address)
@@ -199,7 +201,7 @@ def visit(page: Page, address: str) -> None:
     """Open a page; once more where an earlier click was on its way to another."""
     for _ in range(5):
         try:
-            page.goto(address, wait_until="domcontentloaded")
+            page.goto(address, wait_until="domcontentloaded", timeout=LOADED)
         except Error:
             page.wait_for_timeout(SETTLED)
         else:

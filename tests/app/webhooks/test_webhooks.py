@@ -316,7 +316,7 @@ def test_what_did_not_happen_is_not_told(
     assert lab.post(f"{API}/fits/f-SW-2/withdraw").status_code == 409
     with monkeypatch.context() as patch:
         patch.setattr(approvals, "tell_broken", lambda *_: 1 / 0)
-        assert lab.post(f"{API}/fits/f-SW-2/approve").status_code == 500
+        assert lab.post(f"{API}/fits/f-SW-2/approve", json={"why": "sound"}).status_code == 500
     world.round(seconds=1)
     assert [json.loads(body)["fit"] for _, body in there.came] == ["f-SW-1"]
 
