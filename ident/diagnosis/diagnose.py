@@ -19,7 +19,8 @@ from ident.diagnosis.moves import Moves
 from ident.diagnosis.prediction_horizon import longer_horizon
 from ident.diagnosis.report import report
 from ident.diagnosis.result import Diagnosis, NextRun, Suspect
-from ident.diagnosis.selection import Selection, select
+from ident.diagnosis.selection import Selection
+from ident.diagnosis.selection_loop import select
 from ident.diagnosis.sentences import alternative_sentences, dispensable_sentence, horizon_sentence
 from ident.diagnosis.stages import EFFECTS, ERROR_BUDGET, FURTHER, LABELS, LATER, NEXT_RUN, TERMS, Stages, not_looked_at
 from ident.diagnosis.unfitted import unranked

@@ -12,7 +12,7 @@ from ident.diagnosis import candidate, moves, ranking
 from ident.diagnosis.candidate import Candidate
 from ident.diagnosis.moves import Moves
 from ident.diagnosis.ranking import rank_each
-from ident.diagnosis.selection import add_and_exchange
+from ident.diagnosis.selection_loop import add_and_exchange
 
 
 def refit(*effects: str, error: float) -> Any:

@@ -13,7 +13,8 @@ import pytest
 from ident.diagnosis import candidate, moves
 from ident.diagnosis import selection as selecting
 from ident.diagnosis.moves import Moves
-from ident.diagnosis.selection import Selection, select
+from ident.diagnosis.selection import Selection
+from ident.diagnosis.selection_loop import add_and_exchange, select
 
 
 @dataclass(frozen=True)
@@ -301,7 +302,7 @@ def test_a_group_is_judged_beside_what_is_left_whether_or_not_a_floor_is_known(m
 
 def test_the_loop_is_read_at_a_glance_and_a_selection_is_never_changed():
     """Forty lines for the search over named moves; what a move makes is another selection."""
-    lines = [line for function in (select, selecting.add_and_exchange) for line in getsource(function).splitlines()]
+    lines = [line for function in (select, add_and_exchange) for line in getsource(function).splitlines()]
     assert len(lines) <= 50
     assert len(getsource(select).splitlines()) <= 40
     judged = Judged({"": 1.0}, needed=set(), far="", late="", off="")

@@ -1,0 +1,60 @@
+"""The search over sets of effects: one loop over named moves, each from one selection to another.
+
+Forward: the best of the ranking is added while it improves the model beyond chance; backward: what the model can do
+without since is taken out. Then each effect that was added is compared with everything that could stand in its place:
+a better one is exchanged for it, those that are indistinguishable from it are its alternatives. Where all of this ends
+above the noise, strong effects are tried, far from where the search stands, and two at a time in the place of one; then
+it begins again with an effect whose widths are free.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import replace
+
+from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.moves import Moves
+from ident.diagnosis.selection import Selection
+from ident.errors import TimeIsUp
+
+
+def select(moves: Moves, selection: Selection) -> Selection:
+    """Add, take out and exchange effects until nothing improves the model; above the noise floor look farther.
+
+    What was selected when the time is over is returned, not complete.
+    """
+    with suppress(TimeIsUp):
+        selection = add_and_exchange(moves, selection)
+        for look_farther in (moves.exchange_pass, moves.strong_starts, moves.pair_search):
+            if moves.above_floor(selection):
+                farther = look_farther(selection) or selection
+                selection = add_and_exchange(moves, farther) if farther.changes > selection.changes else farther
+        if moves.may_lack_width(selection) and (freed := moves.free_widths(selection)):
+            selection = moves.better_of(selection, add_and_exchange(moves, freed))
+        for _ in range(CRITERIA.selection.rounds):
+            farther = moves.prune_path(selection) or moves.exchange_pass_at_floor(selection) or selection
+            if farther.changes == selection.changes:
+                selection = farther
+                break
+            selection = add_and_exchange(moves, farther)
+        moves.keep(replace(moves.prune_path(selection) or selection, complete=True))
+    return moves.with_what_was_met(moves.latest)
+
+
+def add_and_exchange(moves: Moves, selection: Selection) -> Selection:
+    """Add effects while that improves the model, then exchange one; again, until none is exchanged."""
+    before, seen = selection, set[frozenset[str]]()
+    selection = replace(selection, alternatives={})
+    for _ in range(CRITERIA.selection.rounds):
+        selection = moves.forward(selection) or selection
+        if len(selection.added) > CRITERIA.selection.exchanged or frozenset(selection.added) in seen:
+            break
+        exchanged = moves.exchange(selection)
+        if exchanged.changes == selection.changes:
+            selection = exchanged
+            break
+        selection = exchanged
+        seen.add(frozenset(selection.added))
+    if selection.fitted is before.fitted and not selection.alternatives:
+        selection = moves.keep(replace(selection, alternatives=before.alternatives))
+    return selection
