@@ -99,7 +99,7 @@ def _fitted(newest: ParameterSetView, yardstick: Yardstick, verdict: Verdict | N
         words = "It is fitted; how much of its error is noise cannot be told."
         return Next(words, "See where it fails", f"{at}#fails")
     if error > NEAR * yardstick.floor:
-        return _failing(error / yardstick.floor, verdict, f"{at}#missing")
+        return _failing(error / yardstick.floor, verdict, at)
     if before.error is not None and before.error > NEAR * error:
         fell = "Its model is no longer" if before.is_unstable else "The error fell from"
         to = "; the error is" if before.is_unstable else " to"
@@ -112,8 +112,9 @@ def _fitted(newest: ParameterSetView, yardstick: Yardstick, verdict: Verdict | N
 def _failing(ratio: float, verdict: Verdict | None, at: str) -> Next:
     """Of a fit whose error is so many times the noise."""
     fails = f"The error is {plain(ratio, 2)} times the noise"
-    if verdict is None:
+    if verdict is None:  # the main button at the head of the page does it
         return Next(f"{fails}: the model lacks something.", "Find what is missing", at, does="diagnose")
+    at = f"{at}#missing"
     if verdict.effects:
         sure = verdict.standing in (None, "found")
         said = "The model lacks" if sure else "Not all of it is explained; what helps is"
