@@ -116,7 +116,7 @@ def test_a_run_on_which_the_model_is_unstable_is_named_wherever_the_error_stands
     assert FitResult.from_json(stored.to_json()).error_of("verify").said() == told
     show_fit(stored)
     out = capsys.readouterr().out
-    assert out.splitlines()[0].endswith(f"on fit runs 0.500 %, on verify runs {told}")
+    assert out.splitlines()[0].endswith(f"on estimation data 0.500 %, on validation data {told}")
     assert not LARGE.search(out)
     assert "times" not in out
     assert error_rows(stored)[-1].error == told

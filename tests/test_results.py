@@ -43,7 +43,7 @@ def test_every_result_shows_itself_and_becomes_records(matrix, fit, found):
         json.dumps(result.records())
     assert [one["parameter"] for one in fit.records()] == list(fit.parameters)
     assert [one["id"] for one in ident.compare(matrix, fit).records()] == [run.id for run in matrix.runs]
-    assert "Nothing doubtful" in type(ident.check(matrix))()._repr_html_()
+    assert "No errors, no warnings" in type(ident.check(matrix))()._repr_html_()
 
 
 def test_what_is_saved_is_loaded_as_it_was_and_draws_beside_its_data(tmp_path, matrix, fit, found):

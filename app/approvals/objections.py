@@ -40,12 +40,12 @@ def _objections(
         yield _said("the error", fit, noise_floor.get("fit"), "the noise floor")
     if noise_floor.get("verify") is not None:
         if _is_far(verify, noise_floor.get("verify")):
-            yield _said("the error on the verify runs", verify, noise_floor.get("verify"), "their noise floor")
+            yield _said("the error on validation data", verify, noise_floor.get("verify"), "their noise floor")
     elif _is_far(verify, fit.error):
-        yield _said("the error on the verify runs", verify, fit.error, "the error on the runs of the fit")
+        yield _said("the error on validation data", verify, fit.error, "the error on estimation data")
     for name in effects:
         if name in contradicted:
-            yield f"with {title(name)} the error rises on the verify runs"
+            yield f"with {title(name)} the error on validation data rises"
 
 
 def _is_far(said: ErrorOf, yardstick: float | None) -> bool:
@@ -54,6 +54,6 @@ def _is_far(said: ErrorOf, yardstick: float | None) -> bool:
 
 def _said(what: str, said: ErrorOf, yardstick: float | None, of: str) -> str:
     if said.is_unstable:
-        return f"{what} is that of a model that is {said.in_print()}"
+        return f"{what} is unknown: the model is {said.in_print()}"
     ratio = plain((said.error or 0.0) / (yardstick or 1.0), 2)
     return f"{what} is {said.in_print()}, {ratio} times {of} of {percent_in_print(yardstick)}"

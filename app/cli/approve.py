@@ -8,7 +8,7 @@ import typer
 
 from app.cli.remote import DEFAULT, Server, Token, request, segment
 
-Why = Annotated[str, typer.Option(help="Kept with who did it and when.")]
+Why = Annotated[str, typer.Option(help="Reason, stored with user and time.")]
 
 
 def approve(
@@ -17,7 +17,10 @@ def approve(
     server: Server = DEFAULT,
     token: Token = "",
 ) -> None:
-    """Make a fit the current parameter set of its serial number. Older sets stay."""
+    """Approve a fit as current set of its serial number.
+
+    Earlier sets stay stored.
+    """
     stored = decided(server, token, fit, "approve", why)
     print(f"fit {stored['id']} is the current parameter set of {stored['serial']}")
 

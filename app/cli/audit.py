@@ -14,14 +14,19 @@ from app.cli.records import records
 
 
 def audit(
-    by: Annotated[str | None, typer.Option(metavar="ID", help="Only what was done by the token of this id.")] = None,
-    on: Annotated[str | None, typer.Option("--object", metavar="OBJECT", help="Only what was done to fits/ID.")] = None,
-    most: Annotated[int, typer.Option(metavar="N", min=0, help="How many lines; 0 is all.")] = 50,
+    by: Annotated[str | None, typer.Option(metavar="ID", help="Only changes by the token of this id.")] = None,
+    on: Annotated[
+        str | None, typer.Option("--object", metavar="OBJECT", help="Only changes of this object, such as fits/ID.")
+    ] = None,
+    most: Annotated[int, typer.Option(metavar="N", min=0, help="Number of lines; 0: all.")] = 50,
     data: Data = None,
     database: Database = "",
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the lines as JSON; - is stdout.")] = None,
 ) -> None:
-    """List every change, newest first: when, by which token, what, on what, in which request."""
+    """List all changes, newest first.
+
+    Each line has time, token, action, object and request.
+    """
     from app.access import service
     from app.cli.tables import output, table
     from app.paging import every

@@ -15,7 +15,7 @@ from ident.errors import Unusable
 if TYPE_CHECKING:
     from app.backup.service import Held
 
-File = Annotated[Path, typer.Argument(metavar="FILE", help="The backup.")]
+File = Annotated[Path, typer.Argument(metavar="FILE", help="Backup file.")]
 
 
 def backup(
@@ -24,13 +24,13 @@ def backup(
     database: Database = "",
     blobs: Blobs = "",
     server: Annotated[
-        str, typer.Option(metavar="URL", help="Ask a running service for it instead of reading its data here.")
+        str, typer.Option(metavar="URL", help="Get the backup from a running service instead of the local data.")
     ] = "",
     token: Token = "",
 ) -> None:
-    """Write all records and raw uploads of a service to one file. The service may run meanwhile.
+    """Write all records and raw uploads to one file.
 
-    From its data, or, with --server and a token of role admin, from wherever it answers.
+    The service may run. It reads the data here, or asks a service with --server and a token of role admin.
     """
     from app.backup import service
 
@@ -45,9 +45,10 @@ def backup(
 
 
 def restore(file: File, data: Data = None, database: Database = "", blobs: Blobs = "") -> None:
-    """Make an empty database and folder what a backup holds: also the other kind of database, or another store.
+    """Restore a backup into an empty database and folder.
 
-    Every table and every upload is verified by its hash first. Jobs that had not ended are queued again.
+    The kind of database and the storage may differ from those of the backup. Every table and upload is first verified
+    by its hash. Unfinished jobs are queued again.
     """
     from app.backup import service
 

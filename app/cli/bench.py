@@ -11,11 +11,14 @@ from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_jso
 
 
 def bench(
-    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")],
+    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Data set: a folder, its matrix.yaml, or a .zip.")],
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write all results as JSON; - is stdout.")] = None,
     out: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the acceptance sheet as PDF.")] = None,
 ) -> None:
-    """Analyse bench records: static, frequency and speed. Exit status 1 where a limit of the matrix is broken."""
+    """Analyse static, frequency and speed bench records.
+
+    Exit status 1 if a limit of the data set is violated.
+    """
     from app.cli.tables import show
     from ident.bench.acceptance import passed, read_limits, sheet
     from ident.bench.analysis import analyse

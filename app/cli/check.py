@@ -1,4 +1,4 @@
-"""`servoident check`: what a matrix holds, and every physical doubt."""
+"""`servoident check`: what a data set contains, and the errors, warnings and notes of the data check."""
 
 from __future__ import annotations
 
@@ -10,18 +10,24 @@ import typer
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.preprocessing_options import NoRunExclusion, switches
 from ident.words.number import count
+from ident.words.severity import level, levels
+from ident.words.uses import data
 
 if TYPE_CHECKING:
+    from ident.checks.finding import Finding
     from ident.matrix import Actuator, Matrix
     from ident.run import Run
 
 
 def check(
-    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")],
+    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Data set: a folder, its matrix.yaml, or a .zip.")],
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the findings as JSON; - is stdout.")] = None,
     no_run_exclusion: NoRunExclusion = False,
 ) -> None:
-    """Say what is in a matrix, and every doubt about it. Exit status 1 where it has a fault."""
+    """List and check the contents of a data set.
+
+    Exit status 1 if the check finds an error.
+    """
     from dataclasses import asdict
 
     from ident.checks.check import check as findings_of
@@ -36,10 +42,16 @@ def check(
     if json != STANDARD_OUTPUT:
         print("\n".join(description(read)))
         for finding in findings:
-            print(f"{finding.severity}: {f'run {finding.run}: ' if finding.run else ''}{finding.text} [{finding.code}]")
-        print(summary([finding.severity for finding in findings]))
+            print(line(finding))
+        print(levels([finding.severity for finding in findings], all_of=True))
     if any(finding.severity == "fault" for finding in findings):
         raise typer.Exit(1)
+
+
+def line(finding: Finding) -> str:
+    """ "warning: run r1: … [gaps]": the form in which editors and build servers read the lines of a compiler."""
+    run = f"run {finding.run}: " if finding.run else ""
+    return f"{level(finding.severity)}: {run}{finding.text} [{finding.code}]"
 
 
 def description(matrix: Matrix) -> list[str]:
@@ -47,7 +59,7 @@ def description(matrix: Matrix) -> list[str]:
     lines = [actuator_line(matrix.actuator)]
     for use in ("fit", "verify"):
         runs = matrix.of_use(use)
-        lines.append(f"{use}: {runs_line(runs)}" if runs else f"{use}: no runs")
+        lines.append(f"{data(use)}: {runs_line(runs) if runs else 'no runs'}")
     return lines + [f"notice: {notice}" for notice in matrix.notices]
 
 
@@ -70,8 +82,3 @@ def runs_line(runs: tuple[Run, ...]) -> str:
         f"{sum(run.duration for run in runs):.4g} {unit} in all",
     ]
     return ", ".join(parts)
-
-
-def summary(severities: list[str]) -> str:
-    """How many findings of each severity."""
-    return ", ".join(count(severities.count(severity), severity) for severity in ("fault", "doubt", "note"))

@@ -19,17 +19,20 @@ FORMATS = ("svg", "png", "pdf", "json")
 
 
 def compare(
-    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")],
+    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Data set: a folder, its matrix.yaml, or a .zip.")],
     fit: Annotated[
-        list[Path], typer.Option(metavar="FIT.json", help="What `servoident fit --json` wrote; several for one table.")
+        list[Path], typer.Option(metavar="FIT.json", help="File from `servoident fit --json`; several give one table.")
     ],
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the errors as JSON; - is stdout.")] = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures: svg, png, pdf, json.")] = None,
     candidate: Annotated[
-        Path | None, typer.Option(metavar="FIT.json", help="A second fit, drawn over the curves of the residual.")
+        Path | None, typer.Option(metavar="FIT.json", help="A second fit, drawn over the residual curves.")
     ] = None,
 ) -> None:
-    """Compare a fitted model with every run of a matrix: error, where it fails, and what the error is made of."""
+    """Compare a fitted model with every run of a data set.
+
+    It shows the errors, where the model fails, and the error budget.
+    """
     from app.cli.tables import show
     from ident.readers import read_matrix
     from ident.residuals.survey import survey

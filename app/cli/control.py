@@ -20,21 +20,21 @@ FILES = ("controller.json", "controller.mat", "controller.h", *(f"closed-loop.{k
 
 
 def control(
-    fit: Annotated[Path, typer.Argument(metavar="FIT.json", help="What `servoident fit --json` wrote.")],
+    fit: Annotated[Path, typer.Argument(metavar="FIT.json", help="File from `servoident fit --json`.")],
     case: Annotated[str, typer.Option(metavar="CASE", help="qian, benchmark2020, or a YAML file.")],
     out: Annotated[Path, typer.Option(metavar="DIR", help=f"Folder for {', '.join(FILES)}.")],
     target: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="The open loop wanted, YAML; else eq. (19) of Qian et al. 2014.")
+        Path | None, typer.Option(metavar="FILE", help="Open-loop target, YAML. Default: eq. (19) of Qian et al. 2014.")
     ] = None,
     structure: Annotated[
-        str, typer.Option(metavar="NAME", help="feedback, or two-degree: a path forward beside it.")
+        str, typer.Option(metavar="NAME", help="feedback or two-degree (two degrees of freedom).")
     ] = "feedback",
-    seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Seed of the draws from the covariance.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Random seed of the draws from the covariance.")] = 0,
 ) -> None:
-    """Design a controller that makes the measured displacement follow the wanted one, by loop shaping.
+    """Design a tracking controller by H-infinity loop shaping.
 
-    The controller is designed on the linear part of the fit with the physical specimen, the gain, the sample rate and
-    the delay of the case, and tried on 100 actuators drawn from the covariance of the fit.
+    The design uses the linear part of the fit and the specimen, gain, sample rate and delay of the case. It is tested
+    on 100 models drawn from the covariance of the fit.
     """
     from app.cli.tables import show
     from ident.hybrid.case import read_case

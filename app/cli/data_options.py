@@ -26,13 +26,13 @@ Blobs = Annotated[
     typer.Option(
         metavar="PLACE",
         envvar="SERVOIDENT_BLOBS",
-        help="Where raw uploads lie: s3://BUCKET/PREFIX, or a folder, which machines may share (SERVOIDENT_BLOBS).",
+        help="Storage of raw uploads: s3://BUCKET/PREFIX or a shared folder (SERVOIDENT_BLOBS).",
         show_envvar=False,
     ),
 ]
 Log = Annotated[
     str,
-    typer.Option(metavar="text|json", envvar="SERVOIDENT_LOG", help="Form of the log on standard error.",
+    typer.Option(metavar="text|json", envvar="SERVOIDENT_LOG", help="Format of the log on standard error.",
                  show_envvar=False),
 ]  # fmt: skip
 

@@ -38,16 +38,17 @@ EXAMPLES = (SOUND, LACKING)
 
 def demo(
     port: Annotated[
-        int, typer.Option(min=1, max=65535, help="Port to listen on; another one where it is taken.")
+        int, typer.Option(min=1, max=65535, help="Port to listen on. If it is in use, another one is chosen.")
     ] = 8000,
     data: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Data folder, instead of `demo` in that of the service.")
+        Path | None, typer.Option(metavar="DIR", help="Data folder. Default: `demo` in that of the service.")
     ] = None,
 ) -> None:
-    """Run the service with two simulated actuators: SIM-0001 is sound, SIM-0002 has effects that its model lacks.
+    """Run the service with two simulated actuators.
 
-    Both are identified at once, and the first page says what to do next. Their data are kept apart from those of the
-    service, in a folder `demo` of its own; another start goes on with them.
+    The model of SIM-0001 is complete. The model of SIM-0002 is missing effects. Both are identified at once, and the
+    first page shows the next step. The data are in a folder `demo`, apart from those of the service; the next start
+    reuses them.
     """
     from app.settings import default_data
 

@@ -46,32 +46,29 @@ Limit = Annotated[
     float | None,
     typer.Option(
         metavar="S",
-        help="Seconds after which nothing more is begun: the result is what was found, and names what was not looked "
-        "at.",
+        help="Time limit in s. The search then stops with the results so far, and lists what it did not search.",
     ),
 ]
-Most = Annotated[int | None, typer.Option(min=0, metavar="N", help="Largest number of effects that may be added.")]
-Own = Annotated[
-    bool, typer.Option("--own", help="Rank your own effects that are kept, too: those that the model can take.")
-]
+Most = Annotated[int | None, typer.Option(min=0, metavar="N", help="Largest number of effects to add.")]
+Own = Annotated[bool, typer.Option("--own", help="Also rank your saved own effects.")]
 Proposes = Annotated[
     bool | None,
     typer.Option(
         "--propose/--no-propose",
-        help="Search for terms that no list holds; usual where the catalogue leaves the error unexplained.",
+        help="Search for unknown equation terms. Default: only if no effect in the library explains the error.",
         show_default=False,
     ),
 ]
 Target = Annotated[
     Path | None,
-    typer.Option(metavar="FILE", help="Write the diagnosis as JSON, from its first step on; - is stdout, at its end."),
+    typer.Option(metavar="FILE", help="Write the diagnosis as JSON, updated after each step; - is stdout."),
 ]
 
 
 def diagnose(
     matrix: MatrixPath,
     fit: Annotated[
-        Path | None, typer.Option(metavar="FIT.json", help="What `servoident fit --json` wrote; else one is made.")
+        Path | None, typer.Option(metavar="FIT.json", help="File from `servoident fit --json`. Default: make a fit.")
     ] = None,
     model: Model = None,
     effect: Effects = None,
@@ -93,7 +90,10 @@ def diagnose(
     no_initial_state: NoInitialState = False,
     json: Target = None,
 ) -> None:
-    """Find what a model lacks. Effects are ranked by their error on held-out data, and added while they help."""
+    """Find effects that the model is missing.
+
+    The search ranks effects by their held-out error, and adds them while the error falls.
+    """
     from app.cli.arguments import definitions
     from app.cli.kept_here import beside
     from ident.custom.definition import read_effect, together

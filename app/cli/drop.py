@@ -11,15 +11,15 @@ from app.cli.remote import Token, request, segment
 
 
 def drop(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of an effect that is kept.")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of a saved effect.")],
     server: Where = "",
     token: Token = "",
 ) -> None:
-    """Remove an own effect from the list. Fits carry the effects that they were made with."""
+    """Delete an own effect. Fits keep the effects that they were made with."""
     if server:
         request(server, token, "DELETE", f"/own-effects/{segment(name)}")
     else:
         from app.cli.kept_here import drop as drop_here
 
         drop_here(name)
-    print(f"{name} is kept no more")
+    print(f"{name} is deleted")

@@ -13,7 +13,7 @@ from app.cli.remote import Token, items, request
 from ident.errors import Unusable
 
 Where = Annotated[
-    str, typer.Option("--server", metavar="URL", help="A service whose own effects are meant, not those kept here.")
+    str, typer.Option("--server", metavar="URL", help="Use the own effects of this service instead of the local ones.")
 ]
 
 
@@ -23,14 +23,14 @@ def effects(
     token: Token = "",
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the lists as JSON; - is stdout.")] = None,
 ) -> None:
-    """List your own effects that are kept, and those of the catalogue.
+    """List your own effects and those of the library.
 
-    They are kept in the folder `effects` of the data of this user (SERVOIDENT_DATA), or by a service.
+    Own effects are in the folder `effects` of your data folder (SERVOIDENT_DATA), or on a service.
     """
     if context.invoked_subcommand is not None:
         if server or json is not None:
-            raise Unusable("bad-option", f"an option stands before {context.invoked_subcommand}", "effects",
-                           "write options behind it")  # fmt: skip
+            raise Unusable("bad-option", f"an option is before the command {context.invoked_subcommand}", "effects",
+                           "write options after it")  # fmt: skip
         return
     check_target(json)
     found = _of_service(server, token) if server else _here()

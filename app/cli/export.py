@@ -13,20 +13,22 @@ from app.cli.whatif import OfSpecimen, specimen_of
 
 
 def export(
-    fit: Annotated[Path, typer.Argument(metavar="FIT.json", help="What `servoident fit --json` wrote.")],
+    fit: Annotated[Path, typer.Argument(metavar="FIT.json", help="File from `servoident fit --json`.")],
     format_: Annotated[
         str,
         typer.Option("--format", metavar="NAME", help="c: header; mat: state space of the linear part; fmu: FMI 2."),
     ],
     out: Annotated[Path, typer.Option(metavar="FILE", help="The file to write.")],
-    gain: Annotated[float | None, typer.Option(metavar="KP", help="Gain of its loop; that of the model, or 1.")] = None,
+    gain: Annotated[
+        float | None, typer.Option(metavar="KP", help="Loop gain. Default: that of the model, or 1.")
+    ] = None,
     specimen: OfSpecimen = None,
-    sample_rate: Annotated[str, typer.Option(metavar="HZ", help="Samples a second, as in '4096 Hz'.")] = "4096 Hz",
+    sample_rate: Annotated[str, typer.Option(metavar="HZ", help="Sample rate, such as '4096 Hz'.")] = "4096 Hz",
 ) -> None:
-    """Write an identified machine as C, as state space or as a functional mock-up unit.
+    """Export a model as C header, MAT file or FMU.
 
-    The C header and the FMU are the nonlinear machine with its effects, in the very equations that are simulated here;
-    the MAT file is its linear part, with A, B, C, D for `ss` and for Simulink.
+    The C header and the FMU contain the nonlinear model with its effects, from the equations of the simulator. The MAT
+    file contains its linear part, with A, B, C, D for `ss` and for Simulink.
     """
     from ident.export import as_file, exported, linear_part
     from ident.units.quantity import quantity

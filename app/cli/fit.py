@@ -69,9 +69,10 @@ def fit(
     no_initial_state: NoInitialState = False,
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the fit as JSON; - is stdout.")] = None,
 ) -> None:
-    """Identify the parameters of a model. With standard errors, and the error on runs that no fit saw.
+    """Identify the parameters of a model.
 
-    Of a folder of matrices each is fitted, and a table has them all.
+    It gives standard errors, and the errors on estimation and validation data. With a folder of data sets it fits each
+    of them and prints one table.
     """
     from app.cli.start import Searched, StartOptions
     from ident.readers import read_matrix

@@ -21,25 +21,25 @@ if TYPE_CHECKING:
     from ident.progress import Report
 
 _LARGEST = 65_536  # bytes of a file that describes a machine
-MatrixPath = Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")]
+MatrixPath = Annotated[Path, typer.Argument(metavar="MATRIX", help="Data set: a folder, its matrix.yaml, or a .zip.")]
 Model = Annotated[
     str | None,
     typer.Option(
         metavar="NAME|FILE.yaml",
-        help="Model to identify, or a file that puts one together from stages; without it, the one that fits.",
+        help="Model to identify, or a file that defines one from stages. Default: automatic selection.",
     ),
 ]
 Effects = Annotated[
     list[str] | None,
-    typer.Option("--effect", metavar="NAME", help="Effect to add, of the catalogue or kept; may be repeated."),
+    typer.Option("--effect", metavar="NAME", help="Effect to add, from the library or saved; may be repeated."),
 ]
 Custom = Annotated[
     list[Path] | None,
     typer.Option(
         "--custom",
         metavar="EFFECT.yaml|NAME",
-        help="Own effect to add, defined in a file or kept, or what a diagnosis (D.json) proposes, with the effects "
-        "that it was found beside; may be repeated.",
+        help="Own effect to add: a file, a saved name, or the terms that a diagnosis (D.json) proposes; may be "
+        "repeated.",
     ),
 ]
 Terms = Annotated[
@@ -47,7 +47,7 @@ Terms = Annotated[
     typer.Option(
         "--terms",
         metavar="N",
-        help="Of the terms that a diagnosis proposes take the first N only (with --start also 0).",
+        help="Use only the first N proposed terms of a diagnosis (with --start also 0).",
     ),
 ]
 StartFile = Annotated[
@@ -55,47 +55,43 @@ StartFile = Annotated[
     typer.Option(
         "--start",
         metavar="FILE.json",
-        help="Begin where a fit or a diagnosis ended, and refine that: its model, effects, terms, windows and runs. Of "
-        "a diagnosis --effect takes another of its candidates.",
+        help="Start from the result of a fit or a diagnosis, with its model, effects, terms, windows and runs. "
+        "--effect selects another candidate of a diagnosis.",
     ),
 ]
 AlsoSearch = Annotated[
-    bool, typer.Option("--search", help="With --start: search the whole space, too, and take the better end.")
+    bool, typer.Option("--search", help="With --start: also search the whole space, and use the better result.")
 ]
 Ranked = Annotated[
     list[Path] | None,
     typer.Option(
         "--custom",
         metavar="EFFECT.yaml|NAME",
-        help="Own effect to rank beside the catalogue, defined in a file or kept; may be repeated.",
+        help="Own effect to rank with the library: a file or a saved name; may be repeated.",
     ),
 ]
 Method = Annotated[str, typer.Option(help=f"One of {', '.join(METHODS)}.")]
 Bounds = Annotated[
     list[str] | None,
-    typer.Option(metavar="NAME=LO:HI", help="Bounds of a parameter, SI or with units; may be repeated."),
+    typer.Option(metavar="NAME=LO:HI", help="Bounds of a parameter, in SI or with units; may be repeated."),
 ]
 Values = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="NAME=VALUE", help="Hold a parameter, SI or with unit; may be repeated."),
+    typer.Option("--set", metavar="NAME=VALUE", help="Fix a parameter, in SI or with a unit; may be repeated."),
 ]
-Load = Annotated[str, typer.Option(help="force: drive the load by the measured force; none: do not.")]
-Seed = Annotated[
-    int, typer.Option(min=0, max=2**31 - 1, help="Seed of the search: the same seed gives the same result.")
-]
+Load = Annotated[str, typer.Option(help="force: drive the load by the measured force; none: use the specimen model.")]
+Seed = Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Random seed. The same seed gives the same result.")]
 Budget = Annotated[
     float | None,
-    typer.Option(metavar="SECONDS", help="End the search with the generation that goes beyond; such a fit is no set."),
+    typer.Option(metavar="SECONDS", help="Time limit in s of the search. A fit that it stops cannot be approved."),
 ]
 Profiled = Annotated[
     list[str] | None,
-    typer.Option(
-        "--profile", metavar="NAME", help="Profile likelihood of a parameter, as for one at a bound; may be repeated."
-    ),
+    typer.Option("--profile", metavar="NAME", help="Compute the profile likelihood of a parameter; may be repeated."),
 ]
 Options = Annotated[
     list[str] | None,
-    typer.Option("--option", metavar="NAME=VALUE", help="Setting of the method, such as keep=0.5; may be repeated."),
+    typer.Option("--option", metavar="NAME=VALUE", help="Option of the method, such as keep=0.5; may be repeated."),
 ]
 
 

@@ -23,24 +23,30 @@ FORMATS = ("svg", "png", "pdf", "json")
 
 
 def hybrid(
-    fit: Annotated[Path, typer.Argument(metavar="FIT.json", help="What `servoident fit --json` wrote.")],
+    fit: Annotated[Path, typer.Argument(metavar="FIT.json", help="File from `servoident fit --json`.")],
     case: Annotated[str, typer.Option(metavar="CASE", help="qian, benchmark2020, or a YAML file.")],
     controller: Annotated[
-        str, typer.Option(metavar="FILE|NAME", help="What `servoident control` wrote, none, kalman or feedforward.")
+        str, typer.Option(metavar="FILE|NAME", help="File from `servoident control`, or none, kalman, feedforward.")
     ] = "none",
     ground: Annotated[
-        str | None, typer.Option(metavar="FILE|NAME", help="Record (text or YAML), blwn or sine, for the case's own.")
+        str | None,
+        typer.Option(
+            metavar="FILE|NAME", help="Ground motion: a record (text or YAML), blwn or sine. Default: that of the case."
+        ),
     ] = None,
     effect: Annotated[
-        list[str] | None, typer.Option(metavar="NAME[.PARAM=VALUE]", help="Effect to switch on; may be repeated.")
+        list[str] | None, typer.Option(metavar="NAME[.PARAM=VALUE]", help="Effect to add; may be repeated.")
     ] = None,
     shares: Annotated[
-        bool, typer.Option("--map", help="Also the map over the shares of mass and stiffness that are physical.")
+        bool, typer.Option("--map", help="Also map stability over the physical/numerical split.")
     ] = False,
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the scores as JSON; - is stdout.")] = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures: svg, png, pdf, json.")] = None,
 ) -> None:
-    """Simulate a real-time hybrid simulation: a numerical substructure, a controller, the actuator, a specimen."""
+    """Simulate a real-time hybrid simulation.
+
+    It couples a numerical substructure, a controller, the identified actuator and a specimen.
+    """
     from app.cli.tables import show
     from ident.hybrid.acting import controller_called
     from ident.hybrid.case import read_case

@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli.arguments import split
-from app.cli.check import description, summary
+from app.cli.check import description, line
 from app.cli.output import write_bytes
 from ident.errors import Unusable
 from ident.words.nearest import did_you_mean
 from ident.words.number import count
+from ident.words.severity import levels
 
 if TYPE_CHECKING:
     from ident.drafts.answers import Answer, Answers, FileAnswers
@@ -31,40 +32,39 @@ _Texts = list[str] | None
 
 
 def init(
-    files: Annotated[list[Path], typer.Argument(metavar="FILES…", help="Raw files of one actuator, a run each.")],
+    files: Annotated[list[Path], typer.Argument(metavar="FILES…", help="Raw files of one actuator, one run per file.")],
     out: Annotated[
         Path | None,
-        typer.Option(metavar="MATRIX", help="Folder to write: matrix.yaml and runs/; else one named as the serial "
-                     "number."),
+        typer.Option(metavar="MATRIX", help="Folder to write, with matrix.yaml and runs/. Default: the serial number."),
     ] = None,
     serial: Annotated[str, typer.Option(metavar="TEXT", help="Serial number of the actuator.")] = "",
     channel: Annotated[
         _Texts,
-        typer.Option(metavar=_FORM, help="What a column is, by name or number from 0, and its unit; NAME=:UNIT for the "
-                     "unit alone, NAME=- where it is not there, NAME@FILE=COLUMN:UNIT in some files only (b.csv, b*). "
+        typer.Option(metavar=_FORM, help="Column of a channel, by name or number from 0, and its unit. NAME=:UNIT: the "
+                     "unit alone. NAME=-: not recorded. NAME@FILE=COLUMN:UNIT: in some files only (b.csv, b*). "
                      "May be repeated."),
     ] = None,
     time: Annotated[
         _Texts,
-        typer.Option(metavar="COLUMN:UNIT", help="The column of the time; @FILE=COLUMN:UNIT in some files only. May be "
-                     "repeated."),
+        typer.Option(metavar="COLUMN:UNIT", help="Time column and its unit; @FILE=COLUMN:UNIT: in some files only. May "
+                     "be repeated."),
     ] = None,
     rate: Annotated[
         _Texts,
-        typer.Option(metavar="HZ", help="Sample rate, as in '4096 Hz', where no column has it; @FILE=HZ of some files "
-                     "only. May be repeated."),
+        typer.Option(metavar="HZ", help="Sample rate, such as '4096 Hz', if there is no time column; @FILE=HZ: in some "
+                     "files only. May be repeated."),
     ] = None,
-    output: Annotated[str, typer.Option(metavar="NAME", help="Channel that a model is to reproduce.")] = "",
-    verify: Annotated[_Texts, typer.Option(metavar="FILE", help="A run to verify, with its suffix or without; may be "
+    output: Annotated[str, typer.Option(metavar="NAME", help="Output channel of the model.")] = "",
+    verify: Annotated[_Texts, typer.Option(metavar="FILE", help="A validation run, with or without its suffix; may be "
                                                       "repeated.")] = None,
-    area: Annotated[str, typer.Option(metavar="AREA", help="Piston area, as in '497 mm^2'.")] = "",
-    gain: Annotated[str, typer.Option(metavar="KP", help="Gain of the loop in every run.")] = "",
-    hold: Annotated[str, typer.Option(metavar="NAME", help="The command between samples: linear, zoh.")] = "",
+    area: Annotated[str, typer.Option(metavar="AREA", help="Piston area, such as '497 mm^2'.")] = "",
+    gain: Annotated[str, typer.Option(metavar="KP", help="Loop gain of all runs.")] = "",
+    hold: Annotated[str, typer.Option(metavar="NAME", help="Command between samples: linear or zoh (held).")] = "",
 ) -> None:  # fmt: skip
-    """Describe raw files: find columns, units, time and rate, ask for what they do not state, write matrix.yaml.
+    """Describe raw files and write matrix.yaml.
 
-    What no file states is asked on a terminal; elsewhere it is refused with a list of what is missing. The matrix is
-    checked, and every doubt shown.
+    It detects columns, units, time and sample rate. On a terminal it asks for what is missing; elsewhere it lists what
+    is missing and stops. It checks the data set and prints all errors, warnings and notes.
     """
     from ident.drafts.answers import NONE, Answers
     from ident.drafts.draft import Draft
@@ -130,8 +130,8 @@ def _made(draft: Draft, files: Gathered, out: Path) -> None:
     taken = [f"taken: {doubt}" for doubt in draft.doubts if doubt not in noticed]
     print("\n".join([*taken, *description(matrix)]))
     for finding in findings:
-        print(f"{finding.severity}: {f'run {finding.run}: ' if finding.run else ''}{finding.text} [{finding.code}]")
-    print(summary([finding.severity for finding in findings]))
+        print(line(finding))
+    print(levels([finding.severity for finding in findings], all_of=True))
     print(f"wrote {out / 'matrix.yaml'} and {count(len(files.files) - 1, 'file')}; next: servoident fit {out}")
 
 

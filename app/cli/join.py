@@ -12,10 +12,13 @@ from ident.errors import Unusable
 
 
 def join(
-    files: Annotated[list[Path], typer.Argument(metavar="FILES…", help="The files of one run, a signal each.")],
-    out: Annotated[Path, typer.Option(metavar="FILE", help="The table to write, as in run.csv.")],
+    files: Annotated[list[Path], typer.Argument(metavar="FILES…", help="Files of one run, one signal per file.")],
+    out: Annotated[Path, typer.Option(metavar="FILE", help="Table to write, such as run.csv.")],
 ) -> None:
-    """Put the signals of several files side by side in one file, which servoident init describes."""
+    """Join the signals of several files into one table.
+
+    `servoident init` then describes the table.
+    """
     from ident.drafts.joined import joined
     from ident.readers.limits import LIMITS
     from ident.readers.source import read_regular

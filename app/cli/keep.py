@@ -17,19 +17,18 @@ if TYPE_CHECKING:
 
 def keep(
     source: Annotated[
-        str, typer.Argument(metavar="EFFECT.yaml|D.json", help="File of an effect, or of a diagnosis with --propose.")
+        str,
+        typer.Argument(metavar="EFFECT.yaml|D.json", help="File of an effect, or of a diagnosis made with --propose."),
     ],
-    name: Annotated[
-        str, typer.Option(metavar="NAME", help="Name to keep it under; a file's effect has one already.")
-    ] = "",
-    proposal: Annotated[int, typer.Option(min=0, metavar="N", help="Which of the diagnosis's terms, from 0.")] = 0,
+    name: Annotated[str, typer.Option(metavar="NAME", help="Name of the effect; an effect file already has one.")] = "",
+    proposal: Annotated[int, typer.Option(min=0, metavar="N", help="Number of the proposed term, from 0.")] = 0,
     server: Where = "",
     token: Token = "",
 ) -> None:
-    """Keep an effect under a name, for `--custom NAME` of any later fit or diagnosis.
+    """Save an effect under a name.
 
-    With --server the service keeps it: a file, what is kept here under a name, or, by its id, a diagnosis of the
-    service.
+    Any later fit or diagnosis can use it by `--custom NAME`. With --server the service saves it, from a file, a local
+    name, or the id of a diagnosis of the service.
     """
     if not server:
         from app.cli.kept_here import folder
@@ -37,7 +36,7 @@ def keep(
 
         kept = given(Path(source), name, proposal)
         new = keep_here(kept)
-        print(f"{kept.name} {'is kept' if new else 'was kept already'} in {folder()}")
+        print(f"{kept.name} {'is saved' if new else 'was already saved'} in {folder()}")
         return
     answer = request(server, token, "POST", "/own-effects", json=body(source, name, proposal))
     stored = answer.json()

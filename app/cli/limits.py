@@ -17,17 +17,20 @@ FORM = '"NAME=LOWER:UPPER UNIT"'
 
 def limits(
     model: Annotated[str, typer.Argument(metavar="MODEL", help="Name of the model.")],
-    batch: Annotated[str, typer.Option(help="Of this batch; without it, of all.")] = "",
+    batch: Annotated[str, typer.Option(help="Batch. Default: all batches.")] = "",
     limit: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME=LO:HI UNIT", help="Set it, with all others given; either side may be empty."),
+        typer.Option(metavar="NAME=LO:HI UNIT", help="Set the limits of a parameter; either side may be empty."),
     ] = None,
-    clear: Annotated[bool, typer.Option("--clear", help="Set none, so that those before are gone.")] = False,
+    clear: Annotated[bool, typer.Option("--clear", help="Delete all limits.")] = False,
     server: Server = DEFAULT,
     token: Token = "",
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the limits as JSON; - is stdout.")] = None,
 ) -> None:
-    """Show the limits of a model, or set those of a batch or of all. They take the place of those before."""
+    """Show or set the limits of a model.
+
+    They apply to one batch or to all. New limits replace the earlier ones.
+    """
     check_target(json)
     at = f"/limits/{segment(model)}"
     if limit or clear:

@@ -12,12 +12,12 @@ from app.cli.data_options import Data, Database, settings
 def migrate(
     data: Data = None,
     database: Database = "",
-    plan: Annotated[bool, typer.Option("--plan", help="Only say what would be done.")] = False,
+    plan: Annotated[bool, typer.Option("--plan", help="Only print the steps.")] = False,
 ) -> None:
-    """Bring the database to this version's schema, saying each step. The service does it too when it starts.
+    """Upgrade the database to the schema of this version.
 
-    It refuses where a later version made the database, where the disk has no room for a copy of it, and where a
-    process of the service is at work on it.
+    It prints each step. The service does the same when it starts. It stops if a later version made the database, if the
+    disk has no room for a copy, or if a process of the service uses the database.
     """
     from app.operation.migration import check_safe, steps
     from app.operation.migration import migrate as migrated

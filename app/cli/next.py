@@ -12,13 +12,16 @@ from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 
 
 def next_(
-    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")],
-    diagnosis: Annotated[Path, typer.Option(metavar="D.json", help="What `servoident diagnose --json` wrote.")],
+    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Data set: a folder, its matrix.yaml, or a .zip.")],
+    diagnosis: Annotated[Path, typer.Option(metavar="D.json", help="File from `servoident diagnose --json`.")],
     out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for command.csv, command.mat, experiment.json.")],
     seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Seed of the command signal.")] = 0,
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the proposal as JSON; - is stdout.")] = None,
 ) -> None:
-    """Propose the next run. It is the one that best tells apart the effects that a diagnosis leaves in question."""
+    """Propose the next run to record.
+
+    It is the run that best separates the effects between which a diagnosis cannot decide.
+    """
     from ident.design.proposal import propose
     from ident.diagnosis.competing_models import competing_models
     from ident.readers import read_matrix

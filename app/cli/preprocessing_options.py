@@ -7,18 +7,21 @@ from typing import Annotated
 import typer
 
 NoRunExclusion = Annotated[
-    bool, typer.Option("--no-run-exclusion", help="Fit or verify runs that do not respond to their command, too.")
+    bool, typer.Option("--no-run-exclusion", help="Keep runs that do not respond to their command.")
 ]
 NoForceSign = Annotated[
-    bool, typer.Option("--no-force-sign", help="Take a force as recorded where the specimen would give work back.")
+    bool,
+    typer.Option("--no-force-sign", help="Do not correct the sign of a force if the specimen seems to produce work."),
 ]
 NoCommandOffset = Annotated[
-    bool, typer.Option("--no-command-offset", help="Take the command as recorded where the machine has a neutral.")
+    bool, typer.Option("--no-command-offset", help="Do not subtract the neutral offset of the command.")
 ]
 NoStrokeCentre = Annotated[
-    bool, typer.Option("--no-stroke-centre", help="Let effects of position act about the transducer's zero.")
+    bool, typer.Option("--no-stroke-centre", help="Do not move the position origin to the centre of the stroke.")
 ]
-NoInitialState = Annotated[bool, typer.Option("--no-initial-state", help="Take every run to begin at rest at zero.")]
+NoInitialState = Annotated[
+    bool, typer.Option("--no-initial-state", help="Assume that every run starts at rest at zero.")
+]
 
 
 def switches(**no: bool) -> dict[str, bool]:

@@ -19,16 +19,17 @@ FORMATS = ("svg", "png", "pdf", "json")
 
 
 def profile(
-    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")],
-    fit: Annotated[Path, typer.Option(metavar="FIT.json", help="What `servoident fit --json` wrote.")],
-    parameter: Annotated[list[str], typer.Option(metavar="NAME", help="Parameter to hold; may be repeated.")],
-    points: Annotated[int, typer.Option(help="Values at which it is held, 5 to 101.")] = 15,
+    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Data set: a folder, its matrix.yaml, or a .zip.")],
+    fit: Annotated[Path, typer.Option(metavar="FIT.json", help="File from `servoident fit --json`.")],
+    parameter: Annotated[list[str], typer.Option(metavar="NAME", help="Parameter; may be repeated.")],
+    points: Annotated[int, typer.Option(help="Number of values, 5 to 101.")] = 15,
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the profiles as JSON; - is stdout.")] = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures: svg, png, pdf, json.")] = None,
 ) -> None:
-    """Profile likelihood of parameters of a fit: their 95 % intervals, also at a bound or to one side.
+    """Compute profile likelihoods of parameters.
 
-    At each value the others are fitted again; of a model with effects that takes a refit by simulation a value.
+    They give 95 % confidence intervals, also for estimates that are skewed or at a bound. At each value all other
+    parameters are refitted. With effects each value needs a refit by simulation.
     """
     from app.cli.progress import shown
     from app.cli.tables import show

@@ -5,9 +5,11 @@ from __future__ import annotations
 import io
 import sys
 from importlib import metadata
-from typing import Annotated, NoReturn
+from itertools import chain
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
+from typer.core import TyperGroup
 
 from app.cli.approve import approve
 from app.cli.audit import audit
@@ -58,15 +60,38 @@ from app.cli.withdraw import withdraw
 from app.cli.worker import worker
 from app.cli.workers import workers
 
-LOCAL = (simulate, init, join, check, fit, compare, profile, diagnose, next_, bench, write_report, track, control,
-         hybrid, whatif, export)  # fmt: skip
-SERVICE = (serve, worker, demo, migrate, backup, restore, tidy, retention, regress, audit)
-CLIENT = (upload, approve, withdraw, query, statistics, limits, verdict, revise, workers)
+if TYPE_CHECKING:
+    import click
+
+GROUPS = {
+    "Data": (simulate, init, join, check),
+    "Identification": (fit, compare, profile, diagnose, next_, bench, write_report),
+    "Applications": (track, control, hybrid, whatif, export),
+    "Service": (serve, worker, workers, demo, upload, query, revise, migrate, backup, restore, tidy, retention, audit),
+    "Production line": (approve, withdraw, statistics, limits, verdict, regress),
+}
+"""Commands under the heading that the help lists them by."""
+BELOW = {"Identification": ("effects",), "Service": ("token", "webhook")}
+"""Commands that have commands of their own."""
+
+
+class Grouped(TyperGroup):
+    """Lists the commands by heading: forty of them in one list cannot be read."""
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002 - as click calls it
+        """A section for each heading."""
+        for heading, functions in GROUPS.items():
+            names = [function.__name__.rstrip("_") for function in functions] + [*BELOW.get(heading, ())]
+            limit = formatter.width - 6 - max(map(len, self.commands))
+            with formatter.section(heading):
+                formatter.write_dl([(name, self.commands[name].get_short_help_str(limit)) for name in names])
+
 
 program = typer.Typer(
     name="servoident",
-    help="Identify servo-hydraulic actuators from a measured test matrix, and see where the model fails.",
-    epilog="Exit status: 0 done, 1 a check failed, 2 unusable input (one line on standard error says what and where).",
+    cls=Grouped,
+    help="Identify servo-hydraulic actuators from test data, and find effects that the model is missing.",
+    epilog="Exit status: 0 done; 1 a check failed; 2 unusable input: one line says what, where, and the remedy.",
     rich_markup_mode=None,  # plain help: rich's takes half a second to import
 )
 
@@ -84,7 +109,7 @@ def options(
     """What every command has in common."""
 
 
-for command in (*LOCAL, *SERVICE, *CLIENT):
+for command in chain.from_iterable(GROUPS.values()):
     program.command(command.__name__.rstrip("_"))(command)
 catalogue = typer.Typer(rich_markup_mode=None)
 catalogue.callback(invoke_without_command=True)(effects)

@@ -23,7 +23,7 @@ def query(
     model: Annotated[str | None, typer.Option(help="Model.")] = None,
     range_: Annotated[
         list[str] | None,
-        typer.Option("--range", metavar="NAME=MIN:MAX", help="Range of a parameter, SI; may be repeated."),
+        typer.Option("--range", metavar="NAME=MIN:MAX", help="Range of a parameter in SI; may be repeated."),
     ] = None,
     approved_after: Annotated[str | None, typer.Option(metavar="DATE", help="Approved after, ISO 8601.")] = None,
     server: Server = DEFAULT,
@@ -31,7 +31,10 @@ def query(
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the sets as JSON; - is stdout.")] = None,
     csv: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the sets as CSV; - is stdout.")] = None,
 ) -> None:
-    """List parameter sets by serial number, batch, model, date and range of any parameter."""
+    """List parameter sets.
+
+    Select by serial number, batch, model, date, and range of any parameter.
+    """
     given = {"serial": serial, "batch": batch, "model": model, "approved_after": approved_after}
     params = {name: value for name, value in given.items() if value is not None} | limits(range_ or [])
     if csv is not None:

@@ -20,23 +20,25 @@ _LOOK = 1.0  # s between two looks at a regression that runs elsewhere
 
 
 def regress(
-    serial: Annotated[str | None, typer.Option(help="Serial number; without it, all.")] = None,
-    batch: Annotated[str | None, typer.Option(help="Batch; without it, all.")] = None,
-    model: Annotated[str | None, typer.Option(help="Model; without it, all.")] = None,
+    serial: Annotated[str | None, typer.Option(help="Serial number. Default: all.")] = None,
+    batch: Annotated[str | None, typer.Option(help="Batch. Default: all.")] = None,
+    model: Annotated[str | None, typer.Option(help="Model. Default: all.")] = None,
     data: Data = None,
     database: Database = "",
     server: Annotated[
-        str | None, typer.Option(metavar="URL", help="Over the workers of this service, instead of here.")
+        str | None, typer.Option(metavar="URL", help="Run on the workers of this service instead of locally.")
     ] = None,
     token: Token = "",
     tolerance: Annotated[float, typer.Option(help="Largest relative change of an error or a parameter.")] = 1e-3,
-    junit: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the outcome for a build server.")] = None,
+    junit: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the outcome as JUnit XML for a build server.")
+    ] = None,
 ) -> None:
-    """Recheck approved actuators. Exit status 1 where an error or a parameter moved.
+    """Recheck approved actuators.
 
-    The stored error is computed again, the stored runs are fitted from scratch with the stored settings, and both are
-    compared with what was approved. A parameter moved where it differs by more than the tolerance and by more than a
-    tenth of its standard error.
+    Exit status 1 if an error or a parameter moved. It recomputes the stored error, repeats the fit from scratch with
+    the stored settings, and compares both with the approved set. A parameter moved if it changed by more than the
+    tolerance and by more than a tenth of its standard error.
     """
     check_target(junit)
     if not 0 <= tolerance < math.inf:

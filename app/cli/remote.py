@@ -20,14 +20,14 @@ Server = Annotated[
     str,
     typer.Option(
         metavar="URL", envvar="SERVOIDENT_SERVER", show_default=False,
-        help="Address of the service (SERVOIDENT_SERVER); else the one that you run on this machine.",
+        help="Address of the service (SERVOIDENT_SERVER); default: your service on this machine.",
     ),
 ]  # fmt: skip
 Token = Annotated[
     str,
     typer.Option(
         metavar="TOKEN", envvar="SERVOIDENT_TOKEN", show_envvar=False,
-        help="Its token (SERVOIDENT_TOKEN); not needed for a service that you run on this machine.",
+        help="Token of the service (SERVOIDENT_TOKEN); not needed for your service on this machine.",
     ),
 ]  # fmt: skip
 DEFAULT = ""

@@ -13,14 +13,19 @@ from ident.errors import Unusable
 
 
 def report(
-    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")],
+    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Data set: a folder, its matrix.yaml, or a .zip.")],
     out: Annotated[Path, typer.Option(metavar="FILE", help="The report, an .html or .pdf file.")],
-    fit: Annotated[Path | None, typer.Option(metavar="FIT.json", help="Without it the default fit is made.")] = None,
+    fit: Annotated[
+        Path | None, typer.Option(metavar="FIT.json", help="Fit. Default: make a fit with default settings.")
+    ] = None,
     diagnosis: Annotated[
-        Path | None, typer.Option(metavar="D.json", help="What `servoident diagnose --json` wrote.")
+        Path | None, typer.Option(metavar="D.json", help="File from `servoident diagnose --json`.")
     ] = None,
 ) -> None:
-    """Write one HTML or PDF file with data, error, parameters, figures and diagnosis; it opens without a network."""
+    """Write an HTML or PDF report.
+
+    It holds data, errors, parameters, figures and diagnosis in one file that opens without a network.
+    """
     if out.suffix.lower() not in (".html", ".htm", ".pdf"):
         raise Unusable(
             "unknown-format", f"no report as {out.suffix or out.name!r}", "--out", "name a file in .html or .pdf"

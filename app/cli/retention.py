@@ -13,18 +13,18 @@ from ident.errors import Unusable
 
 
 def retention(
-    show: Annotated[bool, typer.Option("--show", help="Show what the rule would remove, as it does alone.")] = False,
+    show: Annotated[bool, typer.Option("--show", help="Show what the rule would delete (default).")] = False,
     confirm: Annotated[
-        str, typer.Option(metavar="DIGEST", help="Remove what was shown with this digest, and nothing else.")
+        str, typer.Option(metavar="DIGEST", help="Delete exactly the list that was shown with this digest.")
     ] = "",
     server: Server = DEFAULT,
     token: Token = "",
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the answer as JSON; - is stdout.")] = None,
 ) -> None:
-    """Show, and with --confirm remove, raw runs of sets that were superseded or never approved.
+    """Show or delete raw data by the retention rule.
 
-    The rule is that of the service (`serve --keep-raw DAYS`); what was found from the runs stays. Needs a token of role
-    admin.
+    The rule (`serve --keep-raw DAYS`) covers superseded and unapproved fits. --confirm deletes; results are kept. It
+    needs a token of role admin.
     """
     from app.cli.tables import output, table
 

@@ -11,14 +11,17 @@ from app.cli.remote import DEFAULT, Server, Token, request, segment
 
 
 def revise(
-    matrix: Annotated[str, typer.Argument(metavar="MATRIX", help="Id of a stored matrix.")],
+    matrix: Annotated[str, typer.Argument(metavar="MATRIX", help="Id of a stored data set.")],
     changes: Annotated[
         Path, typer.Argument(metavar="CHANGES.yaml", help="actuator: {…} and runs: {ID: {…}}, as in matrix.yaml.")
     ],
     server: Server = DEFAULT,
     token: Token = "",
 ) -> None:
-    """Mend labels, units or signs of a stored matrix. The raw bytes stay; the result is a new matrix."""
+    """Correct labels, units or signs of a stored data set.
+
+    The raw files stay unchanged; the result is a new data set.
+    """
     body = read_changes(changes)
     stored = request(server, token, "POST", f"/matrices/{segment(matrix)}/revisions", json=body).json()
     print(f"matrix {stored['id']} of {stored['serial']}: a revision of {stored['parent']}")

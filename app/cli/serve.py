@@ -12,48 +12,53 @@ from ident.errors import Unusable
 
 WebhookHosts = Annotated[
     list[str] | None,
-    typer.Option(metavar="HOST", help="Host that webhooks may reach, HOST:PORT or http://HOST too; may be repeated."),
+    typer.Option(metavar="HOST", help="Allowed host of webhooks, also HOST:PORT or http://HOST; may be repeated."),
 ]
 KeepRaw = Annotated[
     int | None,
-    typer.Option(metavar="DAYS", min=1, help="Raw runs that no set in force needs may go after that; else never."),
+    typer.Option(
+        metavar="DAYS", min=1, help="Days after which raw data without an approved fit may be deleted. Default: never."
+    ),
 ]
 Rate = Annotated[
     float,
-    typer.Option(metavar="N", min=0, help="Requests a second of one token, ten times as many at once; 0 is no limit."),
+    typer.Option(
+        metavar="N", min=0, help="Requests per second of one token, with bursts of ten times as many; 0: no limit."
+    ),
 ]
 
 
 def serve(
     host: Annotated[
-        str, typer.Option(help="Address to listen on; by default only this machine can reach it.")
+        str, typer.Option(help="Address to listen on. The default is reachable only from this machine.")
     ] = LOOPBACK,
     port: Annotated[int, typer.Option(min=1, max=65535, help="Port to listen on.")] = 8000,
     data: Data = None,
     database: Database = "",
     blobs: Blobs = "",
     executor: Annotated[
-        str, typer.Option(metavar="NAME", help="Its own name among those that work on the queue, kept over restarts.")
+        str, typer.Option(metavar="NAME", help="Name of this worker, kept over restarts.")
     ] = "servoident-1",
     reserve: Annotated[
         int, typer.Option(min=0, metavar="MB", help="Free space below which uploads are refused.")
     ] = 256,
     log: Log = "text",
     allow_host: Annotated[
-        list[str] | None, typer.Option(metavar="HOST", help="Name under which clients may call it; may be repeated.")
+        list[str] | None,
+        typer.Option(metavar="HOST", help="Host name by which clients may call the service; may be repeated."),
     ] = None,
     proxy: Annotated[
         list[str] | None,
-        typer.Option(metavar="ADDRESS", help="A proxy whose X-Forwarded-For and -Proto are believed; may be repeated."),
+        typer.Option(metavar="ADDRESS", help="Trusted proxy for X-Forwarded-For and -Proto; may be repeated."),
     ] = None,
     rate: Rate = 100.0,
     webhook_host: WebhookHosts = None,
     keep_raw: KeepRaw = None,
 ) -> None:
-    """Run the service: pages, HTTP interface and job queue. It prints its address with the start token.
+    """Run the service: pages, HTTP interface and job queue.
 
-    SERVOIDENT_TOKEN sets the start token, which is the admin's; else each start draws a new one. Others use tokens of
-    their own: `servoident token new`.
+    It prints its address with the start token. SERVOIDENT_TOKEN sets the start token, which has the role admin; without
+    it each start draws a new one. Other users get tokens of their own: `servoident token new`.
     """
     names = [*(allow_host or []), f"[{host}]" if ":" in host else host]
     allowed = tuple(form for name in names for form in (name, f"{name}:{port}"))

@@ -12,18 +12,23 @@ from app.cli.remote import DEFAULT, Server, Token, request
 
 
 def statistics(
-    parameter: Annotated[str, typer.Argument(metavar="PARAMETER", help="Its name, or error.fit, error.verify.")],
+    parameter: Annotated[str, typer.Argument(metavar="PARAMETER", help="Parameter name, or error.fit, error.verify.")],
     batch: Annotated[str | None, typer.Option(help="Batch.")] = None,
-    serial: Annotated[str | None, typer.Option(help="Serial number, for its drift over all that was approved.")] = None,
+    serial: Annotated[str | None, typer.Option(help="Serial number: show its history of approved sets.")] = None,
     model: Annotated[str | None, typer.Option(help="Model.")] = None,
     server: Server = DEFAULT,
     token: Token = "",
-    json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write all of it as JSON; - is stdout.")] = None,
+    json: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the statistics as JSON; - is stdout.")
+    ] = None,
     figure: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Draw the control chart: .svg, .png, .pdf or .json.")
     ] = None,
 ) -> None:
-    """Statistics of a parameter over the sets in force: spread, control chart, Cpk, outliers, drift."""
+    """Show statistics of a parameter over the approved sets.
+
+    They include spread, control chart, Cpk, outliers and drift.
+    """
     check_target(json)
     check_target(figure)
     given = {"parameter": parameter, "batch": batch, "serial": serial, "model": model}

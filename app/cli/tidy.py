@@ -10,15 +10,16 @@ from app.cli.data_options import Blobs, Data, Database, settings
 
 
 def tidy(
-    hours: Annotated[
-        float, typer.Option("--older-than", min=0, metavar="HOURS", help="Leave what is younger alone.")
-    ] = 24,
-    yes: Annotated[bool, typer.Option("--yes", help="Remove it; else it is only shown.")] = False,
+    hours: Annotated[float, typer.Option("--older-than", min=0, metavar="HOURS", help="Keep younger files.")] = 24,
+    yes: Annotated[bool, typer.Option("--yes", help="Delete the files. Default: only show them.")] = False,
     data: Data = None,
     database: Database = "",
     blobs: Blobs = "",
 ) -> None:
-    """Show, and with --yes remove, raw uploads that no record names: an upload was cut off before it was recorded."""
+    """Show or delete raw uploads without a record.
+
+    Such files remain when an upload is interrupted. --yes deletes them.
+    """
     from app.retention import service
 
     chosen = settings(data, database, blobs=blobs)

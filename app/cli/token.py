@@ -6,10 +6,10 @@ import typer
 
 
 def token(context: typer.Context) -> None:
-    """Make, list and revoke the tokens of those who use the service; alone, print a new random start token.
+    """Create, list and revoke access tokens.
 
-    A start token is the admin's: give it to the service as SERVOIDENT_TOKEN. The commands need the data folder or the
-    database at hand, and no token.
+    Without a command it prints a new random start token. A start token has the role admin: give it to the service as
+    SERVOIDENT_TOKEN. The commands read the data folder or the database, and need no token.
     """
     if context.invoked_subcommand is not None:
         return

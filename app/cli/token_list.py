@@ -17,7 +17,7 @@ def list_(
     database: Database = "",
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the list as JSON; - is stdout.")] = None,
 ) -> None:
-    """List tokens with role, state and last use, also those that are valid no more."""
+    """List tokens with role, state and last use, including expired ones."""
     from app.access import service
     from app.cli.tables import output, table
     from app.paging import every

@@ -16,18 +16,18 @@ ROLES = ("lab", "line", "ci", "admin")
 
 
 def new(
-    role: Annotated[str, typer.Option(metavar="ROLE", help="What it is for: lab, line, ci or admin.")],
-    name: Annotated[str, typer.Option(metavar="NAME", help="Who bears it, as the audit names it.")],
+    role: Annotated[str, typer.Option(metavar="ROLE", help="Role: lab, line, ci or admin.")],
+    name: Annotated[str, typer.Option(metavar="NAME", help="Owner, as the audit shows it.")],
     expires: Annotated[
-        str | None, typer.Option(metavar="TIME", help="How long it is valid: 12h, 90d, 2w; else until it is revoked.")
+        str | None, typer.Option(metavar="TIME", help="Validity: 12h, 90d, 2w. Default: until revoked.")
     ] = None,
     data: Data = None,
     database: Database = "",
 ) -> None:
-    """Make a token and print it; it is kept as a hash only, and not shown again.
+    """Create a token and print it once.
 
-    lab uploads, fits, diagnoses and approves; line reads and asks for verdicts; ci reads and runs regressions; admin
-    may do everything.
+    The service stores only its hash. Roles: lab uploads, fits, diagnoses and approves; line reads and asks for
+    verdicts; ci reads and runs regressions; admin may do everything.
     """
     from pydantic import ValidationError
 

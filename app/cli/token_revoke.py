@@ -15,7 +15,7 @@ def revoke(
     data: Data = None,
     database: Database = "",
 ) -> None:
-    """Revoke a token: its next request is refused, and its sessions and streams end."""
+    """Revoke a token. Its next request is refused, and its sessions and streams end."""
     from app.access import service
 
     with records(data, database) as found:

@@ -19,17 +19,20 @@ FORMATS = ("svg", "png", "pdf", "json")
 
 def track(
     matrix: MatrixPath,
-    run: Annotated[str | None, typer.Option(metavar="ID", help="Run to follow; without it, the first.")] = None,
+    run: Annotated[str | None, typer.Option(metavar="ID", help="Run to track. Default: the first.")] = None,
     noise: Annotated[
         str | None,
         typer.Option(
-            metavar="VALUE", help="Standard deviation of the sensor, such as 0.12 mm; without it, that of the record."
+            metavar="VALUE", help="Standard deviation of the sensor noise, such as 0.12 mm. Default: estimated."
         ),
     ] = None,
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the track as JSON; - is stdout.")] = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figure: svg, png, pdf, json.")] = None,
 ) -> None:
-    """Follow time constant and gain of a first-order loop over a run, by a Kalman filter, and say whether it holds."""
+    """Track the time constant and gain of a first-order loop.
+
+    A Kalman filter follows a run, and tests whether a first-order loop is valid.
+    """
     from app.cli.tables import show
     from ident.hybrid.tracked_run import chosen
     from ident.hybrid.tracked_run import track as tracked

@@ -13,12 +13,15 @@ from app.cli.remote import DEFAULT, Server, Token, request
 
 
 def upload(
-    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Folder, its matrix.yaml, or a .zip.")],
+    matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Data set: a folder, its matrix.yaml, or a .zip.")],
     server: Server = DEFAULT,
     token: Token = "",
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the answer as JSON; - is stdout.")] = None,
 ) -> None:
-    """Send a matrix to the service. The same bytes again give the same matrix."""
+    """Upload a data set to the service.
+
+    Identical files open the existing data set.
+    """
     with ExitStack() as stack:
         parts = [("files", (name, stack.enter_context(path.open("rb")))) for name, path in files_of(matrix)]
         answer = request(server, token, "POST", "/matrices", files=parts)

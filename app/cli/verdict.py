@@ -17,7 +17,10 @@ def verdict(
     token: Token = "",
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the verdict as JSON; - is stdout.")] = None,
 ) -> None:
-    """Say whether the actuator's set in force keeps to its limits. Exit status 1 unless it passes."""
+    """Check the approved set of an actuator against its limits.
+
+    Exit status 1 unless it passes.
+    """
     check_target(json)
     path = f"/actuators/{segment(serial)}/verdict"
     found = request(server, token, "GET", path).json()

@@ -6,10 +6,11 @@ import typer
 
 
 def webhook(context: typer.Context) -> None:
-    """Tell other systems of jobs that end, sets that are approved or withdrawn, and limits that are broken.
+    """Notify other systems of events by webhooks.
 
-    What they are sent is signed, and sent again for 24 h until it is received. Only hosts that the service was started
-    with are called (`servoident serve --webhook-host`). The commands need its address and a token of role admin.
+    Events are: a job ends, a set is approved or withdrawn, a limit is violated. A notification is signed, and retried
+    for 24 h. Only the hosts of `servoident serve --webhook-host` are called. The commands need the address of the
+    service and a token of role admin.
     """
     if context.invoked_subcommand is None:
         print(context.get_help())

@@ -14,12 +14,14 @@ from app.cli.remote import DEFAULT, Server, Token, items, segment
 
 def deliveries(
     webhook: Annotated[str, typer.Argument(metavar="ID", help="Id of a webhook, as `webhook list` shows it.")],
-    most: Annotated[int, typer.Option(metavar="N", min=0, help="How many; 0 is all of the last 7 days.")] = 50,
+    most: Annotated[
+        int, typer.Option(metavar="N", min=0, help="Number of deliveries; 0: all of the last 7 days.")
+    ] = 50,
     server: Server = DEFAULT,
     token: Token = "",
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write them as JSON; - is stdout.")] = None,
 ) -> None:
-    """List what a webhook was sent or is to be, newest first, with tries and what was wrong."""
+    """List the deliveries of a webhook, newest first, with tries and errors."""
     from app.cli.tables import output, table
 
     check_target(json)

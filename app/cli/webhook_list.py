@@ -16,7 +16,7 @@ def list_(
     token: Token = "",
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the list as JSON; - is stdout.")] = None,
 ) -> None:
-    """List webhooks with what waits for them, also those that were revoked."""
+    """List webhooks with their pending notifications, including revoked ones."""
     from app.cli.tables import output, table
 
     check_target(json)

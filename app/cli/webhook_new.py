@@ -11,7 +11,7 @@ from app.cli.remote import DEFAULT, Server, Token, request
 
 
 def new(
-    url: Annotated[str, typer.Argument(metavar="URL", help="Address that is to be told.")],
+    url: Annotated[str, typer.Argument(metavar="URL", help="URL to notify.")],
     event: Annotated[
         list[str] | None,
         typer.Option(
@@ -21,7 +21,7 @@ def new(
     server: Server = DEFAULT,
     token: Token = "",
 ) -> None:
-    """Make a webhook and print its secret, which it verifies signatures by; it is not shown again."""
+    """Create a webhook and print once the secret of its signatures."""
     body = {"url": url} | ({"events": event} if event else {})
     made = request(server, token, "POST", "/webhooks", json=body).json()
     print(f"webhook {made['id']} to {made['url']}: {', '.join(made['events'])}; its secret is not shown again:",

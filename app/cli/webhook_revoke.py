@@ -14,6 +14,6 @@ def revoke(
     server: Server = DEFAULT,
     token: Token = "",
 ) -> None:
-    """Revoke a webhook: it is told nothing more, also not what waits for it."""
+    """Revoke a webhook. Pending notifications are dropped."""
     revoked = request(server, token, "DELETE", f"/webhooks/{segment(webhook)}").json()
     print(f"webhook {revoked['id']} to {revoked['url']} is revoked")

@@ -26,41 +26,42 @@ _OF_SPECIMEN = {"mass": "mass", "stiffness": "stiffness", "damping": "damping"}
 _NEAR = 2 / 45  # of the frequency: the usual tolerance, 2 Hz at 45 Hz
 
 
-FitPath = Annotated[Path, typer.Argument(metavar="FIT.json", help="What `servoident fit --json` wrote.")]
+FitPath = Annotated[Path, typer.Argument(metavar="FIT.json", help="File from `servoident fit --json`.")]
 Changed = Annotated[
     list[str] | None,
     typer.Option(
         "--set",
         metavar="NAME=VALUE",
-        help="Change area, stroke, volume (with unit) or a parameter; Z0 goes with the area, Ka with area × stroke or "
-        "with the volume. May be repeated.",
+        help="Change area, stroke, volume (with unit) or a parameter. Z0 scales with the area, Ka with area × stroke "
+        "or with the volume. May be repeated.",
     ),
 ]
 Fitted = Annotated[
     list[str] | None,
     typer.Option(
-        metavar="NAME=VALUE", help="Area, stroke or volume of the machine that was fitted, where its fit lacks it."
+        metavar="NAME=VALUE", help="Area, stroke or volume of the fitted machine, if the fit does not have it."
     ),
 ]
 OfSpecimen = Annotated[
     str | None,
-    typer.Option(metavar="mass=…,stiffness=…,damping=…", help="What it moves, with units; nothing without it."),
+    typer.Option(metavar="mass=…,stiffness=…,damping=…", help="Specimen, with units. Default: no specimen."),
 ]
 Gains = Annotated[
-    str | None, typer.Option(metavar="LO:HI", help="Gains Kp of the responses and the root locus; 1:10 without it.")
+    str | None, typer.Option(metavar="LO:HI", help="Gains Kp of the responses and the root locus. Default: 1:10.")
 ]
 AtPeak = Annotated[
-    str | None, typer.Option(metavar="HZ", help="Find the smallest change that puts a peak there, as in 45 Hz.")
+    str | None,
+    typer.Option(metavar="HZ", help="Find the smallest change that gives a peak at this frequency, such as 45 Hz."),
 ]
 Near = Annotated[
-    str | None, typer.Option(metavar="HZ", help="How near the peak has to be; 2 Hz at 45 Hz and in proportion.")
+    str | None, typer.Option(metavar="HZ", help="Tolerance of the peak. Default: 2 Hz at 45 Hz, in proportion.")
 ]
 InAxes = Annotated[
     list[str] | None,
-    typer.Option(metavar="KP=LO:HI", help="Range of |G| to keep at a gain with the peak; may be repeated."),
+    typer.Option(metavar="KP=LO:HI", help="Required range of |G| at a gain; may be repeated."),
 ]
-UpTo = Annotated[str | None, typer.Option(metavar="HZ", help="Where the axes end; at the peak's tolerance without it.")]
-Seed = Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Seed of the search for a peak.")]
+UpTo = Annotated[str | None, typer.Option(metavar="HZ", help="Upper end of the axes. Default: peak plus tolerance.")]
+Seed = Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Random seed of the search.")]
 Json = Annotated[Path | None, typer.Option(metavar="FILE", help="Write the result as JSON; - is stdout.")]
 Out = Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures: svg, png, pdf, json.")]
 
@@ -70,7 +71,10 @@ def whatif(
     peak: AtPeak = None, tolerance: Near = None, axes: InAxes = None, up_to: UpTo = None, seed: Seed = 0,
     json: Json = None, out: Out = None,
 ) -> None:  # fmt: skip
-    """Change area, stroke, volume, specimen or parameters of an identified machine: response, peaks, root locus."""
+    """Predict the response after a change of the machine.
+
+    Area, stroke, volume, specimen or parameters can change. It gives response, peaks and root locus.
+    """
     from app.cli.tables import show
     from ident.hybrid.what_if import what_if
 

@@ -11,11 +11,14 @@ from app.cli.remote import DEFAULT, Server, Token
 
 
 def withdraw(
-    fit: Annotated[str, typer.Argument(metavar="FIT", help="Id of the fit in force.")],
+    fit: Annotated[str, typer.Argument(metavar="FIT", help="Id of the approved fit.")],
     why: Why = "",
     server: Server = DEFAULT,
     token: Token = "",
 ) -> None:
-    """Take a fit out of force: its serial number has no current set until one is approved. It stays stored."""
+    """Withdraw the approval of a fit.
+
+    Its serial number has no current set until one is approved. The fit stays stored.
+    """
     stored = decided(server, token, fit, "withdraw", why)
     print(f"nothing is in force for {stored['serial']} any more")

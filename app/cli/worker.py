@@ -15,13 +15,16 @@ _PULSE = 0.5  # s, after which Ctrl-C is heard even where another thread has tak
 
 
 def worker(
-    executor: Annotated[str, typer.Option(metavar="NAME", help="Its own name, kept over restarts.")],
+    executor: Annotated[str, typer.Option(metavar="NAME", help="Name of this worker, kept over restarts.")],
     database: Database = "",
     data: Data = None,
     blobs: Blobs = "",
     log: Log = "text",
 ) -> None:
-    """Work on queued jobs, beside a service that uses the same PostgreSQL and the same place for raw uploads."""
+    """Run queued jobs of a service.
+
+    The worker uses the PostgreSQL database and the upload storage of the service.
+    """
     if not database.startswith("postgres"):
         what = "a queue in SQLite is worked on by the service's own process only"
         raise Unusable("needs-postgresql", what, "--database", "give a PostgreSQL URL here and to the service")

@@ -16,7 +16,7 @@ def workers(
     token: Token = "",
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the answer as JSON; - is stdout.")] = None,
 ) -> None:
-    """Who works on the queue of a service, on what, and how many jobs wait."""
+    """List workers, their jobs, and the queue of a service."""
     check_target(json)
     found = request(server, token, "GET", "/workers").json()
     if json is not None:

@@ -16,7 +16,8 @@ from ident.words.number import fixed, trimmed
 from ident.words.percent import percent_in_print
 from ident.words.plus_minus import UNDETERMINED, decimals, determined
 from ident.words.symbols import symbol
-from ident.words.titles import of_parameter, title
+from ident.words.titles import of_parameter
+from ident.words.uses import DATA
 
 
 @dataclass(frozen=True)
@@ -118,7 +119,7 @@ def _errors(
         said = ErrorOf(error, unstable=whole.unstable) if over else whole
         unstable = said.is_unstable
         yield ErrorRow(
-            use=title(use) + over,
+            use=DATA[use] + over,
             runs=sum(run.use == use for run in fit.runs),
             error=said.in_print(),
             floor="unknown" if floor is None else percent_in_print(floor),

@@ -91,7 +91,7 @@ def followed(approved: Mapping[str, Sequence[ParameterSetView]]) -> tuple[tuple[
     """What can be followed over these sets, as query and as words: the error first."""
     sets = [entry for each in approved.values() for entry in each]
     symbols = {name: _symbol(entry.model, name) for entry in sets for name in entry.parameters}
-    return ((ERROR, "error, verify runs"), *symbols.items())
+    return ((ERROR, "error, validation data"), *symbols.items())
 
 
 def drifts(sets: Sequence[ParameterSetView], model: str) -> tuple[tuple[str, Drift], ...]:

@@ -89,7 +89,7 @@ def _list(numbers: Sequence[float]) -> str:
 def _rows(design: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
     """What a reader wants to know of a design: quantity, value, unit."""
     found, gamma, order = design["margins"], design["gamma"], design["order"]
-    yield "γmin of the target, with its roll-off", f"{gamma['target']:.3f}, {gamma['min']:.3f}", ""
+    yield "γmin of the target, and with its roll-off", f"{gamma['target']:.3f}, {gamma['min']:.3f}", ""
     yield "Gain margin", _limit(found["gain"]), "dB"
     yield "Phase margin", _limit(found["phase"]), "°"
     yield "Delay margin", _limit(found["delay"], 1e3), "ms"
@@ -98,13 +98,13 @@ def _rows(design: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
     yield "Magnitude to 25 Hz, within ±", plain(found["magnitude_25"], 2), "dB"
     yield "Phase to 10 Hz, within ±", plain(found["phase_10"], 2), "°"
     yield "Phase to 25 Hz, within ±", plain(found["phase_25"], 2), "°"
-    yield "Largest gain, wanted to measured", f"{found['peak']:.1f}", "dB"
-    yield "Command by sensor noise, RMS", f"{found['noise_gain']:.0f}", "m/m"
-    yield "States, and before the reduction", f"{order['reduced']}, {order['full']}", ""
+    yield "Largest gain, reference to measured", f"{found['peak']:.1f}", "dB"
+    yield "Noise gain, sensor to command, RMS", f"{found['noise_gain']:.0f}", "m/m"
+    yield "States after and before reduction", f"{order['reduced']}, {order['full']}", ""
     judged = design.get("robustness")
     if judged is not None:
-        of = "nominal" if design["structure"] == "feedback" else "wanted"
-        yield "Drawn machines that stay stable", f"{judged['stable']} of {judged['draws']}", ""
+        of = "nominal" if design["structure"] == "feedback" else "reference"
+        yield "Sampled models that stay stable", f"{judged['stable']} of {judged['draws']}", ""
         yield f"and within ± 1 dB, ± 10° of {of} to 25 Hz", f"{judged['within']} of {judged['draws']}", ""
 
 

@@ -86,7 +86,7 @@ class Rung:
 
 @dataclass(frozen=True)
 class MissingView:
-    """The section *What is missing?* of a fit; without a diagnosis only the button, or the job that makes one."""
+    """The section *Missing effects* of a fit; without a diagnosis only the button, or the job that makes one."""
 
     job: JobPageView | None
     found: Diagnosis | None
@@ -212,13 +212,13 @@ def _ladder(found: Diagnosis) -> Iterator[Rung]:
     for rung in found.ladder:
         said = "–" if rung.nats is None else plain(rung.nats, 3)
         errors = {use: rung.error_of(use) for use in _USES}
-        yield Rung(title(rung.added) if rung.added else "the fit as it is", errors, said)
+        yield Rung(title(rung.added) if rung.added else "current fit", errors, said)
 
 
 def _left(found: Diagnosis) -> str:
     """What stays unexplained, in a sentence."""
     error, floor = found.ladder[-1].error_of("fit").in_print(), found.noise_floor.get("fit")
-    after = " with all that helps" if len(found.ladder) > 1 else ""
+    after = " with all recommended effects" if len(found.ladder) > 1 else ""
     if floor is None:
-        return f"The error is {error}{after}, and the residual has a memory that noise does not have."
+        return f"The error is {error}{after}, and the residual is not white."
     return f"The error is {error}{after}, above the noise floor of {percent_in_print(floor)}."

@@ -24,15 +24,15 @@ from ident.words.titles import title
 from schemas.hybrid_result import HybridView
 
 _NAMED = {
-    "none": "none: the command is what is wanted",
+    "none": "none: the command is the reference",
     "kalman": "delay compensation from live estimates (Kalman)",
     "feedforward": "feedforward from the inverse of the model",
 }
 _FIGURES = {
     "displacement": "Displacements over time",
-    "response": "Wanted to measured displacement",
-    "map": "Stability over what is physical",
-    "feedforward": "What the feedforward is worth",
+    "response": "Reference to measured displacement",
+    "map": "Stability over the physical share",
+    "feedforward": "Effect of the feedforward",
 }
 _COMPARED = {
     "tracking_rms": ("Tracking, RMS", "measured against numerical"),
@@ -179,9 +179,9 @@ def _simulated(one: HybridView) -> Simulated:
 def _verdict(found: Mapping[str, Any]) -> str:
     if found["stable"]:
         reference = found["scores"]["reference_rms"]
-        return f"Stable; the measured displacement is {percent_in_print(reference)} (RMS) off the reference"
+        return f"Stable; the measured displacement is {percent_in_print(reference)} (RMS) from the reference"
     if found.get("ended") is not None:
-        return f"Unstable: it ran away after {quantity(found['ended'], 's')}"
+        return f"Unstable: diverged after {quantity(found['ended'], 's')}"
     return "Unstable: a pole of the sampled loop lies outside the unit circle"
 
 

@@ -48,7 +48,7 @@ def job_page(job: JobView) -> JobPageView:
         matrix=job.matrix,
         state=job.state,
         open=job.state in _OPEN,
-        stage=job.progress.stage or ("waiting for its turn" if job.state == "queued" else "preparing the runs"),
+        stage=job.progress.stage or ("queued" if job.state == "queued" else "preparing the runs"),
         done=job.progress.done,
         total=job.progress.total,
         error=job.progress.error,

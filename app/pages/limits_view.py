@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from schemas.limits import LimitView
 
-ERRORS = {"error.fit": "error, runs to fit", "error.verify": "error, runs to verify"}
+ERRORS = {"error.fit": "error, estimation data", "error.verify": "error, validation data"}
 """What is followed and limited beside parameters."""
 
 

@@ -6,7 +6,8 @@ from collections import Counter
 from dataclasses import dataclass
 
 from app.pages.run_view import Conditions, conditions
-from ident.words.number import count, plain
+from ident.words.number import plain
+from ident.words.severity import levels
 from ident.words.titles import title
 from schemas.matrix import FindingView, MatrixView
 
@@ -71,9 +72,8 @@ def matrix_view(matrix: MatrixView) -> MatrixPageView:
 
 
 def counted(findings: list[FindingView] | tuple[FindingView, ...]) -> str:
-    """ "1 fault, 2 doubts", the worst first; "" for none."""
-    counts = Counter(entry.severity for entry in findings)
-    return ", ".join(count(counts[name], name) for name in _WORST if counts[name])
+    """ "1 error, 2 warnings", the worst first; "" for none."""
+    return levels([entry.severity for entry in findings])
 
 
 def _flags(runs: tuple[RunRow, ...]) -> tuple[Flag, ...]:
@@ -108,7 +108,7 @@ def _summary(matrix: MatrixView) -> str:
     clock = "s" if all(run.time_unit == "s" for run in matrix.runs) else "samples"
     runs = "run" if len(matrix.runs) == 1 else "runs"
     return (
-        f"{len(matrix.runs)} {runs}: {uses['fit']} to fit, {uses['verify']} to verify; "
+        f"{len(matrix.runs)} {runs}: {uses['fit']} for estimation, {uses['verify']} for validation; "
         f"{plain(seconds, 3)} {clock} in all; {counted(matrix.findings) or 'no findings'}"
     )
 

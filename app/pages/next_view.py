@@ -40,10 +40,10 @@ def next_step(
 ) -> Next:  # fmt: skip
     """The line of an actuator: of a `job` that is to make a fit, else of its set in force, or of its `newest` fit."""
     if job is not None:
-        words = "It is being identified." if job.state == "running" else "It waits to be identified."
-        return Next(words, "Watch it", f"/fits/{job.id}", waits=job.id, main=False)
+        words = "The fit is running." if job.state == "running" else "The fit is queued."
+        return Next(words, "Open progress", f"/fits/{job.id}", waits=job.id, main=False)
     if newest is None:
-        return Next("Its runs are here, but no fit is.", "Start a fit", f"/actuators/{quote(actuator.serial)}")
+        return Next("Data uploaded, not fitted yet.", "Start a fit", f"/actuators/{quote(actuator.serial)}")
     if actuator.current is not None and not newest.current:
         return _approved(actuator.current, newest, search or Search())
     return fit_step(newest, yardstick, search)
@@ -53,14 +53,14 @@ def fit_step(fit: ParameterSetView, yardstick: Yardstick | None = None, search: 
     """The next step with a fit; the first page and the page of the fit name the same one."""
     at = f"/fits/{fit.id}"
     if fit.current:
-        return Next("Its parameters are in force: nothing to do.", "Look at them", at, main=False)
+        return Next("Approved. No action needed.", "Open parameters", at, main=False)
     search = search or Search()
     if search.job is not None:
-        words = "It is being searched for what its model lacks."
-        return Next(words, "Watch it", f"{at}#missing", waits=search.job, main=False)
+        words = "The search for missing effects is running."
+        return Next(words, "Open progress", f"{at}#missing", waits=search.job, main=False)
     said = error_of(fit, "fit")
     if said.is_unstable:
-        return Next(f"The model is {said.in_print()}.", "See where it fails", f"{at}#fails")
+        return Next(f"The model is {said.in_print()}.", "Show where it fails", f"{at}#fails")
     return _fitted(fit, yardstick or Yardstick(), search.verdict, at)
 
 
@@ -69,21 +69,21 @@ def _approved(current: ParameterSetView, newest: ParameterSetView, search: Searc
 
     A fit that was there before the approval has been decided on.
     """
-    approved, at = "Its parameters are in force", f"/fits/{newest.id}"
+    approved, at = "Approved", f"/fits/{newest.id}"
     if search.job is not None:
-        words = f"{approved}. A newer fit is being searched for what its model lacks."
-        return Next(words, "Watch it", f"{at}#missing", waits=search.job, main=False)
+        words = f"{approved}. The search for missing effects of a newer fit is running."
+        return Next(words, "Open progress", f"{at}#missing", waits=search.job, main=False)
     if current.approved_at and current.approved_at >= newest.created_at:
-        return Next(f"{approved}: nothing to do.", "Look at them", f"/fits/{current.id}", main=False)
+        return Next(f"{approved}. No action needed.", "Open parameters", f"/fits/{current.id}", main=False)
     before, after = _errors(current, newest)
     if before.error is None or after.error is None:
-        words, better = f"{approved}. There is a newer fit, not approved.", False
+        words, better = f"{approved}. A newer fit is not approved.", False
     else:
         stands = "but its model is" if before.is_unstable else "with an error of"
         newer = "is" if after.is_unstable else "has"
         words = f"{approved}, {stands} {before.in_print()}. A newer fit {newer} {after.in_print()}."
         better = after.error * NEAR < before.error
-    return Next(words, "Compare them", f"/compare?fits={current.id},{newest.id}", main=better)
+    return Next(words, "Compare fits", f"/compare?fits={current.id},{newest.id}", main=better)
 
 
 def _errors(one: ParameterSetView, other: ParameterSetView) -> tuple[ErrorOf, ErrorOf]:
@@ -96,32 +96,32 @@ def _fitted(newest: ParameterSetView, yardstick: Yardstick, verdict: Verdict | N
     """Of a fit that waits for its user."""
     error, before, said = newest.error_fit, yardstick.before, error_of(newest, "fit")
     if error is None or not yardstick.floor:
-        words = "It is fitted; how much of its error is noise cannot be told."
-        return Next(words, "See where it fails", f"{at}#fails")
+        words = "Fitted. The noise floor is unknown, so the error cannot be judged."
+        return Next(words, "Show where it fails", f"{at}#fails")
     if error > NEAR * yardstick.floor:
         return _failing(error / yardstick.floor, verdict, at)
     if before.error is not None and before.error > NEAR * error:
         fell = "Its model is no longer" if before.is_unstable else "The error fell from"
         to = "; the error is" if before.is_unstable else " to"
-        words = f"{fell} {before.in_print()}{to} {said.in_print()}, which is noise."
+        words = f"{fell} {before.in_print()}{to} {said.in_print()}, the noise floor."
         return Next(words, "Compare before and after", f"/compare?fits={yardstick.parent},{newest.id}")
-    words = f"The model explains all but the noise{f', {said.in_print()}' if said.mean_counts else ''}."
-    return Next(words, "Look and approve it", at, main=False, does="approve")
+    words = f"The error{f', {said.in_print()},' if said.mean_counts else ''} is at the noise floor."
+    return Next(words, "Review and approve", at, main=False, does="approve")
 
 
 def _failing(ratio: float, verdict: Verdict | None, at: str) -> Next:
     """Of a fit whose error is so many times the noise."""
-    fails = f"The error is {plain(ratio, 2)} times the noise"
+    fails = f"The error is {plain(ratio, 2)} times the noise floor"
     if verdict is None:  # the main button at the head of the page does it
-        return Next(f"{fails}: the model lacks something.", "Find what is missing", at, does="diagnose")
+        return Next(f"{fails}: the model lacks something.", "Search for missing effects", at, does="diagnose")
     at = f"{at}#missing"
     if verdict.effects:
         sure = verdict.standing in (None, "found")
-        said = "The model lacks" if sure else "Not all of it is explained; what helps is"
-        return Next(f"{said} {_listed(verdict.effects)}.", "See and add", at)
+        said = "The model lacks" if sure else "The error is partly explained by"
+        return Next(f"{said} {_listed(verdict.effects)}.", "Review and add", at)
     if verdict.suspects:
-        return Next(f"{fails}; a label is doubted.", "Look and mend", at)
-    return Next(f"{fails}; no listed effect explains it.", "See what is left", at)
+        return Next(f"{fails}. A run label looks wrong.", "Review the label", at)
+    return Next(f"{fails}. No effect in the library explains it.", "Show the residual", at)
 
 
 def _listed(names: Sequence[str]) -> str:

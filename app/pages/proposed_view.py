@@ -62,7 +62,7 @@ def proposed(stored: Stored, run: RunView | None) -> Iterator[ProposedCard]:
             determined=one.std_error is not None and determined(one.strength, one.std_error),
             against=one.contradicted.sentence("it") if one.contradicted else "",
             error={use: one.error_of(use) for use in ("held_out", "fit", "verify")},
-            evidence=f"{plain(one.nats, 3)} nats, {plain(one.bar, 3)} asked for",
+            evidence=f"{plain(one.nats, 3)} nats, threshold {plain(one.bar, 3)}",
             alike=one.alike,
             beside=", ".join(map(title, one.beside)),
             instead_of=_instead_of(one, found.ladder),
@@ -82,4 +82,4 @@ def _instead_of(one: Proposal, ladder: Sequence[Rung]) -> str:
         return f"{names}, with which the model is {left.in_print()}"
     if not names or left.error is None:
         return names
-    return f"{names}, which {'leave' if len(one.instead_of) > 1 else 'leaves'} {left.in_print()} on verify runs"
+    return f"{names}, which {'leave' if len(one.instead_of) > 1 else 'leaves'} {left.in_print()} on validation data"

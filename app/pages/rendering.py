@@ -14,7 +14,9 @@ from app.pages.manual import is_there
 from ident.words.error import ErrorOf
 from ident.words.percent import percent_in_print
 from ident.words.sentence import sentence
+from ident.words.severity import level
 from ident.words.titles import title
+from ident.words.uses import DATA
 
 HERE = Path(__file__).parent
 STATIC = HERE / "static"
@@ -48,6 +50,8 @@ def _environment() -> Environment:
     environment.filters["error"] = _error
     environment.filters["in_words"] = title
     environment.filters["sentence"] = sentence
+    environment.filters["level"] = level
+    environment.filters["use"] = DATA.__getitem__
     environment.globals["static"] = static
     environment.globals["has_manual"] = is_there
     return environment

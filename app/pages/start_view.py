@@ -51,14 +51,14 @@ def start_view(matrix: MatrixView, kept: Sequence[Kept] = ()) -> StartView:
     uses = Counter(run.use for run in matrix.runs)
     models = _in_question(matrix)
     own = tuple(one.effect() for one in kept if any(one.suits(model.name) for model in models))
-    others = f"{uses['verify']} verify it" if uses["verify"] else "none is left to verify it"
+    others = f"{_counted(uses['verify'])} for validation" if uses["verify"] else "no validation runs"
     return StartView(
         matrix=matrix.id,
-        says=f"{_proposed(models)}, by genetic search: {_counted(uses['fit'])} fit it, {others}.",
+        says=f"{_proposed(models)}, genetic search, {_counted(uses['fit'])} for estimation, {others}.",
         chosen=len(models) > 1,
         models=tuple(map(_model, (*models, *(known for known in PRESETS.values() if known not in models)))),
         methods=METHODS,
-        effects=tuple((name, found) for name, found in (*_by_place(models), ("of this lab", own)) if found),
+        effects=tuple((name, found) for name, found in (*_by_place(models), ("own effects", own)) if found),
         force=any("force" in run.channels for run in matrix.runs),
         steps=STEPS,
         runs=tuple((run.id, run.use) for run in matrix.runs),

@@ -22,13 +22,14 @@ from ident.run import USES
 from ident.words.engineering import printed_unit, quantity
 from ident.words.error import error_in_print, errors_line
 from ident.words.percent import percent_in_print
+from ident.words.severity import level
 from ident.words.titles import with_effects
 from ident.workflows import compare, study
 
 CAPTIONS = {
     "bode": "Frequency response, measured and model",
     "residual-map": "Where the error is: runs over frequency",
-    "residual-curve": "What the model lacks, against its own signals",
+    "residual-curve": "Missing nonlinearity versus internal signals",
     "time": "A stretch of one run",
 }
 
@@ -146,10 +147,10 @@ def _data(matrix: Matrix) -> Iterator[Block]:
     yield Heading("Data")
     found = check(matrix)
     if found:
-        rows = tuple((entry.severity, entry.run or "all", entry.text) for entry in found)
+        rows = tuple((level(entry.severity), entry.run or "all", entry.text) for entry in found)
         yield Table(("Severity", "Run", "Finding"), rows, marked=0)
     else:
-        yield Text("Nothing doubtful was found.")
+        yield Text("No errors, no warnings.")
 
 
 def _provenance(fit: FitResult, citation: str) -> tuple[tuple[str, str], ...]:

@@ -18,9 +18,9 @@ from ident.words.titles import title
 Row = tuple[str, ...]
 _FIRST = "as fitted"
 _MEANS = {
-    "noise": "what no model can take",
-    "linear": "what a better linear model could take",
-    "nonlinear": "what only a nonlinear model could take",
+    "noise": "measurement noise (no model can remove it)",
+    "linear": "linear model error (a better linear model would remove it)",
+    "nonlinear": "nonlinear model error (only a nonlinear model would remove it)",
 }
 
 

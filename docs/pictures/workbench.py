@@ -46,7 +46,7 @@ def first_page(browser: Browser, folder: Path) -> None:
         service = Service.that_said(line)
         page = browser.new_page(viewport={"width": 1280, "height": 670}, color_scheme="light")
         page.goto(f"{service.address}/?token={service.token}")
-        page.get_by_role("link", name="Find what is missing").wait_for(timeout=story.LONG)
+        page.get_by_role("link", name="Search for missing effects").wait_for(timeout=story.LONG)
         keep("first", page.screenshot())
 
 

@@ -33,9 +33,9 @@ def feedback(run: Run) -> Iterator[Finding]:
     found = shares(run) if run.closed_loop is None else None
     if found and _fed_back(*found):
         text = (
-            f"the command of run {run.id} answers the output: {percent(max(found))} of what its own past does not "
-            "foretell the output does, so that a controller made it; give the controller's reference as the command, "
-            "with controller or gain, or say closed_loop: false where nothing feeds back"
+            f"the command of run {run.id} depends on the measured output, so a controller made it: the output predicts "
+            f"{percent(max(found))} of the innovations of the command. Use the reference of the controller as the "
+            "command and state controller or gain, or set closed_loop: false if there is no feedback"
         )
         yield Finding(run.id, "doubt", "closed-loop", text)
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
+from ident.words.severity import level
 from ident.words.shown import Listing, Shown
 
 Severity = Literal["note", "doubt", "fault"]
@@ -31,10 +32,10 @@ class Findings(tuple[Finding, ...], Shown):
     def listings(self) -> Iterable[Listing | str]:
         """A row a finding."""
         if not self:
-            yield "Nothing doubtful was found."
+            yield "No errors, no warnings."
             return
-        rows = [(one.severity, one.run or "all", one.text) for one in self]
-        yield Listing("", ("severity", "run", "finding"), rows)
+        rows = [(level(one.severity), one.run or "all", one.text) for one in self]
+        yield Listing("", ("level", "run", "finding"), rows)
 
     def records(self) -> list[dict[str, Any]]:
         """A record a finding, for a data frame."""

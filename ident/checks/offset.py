@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from ident.checks.finding import Finding
 from ident.checks.response import rests
 from ident.run import Run
+from ident.words.percent import percent
 
 SMALL = 0.05  # of the displacement's standard deviation; as large as the error that a good model leaves
 LARGE = 1.0
@@ -22,9 +23,14 @@ def offset(run: Run) -> Iterator[Finding]:
     share = abs(difference) / float(run.measured.std())
     if share <= SMALL:
         return
-    remedy = "zero the sensor or state offset" if share > LARGE else "a null bias, a static load or a sensor's zero"
+    side = "above" if difference > 0 else "below"
+    remedy = (
+        "Zero the sensor, or state the offset"
+        if share > LARGE
+        else "Possible causes: null bias, static load, sensor zero"
+    )
     text = (
-        f"displacement of run {run.id} lies {1e3 * difference:.3g} mm beside the command, {share:.2g} times its "
-        f"standard deviation; the error of eq. (17) does not see it: {remedy}"
+        f"the mean displacement of run {run.id} is {1e3 * abs(difference):.3g} mm {side} the command ({percent(share)} "
+        f"of its standard deviation). The error of eq. (17) ignores constant offsets. {remedy}"
     )
     yield Finding(run.id, "doubt" if share > LARGE else "note", "offset", text)

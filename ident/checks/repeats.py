@@ -16,10 +16,10 @@ def repeats(matrix: Matrix) -> Iterator[Finding]:
     """Duplicates are faults where they verify what they fitted, else doubts; repeats are notes."""
     for runs in duplicates(matrix):
         uses = {run.use for run in runs}
-        told = "a verification by the data of the fit proves nothing" if len(uses) > 1 else "they count twice in a fit"
+        told = "the validation is not independent" if len(uses) > 1 else "they count twice in a fit"
         text = (
-            f"runs {names([run.id for run in runs])} hold the same samples: {told}; keep one of them or correct file, "
-            "rows or columns"
+            f"runs {names([run.id for run in runs])} contain the same samples: {told}. Keep one of them, or correct "
+            "file, rows or columns"
         )
         for run in runs[1:]:
             yield Finding(run.id, "fault" if len(uses) > 1 else "doubt", "duplicate-run", text)
@@ -27,13 +27,13 @@ def repeats(matrix: Matrix) -> Iterator[Finding]:
     for group in groups(repeated(matrix.runs)):
         if unlabelled(by_id[next(iter(group))]):
             text = (
-                f"runs {names(list(group))} have one command, and nothing stated tells them apart: what differs "
-                "between them counts as noise; where something was changed, state it: specimen, gain, amplitude"
+                f"runs {names(list(group))} have the same command, and no label separates them. Their difference is "
+                "used to estimate the noise. If a condition was changed, state it: specimen, gain, amplitude"
             )
         else:
             text = (
-                f"runs {names(list(group))} repeat one command under the same stated conditions: what differs between "
-                "them counts as noise"
+                f"runs {names(list(group))} repeat the same command under the same conditions. Their difference is "
+                "used to estimate the noise"
             )
         yield Finding(None, "note", "repeat", text + shifts(group))
 
@@ -60,7 +60,7 @@ def shifts(group: dict[str, int]) -> str:
         for run, shift in group.items()
         if shift
     ]
-    return f"; {names(found)} than {first}, a shift that is taken out before they are compared" if found else ""
+    return f"; {names(found)} than {first}; the shift is removed before they are compared" if found else ""
 
 
 def names(words: list[str]) -> str:

@@ -28,24 +28,22 @@ def statements(matrix: Matrix) -> Iterator[Finding]:
     if hydraulic and matrix.actuator.piston_area is None:
         yield note(
             "no-piston-area",
-            "piston_area is not stated: only the ratios Z0/A^2, Ka/A^2 and Cl/A^2 can be determined; state it to get "
+            "piston_area is not given: only the ratios Z0/A^2, Ka/A^2 and Cl/A^2 are identifiable. State it to get "
             "the parameters themselves",
         )
-    yield from unstated(
-        hydraulic, "gain", "no-gain", "Kp = 1 is taken, so that Z0 means Z0 times Kp; state the gain that was set"
-    )
+    yield from unstated(hydraulic, "gain", "no-gain", "Kp = 1 is assumed, so Z0 means Z0 times Kp. State the gain")
     yield from unstated(
         runs,
         "specimen",
         "no-specimen",
-        "its mass, stiffness and damping count as the actuator's own, and m0, c0 mean totals; state the specimen",
+        "its mass, stiffness and damping are included in m0 and c0. State the specimen",
     )
     conditions = {(run.specimen, run.gain) for run in matrix.of_use("fit")}
     if len(conditions) == 1 and hydraulic:
         yield note(
             "one-condition",
-            "all fit runs have one specimen and one gain: some parameters will be determined in combination only; "
-            "measure further specimens and gains",
+            "all estimation runs have the same specimen and gain: some parameters will be identifiable only in "
+            "combination. Measure other specimens and gains",
         )
 
 
@@ -53,19 +51,17 @@ def uses(matrix: Matrix) -> Iterator[Finding]:
     """Runs to fit, runs to verify, and whether the second are like the first."""
     fit, verify = matrix.of_use("fit"), matrix.of_use("verify")
     if not fit:
-        text = "every run is kept for verification and none is left to fit; set use: fit on some"
+        text = "every run is validation data, and none is left to fit. Set use: fit on some runs"
         yield Finding(None, "fault", "no-fit-runs", text)
     if not verify:
-        text = (
-            "no run is kept for verification, so a fit cannot be judged on data that it has not seen; set use: verify"
-        )
+        text = "there are no validation data, so a fit cannot be judged on data that it has not used. Set use: verify"
         yield Finding(None, "doubt", "no-verify-runs", text)
     gains = [run.gain for run in fit if run.gain is not None]
     for run in verify:
         if gains and run.gain is not None and not min(gains) <= run.gain <= max(gains):
             text = (
-                f"run {run.id} verifies at Kp = {run.gain:g}, outside the {min(gains):g} to {max(gains):g} of the fit: "
-                "its error includes an extrapolation"
+                f"run {run.id} is validation data at Kp = {run.gain:g}, outside the {min(gains):g} to {max(gains):g} "
+                "of the estimation data. Its error includes an extrapolation"
             )
             yield Finding(run.id, "note", "extrapolation", text)
 
@@ -74,7 +70,7 @@ def unstated(runs: list[Run], name: str, code: str, follows: str) -> Iterator[Fi
     """A note where runs do not state something: once, however many they are."""
     without = [run.id for run in runs if getattr(run, name) is None]
     if without:
-        yield note(code, f"{name} is not stated for {first_of(without)}: {follows}")
+        yield note(code, f"{name} is not given for {first_of(without)}: {follows}")
 
 
 def note(code: str, text: str) -> Finding:

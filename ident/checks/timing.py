@@ -22,23 +22,23 @@ STEPS = 3  # at least, to tell it by
 def timing(run: Run, response: Response | None) -> Iterator[Finding]:
     """Gaps and jitter of a time column; samples a cycle."""
     if run.gaps:
-        what = "what was there is guessed" if run.evened else "phases behind a gap are shifted"
+        what = "they were interpolated" if run.evened else "the phase after a gap is shifted"
         text = (
-            f"the time of run {run.id} has gaps: {run.gaps} samples are missing; {what}, so "
-            "use the longest part without one (rows) or repeat the run"
+            f"the time of run {run.id} has gaps: {run.gaps} samples are missing, and {what}. "
+            "Use the longest part without a gap (rows), or repeat the run"
         )
         yield Finding(run.id, "doubt", "gaps", text)
     if run.evened and run.clock_jitter > STRAY:
-        command = "the held command's edges keep their time" if run.hold == "zoh" else "between samples by a curve"
+        command = "with the steps of the held command at their time" if run.hold == "zoh" else "by interpolation"
         text = (
-            f"the clock of run {run.id} strays by up to {run.clock_jitter:.2g} samples from an even one; the record "
-            f"was brought to one of {run.sample_rate:.6g} Hz by its time column, {command}"
+            f"the clock of run {run.id} has a jitter of up to {run.clock_jitter:.2g} samples. The record was "
+            f"resampled to {run.sample_rate:.6g} Hz by its time column, {command}"
         )
         yield Finding(run.id, "note", "clock-jitter", text)
     elif run.clock_jitter > STRAY:
         text = (
-            f"the clock of run {run.id} strays by up to {run.clock_jitter:.2g} samples from an even one; "
-            "samples are taken as even, so record with a hardware clock, or print the time with more digits"
+            f"the clock of run {run.id} has a jitter of up to {run.clock_jitter:.2g} samples, and a constant "
+            "sample rate is assumed. Record with a hardware clock, or print the time with more digits"
         )
         yield Finding(run.id, "doubt" if run.clock_jitter > JITTER else "note", "clock-jitter", text)
     if response is None or run.time_unit != "s":
@@ -49,8 +49,8 @@ def timing(run: Run, response: Response | None) -> Iterator[Finding]:
     highest = response.below(POWER)
     if run.sample_rate < SAMPLES_A_CYCLE * highest:
         text = (
-            f"run {run.id} has {run.sample_rate / highest:.2g} samples a cycle at {highest:.3g} Hz, below which "
-            f"{POWER:.0%} of the command's power lies; sample at {SAMPLES_A_CYCLE * highest:.3g} Hz or more"
+            f"run {run.id} has {run.sample_rate / highest:.2g} samples per cycle at {highest:.3g} Hz, and "
+            f"{POWER:.0%} of the power of the command is below that. Use at least {SAMPLES_A_CYCLE * highest:.3g} Hz"
         )
         yield Finding(run.id, "doubt", "sample-rate", text)
 
@@ -74,7 +74,7 @@ def _too_quick(run: Run) -> Iterator[Finding]:
     share = 1.0 - float(np.median(away))
     if share > MOST:
         text = (
-            f"run {run.id} answers a step of its command by {share:.0%} within {QUICK} samples: how it goes is not "
-            f"recorded; sample at {4 * run.sample_rate:.3g} Hz or more"
+            f"the sample rate of run {run.id} is too low: {share:.0%} of the step response happens within {QUICK} "
+            f"samples. Use at least {4 * run.sample_rate:.3g} Hz"
         )
         yield Finding(run.id, "doubt", "sample-rate", text)

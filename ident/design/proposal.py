@@ -207,15 +207,15 @@ def _text(found: Experiment, rivals: Sequence[Rival], tells_apart: bool) -> str:
     names = [" + ".join(e.name for e in c.preset.effects) or "no effect" for c in rivals]
     if tells_apart and found.separation is not None:
         listed = " and ".join([", ".join(names[:-1]), names[-1]])
-        said = f"After refitting, {listed} then differ by {found.separation:.3g} standard deviations"
-        said += " of the noise"
+        said = f"After a refit, {listed} differ by {found.separation:.3g} standard deviations of the noise."
+        said += f" A typical other run separates them by {found.typical or 0:.3g}."
         if found.so_far is not None:
-            said += f"; the runs so far tell them apart by {found.so_far:.3g}"
-        return f"Run a {found.conditions}. {said}, a typical other run by {found.typical or 0:.3g}."
+            said += f" The runs so far separate them by {found.so_far:.3g}."
+        return f"Run a {found.conditions}. {said}"
     best = sorted(found.std_errors.items(), key=lambda item: item[1])[:2]
-    left = " and ".join(f"that of {name} to {100 * share:.0f} %" for name, share in best)
-    why = " No run that could be made tells the models apart." if len(rivals) > 1 else ""
+    left = " and ".join(f"of {name} to {100 * share:.0f} %" for name, share in best)
+    why = " No feasible run separates the models." if len(rivals) > 1 else ""
     return (
-        f"Run a {found.conditions}.{why} It tells {found.information:.2g} nats of the parameters: of the standard "
-        f"errors, {left} of what it is."
+        f"Run a {found.conditions}.{why} Expected information gain: {found.information:.2g} nats. "
+        f"The standard error falls {left} of its present value."
     )

@@ -7,7 +7,7 @@ ONE_WAY_LEAKAGE = Effect(
     name="one_way_leakage",
     place="pressure",
     meaning="the leakage differs between the directions of the load, up to a leak that one of them alone opens",
-    does="a loss in one direction of the load",
+    does="leakage in one direction of the load only",
     strength=Parameter(
         "coefficient", "c", "m^3/(s*Pa)", -2e-11, 2e-11, 0.0, "by how much the leakage differs from its mean"
     ),

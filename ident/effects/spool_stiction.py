@@ -7,7 +7,7 @@ SPOOL_STICTION = Effect(
     name="spool_stiction",
     place="valve",
     meaning="the spool stands still until the drive signal is far enough from it",
-    does="a start that waits for enough drive",
+    does="the spool moves only above a breakaway signal",
     strength=Parameter("threshold", "s", "m", 0.0, 5e-4, 0.0, "drive difference below which the spool stands"),
     texts=("dq = where(abs(e - q1) < s, 0, dq)",),
     units={"dq": "m/s"},

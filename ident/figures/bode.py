@@ -128,13 +128,13 @@ def _told(responses: Responses, fit: FitResult, candidates: int | None, other_na
     if len(compared) == 1:
         shown = f"{words.describe(compared[0].run)}: {words.left(compared[0])}"
     elif candidates is not None and candidates > len(compared):
-        shown = f"{len(compared)} of {candidates} runs, chosen to differ"
+        shown = f"{len(compared)} of {candidates} runs (automatic selection)"
     else:
         shown = f"{len(compared)} runs"
     if len(compared) > 1:
         shown = ", ".join((shown, *responses.common))
     dashed = f" · dashed: {other_name}" if other_name else ""
-    return [words.verdict(fit), shown, f"points: measured, fading with lost coherence · lines: model{dashed}"]
+    return [words.verdict(fit), shown, f"points: measured (fainter = low coherence) · lines: model{dashed}"]
 
 
 def _briefly(responses: Responses, other_name: str, look: Look) -> list[str]:

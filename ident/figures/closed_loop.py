@@ -45,7 +45,8 @@ def _closed_loop(made: ControllerDesign, look: Look, name: str) -> Chart:
         _panel(made, look, colour, dash, "p", "Phase (°)", named=True),
     ]
     title = alt.TitleParams(
-        f"{name} · wanted to measured displacement" if name else "Wanted to measured displacement", subtitle=_told(made)
+        f"{name} · wanted to measured displacement" if name else "Reference to measured displacement",
+        subtitle=_told(made),
     )
     tables = {"curves": _rows(curves), "band": _band(made)}
     chart: Chart = alt.vconcat(*panels, title=title, spacing=12, datasets=datasets(tables)).configure(**look.config())

@@ -1,4 +1,4 @@
-"""Wanted to measured displacement of a hybrid simulation over frequency (Qian et al. 2014, Fig. 18)."""
+"""Reference to measured displacement of a hybrid simulation over frequency (Qian et al. 2014, Fig. 18)."""
 
 from __future__ import annotations
 

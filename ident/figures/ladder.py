@@ -28,10 +28,10 @@ def ladder(steps: Sequence[Step], floor: float | None, actuator: Actuator, look:
     rows: list[dict[str, Any]] = [
         {"step": name, "e": float(f"{100 * error:.4g}"), "u": use, "t": words.percent(error)}
         for name, (_, fit, verify) in zip(order, steps, strict=True)
-        for use, error in (("runs to fit", fit), ("runs to verify", verify))
+        for use, error in (("estimation data", fit), ("validation data", verify))
         if error is not None
     ]
-    uses = [use for use in ("runs to fit", "runs to verify") if any(row["u"] == use for row in rows)]
+    uses = [use for use in ("estimation data", "validation data") if any(row["u"] == use for row in rows)]
     colour = alt.Color("u:N", title=None, scale=alt.Scale(domain=uses, range=list(look.series[: len(uses)])),
                        legend=alt.Legend(orient="bottom", symbolType="circle"))  # fmt: skip
     lowest = min([row["e"] for row in rows] + ([100 * floor] if floor else []))

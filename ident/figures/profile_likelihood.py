@@ -47,7 +47,7 @@ def profile_likelihood(found: Profile, actuator: Actuator, fit: FitResult, look:
         ),
     ]
     told = found.text.replace(found.unit, words.tidy_unit(found.unit)) if found.unit else found.text
-    subtitle = [words.verdict(fit), told, "dashed: what 95 % stay below · upright: the estimate"]
+    subtitle = [words.verdict(fit), told, "dashed: 95 % threshold · vertical line: estimate"]
     title = alt.TitleParams(words.headline(actuator, f"profile likelihood of {found.parameter}"), subtitle=subtitle)
     chart: Chart = alt.vconcat(*panels, title=title, spacing=14, datasets=datasets({"profile": rows})).configure(
         **look.config()

@@ -29,20 +29,22 @@ def residual_correlation(
     found, run = correlation(compared, lags), compared.run
     panels, tables, told = [], {}, []
     for name, title, shown in (
-        ("auto", "Of the residual with itself (–)", found.auto),
-        ("cross", "Of the residual with the command (–)", found.cross),
+        ("auto", "Residual autocorrelation (–)", found.auto),
+        ("cross", "Cross-correlation, residual and command (–)", found.cross),
     ):
         if shown is None:
             continue
         tables[name] = _rows(shown, run)
         panels.append(_panel(name, title, shown.band, run, look))
-        told.append(f"{percent(shown.outside)} {'with itself' if name == 'auto' else 'with the command'}")
+        told.append(
+            f"{percent(shown.outside)} {'of the autocorrelation' if name == 'auto' else 'of the cross-correlation'}"
+        )
     subtitle = [
         words.verdict(fit),
         words.describe(run),
-        f"outside the {SURE:.0%} band: {', '.join(told)} (chance: 1.00 %)",
+        f"lags outside the {SURE:.0%} band: {', '.join(told)} (expected by chance: 1.00 %)",
     ]
-    headline = alt.TitleParams(words.headline(actuator, "is what is left noise?"), subtitle=subtitle)
+    headline = alt.TitleParams(words.headline(actuator, "residual whiteness and cross-correlation"), subtitle=subtitle)
     chart: Chart = alt.vconcat(*panels, title=headline, spacing=14, datasets=datasets(tables)).configure(
         **look.config()
     )
@@ -85,4 +87,4 @@ def _draw(study: Study, look: Look, options: Options) -> Chart:
     )
 
 
-RESIDUAL_CORRELATION = Drawing("residual-correlation", "Residual's correlation", _draw, ("run", "lags"))
+RESIDUAL_CORRELATION = Drawing("residual-correlation", "Residual correlation", _draw, ("run", "lags"))

@@ -26,8 +26,8 @@ from ident.residuals.curves import Curve
 
 SHOWN = 4
 _WIDTH, _HEIGHT = 340, 210
-_PERCENTAGE = "percentage: share of the residual's power that the curve takes off, on stretches it was not fitted to"
-_MEASURED, _CANDIDATE = "seen in the residual, 95 % band", "predicted by"
+_PERCENTAGE = "percentage: share of the residual variance that the curve explains (cross-validated)"
+_MEASURED, _CANDIDATE = "from the residual, 95 % band", "predicted by"
 
 
 def residual_curve(
@@ -51,7 +51,7 @@ def residual_curve(
     other = {curve.name: curve for curve in candidate}
     names = [_MEASURED, f"{_CANDIDATE} {candidate_name}"] if other else [_MEASURED]
     values = {
-        "headline": words.headline(actuator, "what the model lacks, against its own signals"),
+        "headline": words.headline(actuator, "missing nonlinearity versus internal signals"),
         "told": [words.verdict(fit), runs, *textwrap.wrap(_PERCENTAGE, look.across(130))],
         "names": names,
     }

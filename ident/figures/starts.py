@@ -29,12 +29,12 @@ def starts(actuator: Actuator, fit: FitResult, look: Look) -> Chart:
     tables = {"ends": _errors(found), "values": _values(found, shown)}
     x = alt.X(
         "n:Q",
-        axis=alt.Axis(title="Start, in the order of its end (–)", format="d", tickMinStep=1),
+        axis=alt.Axis(title="Optimiser start, sorted by final error (–)", format="d", tickMinStep=1),
         scale=alt.Scale(domain=[0.5, found.tried + 0.5], nice=False),
     )
     errors = [100 * found.errors[0] / _ROUND, 100 * found.errors[-1] * _ROUND]
     log = alt.Scale(type="log", nice=False, domain=errors)
-    y = alt.Y("e:Q", scale=log, axis=alt.Axis(title="Error at the end, eq. 17 (%)", tickCount=4, format=".3~r"))
+    y = alt.Y("e:Q", scale=log, axis=alt.Axis(title="Final error, eq. 17 (%)", tickCount=4, format=".3~r"))
     upper = alt.Chart(alt.NamedData("ends"), width=look.across(560), height=150)
     line = upper.mark_line(color=look.faint, strokeWidth=1).encode(x=x, y=y)
     dots = upper.mark_circle(size=45, opacity=1, color=look.series[0]).encode(x=x, y=y, tooltip=["n:Q", "e:Q"])
@@ -42,15 +42,15 @@ def starts(actuator: Actuator, fit: FitResult, look: Look) -> Chart:
     colour = alt.Color("p:N", title=None, scale=colours, legend=alt.Legend(orient="bottom", columns=_LIMIT))
     ends = [row["v"] for row in tables["values"]]
     wide = alt.Scale(domain=[min(1 / _ROUND, *ends), max(_ROUND, *ends)]) if ends else alt.Scale()
-    ratio = alt.Y("v:Q", axis=alt.Axis(title="Value over that of the best (–)", tickCount=5), scale=wide)
+    ratio = alt.Y("v:Q", axis=alt.Axis(title="Value / value of the best start (–)", tickCount=5), scale=wide)
     lower = (
         alt.Chart(alt.NamedData("values"), width=look.across(560), height=190)
         .mark_line(point=True, strokeWidth=1)
         .encode(x=x, y=ratio, color=colour, tooltip=["p:N", "n:Q", "v:Q"])
     )
     title = alt.TitleParams(
-        words.headline(actuator, f"{found.tried} starts, {found.tried} ends"),
-        subtitle=[words.verdict(fit), f"{found}: they end within 0.1 % of the least error"],
+        words.headline(actuator, f"final error of {found.tried} optimiser starts"),
+        subtitle=[words.verdict(fit), f"{found}: their final error is within 0.1 % of the least"],
     )
     panels = [alt.layer(line, dots), lower] if shown else [alt.layer(line, dots)]
     chart: Chart = alt.vconcat(*panels, title=title, spacing=16, datasets=datasets(tables)).configure(**look.config())

@@ -12,6 +12,7 @@ from ident.words import conditions
 from ident.words.engineering import power_of, printed_unit, scaled_unit
 from ident.words.error import ErrorOf
 from ident.words.percent import percent as in_percent
+from ident.words.uses import DATA
 
 _SIGNS = "²³"  # raised: a 4 or a minus is missing from too many fonts
 
@@ -65,8 +66,8 @@ def verdict(fit: FitResult) -> str:
     """Model and errors in one line."""
     model = " + ".join((fit.model, *fit.effects))
     known = [(use, of) for use in USES if (of := fit.error_of(use)).error is not None]
-    errors = ", ".join(f"{error(of)} {use}" for use, of in known if not of.is_unstable)
-    unstable = [f"{error(of)} ({use})" for use, of in known if of.is_unstable]
+    errors = ", ".join(f"{error(of)} {DATA[use]}" for use, of in known if not of.is_unstable)
+    unstable = [f"{error(of)} ({DATA[use]})" for use, of in known if of.is_unstable]
     said = ([f"error {errors}"] if errors else []) + unstable
     return f"Model {model}, {', '.join(said) or 'error unknown'}"
 

@@ -35,7 +35,7 @@ from ident.words.error import error_said
 from ident.words.plus_minus import determined
 
 _DRAWN = 100  # parameter vectors within their standard errors
-_AT_BOUND = "ended at its bound: the data ask for a value beyond it"
+_AT_BOUND = "the estimate is at its bound: the best value is outside it"
 _VAGUE = "its standard error is {:.3g} times its value"
 _FELT = 1.001  # times the error: a strength that is not off by chance
 HARDLY = 0.8  # of the output left: no fit to be trusted
@@ -253,20 +253,20 @@ def _determined(
 
 def _reason(objective: Fitness, name: str, relative: Mapping[str, float], point: Array) -> str:
     if name == objective.space.convention:
-        return "no specimen of known mass, stiffness or damping gives forces a scale; held by convention"
+        return "fixed by convention: no specimen of known mass, stiffness or damping gives the forces a scale"
     if objective.space.convention and name in objective.preset.share_force:
-        return "known at best as a ratio to the moving mass, which is a convention here"
+        return "only the ratio to the moving mass is identifiable: the mass is fixed by convention"
     for one in objective.space.conventions:
         if name in one.held:
             return one.why
         if name in one.shared:
-            return f"known only with {' and '.join(one.held)}, held by convention"
+            return f"identifiable only together with {' and '.join(one.held)}, which is fixed by convention"
     if name not in relative:
         if objective.space.at_bound(name, point) and _felt(objective, name, point):
             return _AT_BOUND
-        return "any strength in its bounds explains these runs as well"
-    size = "not seen by these runs" if relative[name] > 10 else f"standard error {relative[name]:.0%} of the value"
-    return f"{size}; other parameters make up for it (see what is determined)"
+        return "every value within its bounds explains these runs equally well"
+    size = "no influence on these runs" if relative[name] > 10 else f"standard error {relative[name]:.0%} of the value"
+    return f"{size}; correlated with other parameters (see the identifiable combinations)"
 
 
 def _felt(objective: Fitness, name: str, point: Array) -> bool:
@@ -283,21 +283,24 @@ def _notes(settings: Settings, objective: Fitness, floors: Floors, found: Sequen
     if objective.space.scale_free and objective.space.axes:
         notes.append(
             f"Bounds of the preset {objective.preset.name} were not used: they hold for another machine, or piston "
-            "area, gain or specimen are not stated. The search was over scale-free ratios."
+            "area, gain or specimen are not given. The search was over scale-free ratios."
         )
     if objective.matrix.actuator.piston_area is None and objective.preset.without_area:
-        notes.append("Piston area unknown: only ratios to it are determined, and parameters are given as such.")
+        notes.append("Piston area unknown: only the ratios to it are identifiable, and parameters are given as ratios.")
     if floors.measured:
-        notes.append("Noise floor from repeats of the same command: what does not repeat.")
+        notes.append("Noise floor estimated from repeated runs.")
     elif floors.of_use(objective.matrix)["fit"] is None:
         notes.append(
             "Noise floor unknown: the command has power up to nearly half the sample rate, so no part of the "
-            "spectrum shows the noise alone; repeat a run of stated specimen or gain to measure it."
+            "spectrum shows the noise alone. Repeat one run with a stated specimen or gain to measure it."
         )
     else:
-        notes.append("Noise floor from the spectrum above the command's band, taken as white: a lower bound.")
+        notes.append("Noise floor: a lower bound, from the spectrum above the command bandwidth (white noise assumed).")
     if objective.unstable:
-        notes.append(f"{objective.unstable} of the tried parameter vectors made the loop unstable; they cost, no more.")
+        notes.append(
+            f"{objective.unstable} candidate parameter sets were unstable and were rejected. This costs only computing "
+            "time."
+        )
     if not error < UNSTABLE:
         notes.append("The model is unstable at these values: its error is reported as 1000.")
     return notes

@@ -1,4 +1,4 @@
-"""What the feedforward is worth in a case: the machine of a fit, and draws of it, follow the reference solution."""
+"""Effect of the feedforward in a case: the machine of a fit, and draws of it, follow the reference solution."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Followed(Shown):
         return [*lines, f"{drawn}, 1/{rounded(self.drawn_ratio)} of the feedback's"]
 
     def listings(self) -> list[str]:
-        """What the feedforward is worth, a line each."""
+        """Effect of the feedforward, a line each."""
         return [f"feedforward: {line}" for line in self.said]
 
     def to_json(self) -> dict[str, Any]:

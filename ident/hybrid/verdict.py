@@ -38,16 +38,17 @@ def verdict(state: Any) -> Verdict:
         return Verdict(holds, reason, mean, outliers, changes)
 
     if not windows or mean is None:
-        return judged(False, f"nothing is told by fewer than {2 * kalman.WINDOW} samples")
+        return judged(False, f"too few samples for a verdict: at least {2 * kalman.WINDOW} are needed")
     if failed > _FEW_WINDOWS * windows:
-        return judged(False, f"no first-order loop with slowly changing parameters does what was measured: in "
-                      f"{percent(failed / windows)} of the windows of {kalman.WINDOW} samples what it leaves is larger "
-                      f"than the sensor's noise, or each sample of it follows from the one before; identify a model of "
+        return judged(False, f"a first-order loop is not valid: in {percent(failed / windows)} of the windows of "
+                      f"{kalman.WINDOW} samples the innovations are too large or not white. Identify a model of "
                       f"higher order")  # fmt: skip
     if changes > _FEW_WINDOWS * windows:
-        return judged(False, f"the parameters had to be found anew {changes} times in {windows} windows of "
-                      f"{kalman.WINDOW} samples: no first-order loop lasts that long")  # fmt: skip
+        return judged(False, f"the parameters jumped {changes} times in {windows} windows of {kalman.WINDOW} samples: "
+                      f"no first-order loop is valid over the whole run")  # fmt: skip
     if outliers > _FEW_SAMPLES * (used + outliers):
-        return judged(False, f"{percent(outliers / (used + outliers))} of the samples are further off than any noise "
-                      f"of the sensor")  # fmt: skip
-    return judged(True, f"what the loop leaves looks like the sensor's noise (mean normalised square {trimmed(mean)})")
+        share = percent(outliers / (used + outliers))
+        return judged(False, f"{share} of the samples are outliers, beyond the noise of the sensor")
+    return judged(
+        True, f"the innovations are white and as large as the sensor noise (mean normalised square {trimmed(mean)})"
+    )

@@ -245,12 +245,12 @@ def _notes(machine: ChangedMachine, responses: tuple[Response, ...], oil: BulkMo
     """What a reader has to know of the responses."""
     if machine.left_out:
         yield (
-            f"Left out of the response: {', '.join(machine.left_out)}. The linearised equations know nothing of what "
-            "hangs on the amplitude, nor of the lags and delays of effects."
+            f"Not in the response: {', '.join(machine.left_out)}. The linearised model ignores amplitude-dependent "
+            "effects, and the lags and delays of added effects."
         )
     unstable = [each.gain for each in responses if not each.stable]
     if unstable:
-        yield f"Unstable{_at_gains(unstable)}: no steady motion has that response."
+        yield f"Unstable{_at_gains(unstable)}: the frequency response is not physical there."
     flat = [each.gain for each in responses if not any(peak.frequency < HIGHEST for peak in each.peaks)]
     if flat:
         yield f"No peak below {trimmed(HIGHEST)} Hz{_at_gains(flat)}."

@@ -124,21 +124,21 @@ def _apart(whole: float, part: float) -> float:
 
 def _notes(measured: bool, floor: bool, several: bool, parts: Mapping[str, tuple[float, float]]) -> Iterator[str]:
     if measured:
-        yield "Noise from repeats of the same command: what does not repeat."
+        yield "Noise estimated from repeated runs."
         return
     if floor:
-        yield "Noise from the spectrum above the command's band, taken as white: a lower bound."
+        yield "Noise: a lower bound, from the spectrum above the command bandwidth (white noise assumed)."
     else:
-        yield "Noise unknown: no part of the spectrum shows it alone. It is within the nonlinear part."
+        yield "Noise unknown: no part of the spectrum shows the noise alone. It is included in the nonlinear part."
     noise, nonlinear = (" to ".join(f"{100 * bound:.3g}" for bound in parts[name]) for name in ("noise", "nonlinear"))
     yield (
-        "Random commands without a repeat cannot tell noise in the band from nonlinearity: of what no linear model "
-        f"takes, noise is {noise} %, nonlinear {nonlinear} %. Repeat one run with the same command to measure it."
+        "Without a repeated run, in-band noise and nonlinear distortion cannot be separated: "
+        f"noise {noise} %, nonlinear {nonlinear} %. Repeat one run with the same command."
     )
     if not several:
         yield (
-            "No specimen and gain was measured at two amplitudes: what changes with amplitude may count as linear. "
-            "Measure one at another amplitude."
+            "No condition was measured at two amplitudes, so a nonlinearity may be counted as linear. "
+            "Measure one condition at another amplitude."
         )
 
 

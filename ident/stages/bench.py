@@ -42,7 +42,7 @@ LAG = stage(
     ),
     ("dq = (e - q1) / T", "block a: T I' + I = Iin (Kononykhin, section 4)"),
     ("q1' = dq", "the lag integrates its rate"),
-    ("q = q1", "nothing behind the lag"),
+    ("q = q1", "no additional valve dynamics"),
     parameters=(LAG_TIME,),
     scales=(Scale.by_bounds(LAG_TIME),),
 )

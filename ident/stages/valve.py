@@ -13,7 +13,7 @@ FIRST_ORDER_VALVE = stage(
     ),
     ("dq = (e - q1) / tau", "first-order lag of the pilot stage, gain moved into Z0 (Qian et al. 2014, eq. 1)"),
     ("q1' = dq", "the pilot stage integrates its rate"),
-    ("q = q1", "nothing behind the lag"),
+    ("q = q1", "no additional valve dynamics"),
     parameters=(
         Parameter(
             "tau", "τ", "s", 1e-5, 1e2, 1e-2, "time constant of the valve", ORDER_OF_MAGNITUDE, start=Starts.TIME

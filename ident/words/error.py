@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from ident.unstable import UNSTABLE
 from ident.words.percent import percent, percent_in_print
+from ident.words.uses import data
 
 MEAN_COUNTS = 1.5
 """The ratio of the error with the mean counted to that without, 1, beyond which both stand wherever the error does.
@@ -72,9 +73,9 @@ def first_line(name: str, errors: Mapping[str, ErrorOf], number: Callable[[float
 
 
 def errors_line(errors: Mapping[str, ErrorOf], number: Callable[[float | None], str] = percent) -> str:
-    """ "on fit runs 2.82 % (with the mean 45.0 times, RMSE 830.0 m), on verify runs unstable on run k24"."""
+    """ "on estimation data 2.82 % (with the mean 45.0 times, RMSE 830.0 m), on validation data unstable on run k24"."""
     known = {use: of for use, of in errors.items() if of.error is not None or of.is_unstable}
-    return ", ".join(f"on {use} runs {of.headline(number)}" for use, of in known.items()) or "unknown"
+    return ", ".join(f"on {data(use)} {of.headline(number)}" for use, of in known.items()) or "unknown"
 
 
 def unstable_on(runs: Sequence[str]) -> str:

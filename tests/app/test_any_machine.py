@@ -62,7 +62,7 @@ def test_a_matrix_of_the_papers_kind_has_its_model_by_name(service):
 
 def test_the_page_offers_the_choice_and_the_effects_that_it_may_take(service, matrix):
     page = service.get(f"/matrices/{matrix}").text
-    assert '<option value="">The one that fits</option>' in page
+    assert '<option value="">Select automatically</option>' in page
     assert "The model that fits of 3 that the channels allow" in page
     assert 'value="dead_zone"' in page
     assert 'value="pressure_feedback"' in page  # of the valve-controlled cylinder

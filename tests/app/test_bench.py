@@ -79,7 +79,7 @@ def test_the_page_offers_what_a_bench_has(service, fit):
     page = service.get(f"/fits/{fit}").text
     assert "Acceptance sheet" in page
     assert "data-budget" not in page
-    assert "Your own effect" in page
+    assert "Define your own effect" in page
     assert ">50 %<" in page
     assert '"spring_load"' in page
     assert re.findall(r'class="signal[^>]*>([^<]*)<', page) == ["e", "q", "w", "V0", "X"]

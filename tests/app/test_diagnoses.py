@@ -96,7 +96,9 @@ def test_the_recommended_fit_is_one_and_the_same_by_every_way(service, diagnosis
 def test_every_button_of_a_diagnosis_names_it(service, diagnosis, linear):
     """So that the fit that it adds begins where the diagnosis ended."""
     page = service.get(f"/fits/{linear}").text
-    section = page[page.index('id="missing"') : page.index("Terms of the signals") if "Terms of the" in page else None]
+    section = page[
+        page.index('id="missing"') : page.index("thousands of equation terms") if "Terms of the" in page else None
+    ]
     forms = re.findall(r'<form[^>]*data-add="[^"]*"[^>]*>', section)
     named = [form for form in forms if f'data-diagnosis="{diagnosis["id"]}"' in form]
     assert len(named) >= len([one for one in diagnosis["candidates"] if one["parameters"]])

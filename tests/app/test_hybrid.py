@@ -149,7 +149,7 @@ def test_what_a_feedforward_is_worth_is_kept_and_drawn(service, tmp_path):
     assert told["both_rms"] < told["feedback_rms"] / 20
     drawn = service.get(f"{API}/hybrid-simulations/{job['id']}/figures/feedforward.svg")
     assert b"below the stability limit" in drawn.content
-    assert "What the feedforward is worth" in service.get(f"/fits/{fit['id']}/use?simulation={job['id']}").text
+    assert "Effect of the feedforward" in service.get(f"/fits/{fit['id']}/use?simulation={job['id']}").text
 
 
 def test_the_kept_record_shows_the_reference(service, simulation):

@@ -25,14 +25,14 @@ UNKNOWN = {"fit": None, "verify": None}
         (FAR * 0.005, FAR * 0.006, FLOOR, []),
         (FAR * 0.00501, 0.006, FLOOR, ["the error is 0.751 %, 1.5 times the noise floor of 0.500 %"]),
         (0.12, None, FLOOR, ["the error is 12.0 %, 24 times the noise floor of 0.500 %"]),
-        (0.005, 0.06, FLOOR, ["the error on the verify runs is 6.00 %, 10 times their noise floor of 0.600 %"]),
+        (0.005, 0.06, FLOOR, ["the error on validation data is 6.00 %, 10 times their noise floor of 0.600 %"]),
         (0.02, 0.05, UNKNOWN,
-         ["the error on the verify runs is 5.00 %, 2.5 times the error on the runs of the fit of 2.00 %"]),
+         ["the error on validation data is 5.00 %, 2.5 times the error on estimation data of 2.00 %"]),
         (0.02, 0.02, UNKNOWN, []),
         (None, None, {}, []),
         (ErrorOf(12.0, unstable=["k24"]), None, FLOOR,
-         ["the error is that of a model that is unstable on run k24"]),
-        (UNSTABLE, None, FLOOR, ["the error is that of a model that is unstable"]),
+         ["the error is unknown: the model is unstable on run k24"]),
+        (UNSTABLE, None, FLOOR, ["the error is unknown: the model is unstable"]),
         (ErrorOf(0.12, 0.9), None, FLOOR,
          ["the error is 12.0 % (with the mean 90.0 %), 24 times the noise floor of 0.500 %"]),
     ],
@@ -50,7 +50,7 @@ def test_an_effect_that_verify_runs_contradict_speaks_against_the_fit_that_has_i
     sound: Errors = {"fit": ErrorOf(0.005), "verify": ErrorOf(0.006)}
     assert objections(sound, FLOOR, ("lead",), ("dead_zone",)) == ()
     assert objections(sound, FLOOR, ("lead", "dead_zone"), ("dead_zone",)) == (
-        "with dead zone the error rises on the verify runs",
+        "with dead zone the error on validation data rises",
     )
 
 
@@ -115,14 +115,14 @@ def test_a_sound_fit_needs_no_reason_unless_a_diagnosis_contradicts_it(service: 
         )
     after = stored(service, fitted, "OBJECT-4", 0.005, ["lead"], before)
     refused = service.post(f"{API}/fits/{after}/approve")
-    assert refused.json()["detail"] == "with lead the error rises on the verify runs"
+    assert refused.json()["detail"] == "with lead the error on validation data rises"
 
 
 def test_the_main_button_of_a_fit_is_the_next_step_of_the_first_page(service: TestClient, fitted: str) -> None:
     """Approving is the main button where nothing but noise is left; else the button does what the first page names."""
     far, sound = (stored(service, fitted, f"OBJECT-{n}", error) for n, error in ((5, 0.12), (6, 0.005)))
     first = service.get("/?q=OBJECT-5").text
-    assert "24 times the noise" in first
-    assert "Find what is missing</a>" in first
-    assert main_deeds(service.get(f"/fits/{far}").text) == ["Find what is missing"]
-    assert main_deeds(service.get(f"/fits/{sound}").text) == ["Approve as the parameters of OBJECT-6"]
+    assert "24 times the noise floor" in first
+    assert "Search for missing effects</a>" in first
+    assert main_deeds(service.get(f"/fits/{far}").text) == ["Search for missing effects"]
+    assert main_deeds(service.get(f"/fits/{sound}").text) == ["Approve for OBJECT-6"]

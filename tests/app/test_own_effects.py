@@ -239,19 +239,19 @@ def test_pages_offer_what_is_kept(service: TestClient, found: dict[str, Any], fi
     """On the card of the term, in the list of a fit that can take it, on the form that starts one, on a page of all."""
     page = service.get(f"/fits/{fitted}").text
     assert 'value="acts_at_one_part_of_the_way"' in page
-    assert "This lab's own effects" not in page
+    assert "Own effects" not in page
     assert 'name="own" type="checkbox"' not in page
-    assert "No effect is kept yet" in service.get("/effects").text
+    assert "No own effects yet" in service.get("/effects").text
     service.post(AT, json={"name": "hill", "diagnosis": found["id"]})
     keep(service, "of_bench", OF_BENCH, model="kononykhin")
     page = service.get(f"/fits/{fitted}").text
-    assert "Kept as hill" in page
+    assert "Saved as hill" in page
     assert 'value="acts_at_one_part_of_the_way"' not in page
     listed = page.partition('aria-labelledby="kept-title"')[2].partition("</section>")[0]
     assert "<b>hill</b>" in listed
     assert "proposed by search" in listed
     assert "of bench" not in listed
-    assert 'name="own" type="checkbox"> with' in page
+    assert 'name="own" type="checkbox"> include' in page
     assert 'value="hill"' in service.get(f"/matrices/{found['matrix']}").text
     everything = service.get("/effects").text
     assert f"proposed by search: {found['proposals'][0]['nats']:.0f} nats" in everything

@@ -45,7 +45,7 @@ def test_one_plot_has_them_all(service, three):
 def test_the_page_has_them_all_and_leaves_one_out_or_adds_one(service, three):
     page = service.get("/compare", params={"fits": ",".join(three)}).text
     assert "3 fits side by side" in page
-    assert f'href="/compare?fits={three[0]},{three[2]}">leave out' in page
+    assert f'href="/compare?fits={three[0]},{three[2]}">remove' in page
     assert "dead_zone.half_width" in page
     two = service.get("/compare", params={"fits": ",".join(three[:2])}).text
     assert f'value="{three[0]},{three[1]},{three[2]}"' in two
@@ -115,7 +115,7 @@ def test_a_fit_that_ran_out_of_its_budget_says_so_and_has_no_button_to_approve(s
     short = lab.fit(matrix, budget=1e-3).id
     page = service.get(f"/fits/{short}").text
     assert "The search ended at generation" in page
-    assert "its search ran out of its time" in page
+    assert "its time budget ended the search" in page
     assert "data-approve" not in page
     assert "data-approve" in service.get(f"/fits/{three[0]}").text
     assert service.post(f"/api/v1/fits/{short}/approve").status_code == 409

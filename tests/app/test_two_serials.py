@@ -119,21 +119,21 @@ def test_the_first_page_judges_by_the_approved_set_and_tells_of_newer_fits(servi
     """Whether the fit that comes after it is worse or better, and until one of them is approved."""
     matrix = service.post(f"{API}/matrices", files={"files": ("m.zip", zipped("BESIDE-3"))}).json()["id"]
     middling = lab.fit(matrix, **QUICK, set={"tau": "4.5 ms"})
-    assert "times the noise" in line(service, "BESIDE-3")
+    assert "times the noise floor" in line(service, "BESIDE-3")
     lab.approve(middling.id, "as it is")
-    assert line(service, "BESIDE-3").startswith("Its parameters are in force: nothing to do.")
+    assert line(service, "BESIDE-3").startswith("Approved. No action needed.")
     worse = lab.fit(matrix, **QUICK, set={"tau": "9 ms"})
     better = lab.fit(matrix, **QUICK)
     errors = [one.result.error["verify"] for one in (worse, middling, better)]
     assert errors == sorted(errors, reverse=True)
     told = line(service, "BESIDE-3")
-    assert told.startswith("Its parameters are in force, with an error of ")
+    assert told.startswith("Approved, with an error of ")
     assert "A newer fit has " in told
-    assert told.endswith("Compare them")
-    assert "times the noise" not in told
+    assert told.endswith("Compare fits")
+    assert "times the noise floor" not in told
     page = service.get("/", params={"q": "BESIDE-3"}).text
     assert f'href="/compare?fits={middling.id},{better.id}" class="button' in page
     lab.approve(worse.id, "a mistake")  # both newer fits were there: nothing new has come since
-    assert line(service, "BESIDE-3").startswith("Its parameters are in force: nothing to do.")
+    assert line(service, "BESIDE-3").startswith("Approved. No action needed.")
     lab.approve(better.id, "it is better")
-    assert line(service, "BESIDE-3").startswith("Its parameters are in force: nothing to do.")
+    assert line(service, "BESIDE-3").startswith("Approved. No action needed.")

@@ -15,24 +15,24 @@ LONG = 120_000  # ms, for a machine that is busy with other things
 def upload(page: Page, site: Service, archive: Path) -> None:
     """One zip; the page of its matrix opens."""
     page.goto(f"{site.address}/upload")
-    page.get_by_label("A zip, matrix.yaml and files, or raw files").set_input_files(archive)
+    page.get_by_label("Files").set_input_files(archive)
     page.get_by_role("button", name="Upload").click()
-    expect(page.locator("h1")).to_contain_text("Test matrix of", timeout=LONG)
+    expect(page.locator("h1")).to_contain_text("Test data of", timeout=LONG)
 
 
 def fit(page: Page) -> str:
     """One button; the address of the finished fit."""
     page.get_by_role("button", name="Start the fit").click()
-    expect(page.get_by_role("button", name="Find what is missing")).to_be_visible(timeout=LONG)
+    expect(page.get_by_role("button", name="Search for missing effects")).to_be_visible(timeout=LONG)
     return page.url
 
 
 def search(page: Page, searching: Path | None = None, patience: float = LONG) -> Locator:
     """By keyboard: find what is missing; the first card, once it is there."""
-    page.get_by_role("button", name="Find what is missing").focus()
+    page.get_by_role("button", name="Search for missing effects").focus()
     page.keyboard.press("Enter")
     expect(page.get_by_role("progressbar", name="Progress of the diagnosis")).to_be_visible(timeout=LONG)
-    card = page.locator(".card").filter(has=page.get_by_role("button", name="Add it")).first
+    card = page.locator(".card").filter(has=page.get_by_role("button", name="Add the effect")).first
     sight = page.locator("#missing [data-sight]").filter(has_text="%")  # the list of the first sight, while it works
     expect(sight.or_(card).first).to_be_visible(timeout=patience)  # a quick search may be over before it is seen
     if searching is not None:
@@ -56,7 +56,7 @@ def add(page: Page, card: Locator, name: str = "") -> tuple[float, float]:
 
 def approve(page: Page, site: Service, serial: str) -> list[dict[str, object]]:
     """Approve the fit and find it by serial number on the page and over HTTP: the sets in force."""
-    page.get_by_role("button", name=f"Approve as the parameters of {serial}").click()
+    page.get_by_role("button", name=f"Approve for {serial}").click()
     expect(page.locator(".head .state.approved")).to_contain_text("current parameter set")
     page.goto(f"{site.address}/?q={serial}")
     expect(page.locator("tbody tr")).to_contain_text("approved")

@@ -22,9 +22,9 @@ def test_the_admin_lets_somebody_in_and_out_again(page, site, stranger, screensh
     """A token is made on the page, shown once, signs a station in, which sees no more than it may, and is revoked."""
     page.goto(f"{site.address}/tokens")
     expect(page.get_by_role("heading", name="No tokens yet")).to_be_visible()
-    page.get_by_label("Who bears it").fill("line 3, station 2")
+    page.get_by_label("Owner").fill("line 3, station 2")
     page.get_by_label("Role").select_option("line")
-    page.get_by_role("button", name="Make it").click()
+    page.get_by_role("button", name="Create the token").click()
     token = page.locator(".made code").inner_text()
     everywhere(page, screenshots, "token-made")
     page.get_by_role("link", name="Done").click()

@@ -37,9 +37,9 @@ def test_a_webhook_is_made_shown_failing_and_revoked(page: Page, site: Process, 
     """Its secret is shown once; nobody listens at that port, which the last deliveries say."""
     page.goto(f"{site.address}/webhooks")
     expect(page.get_by_role("heading", name="No webhooks yet")).to_be_visible()
-    page.get_by_label("Address that is to be told").fill("http://127.0.0.1:9/told")
+    page.get_by_label("URL to notify").fill("http://127.0.0.1:9/told")
     page.get_by_label("a job has ended").uncheck()
-    page.get_by_role("button", name="Make it").click()
+    page.get_by_role("button", name="Create the webhook").click()
     secret = page.locator(".made code").inner_text()
     assert len(secret) == 43
     page.get_by_role("link", name="Done").click()
@@ -71,19 +71,19 @@ def test_raw_runs_that_may_go_are_shown_and_removed(page: Page, site: Process, o
     row = page.get_by_role("row", name=re.compile(old))
     expect(row).to_contain_text("never approved")
     everywhere(page, screenshots, "retention")
-    page.get_by_role("button", name="Remove them").click()
+    page.get_by_role("button", name="Delete the raw data").click()
     expect(row).to_be_visible()
-    page.get_by_role("button", name="Remove them for good").click()
-    expect(page.get_by_text("Nothing is to go now.")).to_be_visible()
+    page.get_by_role("button", name="Delete the raw data for good").click()
+    expect(page.get_by_text("Nothing is eligible for deletion now.")).to_be_visible()
     page.goto(f"{site.address}/matrices/m-{old}")
-    expect(page.get_by_text("the raw runs are gone")).to_be_visible()
+    expect(page.get_by_text("Raw data deleted by the retention rule")).to_be_visible()
     expect(page.get_by_role("button", name="Start the fit")).to_have_count(0)
 
 
 def test_a_backup_is_taken_by_a_button(page: Page, site: Process) -> None:
     page.goto(f"{site.address}/retention")
     with page.expect_download() as downloaded:
-        page.get_by_role("button", name="Take a backup").click()
+        page.get_by_role("button", name="Create a backup").click()
     assert downloaded.value.suggested_filename.endswith(".backup")
     assert downloaded.value.path().read_bytes().startswith(b"PK")
 

@@ -8,7 +8,7 @@ from playwright.sync_api import expect
 def test_a_machine_is_downloaded_and_what_cannot_be_is_said_beside_the_form(page, watch, site, fitted):
     """A mass in metres is refused in place; without it the header comes, under the model's name."""
     page.goto(f"{site.address}/fits/{fitted}")
-    page.get_by_role("link", name="As C, FMU or state space").click()
+    page.get_by_role("link", name="Export as C, FMU or MAT").click()
     section = page.locator("#export")
     section.get_by_label("Mass moved").fill("3 m")
     section.get_by_role("button", name="Download").click()

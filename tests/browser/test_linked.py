@@ -145,7 +145,7 @@ def test_a_place_of_the_chain_lists_its_effects(page, site, fitted):
     expect(lives).to_be_visible()
     expect(lives).to_contain_text("dead zone")
     assert lives.locator("math").count() >= 3
-    expect(lives.get_by_role("button", name="Add it (dead zone)")).to_be_visible()
+    expect(lives.get_by_role("button", name="Add the effect (dead zone)")).to_be_visible()
     expect(page.locator("#place-load")).to_be_hidden()
 
 
@@ -160,7 +160,7 @@ def second(site, fitted):
 def test_two_fits_stand_side_by_side(page, site, fitted, second, screenshots):
     page.goto(f"{site.address}/fits/{second}")
     page.get_by_label("Compare with").select_option(f"{second},{fitted}")
-    page.get_by_role("button", name="Side by side").click()
+    page.get_by_role("button", name="Compare fits").click()
     expect(page.locator("h1")).to_have_text("Two fits side by side")
     zone = page.locator("tr", has_text="dead zone: half of the overlap")
     expect(zone.locator("td").nth(1)).to_have_text("off")
@@ -176,7 +176,7 @@ def test_two_fits_stand_side_by_side(page, site, fitted, second, screenshots):
             if screenshots:
                 page.screenshot(path=screenshots / f"compare-{width}-{theme}.png", full_page=True)
     page.goto(f"{site.address}/fits/{second}")
-    page.get_by_role("link", name="side by side", exact=True).click()
+    page.get_by_role("link", name="compare", exact=True).click()
     expect(page.locator("h1")).to_have_text("Two fits side by side")
 
 
@@ -198,7 +198,7 @@ def test_a_value_is_copied_with_its_unit_and_a_table_with_tabs(page, site, fitte
     expect(page.locator("[role=status]", has_text="is copied")).to_have_count(1)
     value, unit = page.evaluate("navigator.clipboard.readText()").split()
     assert unit == "s"
-    error = page.get_by_role("button", name="Copy Error, fit runs = ")
+    error = page.get_by_role("button", name="Copy Error, estimation runs = ")
     assert error.evaluate("button => getComputedStyle(button).opacity") == "0"
     error.focus()
     page.keyboard.press("Enter")
@@ -219,20 +219,20 @@ def test_an_own_effect_has_other_parameters_and_a_state(page, site, watch, fitte
     own = page.locator("form[data-own]")
     for label, text in (("Name", "droop"), ("Strength, symbol", "d"), ("Unit", "1"), ("Largest", "1")):
         own.get_by_label(label, exact=True).fill(text)
-    own.get_by_label("Place, and the signal it hands on").select_option("flow")
+    own.get_by_label("Block and its output signal").select_option("flow")
     own.get_by_label("Equation").fill("Q = Q * (1 - d * z)")
     own.get_by_role("button", name="Add a parameter").click()
     shape = own.locator(".shape")
     for label, text in (("Symbol", "T"), ("Unit", "ms"), ("Value", "20"), ("Lowest", "1"), ("Largest", "100")):
         shape.get_by_label(label).fill(text)
     own.get_by_label("State, symbol").fill("z")
-    own.get_by_label("Rate of the state").fill("(abs(Q) - z) / bad")
+    own.get_by_label("Derivative of the state").fill("(abs(Q) - z) / bad")
     own.get_by_role("button", name="Check").click()
     expect(own.locator(".at mark")).to_have_text("b", timeout=LONG)
     expect(own.get_by_role("alert")).to_contain_text("state rate, character 16")
-    expect(own.get_by_label("Rate of the state")).to_be_focused()
+    expect(own.get_by_label("Derivative of the state")).to_be_focused()
     watch.complaints.clear()  # the browser's own line on the refusal
-    own.get_by_label("Rate of the state").fill("(abs(Q) - z) / T")
+    own.get_by_label("Derivative of the state").fill("(abs(Q) - z) / T")
     own.get_by_role("button", name="Check").click()
     expect(own.locator("math")).to_have_count(2, timeout=LONG)
     expect(own.locator("[role=alert]")).to_be_empty()

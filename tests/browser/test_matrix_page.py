@@ -39,26 +39,26 @@ def test_a_wrong_unit_is_mended_in_place_for_all_runs(page, watch, site, tmp_pat
     expect(row.locator("img")).to_have_js_property("naturalWidth", 160)
     everywhere(page, screenshots, "doubted")
 
-    row.get_by_role("button", name="Mend").click()
+    row.get_by_role("button", name="Edit").click()
     dialog = page.get_by_role("dialog")
     expect(dialog.get_by_label("Unit of displacement")).to_have_value("mm")
     everywhere(page, screenshots, "mend")
-    dialog.get_by_role("button", name="Make the revision").click()
-    expect(dialog.get_by_role("alert")).to_contain_text("Nothing is changed")
+    dialog.get_by_role("button", name="Save as new revision").click()
+    expect(dialog.get_by_role("alert")).to_contain_text("Nothing was changed")
     dialog.get_by_label("Unit of displacement").fill("furlongs")
-    dialog.get_by_role("button", name="Make the revision").click()
+    dialog.get_by_role("button", name="Save as new revision").click()
     expect(dialog.get_by_role("alert")).to_contain_text("furlongs")
     watch.complaints.clear()  # the browser notes the status of the refusal itself
     dialog.get_by_label("Unit of displacement").fill("m")
-    dialog.get_by_label("The same change for all").check()
-    dialog.get_by_role("button", name="Make the revision").click()
-    expect(page.get_by_text("· a revision of")).to_be_visible()
+    dialog.get_by_label("Apply the change to all").check()
+    dialog.get_by_role("button", name="Save as new revision").click()
+    expect(page.get_by_text("· revision of")).to_be_visible()
     assert page.url != before
-    expect(page.get_by_text("No fault, no doubt")).to_be_visible()
+    expect(page.get_by_text("No errors, no warnings")).to_be_visible()
     expect(page.get_by_text("A newer revision exists")).to_have_count(0)
     newest = page.url
     page.goto(before)
-    page.get_by_role("link", name="look at the newest one").click()
+    page.get_by_role("link", name="Open the newest revision").click()
     expect(page).to_have_url(newest)
 
 
@@ -68,13 +68,13 @@ def test_a_sign_is_turned_round_and_back(page, site, tmp_path):
     story.upload(page, site, archive)
     for turned in (True, False):
         before = page.url
-        page.locator("#run-2").get_by_role("button", name="Mend").click()
+        page.locator("#run-2").get_by_role("button", name="Edit").click()
         sign = page.get_by_role("dialog").locator("tr[data-channel=displacement]").get_by_role("checkbox")
         expect(sign).to_be_checked(checked=not turned)
         sign.set_checked(turned)
-        page.get_by_role("button", name="Make the revision").click()
+        page.get_by_role("button", name="Save as new revision").click()
         expect(page).not_to_have_url(before)
-        expect(page.locator("h1")).to_have_text("Test matrix of SW-SIGN")
+        expect(page.locator("h1")).to_have_text("Test data of SW-SIGN")
         stored = site.client.get(f"/matrices/{page.url.rpartition('/')[2]}/description").json()["runs"][2]
         assert stored["channels"]["displacement"]["invert"] == str(turned).lower()
 
@@ -83,14 +83,14 @@ def test_a_sign_is_turned_round_and_back(page, site, tmp_path):
 def test_a_fit_takes_what_is_chosen(page, site, matrix):
     page.goto(f"{site.address}/matrices/{matrix}")
     stored = site.client.get(f"/matrices/{matrix}").json()
-    page.get_by_text("Model, method, bounds").click()
+    page.get_by_text("Model, method and bounds").click()
     page.get_by_role("textbox", name="tau from").fill("1 ms")
     page.get_by_role("button", name="Start the fit").click()
     expect(page.locator("#start").get_by_role("alert")).to_contain_text("Give both, or neither")
     page.get_by_role("textbox", name="tau to").fill("0.006")
     page.get_by_text("Preprocessing of the data").click()
     page.locator("#start").get_by_label("initial state").uncheck()
-    page.get_by_text("Which runs fit and which verify").click()
+    page.get_by_text("Estimation and validation runs").click()
     page.locator("#start").get_by_label(stored["runs"][0]["id"]).uncheck()
     page.get_by_role("button", name="Start the fit").click()
     expect(page.locator("h1")).to_have_text("Fit of SW/1 <b>")
@@ -108,7 +108,7 @@ def test_a_dropped_folder_is_uploaded_with_its_paths(page, site):
     page.evaluate(DROP, {f"SW-DROP/{name}": list(content) for name, content in files("SW-DROP").items()})
     expect(page.locator("[data-chosen]")).to_contain_text("13 files")
     page.get_by_role("button", name="Upload").click()
-    expect(page.locator("h1")).to_have_text("Test matrix of SW-DROP")
+    expect(page.locator("h1")).to_have_text("Test data of SW-DROP")
 
 
 def test_an_upload_shows_how_far_it_is(page, site, tmp_path):
@@ -119,9 +119,9 @@ def test_an_upload_shows_how_far_it_is(page, site, tmp_path):
     page.goto(f"{site.address}/upload")
     bar = page.get_by_role("progressbar", name="Progress of the upload")
     expect(bar).to_be_hidden()
-    page.get_by_label("A zip, matrix.yaml and files, or raw files").set_input_files(archive)
+    page.get_by_label("Files").set_input_files(archive)
     page.get_by_role("button", name="Upload").click()
     expect(bar).to_be_visible()
     expect(page.locator("[data-stage]")).to_contain_text("sent")
     held[0].continue_()
-    expect(page.locator("h1")).to_have_text("Test matrix of SW-SLOW")
+    expect(page.locator("h1")).to_have_text("Test data of SW-SLOW")

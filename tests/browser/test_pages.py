@@ -204,13 +204,13 @@ def test_the_whole_way_from_upload_to_approval(page, site, tmp_path):
     archive = tmp_path / "matrix.zip"
     archive.write_bytes(zipped("SW-NEW"))
     page.goto(f"{site.address}/upload")
-    page.get_by_label("A zip, matrix.yaml and files, or raw files").set_input_files(archive)
+    page.get_by_label("Files").set_input_files(archive)
     page.get_by_role("button", name="Upload").click()
-    expect(page.locator("h1")).to_have_text("Test matrix of SW-NEW")
-    page.get_by_text("Model, method, bounds").click()
+    expect(page.locator("h1")).to_have_text("Test data of SW-NEW")
+    page.get_by_text("Model, method and bounds").click()
     page.get_by_label("Seed").fill("3")
     page.get_by_role("button", name="Start the fit").click()
-    page.get_by_role("button", name="Approve as the parameters of SW-NEW").click(timeout=120_000)
+    page.get_by_role("button", name="Approve for SW-NEW").click(timeout=120_000)
     expect(page.locator(".head .state.approved")).to_contain_text("current parameter set")
     assert site.client.get("/actuators/SW-NEW").json()["current"] is not None
     page.goto(f"{site.address}/?q=SW-NEW")
@@ -233,7 +233,7 @@ def test_drift_is_seen_once_a_second_set_is_approved(page, site, screenshots):
     )
     everywhere(page, screenshots, "drift")
     page.get_by_role("link", name="SW-DRIFT").click()
-    expect(page.get_by_role("heading", name="Drift over the approved sets")).to_be_visible()
+    expect(page.get_by_role("heading", name="Drift of the approved parameters")).to_be_visible()
     expect(page.locator("svg.spark")).to_have_count(7)
     everywhere(page, screenshots, "drifts")
 
@@ -244,7 +244,7 @@ def test_a_waiting_fit_can_be_cancelled(page, site, matrix):
     waiting = site.client.post("/fits", json={"matrix": matrix, "seed": 12}).json()
     page.goto(f"{site.address}/fits/{waiting['id']}")
     page.get_by_role("button", name="Cancel").click()
-    expect(page.locator("main")).to_contain_text("It was cancelled; nothing was stored.", timeout=60_000)
+    expect(page.locator("main")).to_contain_text("The job was cancelled. Nothing was stored.", timeout=60_000)
     assert site.client.get(f"/jobs/{waiting['id']}").json()["state"] == "cancelled"
 
 
@@ -252,7 +252,7 @@ def test_a_refused_upload_says_what_where_and_the_remedy(page, watch, site, tmp_
     bad = tmp_path / "matrix.zip"
     bad.write_bytes(b"not a zip at all")
     page.goto(f"{site.address}/upload")
-    page.get_by_label("A zip, matrix.yaml and files, or raw files").set_input_files(bad)
+    page.get_by_label("Files").set_input_files(bad)
     page.get_by_role("button", name="Upload").click()
     said = page.get_by_role("alert")
     expect(said).not_to_be_empty()

@@ -24,7 +24,7 @@ def test_a_term_is_proposed_added_and_the_error_is_the_noise_s(page, site, scree
     page.goto(f"{site.address}/?token={site.token}")
     page.goto(f"{site.address}/fits/{fit}#missing")
     expect(page.locator("#left")).to_contain_text("Something is left")
-    page.get_by_role("button", name="Search for what no list holds").click()
+    page.get_by_role("button", name="Search for unknown terms").click()
     if not full:
         page.locator("#missing").get_by_role("button", name="Cancel").click(timeout=story.LONG)
         expect(page.locator("#missing")).to_contain_text("The last search was cancelled", timeout=story.LONG)
@@ -59,15 +59,15 @@ def diagnosed(site, fit, *, propose):
 
 def the_term_is_kept(page, card, screenshots):
     """Under the name that is typed over the one that was suggested; it says so, also when the page is opened again."""
-    name = card.get_by_label("Keep it for other actuators, as")
+    name = card.get_by_label("Save for other actuators as")
     expect(name).to_have_value("acts_at_one_part_of_the_way")
     name.fill("uneven_port")
-    card.get_by_role("button", name="Keep term 1").click()
-    expect(card.get_by_role("status")).to_contain_text("Kept as uneven_port")
+    card.get_by_role("button", name="Save the effect term 1").click()
+    expect(card.get_by_role("status")).to_contain_text("Saved as uneven_port")
     expect(name).to_be_hidden()
     if screenshots:
         page.reload()
-        expect(card).to_contain_text("Kept as uneven_port")
+        expect(card).to_contain_text("Saved as uneven_port")
         everywhere(page, screenshots, "kept")
 
 
@@ -78,12 +78,12 @@ def another_actuator_has_it_in_the_list(page, site, screenshots):
     page.get_by_text("Physical effects to add").click()
     expect(page.locator("#start").get_by_label("uneven port")).not_to_be_checked()
     story.fit(page)
-    listed = page.get_by_role("region", name="This lab's own effects")
+    listed = page.get_by_role("region", name="Own effects")
     expect(listed).to_contain_text("uneven port")
     expect(listed).to_contain_text("Acts at one part of the way", ignore_case=True)
     expect(listed).to_contain_text("proposed by search")
     expect(listed.locator("math")).to_have_count(1)
-    expect(page.locator("#missing").get_by_label("with this lab's own effects")).not_to_be_checked()
+    expect(page.locator("#missing").get_by_label("include own effects")).not_to_be_checked()
     if screenshots:
         everywhere(page, screenshots, "own-list")
     first, second = story.add(page, listed, "uneven port")
@@ -102,8 +102,8 @@ def a_written_one_is_kept_too(page, site):
     for label, text in (("Name", "lapped"), ("Strength, symbol", "h"), ("Unit", "mm"), ("Largest", "1")):
         own.get_by_label(label, exact=True).fill(text)
     own.get_by_label("Equation").fill("w = w - clip(w, -h, h)")
-    own.get_by_role("button", name="Keep it for other actuators").click()
-    expect(own.locator("[data-kept]")).to_contain_text("Kept as lapped")
+    own.get_by_role("button", name="Save for other actuators").click()
+    expect(own.locator("[data-kept]")).to_contain_text("Saved as lapped")
     expect(own.locator("math")).to_have_count(1)
     assert site.client.get("/own-effects/lapped").json()["origin"] == "written"
 
@@ -112,12 +112,12 @@ def it_is_deleted_from_the_list(page, site, screenshots):
     """The fit that has it stays."""
     fit = page.url
     page.get_by_role("link", name="Own effects", exact=True).click()
-    expect(page.locator("h1")).to_have_text("This lab's own effects")
+    expect(page.locator("h1")).to_have_text("Own effects")
     everywhere(page, screenshots, "own-effects")
-    page.get_by_role("button", name="Delete uneven port").click()
+    page.get_by_role("button", name="Delete the effect uneven port").click()
     expect(page.locator(".lives")).to_have_count(1)
-    page.get_by_role("button", name="Delete lapped").click()
-    expect(page.locator("#main")).to_contain_text("No effect is kept yet")
+    page.get_by_role("button", name="Delete the effect lapped").click()
+    expect(page.locator("#main")).to_contain_text("No own effects yet")
     assert site.client.get("/own-effects").json()["items"] == []
     page.goto(fit)
     expect(page.locator("h1")).to_contain_text("uneven port")

@@ -34,13 +34,13 @@ def raw_files(folder):
 def test_three_raw_files_become_a_fit_without_a_description(page, watch, site, tmp_path, screenshots, full):
     """Chosen, named, their units said, checked, made a matrix, fitted: nothing but the page. Short: until the job."""
     page.goto(f"{site.address}/upload")
-    page.get_by_label("A zip, matrix.yaml and files, or raw files").set_input_files(raw_files(tmp_path))
+    page.get_by_label("Files").set_input_files(raw_files(tmp_path))
     page.get_by_role("button", name="Upload").click()
-    expect(page.get_by_role("heading", name="What is in these files?")).to_be_visible()
+    expect(page.get_by_role("heading", name="Describe the raw files")).to_be_visible()
     expect(page.locator("img").first).to_have_js_property("naturalWidth", 160)
     missing = page.locator("[data-missing] li")
     expect(missing).to_have_count(4)
-    make = page.get_by_role("button", name="Make the matrix")
+    make = page.get_by_role("button", name="Create data set")
     expect(make).to_be_disabled()
     everywhere(page, screenshots, "raw-files")
 
@@ -63,13 +63,13 @@ def test_three_raw_files_become_a_fit_without_a_description(page, watch, site, t
     assert not watch.complaints
 
     make.click()
-    expect(page.get_by_role("heading", name="Test matrix of SW-RAW")).to_be_visible()
+    expect(page.get_by_role("heading", name="Test data of SW-RAW")).to_be_visible()
     page.get_by_role("button", name="Start the fit").click()
     page.wait_for_url("**/fits/*")
     job = page.url.rpartition("/")[2]
     if full:
         assert site.ended(job)["state"] == "succeeded"
-        expect(page.get_by_role("heading", name="How good is it?")).to_be_visible(timeout=60_000)  # it shows itself
+        expect(page.get_by_role("heading", name="Error, eq. (17)")).to_be_visible(timeout=60_000)  # it shows itself
     else:
         site.client.delete(f"/jobs/{job}")
         site.ended(job)
@@ -84,7 +84,7 @@ def test_files_of_any_form_are_described_each_by_its_own(page, watch, site, tmp_
     if not full and case.name not in SHORT:
         pytest.skip("with --full; over HTTP and with init it is read in the short form, too")
     page.goto(f"{site.address}/upload")
-    page.get_by_label("A zip, matrix.yaml and files, or raw files").set_input_files(case.paths())
+    page.get_by_label("Files").set_input_files(case.paths())
     page.get_by_role("button", name="Upload").click()
     page.get_by_label("Serial number").fill(f"CASE-{case.name}")
     for file in case.files:
@@ -99,8 +99,8 @@ def test_files_of_any_form_are_described_each_by_its_own(page, watch, site, tmp_
     clock.select_option("time")
     expect(page.locator("[data-missing] li")).to_have_count(0, timeout=60_000)
     expect(page.locator("#draft [role=alert]")).to_be_empty()
-    page.get_by_role("button", name="Make the matrix").click(timeout=60_000)
-    expect(page.get_by_role("heading", name=f"Test matrix of CASE-{case.name}")).to_be_visible(timeout=60_000)
+    page.get_by_role("button", name="Create data set").click(timeout=60_000)
+    expect(page.get_by_role("heading", name=f"Test data of CASE-{case.name}")).to_be_visible(timeout=60_000)
     made = page.url.rpartition("/")[2]
     described = site.client.get(f"/matrices/{made}/description").content
     content = {f"runs/{path.name}": path.read_bytes() for path in case.paths()}
@@ -116,10 +116,10 @@ def of(case, file) -> str:
 def test_files_with_the_same_columns_can_be_described_one_by_one(page, site, tmp_path):
     """Three files of one layout have one table, or, where asked for, one each: a unit is said of one of them alone."""
     page.goto(f"{site.address}/upload")
-    page.get_by_label("A zip, matrix.yaml and files, or raw files").set_input_files(raw_files(tmp_path))
+    page.get_by_label("Files").set_input_files(raw_files(tmp_path))
     page.get_by_role("button", name="Upload").click()
     expect(page.locator("table.columns-of-files")).to_have_count(1)
-    page.get_by_role("link", name="Describe each file by itself").click()
+    page.get_by_role("link", name="Describe each file separately").click()
     expect(page.locator("table.columns-of-files")).to_have_count(3)
     page.get_by_label("Serial number").fill("SW-APART")
     for number in range(3):

@@ -62,8 +62,8 @@ def a_record_is_simulated_under_it(page: Page, folder: Path) -> None:
     section = page.get_by_role("region", name="Hybrid simulation", exact=True)
     expect(section.get_by_label("Controller", exact=True).locator("option:checked")).to_contain_text("two-degree")
     section.get_by_label("Ground motion").select_option("record")
-    section.get_by_label("Record, a text file").set_input_files(record)
-    section.get_by_role("button", name="Simulate").click()
+    section.get_by_label("Acceleration record").set_input_files(record)
+    section.get_by_role("button", name="Run the simulation").click()
     answer = section.locator("#simulation")
     expect(answer).to_contain_text("Stable", timeout=story.LONG)
     expect(answer).to_contain_text("quake.txt")
@@ -90,12 +90,12 @@ def every_figure_is_downloaded(page: Page) -> None:
 def test_what_if_is_an_address_that_can_be_kept(page, site, fitted):
     """Sizes and gains go into the address; the answer has poles, factors and both figures."""
     page.goto(f"{site.address}/fits/{fitted}/use")
-    section = page.get_by_role("region", name="What if", exact=True)
+    section = page.get_by_role("region", name="What-if analysis", exact=True)
     section.get_by_label("Area").fill("239 mm^2")
     section.get_by_label("Mass").fill("2.06 kg")
     section.get_by_label("From", exact=True).fill("2")
     section.get_by_label("To", exact=True).fill("3")
-    section.get_by_role("button", name="What if").click()
+    section.get_by_role("button", name="Compute the response").click()
     answer = page.locator("#what-if-answer")
     expect(answer).to_contain_text("∝ A")
     assert "stroke" not in page.url  # what is empty is left out
@@ -110,8 +110,8 @@ def test_a_run_is_followed(page, site, fitted):
     """Half a second of a fourth-order loop: no first-order loop holds, and the figure shows it."""
     page.goto(f"{site.address}/fits/{fitted}/use")
     section = page.get_by_role("region", name="Tracking", exact=True)
-    section.get_by_role("button", name="Follow the run").click()
-    expect(section).to_contain_text("A first-order loop does not hold")
+    section.get_by_role("button", name="Track the run").click()
+    expect(section).to_contain_text("A first-order loop is not valid")
     expect(section.get_by_role("row", name="time constant")).to_contain_text("±")
     expect(section.locator("canvas")).to_be_visible(timeout=story.LONG)
 
@@ -136,7 +136,7 @@ def test_a_case_that_cannot_be_read_is_refused_beside_its_form(page, site, watch
     page.goto(f"{site.address}/fits/{fitted}/use")
     section = page.get_by_role("region", name="Controller", exact=True)
     section.get_by_label("Case", exact=True).select_option("own")
-    section.get_by_label("Own case").fill("structure: {mass: 87.5 kg, stiffness: 87.5 s, damping: 0 N*s/m}")
+    section.get_by_label("Custom case").fill("structure: {mass: 87.5 kg, stiffness: 87.5 s, damping: 0 N*s/m}")
     section.get_by_role("button", name="Design the controller").click()
     expect(section.get_by_role("alert")).to_contain_text("structure stiffness", timeout=story.LONG)
     watch.complaints.clear()  # the browser's own line on the refusal

@@ -41,7 +41,7 @@ def the_next_run_is_proposed(page):
     page.get_by_role("button", name="Propose a run").click()
     expect(page.locator(".next [data-text]")).to_contain_text("Run a ", timeout=story.LONG)
     with page.expect_download() as download:
-        page.get_by_role("link", name="Download its command").click()
+        page.get_by_role("link", name="Download the command").click()
     assert download.value.suggested_filename.startswith("next-experiment-")
 
 
@@ -71,12 +71,12 @@ def the_first_page_says_what_to_do(page, screenshots):
     """A line for each of the two actuators, which changes by itself when a fit ends; the page of the failing fit."""
     sound, failing = (page.locator("tbody tr").filter(has_text=serial).locator(".next") for serial in (SOUND, LACKING))
     expect(page.locator("#main")).to_contain_text("simulated, not measured")
-    expect(sound).to_contain_text("The model explains all but the noise", timeout=story.LONG)
-    expect(failing).to_contain_text(re.compile("The error is 2[0-9] times the noise"), timeout=story.LONG)
+    expect(sound).to_contain_text("The error is at the noise floor", timeout=story.LONG)
+    expect(failing).to_contain_text(re.compile("The error is 2[0-9] times the noise floor"), timeout=story.LONG)
     everywhere(page, screenshots, "first")
-    failing.get_by_role("link", name="Find what is missing").click()
+    failing.get_by_role("link", name="Search for missing effects").click()
     expect(page.locator("h1")).to_contain_text(f"{LACKING}: ")
-    expect(page.get_by_role("button", name="Find what is missing")).to_be_in_viewport()
+    expect(page.get_by_role("button", name="Search for missing effects")).to_be_in_viewport()
 
 
 def the_error_falls_at_each_step(page):
@@ -112,7 +112,7 @@ def test_a_new_user_finds_what_is_missing_adds_it_and_sees_the_error_fall(page, 
     ).to_be_in_viewport()  # the answer stays in sight as figures come
     assert card.locator("math").count() == 1
     the_error_falls_at_each_step(page)
-    page.get_by_text("others that do not help beyond chance").click()
+    page.get_by_text("effects without significant improvement").click()
     if screenshots:
         page.locator("#missing").screenshot(path=screenshots / "cards.png")
     the_next_run_is_proposed(page)
@@ -130,7 +130,7 @@ def test_a_new_user_finds_what_is_missing_adds_it_and_sees_the_error_fall(page, 
     page.locator("#figure-ladder").scroll_into_view_if_needed()
     expect(page.locator("#figure-ladder canvas")).to_be_visible(timeout=story.LONG)
     everywhere(page, screenshots, "mended")
-    expect(page.get_by_role("link", name="Undo: back to the fit before")).to_have_attribute(
+    expect(page.get_by_role("link", name="Open the previous fit")).to_have_attribute(
         "href", before.removeprefix(site.address).partition("#")[0]
     )
     mended = page.url
@@ -147,7 +147,7 @@ def test_a_measured_actuator_goes_the_same_way(page, site, measured_data, full, 
     story.upload(page, site, packed(measured_data / "mts_actuator", tmp_path))
     (serial,) = page.locator(".crumbs a:last-child").all_inner_texts()
     story.fit(page)
-    expect(page.get_by_role("heading", name="Where does it fail?")).to_be_visible()
+    expect(page.get_by_role("heading", name="Residual analysis")).to_be_visible()
     page.locator("#figure-residual-map").scroll_into_view_if_needed()
     expect(page.locator("#figure-residual-map canvas")).to_be_visible(timeout=story.LONG)
     errors = page.locator("section:has-text('Error, eq. (17)') tbody tr").all_inner_texts()
@@ -170,10 +170,10 @@ def test_a_search_can_be_cancelled_and_says_so(page, site):
     fit = site.fit(stored["id"])
     assert site.ended(fit)["state"] == "succeeded"
     page.goto(f"{site.address}/fits/{fit}")
-    page.get_by_role("button", name="Find what is missing").click()
+    page.get_by_role("button", name="Search for missing effects").click()
     page.locator("#missing").get_by_role("button", name="Cancel").click(timeout=story.LONG)
     expect(page.locator("#missing")).to_contain_text("The last search was cancelled", timeout=story.LONG)
-    expect(page.get_by_role("button", name="Find what is missing")).to_be_enabled()
+    expect(page.get_by_role("button", name="Search for missing effects")).to_be_enabled()
     page.goto(f"{site.address}/jobs")
     page.locator("tbody tr").filter(has_text="diagnosis").first.get_by_role("link").first.click()
     expect(page).to_have_url(f"{site.address}/fits/{fit}#missing")

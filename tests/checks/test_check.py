@@ -210,7 +210,7 @@ def test_one_command_twice_under_the_same_conditions_is_a_repeat_and_no_doubt(fa
     channels = {"command": faulty.matrix.runs[0].command, "displacement": faulty.matrix.runs[0].measured + noise}
     again = labelled_alike.run(1, channels=channels)
     assert again.found() == {(None, "repeat"): "note"}
-    assert "runs run-0 and run-1 repeat one command under the same stated conditions" in again.text("repeat")
+    assert "runs run-0 and run-1 repeat the same command under the same conditions" in again.text("repeat")
 
 
 def test_one_command_twice_with_nothing_stated_counts_as_a_repeat_and_says_what_to_state(faulty):
@@ -219,7 +219,7 @@ def test_one_command_twice_with_nothing_stated_counts_as_a_repeat_and_says_what_
     same = {"command": faulty.matrix.runs[0].channels["command"], "displacement": 1.1 * bare.matrix.runs[1].measured}
     twice = bare.run(1, channels=same)
     assert twice.found()[None, "repeat"] == "note"
-    assert "runs run-0 and run-1 have one command, and nothing stated tells them apart" in twice.text("repeat")
+    assert "runs run-0 and run-1 have the same command, and no label separates them" in twice.text("repeat")
     assert "state it: specimen, gain" in twice.text("repeat")
 
 

@@ -70,7 +70,7 @@ def alone(run: Run) -> Matrix:
 def test_a_command_that_answers_the_output_is_doubted(run):
     doubts = [finding for finding in check(alone(run)) if finding.code == "closed-loop"]
     assert len(doubts) == 1
-    assert "give the controller's reference as the command" in doubts[0].text
+    assert "Use the reference of the controller" in doubts[0].text
 
 
 @pytest.mark.parametrize("seed", range(3))

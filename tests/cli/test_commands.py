@@ -20,7 +20,7 @@ def test_check_describes_the_matrix_and_finds_no_fault(servoident, matrix):
     assert done.returncode == 0, done.stderr
     assert "fit: 63 runs (blwn), Kp 5, 7, 10" in done.stdout
     assert "verify: 21 runs (blwn), Kp 6" in done.stdout
-    assert "0 faults" in done.stdout
+    assert "0 errors" in done.stdout
 
 
 def test_check_ends_with_1_where_the_matrix_has_a_fault(servoident, matrix, tmp_path):

@@ -168,7 +168,7 @@ def test_a_proposed_term_is_kept_with_where_it_comes_from(servoident, diagnosis)
         (("keep", "LAPPED", "--name", "../x"), "is no name of an effect"),
         (("drop", "../x"), "is no name of an effect"),
         (("keep",), "Missing argument"),
-        (("--json", "-", "keep", "LAPPED"), "an option stands before keep"),
+        (("--json", "-", "keep", "LAPPED"), "an option is before the command keep"),
         (("--server", "http://127.0.0.1:9"), "no answer"),
         (("keep", "nothing", "--server", "http://127.0.0.1:9"), "--name"),
     ],

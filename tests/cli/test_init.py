@@ -38,7 +38,7 @@ def test_with_answers_as_options_a_matrix_is_written_that_check_takes(servoident
              "--gain", "7", "--area", "497 mm^2", "--out", tmp_path / "m")  # fmt: skip
     done = servoident("init", record, *given)
     assert done.returncode == 0, done.stderr
-    assert "specimen is not stated" in done.stdout
+    assert "specimen is not given" in done.stdout
     assert "hold: linear" in done.stdout
     text = (tmp_path / "m" / "matrix.yaml").read_text()
     assert text.startswith("# ")

@@ -32,7 +32,10 @@ def family(of: Matrix) -> CandidateModels:
 
 def test_a_part_that_nobody_described_is_named_by_what_it_does():
     bare = family(matrix(Actuator("ANY")))
-    assert bare.described("spool_stiction") == "spool stiction (a start that waits for enough drive, at the valve)"
+    assert (
+        bare.described("spool_stiction")
+        == "spool stiction (the spool moves only above a breakaway signal, at the valve)"
+    )
     assert bare.described("cubic_stiffness") == "cubic stiffness (stiffening or softening with position, at the load)"
     assert bare.described("dead_zone") == "dead zone"
     valve = family(matrix(Actuator("ANY", servo_valve="D765")))
@@ -50,8 +53,8 @@ def test_a_verdict_says_what_an_effect_does_once(against):
     text = verdict_text(added, [("spool_stiction", "backlash")], (), False, {"fit": 0.01}, 0.2, against=rises,
                         described=models.described)  # fmt: skip
     assert text.count("stiffening or softening") == 1
-    assert text.count("a start that waits for enough drive, at the valve) ") == 0
-    assert text.count("(a start that waits for enough drive, at the valve): with them") == 1
+    assert text.count("the spool moves only above a breakaway signal, at the valve) ") == 0
+    assert text.count("(the spool moves only above a breakaway signal, at the valve): with them") == 1
     assert text.count("spool stiction") == 2
     first = "cubic stiffness" if against else "cubic stiffness (stiffening or softening with position, at the load)"
     assert f" is dead zone, {first} and" in text or f"lacks dead zone, {first} and" in text

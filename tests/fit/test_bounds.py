@@ -42,7 +42,7 @@ def test_what_ended_at_its_bound_is_not_determined():
     assert found.at_bound
     assert found.std_error is None
     assert "tau" not in {entry.expression for entry in fit.determined}
-    assert {entry.name: entry.reason for entry in fit.undetermined}["tau"].startswith("ended at its bound")
+    assert {entry.name: entry.reason for entry in fit.undetermined}["tau"].startswith("the estimate is at its bound")
     assert fit.parameters["gain"].std_error is not None
 
 
@@ -53,7 +53,7 @@ def test_a_strength_that_the_data_moved_to_its_bound_is_not_said_to_be_any():
     assert fit.parameters["command_delay.delay"].at_bound
     assert fit.parameters["command_delay.delay"].std_error is None
     (reason,) = [entry.reason for entry in fit.undetermined if entry.name == "command_delay.delay"]
-    assert reason == "ended at its bound: the data ask for a value beyond it"
+    assert reason == "the estimate is at its bound: the best value is outside it"
 
 
 def test_no_point_of_a_search_space_lies_outside_its_bounds_by_rounding():

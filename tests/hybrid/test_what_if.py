@@ -188,14 +188,14 @@ def test_an_effect_without_a_linear_response_is_left_out_and_said():
     extra = {"dead_zone.half_width": Estimate(1e-4, "m", None, 0, 1e-3, at_bound=False)}
     dead = replace(fit, effects=("dead_zone",), parameters={**fit.parameters, **extra})
     found = what_if(dead, SMALL, (2.0, 3.0))
-    assert any("Left out" in note and "dead_zone" in note for note in found.notes)
+    assert any("Not in the response" in note and "dead_zone" in note for note in found.notes)
     assert found.responses[0].poles == what_if(fit, SMALL, (2.0, 3.0)).responses[0].poles
     extra = {"integral_action.gain": Estimate(5.0, "1/s", None, 0, 50, at_bound=False)}
     more = what_if(
         replace(fit, effects=("integral_action",), parameters={**fit.parameters, **extra}), SMALL, (2.0, 3.0)
     )
     assert len(more.responses[0].poles) == 5
-    assert not any("Left out" in note for note in more.notes)
+    assert not any("Not in the response" in note for note in more.notes)
 
 
 def test_figures_are_drawn_in_both_themes(small):

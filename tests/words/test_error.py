@@ -64,7 +64,9 @@ def test_the_mean_stands_beside_an_error_from_one_and_a_half_times_on():
 
 def test_a_line_names_the_uses_of_which_there_are_runs():
     errors = {"fit": ErrorOf(0.0282, 45.0), "verify": ErrorOf(None, unstable=("k24",)), "held_out": ErrorOf(None)}
-    assert errors_line(errors) == ("on fit runs 2.82 % (with the mean 45.0 times), on verify runs unstable on run k24")
+    assert errors_line(errors) == (
+        "on estimation data 2.82 % (with the mean 45.0 times), on validation data unstable on run k24"
+    )
     assert errors_line({}) == "unknown"
 
 

@@ -5,9 +5,9 @@ import { percent } from "./words.js";
 
 const figure = document.querySelector("[data-budget]");
 const PARTS = {
-  noise: "noise of the measurement",
-  linear: "a better linear model could take",
-  nonlinear: "only a nonlinear model could take",
+  noise: "measurement noise",
+  linear: "linear model error (a better linear model would remove it)",
+  nonlinear: "nonlinear model error (only a nonlinear model would remove it)",
 };
 
 try {

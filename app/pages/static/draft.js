@@ -12,6 +12,7 @@ const layouts = [...form.querySelectorAll("[data-files]")].map((section) => {
   return { section, rows, names: JSON.parse(section.dataset.files), taken: new Set(roles.filter((role) => role && role !== "time")) };
 });
 const WORST = { fault: "failed", doubt: "doubt", note: "" };
+const LEVEL = { fault: "error", doubt: "warning", note: "note" };
 let asked = 0;
 
 // What the page says of the files of a layout: columns, units and the rate belong to them alone.
@@ -53,7 +54,7 @@ function list(place, items) {
 function show(draft) {
   const part = (name) => form.querySelector(`[data-${name}]`);
   list(part("missing"), draft.missing.map(({ question }) => ({ severity: "doubt", word: "missing", text: question })));
-  list(part("findings"), draft.findings.map(({ severity, text }) => ({ severity: WORST[severity], word: severity, text })));
+  list(part("findings"), draft.findings.map(({ severity, text }) => ({ severity: WORST[severity], word: LEVEL[severity], text })));
   list(part("doubts"), draft.doubts.map((text) => ({ text })));
   part("description").hidden = !draft.description;
   part("description").querySelector("pre").textContent = draft.description;

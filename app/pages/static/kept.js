@@ -9,7 +9,7 @@ for (const form of document.querySelectorAll("form[data-keep]")) {
     const { data } = await send("POST", form.action, asked);
     form.hidden = true;
     const said = form.nextElementSibling;
-    said.replaceChildren(mark(`Kept as ${data.name}`), ": every fit whose model can take it offers it, under This lab's own effects.");
+    said.replaceChildren(mark(`Saved as ${data.name}`), ". Every fit with a suitable model now offers it under Own effects.");
   });
 }
 

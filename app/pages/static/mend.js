@@ -77,7 +77,7 @@ form.addEventListener("submit", (event) => {
   event.preventDefault();
   guarded(form.querySelector("button.main"), problem, async () => {
     const change = changes();
-    if (Object.keys(change).length === 0) throw new Error("Nothing is changed. Correct a field, or leave the run as it is.");
+    if (Object.keys(change).length === 0) throw new Error("Nothing was changed. Edit a field, or cancel.");
     const chosen = form.elements.all.checked ? description.runs : [run];
     const runs = Object.fromEntries(chosen.map((entry) => [entry.id, fitting(change, entry)]));
     const { data } = await send("POST", `${dialog.dataset.matrix}/revisions`, { runs });

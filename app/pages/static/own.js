@@ -46,7 +46,7 @@ async function submit(wish) {
     location.assign(`/fits/${data.id}`);
   } else if (wish === "keep") {
     const { data } = await send("POST", "/api/v1/own-effects", { name: custom[0].name, definition: custom[0] });
-    kept.textContent = `Kept as ${data.name}: every fit whose model can take it offers it.`;
+    kept.textContent = `Saved as ${data.name}. Every fit with a suitable model now offers it.`;
   }
 }
 

@@ -1,4 +1,4 @@
-// Raw runs that may go: the button asks once more, and removes what stands in the table.
+// Raw data eligible for deletion: the button asks once more, and removes what stands in the table.
 
 import { guarded, send } from "./api.js";
 
@@ -7,7 +7,7 @@ const button = document.querySelector("button[data-digest]");
 button?.addEventListener("click", () => {
   if (button.dataset.sure === undefined) {
     button.dataset.sure = "";
-    button.textContent = "Remove them for good";
+    button.textContent = "Delete the raw data for good";
     return;
   }
   guarded(button, document.querySelector("#retention-problem"), async () => {

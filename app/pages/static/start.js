@@ -32,7 +32,7 @@ function quantity(text) {
 async function matrix() {
   const changed = [...form.querySelectorAll("[data-use]")].filter((box) => box.checked !== (box.dataset.use === "fit"));
   if (changed.length === 0) return form.elements.matrix.value;
-  said.textContent = "Making a revision with other runs to fit…";
+  said.textContent = "Saving a revision with other estimation runs…";
   const runs = Object.fromEntries(changed.map((box) => [box.value, { use: box.checked ? "fit" : "verify" }]));
   return (await send("POST", form.dataset.revisions, { runs })).data.id;
 }

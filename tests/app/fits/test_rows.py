@@ -20,7 +20,7 @@ def fit() -> FitResult:
         determined=(
             Combination("Ka*tau*m0 / (A^2 + Cl*c0)", 2.778e-8, "s^3", 1.1e-9), Combination("a ? b", 1.0, "1", 0.1),
         ),
-        undetermined=(Undetermined("m0", "a convention"),),
+        undetermined=(Undetermined("m0", "by convention"),),
         error={"fit": 0.0407, "held_out": None, "verify": 0.037}, offset={"fit": -0.01, "verify": 0.0},
         noise_floor={"fit": 0.02, "verify": None}, runs=(RunError("a", "fit", 0.0407, -0.01),), data_hash="0",
     )  # fmt: skip
@@ -55,7 +55,12 @@ def test_a_combination_is_mathematics_and_what_is_none_is_escaped_text():
 def test_errors_over_windows_stand_below_those_of_the_free_run():
     rows = error_rows(replace(fit(), window=Window(0.85, {"fit": 0.078, "held_out": None, "verify": 0.054})))
     length = "0.85 s"
-    assert [row.use for row in rows] == ["fit", "verify", f"fit over {length}", f"verify over {length}"]
+    assert [row.use for row in rows] == [
+        "estimation",
+        "validation",
+        f"estimation over {length}",
+        f"validation over {length}",
+    ]
     assert [row.error for row in rows[2:]] == ["7.80 %", "5.40 %"]
     assert (rows[2].ratio, rows[2].offset) == ("3.90 ×", "–")
 

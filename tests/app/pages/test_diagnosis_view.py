@@ -58,7 +58,7 @@ def test_a_group_is_one_card_that_names_all_and_adds_one():
 def test_what_does_not_help_stands_apart_and_what_is_left_is_said():
     lacks = missing(found(), None)
     assert [card.title for card in lacks.chance] == ["lead"]
-    assert lacks.left == "The error is 1.00 % with all that helps, above the noise floor of 0.500 %."
+    assert lacks.left == "The error is 1.00 % with all recommended effects, above the noise floor of 0.500 %."
     assert [rung.nats for rung in lacks.ladder] == ["–", "7.00"]
     assert (lacks.suspects[0].stated, lacks.suspects[0].found) == ("2.670 kg", "0.9000 kg")
 
@@ -71,7 +71,7 @@ def test_the_section_is_markup_with_everything_escaped():
     page |= {"missing": missing(found(), None)}
     text = _TEMPLATES.get_template("missing.html").render(fit=page, vega="", who=ANYBODY)
     assert "r &lt;1&gt;" in text
-    assert "cannot tell these 2 apart" in text
+    assert "These 2 effects are" in text
     assert "{&#34;runs&#34;: {&#34;r &lt;1&gt;&#34;: {&#34;specimen&#34;: {&#34;mass&#34;: &#34;0.9 kg&#34;}}}}" in text
     assert text.count('data-add="/api/v1/fits/f/effects"') == 2  # the group and the one by chance
     assert "In data: flat tops." in text
@@ -93,5 +93,5 @@ def test_a_strength_that_is_not_determined_is_called_so_and_not_offered_by_a_mai
         for of in (found(), vague())
     ]
     assert ["not determined (±" in text for text in shown] == [False, True]
-    assert ['class="main">Add it' in text for text in shown] == [True, False]
+    assert ['class="main">Add the effect' in text for text in shown] == [True, False]
     assert "not determined" in str(vague().found)

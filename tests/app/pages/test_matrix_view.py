@@ -45,4 +45,4 @@ def test_beside_its_run_a_finding_does_not_name_it_again():
 def test_what_a_run_does_not_state_is_a_dash():
     run = matrix_view(stored()).runs[0].run
     assert (run.gain, run.amplitude, run.specimen) == ("–", "–", "–")
-    assert matrix_view(stored()).summary == "2 runs: 1 to fit, 1 to verify; 4.00 s in all; no findings"
+    assert matrix_view(stored()).summary == "2 runs: 1 for estimation, 1 for validation; 4.00 s in all; no findings"

@@ -47,19 +47,19 @@ FELL = Yardstick(parent="p", before=ErrorOf(0.12), floor=NOISE)
 @pytest.mark.parametrize(
     ("found", "words", "deed", "at"),
     [
-        (step(), "no fit", "Start a fit", "/actuators/S/1%20%C3%A4"),
-        (step(state="queued"), "waits to be identified", "Watch it", "/fits/j"),
-        (step(0.1, state="running"), "is being identified", "Watch it", "/fits/j"),
-        (step(0.1, yardstick=FAR), "20 times the noise", "Find what is missing", "/fits/f"),
-        (step(0.1, yardstick=FAR, search=Search(job="d")), "being searched", "Watch it", MISSING),
-        (step(0.1, yardstick=FAR, search=verdict("lead", "lag")), "lacks lead and lag.", "See and add", MISSING),
-        (step(0.1, yardstick=FAR, search=verdict(suspects=1)), "a label is doubted", "Look and mend", MISSING),
-        (step(0.1, yardstick=FAR, search=verdict()), "no listed effect", "See what is left", MISSING),
-        (step(0.1, yardstick=FELL), "20 times the noise", "Find what is missing", "/fits/f"),
+        (step(), "not fitted yet", "Start a fit", "/actuators/S/1%20%C3%A4"),
+        (step(state="queued"), "is queued", "Open progress", "/fits/j"),
+        (step(0.1, state="running"), "fit is running", "Open progress", "/fits/j"),
+        (step(0.1, yardstick=FAR), "20 times the noise floor", "Search for missing effects", "/fits/f"),
+        (step(0.1, yardstick=FAR, search=Search(job="d")), "is running", "Open progress", MISSING),
+        (step(0.1, yardstick=FAR, search=verdict("lead", "lag")), "lacks lead and lag.", "Review and add", MISSING),
+        (step(0.1, yardstick=FAR, search=verdict(suspects=1)), "A run label looks wrong", "Review the label", MISSING),
+        (step(0.1, yardstick=FAR, search=verdict()), "No effect in the library", "Show the residual", MISSING),
+        (step(0.1, yardstick=FELL), "20 times the noise floor", "Search for missing effects", "/fits/f"),
         (step(NOISE, yardstick=FELL), "from 12.0 % to 0.500 %", "Compare before and after", "/compare?fits=p,f"),
-        (step(NOISE, yardstick=FAR), "all but the noise", "Look and approve it", "/fits/f"),
-        (step(NOISE), "cannot be told", "See where it fails", "/fits/f#fails"),
-        (step(0.1, current=True, yardstick=FAR), "nothing to do", "Look at them", "/fits/f"),
+        (step(NOISE, yardstick=FAR), "at the noise floor", "Review and approve", "/fits/f"),
+        (step(NOISE), "cannot be judged", "Show where it fails", "/fits/f#fails"),
+        (step(0.1, current=True, yardstick=FAR), "No action needed", "Open parameters", "/fits/f"),
     ],
 )  # fmt: skip
 def test_the_line_says_where_it_stands_and_leads_on(found, words, deed, at):
@@ -93,19 +93,19 @@ def approved(newer: float, *, verify: float | None = None, before: bool = False,
 @pytest.mark.parametrize(
     ("found", "words", "deed", "at", "main"),
     [
-        (approved(0.044, yardstick=FAR), "error of 0.500 %. A newer fit has 4.40 %", "Compare them", COMPARED, False),
-        (approved(0.044, yardstick=FAR, search=verdict("lead")), "fit has 4.40 %", "Compare them", COMPARED, False),
-        (approved(0.003, yardstick=FAR), "A newer fit has 0.300 %.", "Compare them", COMPARED, True),
-        (approved(0.003, verify=0.02), "A newer fit has 2.00 %.", "Compare them", COMPARED, False),
-        (approved(0.044, before=True, yardstick=FAR), "nothing to do", "Look at them", "/fits/c", False),
-        (approved(0.044, search=Search(job="d")), "A newer fit is being searched", "Watch it", MISSING, False),
+        (approved(0.044, yardstick=FAR), "error of 0.500 %. A newer fit has 4.40 %", "Compare fits", COMPARED, False),
+        (approved(0.044, yardstick=FAR, search=verdict("lead")), "fit has 4.40 %", "Compare fits", COMPARED, False),
+        (approved(0.003, yardstick=FAR), "A newer fit has 0.300 %.", "Compare fits", COMPARED, True),
+        (approved(0.003, verify=0.02), "A newer fit has 2.00 %.", "Compare fits", COMPARED, False),
+        (approved(0.044, before=True, yardstick=FAR), "No action needed", "Open parameters", "/fits/c", False),
+        (approved(0.044, search=Search(job="d")), "of a newer fit is running", "Open progress", MISSING, False),
     ],
 )  # fmt: skip
 def test_an_approved_actuator_is_judged_by_its_approved_set(found, words, deed, at, main):
     """A fit that came after it, better or worse, is told as one; another one that was there already is not."""
-    assert found.words.startswith("Its parameters are in force")
+    assert found.words.startswith("Approved")
     assert words in found.words
-    assert "times the noise" not in found.words
+    assert "times the noise floor" not in found.words
     assert (found.deed, found.at, found.main) == (deed, at, main)
 
 
@@ -113,17 +113,17 @@ def test_the_line_says_an_unstable_run_by_name_and_the_mean_where_it_counts():
     """Of the fit before, of the set in force and of the newer fit; an error that fell from a huge number is none."""
     fell = Yardstick(parent="p", before=ErrorOf(12.0, unstable=["k24"]), floor=NOISE)
     assert step(NOISE, yardstick=fell).words == (
-        "Its model is no longer unstable on run k24; the error is 0.500 %, which is noise."
+        "Its model is no longer unstable on run k24; the error is 0.500 %, the noise floor."
     )
     fit = ParameterSetView(
         id="f", serial="S", batch="", model="qian2014", created_at="2026-01-04", approved_at=None, current=False,
         error_fit=NOISE, error_verify=12.0, parameters={}, error_with_mean_fit=45.0, unstable_verify=["k24"],
     )  # fmt: skip
-    assert fit_step(fit, FAR).words == "The model explains all but the noise, 0.500 % (with the mean 45.0 times)."
+    assert fit_step(fit, FAR).words == "The error, 0.500 % (with the mean 45.0 times), is at the noise floor."
     made = fit.model_copy(update={"id": "c", "approved_at": "2026-01-03", "current": True})
     actuator = ActuatorView(
         serial="S", name="", batch="", piston_area=None, created_at="", matrices=1, fits=2, current=made
     )
     assert next_step(actuator, fit, None).words == (
-        "Its parameters are in force, but its model is unstable on run k24. A newer fit is unstable on run k24."
+        "Approved, but its model is unstable on run k24. A newer fit is unstable on run k24."
     )

@@ -117,7 +117,7 @@ def test_what_goes_is_shown_then_removed_and_says_so(lab: TestClient) -> None:
             assert f"removed by the rule on {day}" in gone.json()["detail"]
         assert lab.get(f"{API}/fits/{fit}").json()["result"]["parameters"]
         page = lab.get(f"/matrices/{matrix}")
-        assert f"on {day}: the raw runs are gone" in page.text
+        assert f"on {day}Raw data deleted by the retention rule" in page.text
         assert "data-start" not in page.text
         assert lab.get(f"/fits/{fit}").status_code == 200
         assert lab.get(f"/matrices/{matrix}/thumbnails/0.svg").status_code == 410
