@@ -11,7 +11,7 @@ from pydantic import BaseModel
 
 from ident.words.nearest import did_you_mean
 
-USUAL = "see the OpenAPI document for what is wanted"
+USUAL = "the OpenAPI document lists the fields"
 
 
 def body_of(request: Request) -> type[BaseModel] | None:

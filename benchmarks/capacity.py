@@ -110,7 +110,7 @@ COLUMNS = (
 HEAD = """# Capacity
 
 Written by `python -m benchmarks.capacity` from what `python -m benchmarks cost line` measured and keeps in
-`benchmarks/figures.json`; measure on your machine, and the page is yours. Nothing is to be busy for more than
+`benchmarks/figures.json`. Re-run the benchmark for your machine. Design rule: no resource above
 {busy:g} % of the time on the average: in brackets, for how much it is. Raw bytes travel {copies} times: to the
 service, to S3, to a worker; a link has {link:g} Gbit/s. What comes first is the largest share of one core, or of
 one link, that is needed.

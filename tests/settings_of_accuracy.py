@@ -33,7 +33,7 @@ def of_accuracy() -> Iterator[Tie]:
     A = "accuracy.md"
     runs = Counter(trial.use for trial in qian_reference.trials())
     (verified,) = {trial.cell.gain for trial in qian_reference.trials() if trial.use == "verify"}
-    yield A, "{} runs to fit and {} at Kp = {} to verify, with white noise of {} %", (
+    yield A, "{} estimation runs and {} validation runs at Kp = {}, with white noise of {} %", (
         runs["fit"], runs["verify"], plain(verified), per_cent(matrices.NOISE),
     )  # fmt: skip
     yield A, "DOP853 at a relative tolerance of {} it is within {} of the output's standard deviation", (

@@ -225,11 +225,11 @@ def of_figures() -> Iterator[Tie]:
     yield F, "with its {} % band: the {} curves that explain most", (
         per_cent(within(curves._BAND)), word(residual_curve.SHOWN),
     )  # fmt: skip
-    yield F, "each within the band that holds {} % of chance", (per_cent(correlation.SURE),)
+    yield F, "each with its {} % band (`resid`", (per_cent(correlation.SURE),)
     yield F, "its {} % interval as a band", (per_cent(within(math.sqrt(profile.BOUND))),)
     yield F, "go from {:g} to {:g} times the run's own value", (sensitivity.MULTIPLES[0], sensitivity.MULTIPLES[-1])
     yield F, "of a first-order loop over time in their {} % bands", (per_cent(within(tracking_figure.BAND)),)
-    yield F, "shows the verify runs, at most {} of them", (word(bode._ALONE),)
+    yield F, "shows the validation runs, at most {} of them", (word(bode._ALONE),)
     yield F, "with several gains at most {} columns of {} runs", (word(bode.FACETS), word(bode._EACH))
     yield F, "H1 estimate with windows of {:g} s", (compare._WINDOW,)
     yield F, "smallest and largest sample of each of {} parts", (time.BINS,)

@@ -21,10 +21,9 @@ SLOW = {"compare", "diagnose"}
 
 
 def lines() -> list[str]:
-    """The indented lines below *Try the commands*, without their comments."""
-    section = (ROOT / "README.md").read_text().partition("## Try the commands\n")[2].partition("\n## ")[0]
-    block = section.partition("In Python")[0]
-    return [shlex.join(shlex.split(line, comments=True)) for line in re.findall(r"^    (.+)$", block, re.MULTILINE)]
+    """The indented lines below *Command line*, without their comments."""
+    section = (ROOT / "README.md").read_text().partition("## Command line\n")[2].partition("\n## ")[0]
+    return [shlex.join(shlex.split(line, comments=True)) for line in re.findall(r"^    (.+)$", section, re.MULTILINE)]
 
 
 @pytest.fixture(scope="module")
@@ -56,6 +55,12 @@ def test_the_lines_run_as_they_stand_in_one_terminal(environment: dict[str, str]
     assert re.search(r"matrix \w+ of SIM-0003$", uploaded)
     assert re.search(r"SIM-0001 +\w+ +qian2014", listed)
     assert (tmp_path / "better.json").exists()
+
+
+def test_the_rate_of_the_blind_trials_is_that_of_their_table() -> None:
+    """One effect hidden in a small matrix."""
+    (rate,) = re.findall(r"named in (\d+ of \d+) small data sets", (ROOT / "README.md").read_text())
+    assert f"| one effect hidden | small | {rate} |" in (ROOT / "docs" / "blind-trials.md").read_text()
 
 
 def test_every_line_is_one_that_the_command_line_takes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

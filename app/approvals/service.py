@@ -59,8 +59,8 @@ def withdraw(context: Context, fit: str, who: str, why: str) -> None:
     with context.sessions.begin() as session:
         row = _fit(session, fit)
         if not row.set.current:
-            raise Failure(409, "not-in-force", "this set is not in force, so there is nothing to withdraw", "fit",
-                          "withdraw the one that is: see the actuator")  # fmt: skip
+            raise Failure(409, "not-in-force", "this fit is not the approved set, and cannot be withdrawn", "fit",
+                          "withdraw the approved set: the actuator lists it")  # fmt: skip
         repository.put_in_force(session, row.serial, None, who, why)
         announce(session, SetWithdrawn, serial=row.serial, fit=fit, who=who, why=why)
 

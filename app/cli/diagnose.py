@@ -171,6 +171,6 @@ def followed(target: Path | None) -> Iterator[Callable[[Diagnosis], None] | None
 def given_fit(path: Path, other: bool) -> FitResult:
     """The fit of a file, which brings its own settings. Raises Unusable where options of an `other` one are given."""
     if other:
-        what = "a fit is given, and options for another one beside it"
+        what = "a fit is given together with options for another one"
         raise Unusable("bad-option", what, "--fit", "give --fit, or --model and what belongs to it, not both")
     return read_fit(path)

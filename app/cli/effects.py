@@ -65,7 +65,7 @@ def show(found: dict[str, Any]) -> None:
     else:
         console.print("no effect of your own is kept: servoident effects keep EFFECT.yaml", markup=False)
     rows = ((one["name"], one["place"], equations(one), one["meaning"]) for one in found["catalogue"])
-    console.print(table(("catalogue", "place", "equation", "meaning"), rows, numbers=()))
+    console.print(table(("effect library", "place", "equation", "meaning"), rows, numbers=()))
 
 
 def own_rows(own: list[dict[str, Any]]) -> Iterator[tuple[str, ...]]:

@@ -54,7 +54,7 @@ def explain(error: BaseException) -> tuple[int, str]:
         case OSError() if error.filename is not None:
             return UNUSABLE, f"{error.filename}: {error.strerror}; check the name, the permissions and the free space"
         case OSError() if error.errno in (errno.ENOSPC, errno.EDQUOT):
-            return UNUSABLE, f"output: {error.strerror}; check the free space where it goes"
+            return UNUSABLE, f"output: {error.strerror}; check the free space of the target"
         case MemoryError():
             return UNUSABLE, "the machine has too little memory for this matrix; use fewer or shorter runs"
         case _:

@@ -90,9 +90,7 @@ def fit(
         how = Searched(method, seed, tuple(option or ()), budget)
         continued = StartOptions(start, tuple(effect or ()), terms, search, how, others).settings()
     elif search:
-        raise Unusable(
-            "bad-option", "--search goes with --start, which is not given", "--search", "give --start FILE.json"
-        )
+        raise Unusable("bad-option", "--search needs --start, which is not given", "--search", "give --start FILE.json")
 
     def fitted(path: Path, report: Report) -> FitResult:
         if continued is not None:

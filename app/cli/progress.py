@@ -88,19 +88,19 @@ def first_sight(progress: Progress) -> str:
     """What a diagnosis sees before it confirms anything, in a line; nothing of other work."""
     if not progress.expected:
         return ""
-    return f"at first sight, before any refit, the error would be: {_listed(progress.expected)}"
+    return f"first predictions, before any refit: error {_listed(progress.expected)}"
 
 
 def added(progress: Progress) -> str:
     """What a diagnosis has added so far, in a line; nothing before."""
     if not progress.added:
         return ""
-    return f"added so far, with the error on held-out data: {_listed(progress.added)}"
+    return f"added so far, with the held-out error: {_listed(progress.added)}"
 
 
 def verdict(progress: Progress) -> str:
     """What the catalogue gave, while terms are searched for that it does not hold; nothing before."""
-    return f"verdict of the catalogue: {progress.verdict}" if progress.verdict else ""
+    return f"verdict for the effect library: {progress.verdict}" if progress.verdict else ""
 
 
 def _listed(effects: Iterable[Expected]) -> str:

@@ -21,4 +21,4 @@ def withdraw(
     Its serial number has no current set until one is approved. The fit stays stored.
     """
     stored = decided(server, token, fit, "withdraw", why)
-    print(f"nothing is in force for {stored['serial']} any more")
+    print(f"no approved set for {stored['serial']} any more")

@@ -69,7 +69,7 @@ def _wanted(context: Context, request: DiagnosisRequest) -> tuple[str, dict[str,
     request = with_kept(context, request)
     if request.fit is not None:
         if request.matrix is not None or given - _BESIDE_A_FIT:
-            raise Failure(422, "bad-request", "a fit is given, and a matrix or settings beside it", "fit",
+            raise Failure(422, "bad-request", "a fit is given together with a matrix or settings", "fit",
                           "give a fit, or a matrix and settings")  # fmt: skip
         row = fits.find(context, request.fit)
         return row.matrix, _with_own(FitResult.from_json(row.result), request)

@@ -95,11 +95,11 @@ def _parameter(name: str, entry: Estimate, undetermined: bool) -> ParameterRow:
 
 def _remarks(entry: Estimate, undetermined: bool) -> Iterator[str]:
     if entry.fixed:
-        yield "held fixed"
+        yield "fixed"
     if entry.at_bound:
         yield "at its bound"
     if undetermined:
-        yield "not determined by these data"
+        yield "not identifiable from these data"
 
 
 def error_rows(fit: FitResult) -> tuple[ErrorRow, ...]:

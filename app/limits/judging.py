@@ -24,7 +24,7 @@ def judge(context: Context, serial: str) -> LineVerdictView:
     if row is None:
         if actuator is None:
             raise missing("actuator", serial)
-        return _unknown(serial, actuator.batch, None, "no parameter set is in force: approve a fit")
+        return _unknown(serial, actuator.batch, None, "no parameter set is approved: approve a fit")
     if not limits:
         of = f"model {row.model}, batch {row.batch}" if row.batch else f"model {row.model}"
         return _unknown(serial, row.batch, row, f"no limits are set for {of}")

@@ -36,7 +36,7 @@ def _row(model: str, batch: str, name: str, limit: Limit, who: str) -> LimitRow:
     if lower is None and upper is None:
         raise Unusable("bad-limit", "neither a lower nor an upper limit is given", name, "give one, or leave it out")
     if lower is not None and upper is not None and lower > upper:
-        raise Unusable("bad-limit", "the lower limit lies above the upper one", name, "exchange them")
+        raise Unusable("bad-limit", "the lower limit is above the upper limit", name, "exchange them")
     return LimitRow(model=model, batch=batch, name=name, lower=lower, upper=upper, unit=limit.unit, who=who)
 
 

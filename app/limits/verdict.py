@@ -61,7 +61,7 @@ class Judged:
         if self.value is None:
             return f"{self.name}: the set has no such value"
         if self.std_error is None and self.error is None:
-            return f"{self.name} {self._shown(self.value)}: held fixed or not determined by the data, so not judged"
+            return f"{self.name} {self._shown(self.value)}: fixed or not identifiable, so not judged"
         said = f"{self.name} {self._with_error} is {'within' if self.nearest >= 0 else 'outside'} {self._limits}"
         return f"{said}, but uncertain: a limit is less than two standard errors away" if self.uncertain else said
 

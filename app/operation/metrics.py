@@ -57,7 +57,7 @@ class Stored(Collector):
         counts = {"alive": silent.count(False), "silent": silent.count(True)}
         yield _gauge("servoident_workers", "Processes that work on jobs.", "state", counts)
         free = shutil.disk_usage(self.context.settings.data).free
-        yield GaugeMetricFamily("servoident_free_bytes", "Free space where the data lie.", value=free)
+        yield GaugeMetricFamily("servoident_free_bytes", "Free space of the data folder.", value=free)
 
 
 def _gauge(name: str, meaning: str, label: str, values: dict[str, int]) -> GaugeMetricFamily:

@@ -14,4 +14,4 @@ def check_reserve(context: Context) -> None:
     free = shutil.disk_usage(settings.data).free
     if free < settings.reserve:
         what = f"{free >> 20} MB are free where {settings.reserve >> 20} MB are kept in reserve"
-        raise Failure(507, "disk-reserve", what, "upload", "free some space, or lower --reserve; reading goes on")
+        raise Failure(507, "disk-reserve", what, "upload", "free some space, or lower --reserve; reading still works")

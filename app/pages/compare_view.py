@@ -16,7 +16,8 @@ from ident.words.number import plain
 from ident.words.percent import change, percent_in_print
 from ident.words.plus_minus import plus_minus
 from ident.words.symbols import symbol
-from ident.words.titles import of_parameter, title, with_effects
+from ident.words.titles import of_parameter, with_effects
+from ident.words.uses import data
 from schemas.matrix import MatrixView
 
 _TIMES = 2.0  # from here on a number is so many times what it was, not some hundred per cent more
@@ -119,11 +120,11 @@ def _errors(a: FitResult, b: FitResult) -> Iterator[Compared]:
             continue
         known = not (before.is_unstable or after.is_unstable)
         change = error_change(before.error, after.error) if known else "–"
-        yield Compared("", f"{title(use)} runs, error", before.in_print(), after.in_print(), change)
+        yield Compared("", f"Error, {data(use)}", before.in_print(), after.in_print(), change)
         one, other = (None if said.is_unstable else fit.offset.get(use) for said, fit in ((before, a), (after, b)))
         if one is not None or other is not None:
             offsets = percent_in_print(one), percent_in_print(other)
-            yield Compared("", f"{title(use)} runs, offset", *offsets, error_change(one, other))
+            yield Compared("", f"Offset, {data(use)}", *offsets, error_change(one, other))
 
 
 def _change(one: float | None, other: float | None) -> str:

@@ -33,6 +33,7 @@ from ident.words.engineering import quantity
 from ident.words.error import ErrorOf, error_in_print, errors_line
 from ident.words.percent import percent_in_print
 from ident.words.titles import with_effects
+from ident.words.uses import data
 from schemas.fit import LadderView
 from schemas.matrix import MatrixView
 from schemas.parameters import ParameterSetView
@@ -165,10 +166,10 @@ def _free_run(fit: FitResult) -> str:
     """Of a fit over windows: how far the free run's errors hang on the parameters."""
     if fit.window is None or not fit.window.free_run:
         return ""
-    ends = [f"{' to '.join(map(error_in_print, e))} on {use} runs" for use, e in fit.window.free_run.items()]
+    ends = [f"{' to '.join(map(error_in_print, e))} on {data(use)}" for use, e in fit.window.free_run.items()]
     return (
-        "A free run sums up whatever disturbed the machine: within the standard errors of the parameters its error is "
-        f"{', '.join(ends)}. Over windows the model begins anew where it was measured."
+        "A free run accumulates disturbances. Within the standard errors of the parameters its error is "
+        f"{', '.join(ends)}. Over windows the model restarts from the measurement."
     )
 
 

@@ -66,7 +66,7 @@ def _error(fit: FitResult, budget: Budget | None) -> Iterator[Block]:
     if budget:
         yield Heading("What it is made of", 3)
         yield Table(("Part", "Meaning", "Size", "At least", "At most"), budget_rows(budget), (2, 3, 4))
-        square = "The squares of the sizes add up to the square of the error of the runs to fit."
+        square = "The squares of the sizes add up to the square of the error on estimation data."
         yield Text(" ".join((square, *budget.notes)), "faint")
 
 
@@ -129,7 +129,7 @@ def _missing(diagnosis: Diagnosis, matrix: Matrix) -> Iterator[Block]:
     for group in verdict.indistinguishable:
         yield Text(f"These data {cannot_distinguish(group, verdict.effects)}.")
     for suspect in verdict.suspects:
-        yield Text(f"Doubtful: run {suspect.run}: {suspect.what}")
+        yield Text(f"Label looks wrong: run {suspect.run}: {suspect.what}")
     if command := next_command(diagnosis):
         yield Text(command)
     if steps := ladder_steps(diagnosis):

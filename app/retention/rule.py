@@ -51,7 +51,7 @@ def carry_out(context: Context, digest: str) -> RetentionView:
                           "start it with --keep-raw DAYS")  # fmt: skip
         if view.digest != digest:
             raise Failure(409, "not-as-shown", "other raw runs would go than were shown", "digest",
-                          "look again at what goes, and confirm that")  # fmt: skip
+                          "show the list again, and confirm the new digest")  # fmt: skip
         for goer in goers:
             goer.row.removed_at, goer.row.source = now(), {}
     _remove(context, {blob for goer in goers for blob in goer.blobs})

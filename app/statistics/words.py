@@ -37,7 +37,7 @@ def _numbers(found: StatisticsView) -> Iterator[tuple[str, str]]:
     yield "Standard deviation", of(found.deviation)
     yield "Smallest, largest", f"{of(found.minimum)}, {of(found.maximum)}"
     yield "Median", of(found.percentiles["50"])
-    yield "5 % to 95 % lie in", f"{of(found.percentiles['5'])} to {of(found.percentiles['95'])}"
+    yield "5 % to 95 % quantile", f"{of(found.percentiles['5'])} to {of(found.percentiles['95'])}"
     if chart := found.control_chart:
         yield "Control limits, 3 σ", f"{of(chart.lower)} to {of(chart.upper)}"
         yield "Mean moving range", of(chart.mean_range)

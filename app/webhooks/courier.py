@@ -69,7 +69,7 @@ class Courier:
             try:
                 self.round(key)
             except Exception as error:
-                _log.warning("webhooks cannot be told now: %s", str(error).partition("\n")[0])
+                _log.warning("webhooks cannot be delivered now: %s", str(error).partition("\n")[0])
 
     def round(self, key: Key) -> None:
         """Bring all that is due."""

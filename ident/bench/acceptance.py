@@ -25,7 +25,7 @@ QUANTITIES = {
     "kp": ("Pa", "slope of the pressure difference, a rated current"),
     "friction": ("Pa", "pressure difference that overcomes friction"),
     "T": ("s", "time constant"),
-    "delay": ("s", "pure delay that the records ask for beside T"),
+    "delay": ("s", "pure delay in addition to T"),
     "gain": ("m/s", "speed at rated current, of one straight line"),
     "gain_forward": ("m/s", "speed at rated current forward"),
     "gain_back": ("m/s", "speed at rated current back"),

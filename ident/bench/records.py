@@ -137,7 +137,7 @@ def _rated(runs: Sequence[Run]) -> tuple[float, list[str]]:
     if stated:
         return stated.pop(), []
     largest = max(float(np.max(np.abs(_current(run)))) for run in runs)
-    return largest, ["rated_current is not stated: the largest current of the records is taken for it."]
+    return largest, ["rated_current is not given: the largest recorded current is used."]
 
 
 def _current(run: Run) -> Array:

@@ -20,7 +20,7 @@ def band(run: Run, response: Response | None) -> Iterator[Finding]:
     if LOWEST <= edge <= HIGHEST:
         return
     follows = (
-        "what lies above is not excited and cannot be identified" if edge < LOWEST else "the model is made for 0-80 Hz"
+        "higher frequencies are not excited and not identifiable" if edge < LOWEST else "the model is made for 0-80 Hz"
     )
     text = (
         f"the command of run {run.id} is called blwn, but {POWER:.0%} of its power lies below {edge:.3g} Hz instead of "

@@ -13,7 +13,7 @@ def turned_sign(run: Run) -> Iterator[Finding]:
     """Force times speed of a moved specimen, which takes work."""
     if gives_work_back(run):
         text = (
-            f"in run {run.id} force times speed is {work(run):.2f} of their deviations in the mean: a specimen without "
-            "a drive of its own would give work back, so that one of the two has the wrong sign; set invert: true on it"
+            f"in run {run.id} the mean of force times speed is {work(run):.2f} of their deviations. A passive specimen "
+            "cannot produce work, so one of the two has the wrong sign. Set invert: true on it"
         )
         yield Finding(run.id, "doubt", "turned-sign", text)

@@ -14,9 +14,9 @@ from ident.words.error import ErrorOf
 from ident.words.number import count
 from ident.words.plus_minus import plus_minus
 from ident.words.shown import Listing, Shown
+from ident.words.uses import DATA
 
 MOST = 8
-_USES = {"fit": "fit", "held_out": "held out", "verify": "verify"}
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class SideBySide(Shown):
 
     def error_rows(self) -> Iterator[tuple[str, ...]]:
         """One row a use of which there are runs."""
-        for use, title in _USES.items():
+        for use, title in DATA.items():
             if any(column.error.get(use) is not None for column in self.columns):
                 yield title, *(column.words[use].said() if use in column.words else "–" for column in self.columns)
 
@@ -112,7 +112,7 @@ def of_fits(fits: Sequence[FitResult], serials: Sequence[str] = ()) -> SideBySid
             fit,
             fit.error,
             {run.id: run.error for run in fit.runs},
-            {use: fit.error_of(use) for use in _USES},
+            {use: fit.error_of(use) for use in DATA},
             {run.id: run.words for run in fit.runs},
             serial,
         )

@@ -144,7 +144,7 @@ def _name(fields: Fields) -> str:
         raise Unusable("bad-name", f"{shown(name)!r} is no name of an effect", "effect name",
                        "give letters, digits and single underscores, a letter first")  # fmt: skip
     if name in {effect.name for effect in CATALOGUE}:
-        raise Unusable("name-taken", f"the catalogue has an effect {name}", "effect name", "give it another name")
+        raise Unusable("name-taken", f"the effect library has an effect {name}", "effect name", "give it another name")
     return name
 
 

@@ -105,7 +105,7 @@ def _refuse_shadows(
         if symbol in known | RESERVED:
             raise Unusable("name-taken", f"{symbol} is {_meaning(symbol, model)}", where, "call it otherwise")
         if seen.get(symbol, where) != where and where in own:
-            raise Unusable("name-taken", f"{symbol} stands for two things", where, "call one of them otherwise")
+            raise Unusable("name-taken", f"{symbol} has two meanings", where, "call one of them otherwise")
         seen[symbol] = where
     for line in lines:
         if line.target in set(own.values()):

@@ -22,8 +22,8 @@ from ident.words.listed import first_of
 OUTPUTS = ("displacement", "velocity", "force", "load_pressure")
 """Channels that a model may have to reproduce; the first that there is, unless one is named."""
 _DRIVES = ("command", "current")
-_HELD = "the command rests and jumps, so it is taken to be held between its changes (hold: zoh)"
-_DRAWN = "the command is taken to run straight from sample to sample (hold: linear); say zoh where it is held"
+_HELD = "the command rests and jumps, so a zero-order hold is assumed (hold: zoh)"
+_DRAWN = "the command is assumed to be linear between samples (hold: linear); set zoh if it is held"
 _LEFT_OUT = 3  # columns with an empty cell that a question names
 
 
@@ -79,7 +79,7 @@ class Draft:
                 doubts.append(_contradicted(MINUS.join(one.name for one in columns), channel, answer.unit, stated))
             found[channel] = Answer(answer.column if columns else before.column, answer.unit or stated)
         found = {channel: answer for channel, answer in found.items() if answer.column != ""}
-        doubts += [f"{shown(a.column)!r} is taken for {channel}, by its name" for channel, a in found.items()
+        doubts += [f"{shown(a.column)!r} is used as {channel}, because of its name" for channel, a in found.items()
                    if channel not in said.channels]  # fmt: skip
         time, rate, assumed = _clock(file, said)
         used = [answer.column for answer in (*found.values(), time) if answer.column != ""]
@@ -163,9 +163,8 @@ class Draft:
             yield _HELD if held else _DRAWN
             return
         yield (
-            f"the command of {first_of(held)} rests and jumps, so it is taken to be held there between its changes "
-            "(hold: zoh), and in the other files to run straight from sample to sample (hold: linear); say zoh where "
-            "it is held"
+            f"the command of {first_of(held)} rests and jumps, so a zero-order hold is assumed there (hold: zoh). "
+            "In the other files the command is assumed to be linear between samples (hold: linear); set zoh if held"
         )
 
     def description(self) -> dict[str, Any]:
@@ -226,7 +225,7 @@ def _clock(file: RawFile, said: FileAnswers) -> tuple[Answer, str, tuple[str, ..
         return Answer(answer.column, answer.unit or column.unit), "", tuple(_other_unit(column, answer.unit))
     named = [] if answer.column == NONE else [column for column in file.columns if is_time(column.name)]
     if len(named) == 1:
-        told = f"{shown(named[0].name)!r} is taken for the time, by its name"
+        told = f"{shown(named[0].name)!r} is used as time, because of its name"
         found = Answer(named[0].name, answer.unit or named[0].unit)
         return found, "", (told, *_other_unit(named[0], answer.unit))
     if (rate := file.rate) is None:

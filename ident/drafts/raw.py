@@ -135,7 +135,7 @@ class RawFile:
     def named_units(self) -> tuple[str, ...]:
         """The columns whose unit is taken from the end of the name, each with the unit, in words."""
         return tuple(
-            f"{column.name!r} is taken in {column.unit}, by its name" for column in self.columns
+            f"{column.name!r} is read in {column.unit}, because of its name" for column in self.columns
             if column.unit and column.unit == self._suffix(column.number) and not self._has_stated(column.number)
         )  # fmt: skip
 
@@ -144,7 +144,7 @@ class RawFile:
         """What reading assumed of the file, and what it took from the names of columns."""
         assumed = ""
         if self.period is not None and not self.period[1]:
-            assumed = f"{self.name}: the interval of {self.period[0]:g} names no unit and is taken in seconds"
+            assumed = f"{self.name}: the interval of {self.period[0]:g} has no unit; seconds are assumed"
         return tuple(filter(None, (*self.table.notices, assumed, *self.named_units, *self.left_out)))
 
     def _has_stated(self, number: int) -> bool:

@@ -6,7 +6,7 @@ from ident.parameter import Parameter, Starts
 LOOP_DELAY = Effect(
     name="loop_delay",
     place="controller",
-    meaning="the controller sees the position late",
+    meaning="delay of the position feedback",
     strength=Parameter(
         "delay", "T", "s", 0.0, 3e-3, 0.0, "time by which the controller's position is late", start=Starts.TIME
     ),

@@ -10,6 +10,6 @@ SENSOR_GAIN = Effect(
     strength=Parameter("error", "g", "1", -0.1, 0.1, 0.0, "relative error of the recorded displacement"),
     texts=("y = y * (1 + g)",),
     units={"y": "m"},
-    looks="the static gain is not 1, alike in all runs",
+    looks="the static gain is not 1, by the same factor in all runs",
     source="calibration",
 )

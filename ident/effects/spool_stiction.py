@@ -11,7 +11,7 @@ SPOOL_STICTION = Effect(
     strength=Parameter("threshold", "s", "m", 0.0, 5e-4, 0.0, "drive difference below which the spool stands"),
     texts=("dq = where(abs(e - q1) < s, 0, dq)",),
     units={"dq": "m/s"},
-    looks="steps and small limit cycles at small amplitudes; hardly seen at large ones",
+    looks="steps and small limit cycles at small amplitudes; small effect at large ones",
     source="stiction of the spool; dither is its remedy",
     steps=4,
     stride=1e-2,

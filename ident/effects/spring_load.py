@@ -14,7 +14,7 @@ SPRING_LOAD = Effect(
         -1e9,
         1e9,
         0.0,
-        "pressure difference that a metre of position asks for",
+        "pressure difference per metre of position",
         start=Starts.FRICTION_GRADIENT,
     ),
     texts=("Pn = Pn + s * cF * (x - x0)",),

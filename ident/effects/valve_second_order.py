@@ -14,6 +14,6 @@ VALVE_SECOND_ORDER = Effect(
     texts=("q = lag2(q, 2 * zeta * Tn, Tn**2)",),
     units={"q": "m"},
     shape=(Parameter("damping", "zeta", "1", 0.05, 2.0, 0.7, "damping ratio"),),
-    looks="extra phase lag that grows towards the natural frequency, alike at all amplitudes",
+    looks="extra phase lag that grows towards the natural frequency, the same at all amplitudes",
     source="Strano and Terzo, second-order valve; Merritt, Hydraulic Control Systems",
 )

@@ -132,7 +132,7 @@ def parsed(text: str, first: int = 0, strict: bool = False) -> ast.expr:
     return ast.fix_missing_locations(_condensed(body))
 
 
-def refused(character: int, what: str, remedy: str = "mend it there") -> Unusable:
+def refused(character: int, what: str, remedy: str = "correct it there") -> Unusable:
     """The refusal of an equation at a character, counted from 0."""
     return Unusable("bad-equation", what, f"equation, character {character + 1}", remedy)
 

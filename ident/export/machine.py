@@ -87,7 +87,7 @@ def exported(
             raise Unusable("out-of-range", f"{name} is {value:g}", "export", "give 0 or more")
     actuator = fit.actuator or Actuator("")
     if "Ps" in preset.core.symbols and actuator.supply_pressure is None:
-        raise Unusable("not-stated", "the flow of this model hangs on the supply pressure", "actuator supply_pressure",
+        raise Unusable("not-stated", "this model depends on the supply pressure", "actuator supply_pressure",
                        "state it in matrix.yaml and fit again")  # fmt: skip
     if any(name in fit.parameters for name, _ in (preset.without_area or {}).values()):
         actuator = replace(actuator, piston_area=None)  # the values are ratios to it
@@ -107,7 +107,7 @@ def _check_driven(fit: FitResult, preset: Preset, specimen: Specimen) -> None:
     """Refuse what a file without a record has not: a measured force, and an input that is drawn through its samples."""
     read = frozenset[str]().union(*(equation.names for equation in preset.chain.equations))
     if FORCE in read:
-        raise Unusable("no-export", "a measured force drives this machine beside its command", "fit",
+        raise Unusable("no-export", "a measured force drives this machine in addition to its command", "fit",
                        "fit a model whose load is a specimen")  # fmt: skip
     if fit.settings.get("load") == "force" and specimen == Specimen():
         raise Unusable("not-stated", "the load of this fit was the measured force, which its machine has not elsewhere",

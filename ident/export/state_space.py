@@ -51,7 +51,9 @@ def linear_part(machine: ExportedMachine) -> LinearPart:
     A, B = models[0].A[np.ix_(states, states)], models[0].B[states, None]
     C, D = np.array([model.C[states] for model in models]), np.array([[float(model.D)] for model in models])
     if not all(np.isfinite(matrix).all() for matrix in (A, B, C, D)):
-        raise Unusable("out-of-range", "the linear part leaves the range of a computer", "fit", "correct the fit")
+        raise Unusable(
+            "out-of-range", "the linear part exceeds the range of floating-point numbers", "fit", "correct the fit"
+        )
     left_out = tuple(effect.name for effect in on if not _is_linear(machine, effect))
     return LinearPart(A, B, C, D, machine.driven_by, machine.outputs, tuple(chain.states[i] for i in states), left_out)
 

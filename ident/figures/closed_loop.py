@@ -45,7 +45,7 @@ def _closed_loop(made: ControllerDesign, look: Look, name: str) -> Chart:
         _panel(made, look, colour, dash, "p", "Phase (°)", named=True),
     ]
     title = alt.TitleParams(
-        f"{name} · wanted to measured displacement" if name else "Reference to measured displacement",
+        f"{name} · reference to measured displacement" if name else "Reference to measured displacement",
         subtitle=_told(made),
     )
     tables = {"curves": _rows(curves), "band": _band(made)}
@@ -59,7 +59,7 @@ def _curves(made: ControllerDesign) -> dict[str, Complex]:
     found = {CONTROLLED: design.loop.response(frequency), UNCONTROLLED: design.loop.sampled.response(z)[:, 0, 0]}
     if design.structure == "feedback":
         closed = np.roots(np.polyadd(design.target.denominator, design.target.numerator))
-        label = TARGET if closed.real.max() < 0 else f"{TARGET}, unstable by itself"
+        label = TARGET if closed.real.max() < 0 else f"{TARGET}, unstable without controller"
         target = design.target.rational.response(np.asarray(2j * np.pi * frequency, dtype=complex))
         found[label] = target / (1 + target)
     return found

@@ -36,7 +36,7 @@ def _hybrid_response(shown: Mapping[str, HybridResult], look: Look) -> Chart:
     tables = {"curves": [row for name, one in kept.items() for row in rows(name, one)]}
     colours = alt.Scale(domain=list(shown), range=list(look.series[: len(shown)]))
     panels = [_panel("a", "Magnitude (dB)", colours, look), _panel("p", "Phase (°)", colours, look)]
-    title = alt.TitleParams(f"{first.case.name} · wanted to measured displacement", subtitle=told(shown))
+    title = alt.TitleParams(f"{first.case.name} · reference to measured displacement", subtitle=told(shown))
     chart: Chart = alt.vconcat(*panels, title=title, spacing=12, datasets=datasets(tables)).configure(**look.config())
     return chart
 

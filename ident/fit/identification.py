@@ -44,7 +44,7 @@ Array = NDArray[np.float64]
 SEARCHED = 65_536  # samples of a search with effects; the polish takes every sample
 _FURTHER = 16  # members of the first generation that it starts from, too, where those do not settle it
 _JUDGED = 8  # runs of a matrix that are looked at for a controller
-_WITH_NOISE = "windows begun anew where it was measured are fitted, for plain output error would be biased"
+_WITH_NOISE = "short windows that start from the measurement are fitted, since a free run would give biased parameters"
 CANDIDATES = 5  # distinct vectors of the last generation from which the polish starts
 
 

@@ -133,7 +133,7 @@ def _solved(records: Sequence[_Record], columns: Sequence[int], weights: Array) 
     force = np.concatenate([weight * record.force for weight, record in pairs])
     scale = np.linalg.norm(design, axis=0)
     if not scale.all() or np.linalg.matrix_rank(design / scale, tol=1e-6 * np.sqrt(len(scale))) < len(scale):
-        raise Unusable("not-determined", "the motion does not tell mass, friction and offset apart", "inverse dynamics",
+        raise Unusable("not-determined", "this motion does not separate mass, friction and offset", "inverse dynamics",
                        "record motion both ways with speeds that change")  # fmt: skip
     solution, *_ = np.linalg.lstsq(design / scale, force, rcond=None)
     return np.asarray(solution / scale)

@@ -10,11 +10,12 @@ from ident.words.error import error_said
 from ident.words.percent import percent
 from ident.words.plus_minus import UNDETERMINED, determined, plus_minus_si
 from ident.words.shown import Listing
+from ident.words.uses import DATA
 
 if TYPE_CHECKING:
     from ident.fit.result import Estimate, FitResult
 
-USES = ("fit", "held out", "verify")
+USES = tuple(DATA.values())
 
 
 def listings(result: FitResult) -> Iterator[Listing | str]:
@@ -31,9 +32,9 @@ def remarks(result: FitResult) -> Iterator[str]:
     """What the data determine and what they do not, and the notes, a line each."""
     for combination in result.determined:
         value = plus_minus_si(combination.value, combination.std_error, combination.unit)
-        yield f"determined: {combination.expression} = {value}"
+        yield f"identifiable: {combination.expression} = {value}"
     for entry in result.undetermined:
-        yield f"not determined: {entry.name}: {entry.reason}"
+        yield f"not identifiable: {entry.name}: {entry.reason}"
     for note in result.notes:
         yield f"note: {note}"
     for said in told(result.preprocessing, result.notes):
@@ -43,7 +44,7 @@ def remarks(result: FitResult) -> Iterator[str]:
 def parameter_rows(parameters: Mapping[str, Estimate]) -> Iterator[tuple[str, ...]]:
     """One row a parameter."""
     for name, estimate in parameters.items():
-        remark = "held" if estimate.fixed else "at its bound" if estimate.at_bound else ""
+        remark = "fixed" if estimate.fixed else "at its bound" if estimate.at_bound else ""
         std_error = "–" if estimate.std_error is None else f"{estimate.std_error:.2g}"
         value = f"{estimate.value:.5g}" if determined(estimate.value, estimate.std_error) else UNDETERMINED
         yield name, value, std_error, estimate.unit, remark

@@ -340,22 +340,22 @@ def _fast_modes(objective: Fitness, point: Array, state: Mapping[str, Any]) -> I
     """What is followed only roughly: vectors of the search, the model that was found."""
     if not isinstance(objective, SimulatedFitness):
         return
-    roughly = f"beyond {FASTEST:.3g} radians a sample it is followed only roughly, with {MOST} steps a sample."
+    roughly = f"above {FASTEST:.3g} radians per sample the integrator, with {MOST} steps per sample, is inaccurate."
     tried = (objective.space.values(np.array(entry["population"])) for entry in state["history"])
     count = sum(int(np.sum(np.abs(objective.fastest(values)) > FASTEST)) for values in tried)
     if count:
-        yield f"{count} of the vectors that the search tried had a mode too fast: {roughly}"
+        yield f"{count} candidate models had dynamics that are too fast for the integrator: {roughly}"
     here = float(np.abs(objective.fastest(objective.space.values(point[None]))[0]))
     if here > FASTEST:
-        yield f"The fastest mode at these values goes {here:.3g} radians a sample: {roughly}"
+        yield f"The fastest mode of the model has {here:.3g} radians per sample: {roughly}"
 
 
 def _alone(starts: Starts | None) -> Iterator[str]:
     """What is said of an optimum that hardly a start came to."""
     if starts and starts.agree < min(SETTLED, starts.tried):
         yield (
-            f"Of {starts.tried} starts {starts.agree} ended at this error, the others above it: a better optimum may "
-            "have been missed. Another seed starts elsewhere."
+            f"Only {starts.agree} of {starts.tried} optimiser starts reached this error, so a better optimum may "
+            "exist. Try another seed."
         )
 
 

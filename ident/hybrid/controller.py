@@ -39,7 +39,7 @@ class SampledController:
                            "give A (n, n), B (n, 2), C (1, n), D (1, 2)")  # fmt: skip
         if not all(np.isfinite(getattr(self, name)).all() for name in expected) or not self.sample_rate > 0:
             raise Unusable("bad-controller", "a number is not finite, or the sample rate not positive", "controller",
-                           "design it anew")  # fmt: skip
+                           "design it again")  # fmt: skip
 
     @property
     def order(self) -> int:

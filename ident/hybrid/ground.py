@@ -98,7 +98,7 @@ def _white(count: int, of: Ground, sample_rate: float) -> Array:
     frequency = np.fft.rfftfreq(count, 1 / sample_rate)
     used = (frequency > 0) & (frequency >= of.band[0]) & (frequency <= of.band[1])
     if not used.any():
-        raise Unusable("bad-ground", f"no frequency of the motion lies in {of.band[0]:g} to {of.band[1]:g} Hz",
+        raise Unusable("bad-ground", f"no frequency of the motion is in {of.band[0]:g} to {of.band[1]:g} Hz",
                        "ground band", "give a wider band or a longer duration")  # fmt: skip
     rng = np.random.default_rng(of.seed)
     lines = np.zeros(len(frequency), dtype=complex)
@@ -178,7 +178,7 @@ def _record(fields: Fields, base: Path | None) -> tuple[str, str]:
     if file and base is None:
         raise Unusable("no-file-here", "files cannot be named here", "ground file", "put the record itself into text")
     if not isinstance(text, str) or len(text) > _LARGEST or (text and file):
-        raise Unusable("bad-ground", "not the text of a record, or a file beside it", "ground text", "give one of them")
+        raise Unusable("bad-ground", "not a text record, or not readable", "ground text", "give one of them")
     if text:
         return fields.text("name", "own record"), text
     return str(base / file) if base is not None and file else "", ""

@@ -92,7 +92,7 @@ def machine(fit: FitResult, case: Case, effects: Mapping[str, float] | None = No
         raise Unusable("no-answer", f"the model {fit.model} has no command that moves a displacement", "fit",
                        "give the fit of an actuator")  # fmt: skip
     if "Ps" in preset.core.symbols and case.supply_pressure is None:
-        raise Unusable("not-stated", "the flow of this model hangs on the supply pressure", "case supply_pressure",
+        raise Unusable("not-stated", "this model depends on the supply pressure", "case supply_pressure",
                        "state it, with its unit")  # fmt: skip
     preset = _with_specimen(preset, case)
     values = {p.in_equations: p.value for effect in preset.effects for p in effect.added}

@@ -44,7 +44,7 @@ def _act(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
 COMMAND_OFFSET = Step(
     name="command_offset",
     does="counts the command from the value at which the machine stands still",
-    applies="a machine in open loop integrates its command, and the runs to fit begin with a command that is held "
+    applies="a machine in open loop integrates its command, and the estimation runs begin with a command that is held "
     "while the output stands",
     without="the command is taken as it was recorded",
     thresholds=(FELT,),

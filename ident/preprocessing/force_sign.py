@@ -42,7 +42,7 @@ def _act(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
     worst = max(work(run) or 0.0 for run in wrong)
     said = (
         f"The force of {ids} is taken with the other sign: as recorded, force times speed is {worst:.2f} of their "
-        f"deviations in the mean, so that a specimen without a drive of its own would give work back."
+        f"deviations in the mean, but a passive specimen cannot produce work."
     )
     runs = tuple(run.turned("force") if run in wrong else run for run in matrix.runs)
     return replace(prepared, matrix=replace(matrix, runs=runs)), (said,)

@@ -80,8 +80,8 @@ def _act(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
         return prepared, ()
     unit = next(run.units.get("displacement", "1") for run in matrix.runs if "displacement" in run.channels)
     said = (
-        f"Effects of position act about {with_unit(f'{middle:.4g}', unit)}, the centre of the stroke that the machine "
-        "was seen to cover: the zero of its transducer is elsewhere."
+        f"Effects of position use {with_unit(f'{middle:.4g}', unit)} as origin, the centre of the recorded stroke: the "
+        "zero of the transducer is elsewhere."
     )
     return prepared, (said,)
 

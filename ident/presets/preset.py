@@ -260,7 +260,9 @@ class Preset:
             return self
         if len(places) > 1 or load == "force":
             both = " and ".join((*places, *(["the measured load"] if load == "force" else [])))
-            raise Unusable("bad-disturbance", f"two inputs beside the command: {both}", "disturbance", "give one")
+            raise Unusable(
+                "bad-disturbance", f"two inputs in addition to the command: {both}", "disturbance", "give one"
+            )
         chain = disturbed(self.chain, places[0])
         if places[0] == "flow" and matrix.actuator.piston_area is None:
             raise Unusable("missing-area", "a flow moves a piston of unknown area", "actuator.piston_area", "state it")

@@ -56,7 +56,7 @@ def _timed(table: Table, units: tuple[str, ...], head: dict[str, list[str]], whe
     try:
         begin, step = (float(head[key][0].replace(",", ".")) for key in ("X0", "Delta_X"))
     except (KeyError, IndexError, ValueError):
-        raise broken("neither X_Value nor Delta_X tells the time", where) from None
+        raise broken("neither X_Value nor Delta_X gives the time", where) from None
     if table.names[:1] != (TIME,) or len(table.names) < 2:
         raise broken("its table has no X_Value", where)
 

@@ -28,7 +28,7 @@ Beside = Callable[[str], bytes]
 
 def alone(name: str) -> bytes:
     """For a record that comes by itself. Raises Unusable: ``missing-file``."""
-    what = "the samples are in this file beside it, which was not given"
+    what = "the samples are in this second file, which was not given"
     raise Unusable("missing-file", what, name, "give both files in a folder or a .zip with a matrix.yaml")
 
 
@@ -45,7 +45,7 @@ def beside(source: Source, record: str, limits: Limits, parts: list[bytes]) -> B
                     continue
                 raise
             break
-        check_size(sum(map(len, parts)), limits.total, "the record with the files beside it", record)
+        check_size(sum(map(len, parts)), limits.total, "the record together with its other files", record)
         return parts[-1]
 
     return read

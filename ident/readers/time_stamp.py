@@ -41,7 +41,7 @@ def seconds(fields: Sequence[str], first_line: int, where: str) -> Array:
     if len({match["zone"] for match in matches}) > 1:
         raise Unusable("mixed-time-zones", "the time stamps are of several time zones", where, "write one zone")
     if len({match["slashed"] for match in matches}) > 1:
-        what = "the date changes, and days cannot be told from months in 1/2/2026"
+        what = "the date changes, and day and month are ambiguous in 1/2/2026"
         raise Unusable("bad-time-stamp", what, where, "write dates as 2026-02-01, or give the sample rate")
     begin = _day(matches[0]) if matches else 0
     return np.array([_DAY * (_day(match) - begin) + _of_day(match) for match in matches]) - (

@@ -109,7 +109,7 @@ def traces(comparison: Comparison, signals: Sequence[str], instead: Mapping[str,
     known = [run for run in runs if settles(chain, values, run, matrix.actuator)]
     if not known and integrates(chain, runs, matrix.actuator):
         what = "the machine sums up what acts on it, so that no curve over whole runs shows one effect"
-        raise Unusable("unstable-model", what, f"model {preset.name}", "see what each effect leaves over windows")
+        raise Unusable("unstable-model", what, f"model {preset.name}", "see the error of each effect over windows")
     if not known:
         raise Unusable("unstable-model", "the model is unstable at every run", "fit", "fit it to these data first")
     count = stride(known)

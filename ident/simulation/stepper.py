@@ -67,7 +67,7 @@ def packed_kernel(
     exponents = {(name, float(lane[name][0])) for name in chain.exponents if np.ptp(lane[name]) == 0}
     built = kernel(chain, channels[0], frozenset(exponents), channels[1:])
     if built.measured:
-        raise Unusable("no-loop", "its displacement hangs on what was measured beside the command", "model",
+        raise Unusable("no-loop", "its displacement depends on measured signals other than the command", "model",
                        "use a model that the command alone drives")  # fmt: skip
     delay = np.zeros(LANES)
     if built.shift is not None:

@@ -38,7 +38,7 @@ LAG = stage(
     (
         Quantity("q1", "1", "current behind the lag, in rated currents"),
         Quantity("dq", "1/s", "its rate"),
-        Quantity("q", "1", "current that the valve hands on, in rated currents"),
+        Quantity("q", "1", "output current of the valve, in rated currents"),
     ),
     ("dq = (e - q1) / T", "block a: T I' + I = Iin (Kononykhin, section 4)"),
     ("q1' = dq", "the lag integrates its rate"),
@@ -107,7 +107,7 @@ FRICTION = Parameter("dPfr", "ΔP_fr", "Pa", 5e4, 5e6, 5e5, "pressure difference
 UNLOADED_SPEED = stage(
     "load",
     (
-        Quantity("s", "1", "direction that the current asks for"),
+        Quantity("s", "1", "direction commanded by the current"),
         Quantity("Pa", "Pa", "pressure difference available at the current"),
         Quantity("F", "N", "force of the specimen's spring"),
         Quantity("Pn", "Pa", "pressure difference needed against load and friction"),

@@ -13,7 +13,7 @@ CASCADE = stage(
         Quantity("dr", "m/s", "rate of the command"),
         Quantity("y_in", "m", "position that the controller uses"),
         Quantity("v_in", "m/s", "rate of that position"),
-        Quantity("e", "N", "force that the controller asks for"),
+        Quantity("e", "N", "force commanded by the controller"),
     ),
     ("r = u", "the command acts at once"),
     ("dr = du", "its rate"),

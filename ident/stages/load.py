@@ -96,7 +96,7 @@ FOLLOWING = stage(
         Quantity("x", "m", "piston position"),
         Quantity("X", "m", "position of what the transducer is fixed to"),
     ),
-    ("v = Vq", "the piston is as fast as the flow asks for"),
+    ("v = Vq", "the piston follows the flow (incompressible oil)"),
     ("x' = v", "position is the integral of speed"),
     ("X = x", "the transducer's frame is rigid"),
 )

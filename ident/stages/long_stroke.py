@@ -17,8 +17,8 @@ _OPENING = "0.5 * kep * Kp * L"  # of the spool, from the size of the error that
 DRIVEN_VALVE = stage(
     "valve",
     (
-        Quantity("vc", "m", "what the driver asks of the valve, beside its bias"),
-        Quantity("q1", "m", "spool signal beside the driver's bias"),
+        Quantity("vc", "m", "command of the driver to the valve, without its bias"),
+        Quantity("q1", "m", "spool signal without the bias of the driver"),
         Quantity("dq", "m/s", "its rate"),
         Quantity("q", "m", "spool signal"),
     ),
@@ -75,7 +75,7 @@ TWO_SIDED_FLOW = stage(
 )
 
 TIGHT_CYLINDER = replace(
-    COMPRESSIBLE.with_equations(("L = 0", "no leakage"), ("Ke = C", "the oil compresses alike everywhere")),
+    COMPRESSIBLE.with_equations(("L = 0", "no leakage"), ("Ke = C", "constant compressibility of the oil")),
     parameters=(Parameter("C", "C", "m^3/Pa", 1e-13, 1e-11, 1e-12, "compressibility of the oil, V0/(2 β)", RATING),),
     scales=(Scale("C", "A**2 / (m * W**2)", 1e-4, 1e2),),
 )

@@ -13,7 +13,7 @@ COMPRESSIBLE = stage(
         Quantity("D", "N", "force that drives the load"),
     ),
     ("L = Cl * P", "laminar leakage"),
-    ("Ke = Ka", "the oil compresses alike everywhere"),
+    ("Ke = Ka", "constant compressibility of the oil"),
     ("P' = (Q - L - A * v) / Ke", "the flow compresses, leaks and moves the piston (Qian et al. 2014, eq. 4)"),
     ("D = A * P", "the load pressure acts on the piston's area"),
     parameters=(

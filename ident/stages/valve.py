@@ -41,6 +41,6 @@ SECOND_ORDER_VALVE = stage(
 
 INSTANT_VALVE = stage(
     "valve",
-    (Quantity("q", "m", "what the valve, or the amplifier, hands on, in the unit of the drive signal"),),
+    (Quantity("q", "m", "output of valve or amplifier, in the unit of the drive signal"),),
     ("q = e", "it follows at once"),
 )

@@ -12,7 +12,7 @@ NOT_DETERMINED = 10.0
 The data then allow the value ten times over, in either sign: not even its power of ten is known, and its digits are
 those of the noise.
 """
-UNDETERMINED = "not determined"
+UNDETERMINED = "not identifiable"
 
 
 def determined(value: float, std_error: float | None) -> bool:

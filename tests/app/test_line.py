@@ -180,7 +180,7 @@ def test_a_verdict_is_pass_fail_or_unknown_with_reasons(line: TestClient) -> Non
     assert "uncertain" in why
     line.put(f"{API}/limits/qian2014", json={"limits": {"tau": {"upper": 3, "unit": "ms"}}, "batch": "LINE"})
     assert "not judged" in judged("LINE-0")[1]
-    assert "no parameter set is in force" in judged("LINE-BARE")[1]
+    assert "no parameter set is approved" in judged("LINE-BARE")[1]
     assert line.get(f"{API}/actuators/nobody/verdict").status_code == 404
 
 

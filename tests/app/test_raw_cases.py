@@ -49,10 +49,10 @@ CASES = (
     Case("comma_tabs.txt", asked=UNITS),
     Case("units_a.csv", IN_MS),
     Case("units_b.csv"),
-    Case("names_a.csv", IN_MS, told="'time_ms' is taken in ms"),
-    Case("names_b.csv", told="'t_s' is taken in s"),
+    Case("names_a.csv", IN_MS, told="'time_ms' is read in ms"),
+    Case("names_b.csv", told="'t_s' is read in s"),
     Case("two_header_rows.csv", IN_MS),
-    Case("interval_rows.csv", told="names no unit and is taken in seconds"),
+    Case("interval_rows.csv", told="has no unit; seconds are assumed"),
     Case("iso_time.csv"),
     Case("cut_last_row.csv", asked=UNITS, told="line 1502, the last one, is cut off (2 of 3 fields) and was left out"),
 )

@@ -80,7 +80,7 @@ def test_an_improvement_reads_as_a_fall_whichever_fit_was_picked_first(service, 
     pages = [service.get("/compare", params={"fits": ",".join(pair)}).text for pair in ((old, new), (new, old))]
     assert pages[0] == pages[1]
     assert pages[0].index(f'<h2><a href="/fits/{old}">A: ') < pages[0].index(f'<h2><a href="/fits/{new}">B: ')
-    row = re.search(r"<th scope=\"row\">fit runs, error</th>(.*?)</tr>", pages[0], re.DOTALL)
+    row = re.search(r"<th scope=\"row\">Error, estimation data</th>(.*?)</tr>", pages[0], re.DOTALL)
     assert row is not None
     assert re.search(r">−\d+\.\d+ points, ÷ \d", row[1])
     runs = re.findall(r'data-value="(-?[\d.e-]+)">(−[\d.]+ points, ÷ [\d.]+)</td>', pages[0])

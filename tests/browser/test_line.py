@@ -33,4 +33,4 @@ def test_a_set_is_approved_judged_rechecked_and_withdrawn(page: Page, site: Serv
     page.click("[data-approve$='/withdraw'] button")
     expect(page.locator("[data-approve$='/approve']")).to_be_visible()
     found = site.client.get(f"/actuators/{serial.replace('/', '%2F')}/verdict")
-    assert found.json()["reasons"] == ["no parameter set is in force: approve a fit"]
+    assert found.json()["reasons"] == ["no parameter set is approved: approve a fit"]

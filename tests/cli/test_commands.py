@@ -70,8 +70,8 @@ def test_fit_tells_a_reader_parameters_and_errors(servoident, matrix):
     done = servoident("fit", matrix, "--set", "tau=3.6 ms", "--set", "m0=4.25 kg", "--seed", 1)
     assert done.returncode == 0, done.stderr
     assert "m^3/(s*Pa)" in done.stdout
-    assert "held" in done.stdout
-    assert "verify" in done.stdout
+    assert "fixed" in done.stdout
+    assert "validation" in done.stdout
     assert "%" in done.stdout
     assert "search" in done.stderr
 

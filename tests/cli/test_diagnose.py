@@ -24,8 +24,8 @@ def told(servoident, matrix, tmp_path_factory) -> tuple[str, dict]:
     done = servoident("diagnose", matrix, "--json", file)
     assert done.returncode == 0, done.stderr
     assert "confirming" in done.stderr
-    assert "at first sight, before any refit, the error would be: dead_zone" in done.stderr
-    assert "added so far, with the error on held-out data: dead_zone" in done.stderr
+    assert "first predictions, before any refit: error dead_zone" in done.stderr
+    assert "added so far, with the held-out error: dead_zone" in done.stderr
     return done.stdout, json.loads(file.read_text())
 
 

@@ -163,7 +163,7 @@ def test_a_proposed_term_is_kept_with_where_it_comes_from(servoident, diagnosis)
     ("arguments", "said"),
     [
         (("keep", "nowhere.yaml"), "nowhere.yaml"),
-        (("keep", "LAPPED", "--name", "dead_zone"), "the catalogue has an effect dead_zone"),
+        (("keep", "LAPPED", "--name", "dead_zone"), "the effect library has an effect dead_zone"),
         (("keep", "LAPPED", "--name", "tau"), "tau is the time constant"),
         (("keep", "LAPPED", "--name", "../x"), "is no name of an effect"),
         (("drop", "../x"), "is no name of an effect"),

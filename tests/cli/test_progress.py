@@ -69,7 +69,7 @@ def test_the_first_sight_of_a_diagnosis_is_told_once(capsys):
         for done in range(3):
             report(Progress("trying", done, 2, expected=seen))
     told = [line for line in capsys.readouterr().err.splitlines() if "dead_zone" in line]
-    assert told == ["at first sight, before any refit, the error would be: dead_zone 1.02 %, loop_delay 2.00 %"]
+    assert told == ["first predictions, before any refit: error dead_zone 1.02 %, loop_delay 2.00 %"]
 
 
 def test_ctrl_c_ends_the_work_at_its_next_report_where_it_was_swallowed():
@@ -90,5 +90,5 @@ def test_the_catalogues_verdict_is_printed_once_before_terms_are_searched_for(ca
         for done in range(3):
             report(Progress("proposing", done, 3, verdict="The model lacks dead zone."))
     told = capsys.readouterr()
-    assert told.err.count("verdict of the catalogue: The model lacks dead zone.") == 1
+    assert told.err.count("verdict for the effect library: The model lacks dead zone.") == 1
     assert told.out == ""

@@ -123,7 +123,7 @@ def test_the_line_s_questions_are_commands(service, servoident, fitted, tmp_path
     assert done.returncode == 0, done.stdout + done.stderr
     assert ElementTree.parse(junit).getroot().get("tests") == "1"
     assert servoident("withdraw", fitted, "--why", "leaks", *service.options).returncode == 0
-    assert "no parameter set is in force" in servoident("verdict", "SIM-0001", *service.options).stdout
+    assert "no parameter set is approved" in servoident("verdict", "SIM-0001", *service.options).stdout
 
 
 def test_what_the_service_refuses_is_one_line_and_exit_2(service, servoident):

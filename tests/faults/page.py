@@ -12,7 +12,7 @@ NOTHING = (
     "lost", "uploads_lost", "failed", "stored_twice", "differing", "in_force_twice", "approved_and_not_in_force",
     "orphaned", "wrongly_answered",
 )  # fmt: skip
-HEAD = """# What the service withstands
+HEAD = """# Fault tolerance
 
 Written by `python -m tests.faults.page` from what was counted by
 
@@ -25,8 +25,8 @@ diagnose, approve, cancel and ask twice with the same key, each until it is answ
 60 s and continued, S3 refuses for 20 s, the disks of the data folder and of PostgreSQL are full for 20 s, and the
 clocks of the processes are an hour ahead, or behind, for 20 s. All draws follow from the seed. At the end
 everything that was acknowledged is compared with what is there, and every result with that of the same job before
-anything struck, in each field but times and names. Disks are filled where root runs it, clocks are stepped where
-there is a C compiler.
+anything struck, in each field but times and names. Disk-full tests need root; clock-step tests
+need a C compiler.
 """
 TAIL = """
 *Lost* are jobs that were acknowledged and are missing, never end, or were cancelled by nobody; *uploads lost* those

@@ -63,5 +63,5 @@ def test_the_target_is_only_drawn_for_feedback():
         }
         for structure in ("feedback", "two-degree")
     }
-    assert "target Gd/(1 + Gd), unstable by itself" in names["feedback"]
+    assert "target Gd/(1 + Gd), unstable without controller" in names["feedback"]
     assert not any("target" in name for name in names["two-degree"])

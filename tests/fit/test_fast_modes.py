@@ -53,4 +53,4 @@ def test_vectors_of_the_search_that_are_cut_are_counted():
     """Two generations of ten, all of one machine but for its friction."""
     found = notes(13.5, searched=True)
     assert len(found) == 2
-    assert found[0].startswith("20 of the vectors that the search tried")
+    assert found[0].startswith("20 candidate models had dynamics that are too fast")

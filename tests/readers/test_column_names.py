@@ -93,4 +93,4 @@ def test_metres_end_a_name_where_another_name_ends_with_a_unit_and_it_is_said():
     for names, unit in ((("time_s", "cmd_V", "pos_m"), "m"), (("time", "cmd", "pos_m"), "")):
         file, draft = known(*names)
         assert file.columns[2].unit == unit
-        assert any("'pos_m' is taken in m, by its name" in doubt for doubt in draft.doubts) == bool(unit)
+        assert any("'pos_m' is read in m, because of its name" in doubt for doubt in draft.doubts) == bool(unit)

@@ -32,5 +32,5 @@ def test_a_standard_error_of_more_than_ten_values_leaves_a_value_undetermined(er
     assert NOT_DETERMINED == 10
     assert determined(-2.0, 2.0 * error) is known
     said, si = plus_minus(35e-12, 35e-12 * error, "m"), plus_minus_si(35e-12, 35e-12 * error, "m")
-    assert (said.startswith("not determined (± ") and si.startswith("not determined (± ")) is not known
+    assert (said.startswith("not identifiable (± ") and si.startswith("not identifiable (± ")) is not known
     assert plus_minus(0.0, 1e-6, "m").startswith("0.0")

@@ -45,7 +45,7 @@ for (const cell of document.querySelectorAll("[data-plain]")) {
 
 for (const table of document.querySelectorAll("table[data-copy]")) {
   const place = table.caption ?? table.createCaption();
-  place.append(button("Copy the table, columns apart by tabs", "Copy table", (made) => copy(text(table), made, "The table")));
+  place.append(button("Copy the table, tab-separated", "Copy table", (made) => copy(text(table), made, "The table")));
 }
 
 function text(table) {

@@ -27,7 +27,7 @@ function tell(place, run) {
 
 function facts(run) {
   const rows = [["Sampled at", `${run.sample_rate} Hz`]];
-  if (run.separation !== null) rows.push(["Sets the models apart by", `${run.separation.toPrecision(3)} standard deviations of the noise`]);
+  if (run.separation !== null) rows.push(["Separation of the models", `${run.separation.toPrecision(3)} standard deviations of the noise`]);
   if (run.so_far !== null) rows.push(["The runs so far do so by", run.so_far.toPrecision(3)]);
   rows.push(["Teaches", `${run.information.toPrecision(3)} nats of the parameters`]);
   return rows;

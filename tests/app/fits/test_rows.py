@@ -35,7 +35,7 @@ def test_a_parameter_is_printed_to_two_digits_of_its_standard_error_in_a_readabl
 
 def test_what_limits_a_parameter_is_said_beside_it():
     _, mass, oil = parameter_rows(fit())
-    assert mass.remark == "held fixed; not determined by these data"
+    assert mass.remark == "fixed; not identifiable from these data"
     assert oil.remark == "at its bound"
 
 
@@ -68,5 +68,5 @@ def test_errors_over_windows_stand_below_those_of_the_free_run():
 def test_a_value_with_an_error_of_more_than_ten_times_itself_is_not_determined_on_page_and_terminal():
     lost = Estimate(35e-12, "m", 15023e-12, -1e-6, 1e-6, False, "s", "strength")
     (row,) = parameter_rows(replace(fit(), parameters={"own.s": lost}))
-    assert (row.value, row.std_error, row.relative) == ("not determined", "15023", "–")
-    assert "not determined" in str(replace(fit(), parameters={"own.s": lost}))
+    assert (row.value, row.std_error, row.relative) == ("not identifiable", "15023", "–")
+    assert "not identifiable" in str(replace(fit(), parameters={"own.s": lost}))

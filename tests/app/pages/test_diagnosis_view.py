@@ -92,6 +92,6 @@ def test_a_strength_that_is_not_determined_is_called_so_and_not_offered_by_a_mai
         _TEMPLATES.get_template("missing.html").render(fit=page | {"missing": missing(of, None)}, vega="", who=ANYBODY)
         for of in (found(), vague())
     ]
-    assert ["not determined (±" in text for text in shown] == [False, True]
+    assert ["not identifiable (±" in text for text in shown] == [False, True]
     assert ['class="main">Add the effect' in text for text in shown] == [True, False]
-    assert "not determined" in str(vague().found)
+    assert "not identifiable" in str(vague().found)

@@ -43,9 +43,9 @@ def test_another_model_takes_it_where_it_counts_in_the_same_units():
 def test_what_this_version_cannot_read_is_listed_with_the_reason():
     """A later catalogue may have an effect of the name."""
     kept = Kept(name="dead_zone", definition=OWN | {"name": "dead_zone"}, meaning="of an earlier version")
-    assert "the catalogue has an effect dead_zone" in view(kept).refused
+    assert "the effect library has an effect dead_zone" in view(kept).refused
     (row,) = kept_rows([kept])
     assert (row.title, row.meaning, row.equations) == ("dead zone", "of an earlier version", ())
-    assert "the catalogue has" in row.refused
+    assert "the effect library has" in row.refused
     assert not kept.suits("qian2014")
     assert not view(replace(kept, name="lapped", definition=OWN | {"name": "lapped"})).refused

@@ -49,4 +49,4 @@ def test_runs_to_verify_that_speak_against_it_are_said_first():
 def test_a_term_whose_strength_is_not_determined_says_so_and_is_no_main_offer(std_error, determined):
     made = card(0.0158, strength=35e-12, std_error=std_error)
     assert made.determined is determined
-    assert made.strength.startswith("not determined") is not determined
+    assert made.strength.startswith("not identifiable") is not determined
