@@ -121,7 +121,7 @@ def test_a_run_on_which_the_model_is_unstable_is_named_wherever_the_error_stands
     assert "times" not in out
     assert error_rows(stored)[-1].error == told
     assert (error_rows(stored)[-1].ratio, error_rows(stored)[-1].offset) == ("–", "–")
-    assert f"{told} (verify)" in words.verdict(stored)
+    assert f"{told} (validation)" in words.verdict(stored)
     assert told in str(list(_error(stored, None)))
     assert any(one.said_second and one.said_second.in_print() == told for one in _runs(fit, stored))
     assert told in str(of_fits([fit, stored]))

@@ -35,8 +35,9 @@ PAGE = 20.0
 class Text(HTMLParser):
     """What a reader of a template reads: text, and the attributes that browsers show or read out."""
 
-    BLOCKS = frozenset({"p", "li", "td", "th", "h1", "h2", "h3", "h4", "label", "button", "summary", "caption", "dd", "legend",
-              "dt", "option", "div", "section"})  # fmt: skip
+    BLOCKS = frozenset(
+        "p li td th h1 h2 h3 h4 label button summary caption legend dd dt option div section".split()  # noqa: SIM905
+    )
 
     def __init__(self) -> None:
         super().__init__()

@@ -9,6 +9,7 @@ from typing import Any
 
 from markupsafe import Markup
 
+from app.approvals.objections import FAR
 from app.fits.rows import Determined, ErrorRow, ParameterRow, combination_rows, error_rows, parameter_rows
 from app.fits.service import Stored
 from app.own_effects.kept import Kept, suited
@@ -80,6 +81,8 @@ class FitPageView:
     profile: FigureForm | None
     ended_early: bool
     next: Next
+    grade: tuple[str, str] | None
+    conditional: bool
     objections: tuple[str, ...]
     headline: str
     equations: tuple[tuple[str, str, Markup], ...]
@@ -139,6 +142,8 @@ def fit_page(
         profile=profile_form(fit),
         ended_early=fit.ended_early,
         next=step,
+        grade=_grade(step, objections),
+        conditional=_conditional(fit),
         objections=objections,
         headline=_headline(fit),
         equations=tuple((line.place, line.meaning, Markup(mathml(line.text))) for line in _equations(model)),
@@ -160,6 +165,19 @@ def fit_page(
 def _headline(fit: FitResult) -> str:
     """The error on each use of runs in a line, with what a reader must know of it."""
     return f"Error {errors_line({use: fit.error_of(use) for use in USES}, percent_in_print)}"
+
+
+def _grade(step: Next, objections: Sequence[str]) -> tuple[str, str] | None:
+    """Good or not, as the state that a page marks and its words; None where nothing is known of it."""
+    if step.grade == "good" and objections:
+        return "doubt", "Check before approval."
+    return {"good": ("approved", "Good fit."), "poor": ("doubt", "Not good yet.")}.get(step.grade)
+
+
+def _conditional(fit: FitResult) -> bool:
+    """Whether the standard errors hold only if the model is right: its error is far above the noise floor."""
+    error, floor = fit.error_of("fit").error, fit.noise_floor.get("fit")
+    return error is not None and bool(floor) and error > FAR * (floor or 0.0)
 
 
 def _free_run(fit: FitResult) -> str:

@@ -24,6 +24,7 @@ class Next:
     """Where an actuator stands, and the link that leads on; `waits` is a job whose end changes that.
 
     `main` marks a step that changes the model. `does` is "diagnose" or "approve" where the fit's own page does it.
+    `grade` says whether the fit is good: "good" at the noise floor, "poor" above it or unstable, "" if unknown.
     """
 
     words: str
@@ -32,6 +33,7 @@ class Next:
     waits: str = ""
     main: bool = True
     does: str = ""
+    grade: str = ""
 
 
 def next_step(
@@ -60,7 +62,7 @@ def fit_step(fit: ParameterSetView, yardstick: Yardstick | None = None, search: 
         return Next(words, "Open progress", f"{at}#missing", waits=search.job, main=False)
     said = error_of(fit, "fit")
     if said.is_unstable:
-        return Next(f"The model is {said.in_print()}.", "Show where it fails", f"{at}#fails")
+        return Next(f"The model is {said.in_print()}.", "Show where it fails", f"{at}#fails", grade="poor")
     return _fitted(fit, yardstick or Yardstick(), search.verdict, at)
 
 
@@ -104,24 +106,26 @@ def _fitted(newest: ParameterSetView, yardstick: Yardstick, verdict: Verdict | N
         fell = "Its model is no longer" if before.is_unstable else "The error fell from"
         to = "; the error is" if before.is_unstable else " to"
         words = f"{fell} {before.in_print()}{to} {said.in_print()}, the noise floor."
-        return Next(words, "Compare before and after", f"/compare?fits={yardstick.parent},{newest.id}")
+        at = f"/compare?fits={yardstick.parent},{newest.id}"
+        return Next(words, "Compare before and after", at, grade="good")
     words = f"The error{f', {said.in_print()},' if said.mean_counts else ''} is at the noise floor."
-    return Next(words, "Review and approve", at, main=False, does="approve")
+    return Next(words, "Review and approve", at, main=False, does="approve", grade="good")
 
 
 def _failing(ratio: float, verdict: Verdict | None, at: str) -> Next:
     """Of a fit whose error is so many times the noise."""
     fails = f"The error is {plain(ratio, 2)} times the noise floor"
     if verdict is None:  # the main button at the head of the page does it
-        return Next(f"{fails}: the model lacks something.", "Search for missing effects", at, does="diagnose")
+        words = f"{fails}: the model is missing an effect."
+        return Next(words, "Search for missing effects", at, does="diagnose", grade="poor")
     at = f"{at}#missing"
     if verdict.effects:
         sure = verdict.standing in (None, "found")
         said = "The model lacks" if sure else "The error is partly explained by"
-        return Next(f"{said} {_listed(verdict.effects)}.", "Review and add", at)
+        return Next(f"{fails}. {said} {_listed(verdict.effects)}.", "Review and add", at, grade="poor")
     if verdict.suspects:
-        return Next(f"{fails}. A run label looks wrong.", "Review the label", at)
-    return Next(f"{fails}. No effect in the library explains it.", "Show the residual", at)
+        return Next(f"{fails}. A run label looks wrong.", "Review the label", at, grade="poor")
+    return Next(f"{fails}. No effect in the library explains it.", "Show the residual", at, grade="poor")
 
 
 def _listed(names: Sequence[str]) -> str:

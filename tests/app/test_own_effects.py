@@ -239,7 +239,7 @@ def test_pages_offer_what_is_kept(service: TestClient, found: dict[str, Any], fi
     """On the card of the term, in the list of a fit that can take it, on the form that starts one, on a page of all."""
     page = service.get(f"/fits/{fitted}").text
     assert 'value="acts_at_one_part_of_the_way"' in page
-    assert "Own effects" not in page
+    assert "Saved own effects" not in page
     assert 'name="own" type="checkbox"' not in page
     assert "No own effects yet" in service.get("/effects").text
     service.post(AT, json={"name": "hill", "diagnosis": found["id"]})

@@ -24,7 +24,7 @@ function draw(budget) {
   for (const [name, meaning] of shown) {
     const share = whole ? (100 * budget[name] ** 2) / whole : 0;
     figure.querySelector("svg").append(bar(name, from, share));
-    figure.querySelector("ul").append(entry(name, `${percent(budget[name])} ${meaning}`));
+    figure.querySelector("ul").append(entry(name, `${percent(share / 100)} ${meaning}, error ${percent(budget[name])}`));
     from += share;
   }
   for (const note of budget.notes) figure.querySelector("ul").append(entry("", note));

@@ -68,6 +68,22 @@ def test_the_line_says_where_it_stands_and_leads_on(found, words, deed, at):
     assert (found.deed, found.at) == (deed, at)
 
 
+@pytest.mark.parametrize(
+    ("found", "grade"),
+    [
+        (step(NOISE, yardstick=FAR), "good"),
+        (step(NOISE, yardstick=FELL), "good"),
+        (step(0.1, yardstick=FAR), "poor"),
+        (step(0.1, yardstick=FAR, search=verdict("lead")), "poor"),
+        (step(0.1), ""),
+        (step(state="queued"), ""),
+    ],
+)  # fmt: skip
+def test_a_fit_is_good_at_the_noise_floor_and_poor_above_it(found, grade):
+    """Without a floor nothing is known of it."""
+    assert found.grade == grade
+
+
 def test_a_line_that_a_job_will_change_names_it():
     """So that the page can be drawn anew when that job ends."""
     waiting = [step(state="queued"), step(0.1, search=Search(job="d")), step(0.1, yardstick=FAR)]
