@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from ident.errors import Unusable
+from ident.plain import WHERE_KNOWN
+from ident.rig.limits import RigLimits
 from ident.run import Run
 from ident.words.shown import Listing, Shown
 
@@ -16,7 +18,7 @@ from ident.words.shown import Listing, Shown
 class Actuator:
     """The machine under test; lengths in m, areas in m², pressures in Pa. What is not stated is None.
 
-    `volume` is the oil between valve and piston on both sides, Vt, in m³.
+    `volume` is the oil between valve and piston on both sides, Vt, in m³; `rig` what the machine may be driven to.
     """
 
     serial: str
@@ -28,6 +30,13 @@ class Actuator:
     servo_valve: str = ""
     notes: str = ""
     volume: float | None = None
+    rig: RigLimits | None = field(default=None, metadata=WHERE_KNOWN)
+
+    @property
+    def rig_limits(self) -> RigLimits:
+        """The limits of its rig; where they have none, its own stroke and supply."""
+        own = RigLimits(stroke=self.stroke, supply_pressure=self.supply_pressure)
+        return own if self.rig is None else self.rig.over(own)
 
 
 @dataclass(frozen=True)

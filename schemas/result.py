@@ -179,6 +179,17 @@ class WindowView(BaseModel):
     clock: str = ""
 
 
+class RigStated(BaseModel):
+    """The limits of a rig, SI: stroke from end to end, what the piston, the valve and the supply may reach."""
+
+    stroke: float | None = None
+    speed: float | None = None
+    acceleration: float | None = None
+    force: float | None = None
+    flow: float | None = None
+    supply_pressure: float | None = None
+
+
 class ActuatorStated(BaseModel):
     """What was stated of the machine that was fitted, SI; null is not stated."""
 
@@ -191,6 +202,7 @@ class ActuatorStated(BaseModel):
     servo_valve: str = ""
     notes: str = ""
     volume: float | None = None
+    rig: RigStated | None = None
 
 
 class StepView(BaseModel):

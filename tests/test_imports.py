@@ -109,7 +109,7 @@ def test_what_a_benchmark_or_a_picture_imports_is_there(file):
 
 ROOMS = (
     "errors", "plain", "cached", "progress", "time_budget", "parallel", "unstable", "words", "beginning", "run",
-    "matrix", "parameter", "linear", "statistics", "equations", "units", "stages", "effects", "chain", "presets",
+    "rig", "matrix", "parameter", "linear", "statistics", "equations", "units", "stages", "effects", "chain", "presets",
     "foreign", "readers", "custom", "preprocessing", "noise", "checks", "drafts", "simulation", "fit", "comparison",
     "residuals", "design", "diagnosis", "bench", "hybrid", "export", "figures", "synthesis", "workflows",
 )  # fmt: skip

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path, PurePosixPath
 from typing import Unpack
@@ -16,6 +17,7 @@ from ident.readers.dat import read_dat
 from ident.readers.description import Description, describe
 from ident.readers.gzipped import unpacked
 from ident.readers.limits import LIMITS, Limits, check_size
+from ident.readers.rig import rig_in
 from ident.readers.run import read_run
 from ident.readers.run_description import RunDescription
 from ident.readers.source import DESCRIPTION, Beside, Folder, Source, alone, beside
@@ -96,9 +98,12 @@ def read_source(source: Source, limits: Limits = LIMITS) -> Matrix:
     described = describe(text, limits)
     runs, notices, digest = read_runs(source, described, text, limits)
     stated = "" if described.limits is None else limits_text(source, described.limits, limits)
-    return Matrix(
-        described.actuator, runs, digest, described.controller, described.limits, stated, notices, described.machine
-    )
+    actuator = described.actuator
+    if described.profile:
+        profile = source.read(described.profile, limits.description)
+        actuator = replace(actuator, rig=rig_in(profile, described.profile))
+        digest = hashlib.sha256(digest.encode() + profile).hexdigest()
+    return Matrix(actuator, runs, digest, described.controller, described.limits, stated, notices, described.machine)
 
 
 def limits_text(source: Source, name: str, limits: Limits) -> str:

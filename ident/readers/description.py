@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ident.errors import Unusable
@@ -12,24 +12,26 @@ from ident.presets import preset
 from ident.presets.description import described
 from ident.readers.fields import Fields
 from ident.readers.limits import Limits
+from ident.readers.rig import rig_of
 from ident.readers.run_description import RunDescription, describe_run
 from ident.readers.source import DESCRIPTION, inside
 from ident.readers.strict_yaml import read_yaml
 from ident.units.quantity import shown
 
-TOP = ("actuator", "runs", "controller", "machine", "limits")
+TOP = ("actuator", "runs", "controller", "machine", "limits", "rig")
 ACTUATOR = ("serial", "name", "batch", "piston_area", "stroke", "volume", "supply_pressure", "servo_valve", "notes")
 
 
 @dataclass(frozen=True)
 class Description:
-    """The whole of matrix.yaml."""
+    """The whole of matrix.yaml; `profile` is the file that holds the limits of the rig, "" where they stand here."""
 
     actuator: Actuator
     runs: tuple[RunDescription, ...]
     controller: Controller | None
     limits: str | None
     machine: str
+    profile: str = ""
 
 
 def describe(text: bytes, limits: Limits) -> Description:
@@ -45,7 +47,12 @@ def describe(text: bytes, limits: Limits) -> Description:
     machine = described(top.data["machine"]).name if "machine" in top else ""
     if machine:
         preset(machine)
-    return Description(actuator, runs, controller, bounds, machine)
+    profile, rig = "", top.data.get("rig")
+    if isinstance(rig, str):
+        profile = inside(top.text("rig"), top.place("rig"))
+    elif rig is not None:
+        actuator = replace(actuator, rig=rig_of(rig))
+    return Description(actuator, runs, controller, bounds, machine, profile)
 
 
 def describe_actuator(data: Any) -> Actuator:
