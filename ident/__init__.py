@@ -28,6 +28,7 @@ if TYPE_CHECKING:
         identify,
         load,
         next_run,
+        plan,
         propose,
         save,
         simulate,
@@ -38,7 +39,7 @@ _ROOMS = {
     "check": "ident.checks.check", "compare": "ident.workflows", "diagnose": "ident.workflows",
     "figure": "ident.workflows", "from_arrays": "ident.readers", "from_table": "ident.readers",
     "identify": "ident.workflows", "load": "ident.workflows", "next_run": "ident.workflows",
-    "propose": "ident.workflows", "read_matrix": "ident.readers", "save": "ident.workflows",
+    "plan": "ident.workflows", "propose": "ident.workflows", "read_matrix": "ident.readers", "save": "ident.workflows",
     "simulate": "ident.workflows",
 }  # fmt: skip
 
@@ -55,6 +56,7 @@ __all__ = [
     "identify",
     "load",
     "next_run",
+    "plan",
     "propose",
     "read_matrix",
     "save",

@@ -20,6 +20,7 @@ from ident.comparison.compare import Comparison, Simulator
 from ident.custom.definition import preset_with, read_effect
 from ident.design import proposal as design
 from ident.design.experiment import Experiment
+from ident.design.spread import USUAL, Spread
 from ident.diagnosis import diagnose as diagnosis
 from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.competing_models import competing_models
@@ -39,9 +40,13 @@ from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.hybrid.kalman_identification import KalmanIdentification
 from ident.matrix import Matrix
+from ident.planning import plan as planning
+from ident.planning.plan import LEAST, Plan
 from ident.preprocessing import screen
 from ident.presets.preset import Kind
 from ident.progress import Report, silent
+from ident.readers.rig import read_rig, rig_of
+from ident.rig.limits import RigLimits
 from ident.synthesis.matrix import Simulation, simulated
 from ident.time_budget import TimeBudget
 from ident.words.arguments import stated_kinds
@@ -229,6 +234,24 @@ def next_run(found: Diagnosis, matrix: Matrix | None = None, seed: int = 0) -> E
         raise Unusable("no-data", "the diagnosis does not hold the data that it was made of", "next run",
                        "give matrix=read_matrix(…)")  # fmt: skip
     return design.propose(competing_models(found), matrix, seed)
+
+
+@stated_kinds
+def plan(
+    program: str | Path | Mapping[str, Any], fit: FitResult | None = None,
+    rig: RigLimits | Mapping[str, Any] | Path | str | None = None, seconds: float | None = None,
+    ramp: float | None = None, seed: int = 0, spread: float = USUAL, spreads: Mapping[str, float] | None = None,
+    least: float = LEAST, report: Report = silent,
+) -> Plan:  # fmt: skip
+    """Command files for a rig, kept inside its limits; ``.write(folder)`` writes them with a matrix.yaml.
+
+    `program` is ``"qian"``, ``"kononykhin"``, the path of a YAML file or its content. `rig` are the limits, as
+    ``{"stroke": "150 mm", "speed": "0.5 m/s"}`` or a file that holds them; without them those of the fit's matrix.
+    Every parameter of the fit may be off by the share `spread`, those in `spreads` by their own. See
+    :func:`ident.planning.plan.plan` for the rest and for what is refused.
+    """
+    limits = read_rig(rig) if isinstance(rig, str | Path) else rig_of(rig) if isinstance(rig, Mapping) else rig
+    return planning.plan(program, fit, limits, seconds, ramp, seed, Spread(spread, spreads or {}), least, report)
 
 
 @stated_kinds

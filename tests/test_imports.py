@@ -111,7 +111,7 @@ ROOMS = (
     "errors", "plain", "cached", "progress", "time_budget", "parallel", "unstable", "words", "beginning", "run",
     "rig", "matrix", "parameter", "linear", "statistics", "equations", "units", "stages", "effects", "chain", "presets",
     "foreign", "readers", "custom", "preprocessing", "noise", "checks", "drafts", "simulation", "fit", "comparison",
-    "residuals", "design", "diagnosis", "bench", "hybrid", "export", "figures", "synthesis", "workflows",
+    "residuals", "design", "diagnosis", "bench", "hybrid", "export", "figures", "synthesis", "planning", "workflows",
 )  # fmt: skip
 """The files and folders of `ident`; each may use those before it."""
 

@@ -33,6 +33,7 @@ from app.cli.keep import keep
 from app.cli.limits import limits
 from app.cli.migrate import migrate
 from app.cli.next import next_
+from app.cli.plan import plan
 from app.cli.profile import profile
 from app.cli.query import query
 from app.cli.regress import regress
@@ -65,7 +66,7 @@ if TYPE_CHECKING:
 
 GROUPS = {
     "Data": (simulate, init, join, check),
-    "Identification": (fit, compare, profile, diagnose, next_, bench, write_report),
+    "Identification": (fit, compare, profile, diagnose, next_, plan, bench, write_report),
     "Applications": (track, control, hybrid, whatif, export),
     "Service": (serve, worker, workers, demo, upload, query, revise, migrate, backup, restore, tidy, retention, audit),
     "Production line": (approve, withdraw, statistics, limits, verdict, regress),

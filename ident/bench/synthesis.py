@@ -28,8 +28,9 @@ AMPLITUDES = (0.02, 0.1, 0.5)  # rated currents
 LEVEL_CURRENTS = (0.03, 0.06, 0.12, 0.25, 0.5, 0.75, 1.0)
 RANGES = ((0.015, 0.025), (0.045, 0.055), (0.075, 0.085))  # m
 _PERIODS = 5
-_STEEPEST = 20.0  # rated currents a second
+STEEPEST = 20.0  # rated currents a second
 _TRAVEL = 0.06  # m at a fixed level
+_BEYOND = 1.5  # times the dead space is the smallest current that is asked for
 
 LIMITS = {
     "zero_shift": {"min": "-2 %", "max": "2 %"},
@@ -57,26 +58,38 @@ class Plan:
     labels: dict[str, Any]
 
 
-def plans(gain: float) -> Iterator[Plan]:
-    """A full set for an actuator of a gain (m/s at rated current)."""
-    for low, high in RANGES:
+def plans(gain: float, stroke: float = STROKE, offset: float = 0.0, dead_space: float = 0.0) -> Iterator[Plan]:
+    """A full set for an actuator of a gain (m/s at rated current) and a stroke (m).
+
+    `offset` is the zero shift and `dead_space` the half-width in which it stands, as far as they are known, in rated
+    currents: the laws work about the first, and no amplitude or level is within 1.5 times the second.
+    """
+    lowest, part = _BEYOND * dead_space, stroke / STROKE
+    for low, high in ((part * low, part * high) for low, high in RANGES):
         middle = 0.5 * (low + high)
         labels: dict[str, Any] = {"position_range": [f"{1e3 * low:g} mm", f"{1e3 * high:g} mm"]}
         # 1 % of current a mm, 0.25 mm/s, ±1.5 mm: the current crosses the dead space at 0.25 %/s
-        yield Plan(f"static-{1e3 * middle:.0f}", "static", STATIC, (0.0, 10.0, 2.5e-4, 1.5e-3), 48.0, middle, labels)
-    for amplitude in AMPLITUDES:
+        yield Plan(f"static-{1e3 * middle:.0f}", "static", STATIC, (offset, 10.0, 2.5e-4, 1.5e-3), 48.0, middle, labels)
+    for amplitude in _from(lowest, AMPLITUDES):
         for frequency in FREQUENCIES:
             swing = amplitude * gain / (2 * np.pi * frequency)
             labels = {"frequency": f"{frequency:g} Hz", "amplitude": f"{100 * amplitude:g} %"}
-            settings = (0.0, amplitude, frequency, 0.8 * frequency / gain)
+            settings = (offset, amplitude, frequency, 0.8 * frequency / gain)
             name = f"sine-{100 * amplitude:g}-{frequency:g}".replace(".", "_")
-            yield Plan(name, "frequency", FREQUENCY, settings, _PERIODS / frequency, 0.5 * STROKE - swing, labels)
-    for level in LEVEL_CURRENTS:
-        length = min(3.0, _TRAVEL / (1.25 * gain * level))
-        settings = (0.0, level, length, 0.3)
-        yield Plan(f"level-{100 * level:g}", "speed-levels", LEVELS, settings, 2 * (length + 0.3), 0.2 * STROKE, {})
-    settings = (0.0, 0.03, 1.0, 0.9 * STROKE)
-    yield Plan("stroke", "speed-continuous", CONTINUOUS, settings, 1.2 / gain, 0.05 * STROKE, {})
+            yield Plan(name, "frequency", FREQUENCY, settings, _PERIODS / frequency, 0.5 * stroke - swing, labels)
+    for level in _from(lowest, LEVEL_CURRENTS):
+        length = min(3.0, part * _TRAVEL / (1.25 * gain * level))
+        settings = (offset, level, length, 0.3)
+        name = f"level-{100 * level:g}".replace(".", "_")
+        yield Plan(name, "speed-levels", LEVELS, settings, 2 * (length + 0.3), 0.2 * stroke, {})
+    settings = (offset, max(LEVEL_CURRENTS[0], lowest), 1.0, 0.9 * stroke)
+    yield Plan("stroke", "speed-continuous", CONTINUOUS, settings, 1.2 * part / gain, 0.05 * stroke, {})
+
+
+def _from(lowest: float, currents: tuple[float, ...]) -> tuple[float, ...]:
+    """These currents where they are above the lowest that moves the actuator; what is below becomes that one."""
+    above = tuple(current for current in currents if current > lowest)
+    return above if len(above) == len(currents) else (float(f"{lowest:.3g}"), *above)
 
 
 def record(plan: Plan, model: Model) -> tuple[Array, Array, Array]:
@@ -85,7 +98,7 @@ def record(plan: Plan, model: Model) -> tuple[Array, Array, Array]:
     current, out = np.empty(samples), np.empty((3, samples))
     settings = np.array([*plan.settings, *[0.0] * 4][:4])
     driven(
-        plan.law, settings, 1.0 / RATE, 2, _STEEPEST, STROKE / 2**BITS, model.constants, model.table.nodes,
+        plan.law, settings, 1.0 / RATE, 2, STEEPEST, STROKE / 2**BITS, model.constants, model.table.nodes,
         model.table.pieces, plan.start, current, out,
     )  # fmt: skip
     return current, out[0], out[1]

@@ -1,1 +1,1 @@
-"""The rig that a test is driven on: what it allows, and what a run asks of it."""
+"""Limits of a rig and the motion of a run in, its peaks and the share that they take of each limit out."""

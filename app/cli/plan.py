@@ -1,0 +1,83 @@
+"""`servoident plan`: command files of a program of runs for a rig, kept inside its limits."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from app.cli.arguments import split
+from app.cli.given import read_fit
+from app.cli.output import STANDARD_OUTPUT, check_target, write_json
+from app.cli.progress import shown
+from app.cli.rig_option import RigFile, rig_in
+
+if TYPE_CHECKING:
+    from ident.design.spread import Spread
+
+
+def plan(
+    program: Annotated[
+        str, typer.Option(metavar="NAME|FILE", help="qian, kononykhin, or a YAML file with lists of one's own.")
+    ],
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for commands/, matrix.yaml and plan.json.")],
+    fit: Annotated[
+        Path | None, typer.Option(metavar="FIT.json", help="What `servoident fit --json` wrote: predicts the peaks.")
+    ] = None,
+    rig: RigFile = None,
+    format_: Annotated[
+        list[str] | None, typer.Option("--format", metavar="csv|mat|tdms", help="Of command files; may be repeated.")
+    ] = None,
+    seconds: Annotated[float | None, typer.Option(help="Length of each run in s; 30 where nothing is stated.")] = None,
+    ramp: Annotated[
+        float | None, typer.Option(help="Seconds in which a command grows, and in which it fades; 2 % of the run.")
+    ] = None,
+    spread: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="SHARE|NAME=SHARE", help="What parameters may be off: 20 % unless stated; may be repeated."
+        ),
+    ] = None,
+    least: Annotated[
+        float, typer.Option(help="Smallest share of its amplitude to which a run is scaled; 1: as asked or refused.")
+    ] = 0.1,
+    seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Seed of the commands.")] = 0,
+    json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the plan as JSON; - is stdout.")] = None,
+) -> None:
+    """Plan the runs of a program for a rig: command files, and a matrix.yaml that the answers drop into.
+
+    Each command is held against the limits of the rig and scaled to stay inside. Exit status 1 where a run is refused.
+    """
+    from app.cli.tables import show
+    from ident.planning.plan import plan as planned
+
+    check_target(json)
+    result, limits, wide = None if fit is None else read_fit(fit), rig_in(rig), _spread(spread or [])
+    with shown() as report:
+        made = planned(program, result, limits, seconds, ramp, seed, wide, least, report)
+        made.write(out, tuple(format_ or ("csv",)), report)
+    if json is not None:
+        write_json(made.to_json(), json)
+    if json != STANDARD_OUTPUT:
+        show(made.listings())
+        print(
+            f"wrote {out / 'matrix.yaml'} and commands of {len(made.runs)} runs; put what is measured at {out / 'runs'}"
+        )
+    if made.refused:
+        raise typer.Exit(1)
+
+
+def _spread(given: list[str]) -> Spread:
+    """What parameters may be off: a share of every one, and of some by name. Raises Unusable."""
+    from ident.design.spread import USUAL, Spread
+    from ident.units.quantity import parameter_value
+
+    usual, stated = USUAL, {}
+    for text in given:
+        if "=" in text:
+            name, share = split(text, "--spread", "NAME=SHARE")
+            stated[name] = parameter_value(share, "1", f"--spread {name}")
+        else:
+            usual = parameter_value(text, "1", "--spread")
+    return Spread(usual, stated)

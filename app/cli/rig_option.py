@@ -1,0 +1,25 @@
+"""The limits of a rig, for the commands that keep to them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from ident.rig.limits import RigLimits
+
+RigFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--rig", metavar="FILE", help="YAML file with the limits of the rig, by themselves or under rig:.",
+    ),
+]  # fmt: skip
+
+
+def rig_in(file: Path | None) -> RigLimits | None:
+    """The limits in the file of `--rig`; None without one. Raises Unusable."""
+    from ident.readers.rig import read_rig
+
+    return None if file is None else read_rig(file)

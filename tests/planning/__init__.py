@@ -1,0 +1,1 @@
+"""Test plans: programs, scaling to the limits of a rig, files, and what comes back."""
