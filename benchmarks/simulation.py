@@ -10,6 +10,7 @@ from benchmarks.table import Table, seconds_of
 from ident.chain.conditions import conditions
 from ident.presets import PRESETS
 from ident.run import Run
+from ident.simulation.between import at_nodes
 from ident.simulation.recursion import discretise, respond
 from tests.reference import qian_reference as reference
 
@@ -49,7 +50,7 @@ def measure() -> Table:
     chain = PRESETS["qian2014"].chain
 
     def ours() -> np.ndarray:
-        return respond(discretise(chain.linearise(values), run.sample_rate, run.hold), run.command)
+        return respond(discretise(chain.linearise(values), run.sample_rate, run.hold), at_nodes(run))
 
     def theirs() -> np.ndarray:
         return _filtered(run, vectors)

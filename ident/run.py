@@ -20,7 +20,8 @@ KINDS = (
 )  # fmt: skip
 BENCH = ("static", "frequency", "speed-levels", "speed-continuous")
 """Kinds of records of a bench, whose input is a current."""
-HOLDS = ("linear", "zoh")
+HOLDS = ("linear", "zoh", "band-limited")
+"""What a command does between its samples."""
 USES, STILL = ("fit", "verify"), "still"
 MOTIONS = ("displacement", "velocity")
 """Channels that may be imposed on a machine that answers with a force, such as a damper."""

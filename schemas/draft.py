@@ -39,7 +39,9 @@ class AnswersRequest(BaseModel):
     area: str = Field(default="", max_length=_LINE, description="Piston area, such as 497 mm^2")
     gain: str = Field(default="", max_length=_LINE, description="Gain Kp of the loop in every run")
     hold: str = Field(
-        default="", max_length=_LINE, description="The command between samples: linear or zoh; empty: as it looks"
+        default="",
+        max_length=_LINE,
+        description="The command between samples: linear, zoh or band-limited; empty: as it looks",
     )
     files: dict[str, FileAnswersRequest] = Field(
         default_factory=dict,

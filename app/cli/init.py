@@ -59,7 +59,7 @@ def init(
                                                       "repeated.")] = None,
     area: Annotated[str, typer.Option(metavar="AREA", help="Piston area, such as '497 mm^2'.")] = "",
     gain: Annotated[str, typer.Option(metavar="KP", help="Loop gain of all runs.")] = "",
-    hold: Annotated[str, typer.Option(metavar="NAME", help="Command between samples: linear or zoh (held).")] = "",
+    hold: Annotated[str, typer.Option(metavar="NAME", help="Command between samples: linear, zoh, band-limited.")] = "",
 ) -> None:  # fmt: skip
     """Describe raw files and write matrix.yaml.
 

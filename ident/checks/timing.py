@@ -47,7 +47,7 @@ def timing(run: Run, response: Response | None) -> Iterator[Finding]:
         yield from _too_quick(run)
         return
     highest = response.below(POWER)
-    if run.sample_rate < SAMPLES_A_CYCLE * highest:
+    if run.hold != "band-limited" and run.sample_rate < SAMPLES_A_CYCLE * highest:
         text = (
             f"run {run.id} has {run.sample_rate / highest:.2g} samples per cycle at {highest:.3g} Hz, and "
             f"{POWER:.0%} of the power of the command is below that. Use at least {SAMPLES_A_CYCLE * highest:.3g} Hz"

@@ -14,6 +14,7 @@ from ident.drafts.steps import moves_in_steps
 from ident.errors import Unusable
 from ident.readers import PACKED
 from ident.readers.column_names import is_time
+from ident.readers.hold import are_band_limited
 from ident.readers.table import MINUS, some_of
 from ident.run import CHANNELS
 from ident.units.quantity import shown
@@ -24,6 +25,10 @@ OUTPUTS = ("displacement", "velocity", "force", "load_pressure")
 _DRIVES = ("command", "current")
 _HELD = "the command rests and jumps, so a zero-order hold is assumed (hold: zoh)"
 _DRAWN = "the command is assumed to be linear between samples (hold: linear); set zoh if it is held"
+_CURVED = (
+    "the command's spectrum ends below half the sample rate, so it is assumed to be band-limited between samples "
+    "(hold: band-limited); set zoh if it is held, linear if it is drawn"
+)
 _LEFT_OUT = 3  # columns with an empty cell that a question names
 
 
@@ -159,13 +164,22 @@ class Draft:
         if "hold" in self.answers.common:
             return
         held = [file.name for file, one in zip(self.files, known, strict=True) if one.hold == "zoh"]
-        if not held or len(held) == len(known):
-            yield _HELD if held else _DRAWN
+        if not held:
+            yield _CURVED if self._are_curves(known) else _DRAWN
+            return
+        if len(held) == len(known):
+            yield _HELD
             return
         yield (
             f"the command of {first_of(held)} rests and jumps, so a zero-order hold is assumed there (hold: zoh). "
             "In the other files the command is assumed to be linear between samples (hold: linear); set zoh if held"
         )
+
+    def _are_curves(self, known: Sequence[Known]) -> bool:
+        """Whether reading will take the commands, of which none is held, to be band-limited."""
+        drives = [(file, one.channels["command"]) for file, one in zip(self.files, known, strict=True)
+                  if "command" in one.channels]  # fmt: skip
+        return are_band_limited([file.samples(answer.column) for file, answer in drives])
 
     def description(self) -> dict[str, Any]:
         """What matrix.yaml says. Raises Unusable ``not-stated`` with everything that is missing."""

@@ -20,7 +20,8 @@ T = TypeVar("T")
 _WIDE = 10_000  # signs: a run's entries stay on their lines
 _OPTIONAL = """\
 # A run may also say: specimen: {mass: 0.87 kg, stiffness: 36.3 kN/m, damping: 0 N*s/m}, gain: 7 (Kp of its loop),
-# amplitude: 0.05 in (RMS of the command), kind: blwn, hold: zoh (the command is held between samples), use: verify.
+# amplitude: 0.05 in (RMS of the command), kind: blwn, use: verify,
+# hold: zoh (the command is held between its samples; or linear, band-limited).
 """
 
 

@@ -17,6 +17,7 @@ from ident.cached import cached_property
 from ident.fit.products import add_products, completed, removal, without
 from ident.linear import LinearModel
 from ident.run import Run
+from ident.simulation.between import at_nodes
 from ident.simulation.recursion import Recursion, discretise, respond, responses
 
 Array = NDArray[np.float64]
@@ -114,7 +115,7 @@ def errors_of(run: Run, model: LinearModel) -> Array:
         parts = (LinearModel(model.system[..., i : i + 1]) for i in range(len(model.B)))
         return np.array([normal_matrices(run, part, np.empty(0)).error for part in parts])
     measured, sums = run.centred, np.zeros((2, len(model.B)))
-    for rows, first, last in responses(_begun(run, model), run.command):
+    for rows, first, last in responses(_begun(run, model), at_nodes(run)):
         residual = measured[first:last, None] - rows[: last - first, : len(model.B)]
         sums += residual.sum(axis=0), np.einsum("nv,nv->v", residual, residual)
     found = np.sqrt(np.maximum(sums[1] - sums[0] ** 2 / run.length, 0.0) / run.power)
@@ -164,7 +165,7 @@ def output(run: Run, model: LinearModel) -> Array:
 
     The offset between model and record is left in: it is a result of its own.
     """
-    y = respond(_begun(run, model), run.command)
+    y = respond(_begun(run, model), at_nodes(run))
     if len(y) == 1:
         return np.asarray(y[0])
     free = np.column_stack([*y[1:], np.ones(run.length)])
@@ -186,13 +187,11 @@ def _begun(run: Run, model: LinearModel) -> Recursion:
 def _with_releases(systems: Recursion) -> Recursion:
     """The batch and, behind it, the first system without input, released from each unit state."""
     n = systems.C.shape[1]
-    scale = np.abs(systems.gamma0[0]) + np.abs(systems.gamma1[0])
+    scale = np.abs(systems.gamma[0]).sum(axis=0)
     scale = np.where(scale > 0, scale, scale.max())
-    still = np.zeros((n, n))
-    more = (np.repeat(systems.phi[:1], n, axis=0), still, still, np.repeat(systems.C[:1], n, axis=0), np.zeros(n))
-    parts = (systems.phi, systems.gamma0, systems.gamma1, systems.C, systems.D)
-    phi, gamma0, gamma1, C, D = (np.concatenate(pair) for pair in zip(parts, more, strict=True))
-    return Recursion(phi, gamma0, gamma1, C, D, np.concatenate([systems.start, np.diag(scale)]))
+    still = np.zeros((n, *systems.gamma.shape[1:]))
+    phi, C = np.repeat(systems.phi[:1], n, axis=0), np.repeat(systems.C[:1], n, axis=0)
+    return systems.beside(Recursion(phi, still, C, np.zeros(n), np.diag(scale)))
 
 
 def _products(run: Run, systems: Recursion, strides: Array) -> Array:
@@ -200,7 +199,7 @@ def _products(run: Run, systems: Recursion, strides: Array) -> Array:
     length, q = max(16, -(-run.length // _BLOCKS)), len(systems.D) + 1
     sums = np.zeros((-(-run.length // length), q, q))
     measured = run.centred[:, None]
-    for rows, first, last in responses(systems, run.command):
+    for rows, first, last in responses(systems, at_nodes(run)):
         for block in range(first // length, -(-last // length)):
             begin, end = max(first, block * length), min(last, (block + 1) * length)
             part = rows[begin - first : end - first, None]

@@ -25,6 +25,7 @@ from ident.linear import LinearModel
 from ident.noise.power_density import power_density
 from ident.parallel import each
 from ident.run import Run
+from ident.simulation.between import at_nodes
 from ident.simulation.recursion import Recursion, discretise, responses
 
 Array = NDArray[np.float64]
@@ -184,21 +185,25 @@ def _gram(run: Run, basis: Basis) -> tuple[Array, float]:
 
     Only the products of the filters with command, record and 1 are summed sample by sample; see :func:`_products`.
     """
-    filters = discretise(basis.filters, run.sample_rate, run.hold)
+    filters, command = discretise(basis.filters, run.sample_rate, run.hold), at_nodes(run)
+    inputs = command.shape[1]
     if run.begins == "standing":
         filters = replace(filters, start=basis.filters.standing(run.command[0], 0.0))
     systems = filters.beside(_decays(filters)) if run.begins == "moving" else filters
     # The mean of a record would cost digits in the sums of squares, so it goes first; the model is blind to it anyway.
     measured = run.centred
-    now, then = np.append(run.command[:-1], 0.0), np.append(run.command[1:], 0.0)
-    beside = np.column_stack([now, then, measured, np.ones(run.length)])
-    sums, last = np.zeros((len(systems.D), 4)), np.zeros(len(systems.D))
-    for rows, begin, end in responses(systems, run.command):
+    driven = np.vstack([command[:-1], np.zeros_like(command[:1])])  # what comes behind the last sample shows in none
+    beside = np.column_stack([driven, measured, np.ones(run.length)])
+    sums, last = np.zeros((len(systems.D), inputs + 2)), np.zeros(len(systems.D))
+    for rows, begin, end in responses(systems, command):
         sums += (rows.T @ beside[begin:end])[: len(sums)]
         last = rows[-1, : len(sums)].copy()
     record = beside.T @ beside
     gram = np.block(
-        [[_products(systems, sums, last, record, basis.pairs), sums[:, 2:]], [sums[:, 2:].T, record[2:, 2:]]]
+        [
+            [_products(systems, sums, last, record, basis.pairs), sums[:, inputs:]],
+            [sums[:, inputs:].T, record[inputs:, inputs:]],
+        ]
     )
     columns, count = len(filters.D), len(systems.D)
     order = [*range(columns), count, *range(columns, count), count + 1]
@@ -209,15 +214,15 @@ def _gram(run: Run, basis: Basis) -> tuple[Array, float]:
 def _products(systems: Recursion, sums: Array, last: Array, record: Array, pairs: int) -> Array:
     """Σ_k x_i[k] x_j[k] of n filters over a record of N samples in closed form, (n, n).
 
-    Each is x = Re c of a complex filter of first order, c[k+1] = φ c[k] + γ0 u[k] + γ1 u[k+1]: in a pair x_i is the
+    Each is x = Re c of a complex filter of first order, c[k+1] = φ c[k] + w[k]: in a pair x_i is the
     real part of one and its partner the imaginary part, with a sign. The recursion, multiplied by that of another
     filter and summed over the samples, gives S = Σ c_i c_j from what is known:
 
         (1 − φi φj) S = ci[0] cj[0] − φi φj ci[N−1] cj[N−1] + φi Σ c_i w_j + φj Σ w_i c_j + Σ w_i w_j,
 
-    w[k] = γ0 u[k] + γ1 u[k+1]; the last three sums go to N − 2. Likewise with c_j conjugate; half the sum of both is
-    the product of the real parts. `sums` (n, ≥2) are those of x with u[k] and u[k+1], `record` (≥2, ≥2) those of the
-    command with itself.
+    w[k] = Σ γ u at the q nodes of sample k; the last three sums go to N − 2. Likewise with c_j conjugate; half the sum
+    of both is the product of the real parts. `sums` (n, ≥q) are those of x with u at the nodes, `record` (≥q, ≥q) those
+    of the command with itself.
     """
 
     def with_partner(x: Array) -> NDArray[np.complex128]:
@@ -228,18 +233,18 @@ def _products(systems: Recursion, sums: Array, last: Array, record: Array, pairs
         return x + 1j * partner
 
     def shown(states: Array) -> NDArray[np.complex128]:
-        return with_partner(np.einsum("in,in->i", systems.C, states))
+        return with_partner(np.einsum("in,i...n->i...", systems.C, states))
 
     pole = systems.phi[:, 0, 0] - 1j * systems.phi[:, 1, 0]
-    drive = np.stack([shown(systems.gamma0), shown(systems.gamma1)], axis=1)
-    start, end, driven = shown(systems.start), with_partner(last), with_partner(sums[:, :2])
+    drive, inputs = shown(systems.gamma), systems.gamma.shape[1]
+    start, end, driven = shown(systems.start), with_partner(last), with_partner(sums[:, :inputs])
     total = np.zeros((len(pole), len(pole)))
     for conjugate in (False, True):
         other = np.conj if conjugate else np.asarray
         through = np.outer(pole, other(pole))
-        inputs = drive @ record[:2, :2] @ other(drive).T
+        own = drive @ record[:inputs, :inputs] @ other(drive).T
         mixed = pole[:, None] * (driven @ other(drive).T) + other(pole) * (drive @ other(driven).T)
-        known = np.outer(start, other(start)) - through * np.outer(end, other(end)) + mixed + inputs
+        known = np.outer(start, other(start)) - through * np.outer(end, other(end)) + mixed + own
         total += 0.5 * (known / (1.0 - through)).real
     return total
 
@@ -248,8 +253,7 @@ def _decays(filters: Recursion) -> Recursion:
     """The filters without input, released from their first state."""
     start = np.zeros_like(filters.start)
     start[:, 0] = 1.0
-    still = np.zeros_like(filters.gamma0)
-    return Recursion(filters.phi, still, still, filters.C, filters.D, start)
+    return Recursion(filters.phi, np.zeros_like(filters.gamma), filters.C, filters.D, start)
 
 
 def within(signal: Array, sample_rate: float, low: float | None, high: float | None) -> Array:

@@ -71,6 +71,8 @@ class Noise:
 class Tracker:
     """The filter, a sample or a block at a time. `hold` says what r does between samples: "linear" or "zoh".
 
+    A "band-limited" r is drawn in lines too: a filter in real time does not know the samples that follow.
+
     It starts at `tau0` (s) and `gain0`, each of which may be up to five times off. Single samples far off are not
     believed; where they last, the parameters have changed and are found anew (unless `reopens` is false: then they are
     followed at the speed of the fictitious noise alone). Without motion the parameters rest, and their variance stays

@@ -16,6 +16,7 @@ from ident.readers.controldesk import read_controldesk
 from ident.readers.dat import read_dat
 from ident.readers.description import Description, describe
 from ident.readers.gzipped import unpacked
+from ident.readers.hold import with_hold
 from ident.readers.limits import LIMITS, Limits, check_size
 from ident.readers.rig import rig_in
 from ident.readers.run import read_run
@@ -124,7 +125,7 @@ def read_runs(
     digest = hashlib.sha256(text)
     runs: dict[int, Run] = {}
     notices: dict[str, list[str]] = {}  # alike but for the file's name
-    read, held = 0, 0
+    read, in_memory = 0, 0
     for name, wanted in by_file(described.runs).items():
         parts = [source.read(name, limits.file)]
         near = beside(source, name, limits, parts)
@@ -138,16 +139,17 @@ def read_runs(
                 for notice in tables[run.skip_rows].notices:
                     notices.setdefault(notice.replace(name, "", 1), []).append(notice)
             runs[number] = read_run(run, tables[run.skip_rows])
-            held += sum(samples.nbytes for samples in runs[number].channels.values())
-            check_size(held, limits.samples, "all samples together", name)
+            in_memory += sum(samples.nbytes for samples in runs[number].channels.values())
+            check_size(in_memory, limits.samples, "all samples together", name)
         read += sum(map(len, parts[1:]))
         for part in parts:
             digest.update(part)
-    outputs = (run for number in sorted(runs) for run in runs[number].of_outputs(described.runs[number].outputs))
+    held, chosen = with_hold([runs[n] for n in range(len(runs))], [of.hold_stated for of in described.runs])
+    outputs = (one for run, of in zip(held, described.runs, strict=True) for one in run.of_outputs(of.outputs))
     told = [
         one if not more else f"{one}; so it was with {count(len(more), 'more file')}" for one, *more in notices.values()
     ]
-    return tuple(outputs), tuple(told), digest.hexdigest()
+    return tuple(outputs), (*told, *chosen), digest.hexdigest()
 
 
 def by_file(runs: tuple[RunDescription, ...]) -> dict[str, list[tuple[int, RunDescription]]]:

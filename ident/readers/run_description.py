@@ -39,7 +39,8 @@ class TimeColumn:
 class RunDescription:
     """A run before its samples are read. `labels` is the run without channels and, with a time column, without rate.
 
-    `outputs` are the channels that a model must reproduce: each becomes a run.
+    `outputs` are the channels that a model must reproduce: each becomes a run. Where no `hold` is stated, its samples
+    choose one.
     """
 
     labels: Run
@@ -48,6 +49,7 @@ class RunDescription:
     time: TimeColumn | None
     skip_rows: int
     rows: tuple[int, int] | None
+    hold_stated: bool = True
 
 
 def describe_run(data: Any, where: str) -> RunDescription:
@@ -74,7 +76,7 @@ def describe_run(data: Any, where: str) -> RunDescription:
         gain=describe_gain(fields),
         amplitude=fields.positive("amplitude", _driven_unit(units)),  # RMS of the command, in its kind of unit
         kind=kind,
-        hold=fields.choice("hold", HOLDS, "linear"),
+        hold=describe_hold(fields, kind),
         output=outputs[0],
         use=fields.choice("use", USES, "fit"),
         position_range=describe_range(fields, units.get("displacement", "m")),
@@ -82,7 +84,8 @@ def describe_run(data: Any, where: str) -> RunDescription:
         rated_current=fields.positive("rated_current", units.get("current", "A")),
         closed_loop=fields.truth("closed_loop") if "closed_loop" in fields else None,
     )
-    return RunDescription(labels, outputs, channels, time, fields.whole("skip_rows"), describe_rows(fields))
+    rows, hold_stated = describe_rows(fields), "hold" in fields
+    return RunDescription(labels, outputs, channels, time, fields.whole("skip_rows"), rows, hold_stated)
 
 
 def _driven_unit(units: dict[str, str]) -> str:
@@ -99,6 +102,15 @@ def describe_id(fields: Fields) -> str:
             "bad-id", f"{shown(name)!r} cannot name files", fields.place("id"), "use letters, digits, - and _"
         )
     return name
+
+
+def describe_hold(fields: Fields, kind: str) -> str:
+    """What the command does between its samples. Raises Unusable: ``unknown-hold``; ``bench-hold`` for a bench."""
+    hold = fields.choice("hold", HOLDS, "linear")
+    if hold == "band-limited" and kind in BENCH:
+        what = "the current of a bench is drawn or held between its samples"
+        raise Unusable("bench-hold", what, fields.place("hold"), "use linear or zoh")
+    return hold
 
 
 def describe_outputs(fields: Fields, kind: str, channels: dict[str, ChannelDescription]) -> tuple[str, ...]:

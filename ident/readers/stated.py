@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.readers.description import describe_actuator
+from ident.readers.hold import with_hold
 from ident.readers.run import read_run
 from ident.readers.run_description import RunDescription, describe_run
 from ident.readers.suggestion import suggestion
@@ -113,4 +114,5 @@ def _matrix(run: RunDescription, table: Table, stated: Mapping[str, Any], parts:
     digest = hashlib.sha256(json.dumps(stated, sort_keys=True, default=str).encode())
     for part in parts or [samples.tobytes() for samples in read.channels.values()]:
         digest.update(part)
-    return Matrix(actuator, read.of_outputs(run.outputs), digest.hexdigest(), notices=table.notices)
+    (held,), chosen = with_hold([read], [run.hold_stated])
+    return Matrix(actuator, held.of_outputs(run.outputs), digest.hexdigest(), notices=(*table.notices, *chosen))

@@ -62,7 +62,7 @@ class Response:
         D = np.array([model.D[0] for model in models])
         scaled = LinearModel.of((A * scale / scale[:, None])[None], B[None], C[:1], D[:1])
         known = discretise(scaled, rate, "linear")
-        return cls(known.phi[0], known.gamma0[0], known.gamma1[0], C, D, scale)
+        return cls(known.phi[0], known.gamma[0, 0], known.gamma[0, 1], C, D, scale)
 
     def only(self, count: int) -> Response:
         """The first `count` of the models."""

@@ -11,6 +11,7 @@ from ident.chain.chain import DISTURBANCE, FORCE, INPUT
 from ident.chain.channels import BESIDE_MEAN, means
 from ident.chain.varying import MEASURED_CONDITIONS, is_measured
 from ident.run import DISTURBANCES, Run
+from ident.simulation.between import band_limited
 
 Array = NDArray[np.float64]
 _KEPT = 4  # of a run: a search has models that differ by their steps side by side
@@ -35,6 +36,8 @@ def fine(run: Run, name: str, steps: int, before: int) -> Array:
 
 
 def _fine(run: Run, channel: str, steps: int, before: int) -> Array:
+    if run.hold == "band-limited" and channel == INPUT:
+        return _curved(run, steps, before)
     samples = _record(run, channel)
     past = samples[:0] if run.past is None or channel != INPUT else run.past[-(before // steps + 1) :]
     samples = np.concatenate([past, samples])
@@ -53,9 +56,24 @@ def _fine(run: Run, channel: str, steps: int, before: int) -> Array:
         fine[-1] = samples[-1]
     if not first and channel == INPUT and run.begins == "at rest":
         whole[:lead] = 0.0
-    if not first and run.hold == "linear":
+    if not first and run.hold != "zoh":
         whole[lead - 1] -= jump_share(np.array(2.0)) * (fine[0] - whole[lead - 1])
     return whole[max(first - before, 0) :]
+
+
+def _curved(run: Run, steps: int, before: int) -> Array:
+    """A band-limited command at the fine steps.
+
+    A kernel draws lines between them, which lose (ω h)²/12 of a sine over steps of h. That is put on between the
+    samples, as a twelfth of the second difference, and in its place at the samples, where the command is itself.
+    """
+    samples = -(-before // steps)
+    fine = band_limited(run, np.arange(steps) / steps, samples).ravel()
+    bent = np.zeros(len(fine))
+    bent[1:-1] = (fine[2:] - 2 * fine[1:-1] + fine[:-2]) / 12 * (steps / max(steps - 1, 1))
+    bent[::steps] = 0.0
+    behind = np.full(3, run.command[-1])  # of which no sample shows anything
+    return np.concatenate([(fine - bent)[samples * steps - before :], behind])
 
 
 def _record(run: Run, name: str) -> Array:

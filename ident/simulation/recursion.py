@@ -1,9 +1,9 @@
 """The exact response of a linear chain to a sampled command.
 
-Between samples the command is what the run's `hold` says, so that the response at the samples is a recursion without
-any error of integration (F first-order hold "linear", Z zero-order hold "zoh"):
+Between samples the command is what the run's `hold` says, a polynomial through its values at nodes of the sample (see
+:mod:`ident.simulation.between`), so that the response at the samples is a recursion without any error of integration:
 
-    s[k+1] = Φ s[k] + Γ0 u[k] + Γ1 u[k+1],   y[k] = C s[k] + D u[k],   Φ = exp(A T)
+    s[k+1] = Φ s[k] + Σ_j Γj u(k + τj),   y[k] = C s[k] + D u[k],   Φ = exp(A T)
 
 Sixteen systems run side by side through one command, one a SIMD lane; blocks of samples keep the memory small.
 """
@@ -18,8 +18,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
+from scipy.special import factorial
 
 from ident.linear import LinearModel
+from ident.simulation.between import nodes
 from ident.simulation.compiled import function
 from ident.time_budget import check_time
 
@@ -31,17 +33,16 @@ _TINY = "1e-120"  # added and taken off again: what has died away stays a number
 
 @dataclass(frozen=True)
 class Recursion:
-    """A batch of b systems in discrete time: Φ (b, n, n), Γ0 and Γ1 (b, n), C (b, n), D (b), start state s0 (b, n)."""
+    """A batch of b systems in discrete time: Φ (b, n, n), Γ (b, q, n), C (b, n), D (b), start state s0 (b, n)."""
 
     phi: Array
-    gamma0: Array
-    gamma1: Array
+    gamma: Array
     C: Array
     D: Array
     start: Array
 
     def packed(self, lanes: int) -> Array:
-        """One flat buffer, the lane its fastest index: Φ, Γ0, Γ1, C, D, state.
+        """One flat buffer, the lane its fastest index: Φ, Γ, C, D, state.
 
         One buffer at constant offsets lets the compiler see that nothing overlaps. Spare lanes are zero systems.
         """
@@ -59,46 +60,52 @@ class Recursion:
 
     @property
     def _parts(self) -> tuple[Array, ...]:
-        return self.phi, self.gamma0, self.gamma1, self.C, self.D, self.start
+        return self.phi, self.gamma, self.C, self.D, self.start
 
 
 def discretise(model: LinearModel, sample_rate: float, hold: str) -> Recursion:
     """The recursion of a batch of linear models, shape (b, ...), at rest in the beginning.
 
-    Φ, Γ0, Γ1 come from one matrix exponential of the system with its input's own dynamics appended: a constant for
-    "zoh", a ramp for "linear" (the exact first-order hold).
+    Φ and the responses to τ^m/m! come from one matrix exponential of the system with its input's own dynamics appended:
+    a constant for "zoh", and a ramp for "linear" (the exact first-order hold), or more for "band-limited".
     """
-    T = 1.0 / sample_rate
-    batch, n = model.B.shape
-    augmented = np.zeros((batch, n + 2, n + 2))
+    T, at = 1.0 / sample_rate, nodes(hold)
+    (batch, n), q = model.B.shape, len(at)
+    augmented = np.zeros((batch, n + q, n + q))
     augmented[:, :n, :n] = model.A * T
     augmented[:, :n, n] = model.B * T
-    augmented[:, n, n + 1] = 1.0
+    augmented[:, range(n, n + q - 1), range(n + 1, n + q)] = 1.0
     phi = expm(augmented)
-    step, ramp = phi[:, :n, n], phi[:, :n, n + 1]
+    powers = phi[:, :n, n:].transpose(0, 2, 1)
     if hold == "zoh":
-        ramp = np.zeros_like(step)
-    return Recursion(phi[:, :n, :n], step - ramp, ramp, model.C, model.D, np.zeros((batch, n)))
+        gamma = np.stack([powers[:, 0], np.zeros((batch, n))], axis=1)
+    elif hold == "linear":
+        gamma = np.stack([powers[:, 0] - powers[:, 1], powers[:, 1]], axis=1)
+    else:
+        gamma = np.linalg.solve((at[:, None] ** np.arange(q) / factorial(np.arange(q))).T, powers)
+    return Recursion(phi[:, :n, :n], gamma, model.C, model.D, np.zeros((batch, n)))
 
 
 @lru_cache
-def advance(order: int, lanes: int = LANES) -> Callable[..., Any]:
+def advance(order: int, inputs: int = 2, lanes: int = LANES) -> Callable[..., Any]:
     """The compiled recursion for `order` states: kernel(b, u, first, last, out, stride) takes the packed buffer b over
     the samples first to last − 1 and writes the outputs, a row of lanes a sample, rows `stride` apart in the flat out.
+    Of each sample the command has `inputs` values, at its nodes, one after the other in the flat u.
 
     It is generated with every offset a number: only so does the compiler see that nothing overlaps and use SIMD.
     """
     n, L = order, lanes
-    gamma0, gamma1, C, D = n * n * L, (n * n + n) * L, (n * n + 2 * n) * L, (n * n + 3 * n) * L
+    gamma, C, D = n * n * L, (n * n + inputs * n) * L, (n * n + (inputs + 1) * n) * L
     state = D + L
+    read = "\n".join(f"        u{j} = u[k * {inputs} + {j}]" for j in range(inputs))
     lines = [f"            s{i} = b[{state + i * L} + lane]" for i in range(n)]
-    reading = " + ".join([f"b[{D} + lane] * now", *(f"b[{C + i * L} + lane] * s{i}" for i in range(n))])
+    reading = " + ".join([f"b[{D} + lane] * u0", *(f"b[{C + i * L} + lane] * s{i}" for i in range(n))])
     lines.append(f"            out[row + lane] = {reading}")
     for i in range(n):
-        drive = f"b[{gamma0 + i * L} + lane] * now + b[{gamma1 + i * L} + lane] * then"
+        drive = " + ".join(f"b[{gamma + (j * n + i) * L} + lane] * u{j}" for j in range(inputs))
         terms = " + ".join(f"b[{(i * n + j) * L} + lane] * s{j}" for j in range(n))
         lines.append(f"            b[{state + i * L} + lane] = {drive} + {terms} + {_TINY} - {_TINY}")
-    return function("recursion", _RECURSION.format(lanes=L, body="\n".join(lines)))
+    return function("recursion", _RECURSION.format(lanes=L, read=read, body="\n".join(lines)))
 
 
 _RECURSION = """from numba import njit
@@ -106,8 +113,7 @@ _RECURSION = """from numba import njit
 @njit(cache=True, fastmath={{"contract"}}, nogil=True)
 def recursion(b, u, first, last, out, stride):
     for k in range(first, last):
-        now = u[k]
-        then = u[min(k + 1, len(u) - 1)]
+{read}
         row = (k - first) * stride
         for lane in range({lanes}):
 {body}
@@ -115,7 +121,7 @@ def recursion(b, u, first, last, out, stride):
 
 
 def responses(recursion: Recursion, u: Array, spare: int = 0) -> Iterator[tuple[Array, int, int]]:
-    """Outputs of all systems of a batch to one command, block by block: (rows, first, last).
+    """Outputs of all systems of a batch to one command at its nodes, (n, q), block by block: (rows, first, last).
 
     `rows` (samples, lanes) has a column for each system, then at least `spare` of zeros. It is one buffer that every
     block overwrites, small enough to stay in the processor's cache: memory that is touched for the first time costs
@@ -123,19 +129,19 @@ def responses(recursion: Recursion, u: Array, spare: int = 0) -> Iterator[tuple[
     """
     batch, order = recursion.C.shape
     lanes = -(-(batch + spare) // LANES) * LANES
-    kernel, length = advance(order, LANES), max(1, _BLOCK // lanes)
+    kernel, length, flat = advance(order, u.shape[1]), max(1, _BLOCK // lanes), np.ascontiguousarray(u).ravel()
     buffer = np.empty(length * lanes)
     groups = [(recursion.part(i, i + LANES).packed(LANES), buffer[i:]) for i in range(0, lanes, LANES)]
     for first in range(0, len(u), length):
         last = min(first + length, len(u))
         for packed, out in groups:
             check_time()
-            kernel(packed, u, first, last, out, lanes)
+            kernel(packed, flat, first, last, out, lanes)
         yield buffer[: (last - first) * lanes].reshape(-1, lanes), first, last
 
 
 def respond(recursion: Recursion, u: Array) -> Array:
-    """Outputs of all systems of a batch to one command: (n,) → (b, n)."""
+    """Outputs of all systems of a batch to one command at its nodes: (n, q) → (b, n)."""
     out = np.empty((len(recursion.D), len(u)))
     for group in range(0, len(out), LANES):
         there = out[group : group + LANES]

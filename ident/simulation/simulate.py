@@ -30,7 +30,7 @@ class _Input:
     """One input of every run at the fine steps, one run after the other, (m,).
 
     `begin` is where each lane begins in it, `delay` the fine steps by which it is late, `known` whether what was
-    before the record is known, all (lanes,).
+    before the record is known, so that nothing jumps there, all (lanes,).
     """
 
     record: Array
@@ -143,7 +143,7 @@ class Simulation:
         records = [fine(run, name, self.steps, before) for run in self.runs]
         starts = np.cumsum([0, *(len(record) for record in records[:-1])]) + before
         begin = _filled(np.repeat(starts, self.shape[1]).astype(float), lanes).astype(np.int64)
-        past = [name == INPUT and run.past is not None for run in self.runs]
+        past = [name == INPUT and (run.past is not None or run.hold == "band-limited") for run in self.runs]
         known = _filled(np.repeat(past, self.shape[1]).astype(float), lanes) > 0
         return _Input(np.concatenate(records) if records[1:] else records[0], begin - whole, delay, known)
 

@@ -243,6 +243,19 @@ def test_where_some_files_look_held_and_others_do_not_they_are_named():
     assert told.startswith("the command of knob.csv rests and jumps")
 
 
+def test_a_command_whose_spectrum_ends_is_said_to_be_band_limited():
+    """The description leaves it open: reading chooses by the same rule."""
+    k, rng = np.arange(600), np.random.default_rng(3)
+    smooth = np.sin(np.multiply.outer(k, rng.uniform(0.1, 2.2, 40)) + 6.3 * rng.random(40)).sum(axis=1)
+    text = "\n".join(
+        ["time (s),command (V),speed (rpm)", *(f"{n / 100:g},{u:.9g},{n}" for n, u in enumerate(smooth)), ""]
+    )
+    draft = Draft([raw(text)], Answers(serial="M", channels={"velocity": Answer("speed (rpm)")}))
+    assert any("hold: band-limited" in doubt for doubt in draft.doubts)
+    assert "hold" not in draft.description()["runs"][0]
+    assert drafted(gathered(draft, [text.encode()])).runs[0].hold == "band-limited"
+
+
 def test_no_measured_command_is_taken_as_held_that_was_not(measured):
     _, told, files, _ = measured
     draft = Draft(files, Answers())

@@ -15,6 +15,7 @@ from ident.matrix import Actuator
 from ident.parameter import Parameter
 from ident.presets import PRESETS, Preset, preset
 from ident.run import Run, Specimen
+from ident.simulation.between import ends
 from ident.simulation.recursion import discretise, respond
 from ident.simulation.simulate import responses
 from ident.simulation.steps import steps_needed
@@ -163,7 +164,7 @@ def test_all_effects_off_is_the_linear_chain(hold):
         values = {p.name: np.array([p.value]) for p in PRESETS["qian2014"].parameters}
         specimen = {"mL": cell.mass, "k": cell.stiffness, "cL": cell.damping, "Kp": cell.gain, "A": PLANT.A}
         model = chain.linearise(values | {name: np.array([value]) for name, value in specimen.items()})
-        exact = respond(discretise(model, linear.SAMPLE_RATE, hold), command(number))[0]
+        exact = respond(discretise(model, linear.SAMPLE_RATE, hold), ends(command(number)))[0]
         for steps, limit in ((8, 1e-9), (1, 1e-6)):
             assert np.std(ours(whole, {}, cell, command(number), hold, steps=steps) - exact) < limit * np.std(exact)
 

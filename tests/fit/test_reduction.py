@@ -10,7 +10,8 @@ import scipy.signal
 
 from ident.fit.reduction import Basis, reduced
 from ident.noise.power_density import power_density
-from ident.run import Run
+from ident.run import HOLDS, Run
+from ident.simulation.between import at_nodes, ends
 from ident.simulation.recursion import discretise, respond, responses
 
 RATE = 1000.0
@@ -24,7 +25,7 @@ def run_of(samples: int = 4000, hold: str = "linear") -> Run:
     return Run("r", "", RATE, {"command": command, "displacement": displacement}, hold=hold)
 
 
-@pytest.mark.parametrize("hold", ["linear", "zoh"])
+@pytest.mark.parametrize("hold", HOLDS)
 @pytest.mark.parametrize("moving", [False, True])
 def test_a_reduced_run_has_the_error_that_its_filters_have_sample_by_sample(hold, moving):
     run = run_of(hold=hold)
@@ -34,12 +35,12 @@ def test_a_reduced_run_has_the_error_that_its_filters_have_sample_by_sample(hold
     found = reduced(run, basis)
     g = np.random.default_rng(2).standard_normal(2 * len(basis.nodes))
     filters = discretise(basis.filters, run.sample_rate, run.hold)
-    model = (basis.expansion @ g) @ respond(filters, run.command)
+    model = (basis.expansion @ g) @ respond(filters, at_nodes(run))
     nuisances = [np.ones(run.length)]
     if moving:
-        still = np.zeros_like(filters.gamma0)
-        released = replace(filters, gamma0=still, gamma1=still, start=np.eye(2)[np.zeros(len(filters.D), dtype=int)])
-        nuisances += list(respond(released, run.command))
+        still = np.zeros_like(filters.gamma)
+        released = replace(filters, gamma=still, start=np.eye(2)[np.zeros(len(filters.D), dtype=int)])
+        nuisances += list(respond(released, at_nodes(run)))
     basis_of_nuisances = scipy.linalg.orth(np.array(nuisances).T, rcond=1e-6)
     residual = run.measured - model
     residual = residual - basis_of_nuisances @ (basis_of_nuisances.T @ residual)
@@ -63,16 +64,16 @@ def test_blocks_of_responses_are_the_whole_with_spare_columns_of_zeros(count):
     basis = Basis(2 * np.pi * 100)
     systems = discretise(basis.filters, RATE, "linear").part(0, count)
     command = rng.standard_normal(2500)
-    blocks = [(rows.copy(), first, last) for rows, first, last in responses(systems, command, spare=2)]
+    blocks = [(rows.copy(), first, last) for rows, first, last in responses(systems, ends(command), spare=2)]
     assert [first for _, first, _ in blocks[1:]] == [last for *_, last in blocks[:-1]]
     assert blocks[-1][2] == len(command)
     rows = np.concatenate([rows for rows, *_ in blocks])
     assert rows.shape[1] >= count + 2
     assert not rows[:, count:].any()
-    np.testing.assert_array_equal(rows[:, :count].T, respond(systems, command))
+    np.testing.assert_array_equal(rows[:, :count].T, respond(systems, ends(command)))
     for i in {0, count - 1}:
         state, expected = np.zeros(2), []
         for now, then in zip(command, np.append(command[1:], command[-1]), strict=True):
             expected.append(systems.C[i] @ state + systems.D[i] * now)
-            state = systems.phi[i] @ state + systems.gamma0[i] * now + systems.gamma1[i] * then
+            state = systems.phi[i] @ state + systems.gamma[i, 0] * now + systems.gamma[i, 1] * then
         np.testing.assert_allclose(rows[:, i], expected, atol=1e-12)

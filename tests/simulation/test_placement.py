@@ -18,27 +18,29 @@ from ident.linear import LinearModel
 from ident.matrix import Actuator
 from ident.run import Run, Specimen
 from ident.presets import PRESETS, preset
+from ident.simulation.between import ends
 from ident.simulation.recursion import LANES, advance, discretise
 from ident.simulation.simulate import Simulation
 
 rng = np.random.default_rng(0)
 u = 1e-3 * rng.standard_normal(600)
+nodes = ends(u).ravel()
 model = preset("qian2014", ("dead_zone", "coulomb_friction"))
 run = Run("r", "", 4096.0, {"command": u, "displacement": u}, specimen=Specimen(1.0, 3e4), gain=7.0)
 known = conditions(run, Actuator("", piston_area=4.97e-4))
 values = {p.in_equations: p.value * rng.uniform(0.8, 1.25, LANES) for p in model.parameters} | known
 linear = PRESETS["qian2014"].chain.linearise({**values, **{n: np.full(LANES, v) for n, v in known.items()}})
 recursion = discretise(linear, 4096.0, "linear")
-packed, kernel = recursion.packed(LANES), advance(recursion.C.shape[1], LANES)
+packed, kernel = recursion.packed(LANES), advance(recursion.C.shape[1])
 found = set()
 for order in itertools.permutations(("b", "u", "out")):
     for gap in (0, 1, 5, 64):
-        sizes = {"b": packed.size, "u": u.size, "out": u.size * LANES}
+        sizes = {"b": packed.size, "u": nodes.size, "out": u.size * LANES}
         memory, at, part = np.zeros(sum(sizes.values()) + 4 * 64), 0, {}
         for name in order:
             part[name] = memory[at : at + sizes[name]]
             at += sizes[name] + gap
-        part["b"][:], part["u"][:] = packed.ravel(), u
+        part["b"][:], part["u"][:] = packed.ravel(), nodes
         kernel(part["b"], part["u"], 0, len(u), part["out"], LANES)
         found.add(part["out"].tobytes())
 kept, simulated = [], set()

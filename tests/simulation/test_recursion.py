@@ -13,7 +13,7 @@ def test_what_has_died_away_is_no_number_that_costs_time():
     model = LinearModel.of(np.array([[[-3.0]]]), np.array([[1.0]]), np.array([[1.0]]), np.array([0.0]))
     system = discretise(model, 100.0, "linear")
     system.start[:] = 2.0
-    (y,) = respond(system, np.zeros(30_000))
+    (y,) = respond(system, np.zeros((30_000, 2)))
     t = np.arange(30_000) / 100.0
     seen = t < 80.0
     np.testing.assert_allclose(y[seen], 2.0 * np.exp(-3.0 * t[seen]), rtol=1e-9)
