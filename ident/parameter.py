@@ -40,10 +40,10 @@ class Parameter:
     effect that it belongs to, none for a model's own. `lower` and `upper` are the physical bounds of the search;
     `value` is the default (for a strength: 0, off), `relative` that of a way on a machine of unknown size, in standard
     deviations of its motion. `searched`: of a shape without which the effect could not be found, free wherever the
-    effect is; other shapes are held at their default. `start` is from where its search begins. `of_motion`: a way, or
-    the inverse of one, of the machine's motion, by which it is measured, and not by the drive signal. `sets_steps`: a
-    way that has to be long against what is covered in a step of a simulation about a reversal. A range of more than two
-    decades is searched on a logarithmic scale, any other on a linear one.
+    effect is; other shapes are held at their default. `start` is from where its search begins. `of_motion`: a way,
+    the inverse of one, or a speed of the machine's motion, by which it is measured, and not by the drive signal.
+    `sets_steps`: a way that has to be long against what is covered in a step of a simulation about a reversal. A range
+    of more than two decades is searched on a logarithmic scale, any other on a linear one.
     """
 
     name: str

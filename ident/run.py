@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ident.beginning import ROUNDING, Beginning, beginning, standing_for
 from ident.cached import cached_property
+from ident.slopes import slopes
 from ident.words.shown import Listing, Shown
 
 Samples = NDArray[np.float64]
@@ -140,11 +141,11 @@ class Run(Shown):
     def driven_by(self, channel: str) -> Run:
         """The run with a channel in the place of its command; unchanged where it has none of that name.
 
-        A speed that was not recorded is the rate of the position.
+        A speed that was not recorded is the rate of the position, which may brake at once: see :mod:`ident.slopes`.
         """
         samples = self.channels.get(channel)
         if samples is None and channel == "velocity" and "displacement" in self.channels:
-            samples = np.gradient(self.channels["displacement"]) * self.sample_rate
+            samples = slopes(self.channels["displacement"], order=2) * self.sample_rate
         return self if samples is None else replace(self, channels={**self.channels, "command": samples}, past=None)
 
     @cached_property

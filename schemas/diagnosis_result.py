@@ -40,6 +40,7 @@ class CandidateView(BaseModel):
     predicted_error: float | None
     parameters: dict[str, RefittedView]
     group: list[str]
+    probability: float | None = None
     evidence: dict[str, float | bool | str | None]
     why: str
     error_with_mean: Errors = Field(default_factory=dict)
@@ -99,7 +100,9 @@ class VerdictView(BaseModel):
     `standing` is found where the error is at the noise floor, stand_in where something is left, contradicted where
     the error rises with an effect (`contradicted_by`) on runs to verify, nothing where no effect helps. `at_bound` are
     effects whose strength ended at a bound that the search set, `elsewhere` what other models explain as well, and
-    `stood_in` effects of the ladder that are not named, for beside proposed terms they are not needed.
+    `stood_in` effects of the ladder that are not named, for beside proposed terms they are not needed. `probability` is
+    that of the verdict, null where it was not asked; `probabilities` those of each effect that was refitted, of
+    "nothing" and of something "unlisted", `group_probabilities` those of the groups.
     """
 
     effects: list[str]
@@ -112,6 +115,16 @@ class VerdictView(BaseModel):
     at_bound: list[str] = Field(default_factory=list)
     elsewhere: list[ExplanationView] = Field(default_factory=list)
     stood_in: list[str] = Field(default_factory=list)
+    probability: float | None = None
+    probabilities: dict[str, float] = Field(default_factory=dict)
+    group_probabilities: list[float] = Field(default_factory=list)
+
+
+class EffectSetView(BaseModel):
+    """A set of effects that was refitted, and its gain over the fitted model, from which its probability follows."""
+
+    effects: list[str]
+    nats: float
 
 
 class SpecimenView(BaseModel):
@@ -199,7 +212,8 @@ class DiagnosisResult(BaseModel):
     """The contract's diagnose JSON.
 
     Not `complete`, the stages `not_looked_at` are missing: there was no time for them, or they failed. Of the terms
-    that were `looked_at` so many are `terms_left_out`, for no model can hold them or they are not finite.
+    that were `looked_at` so many are `terms_left_out`, for no model can hold them or they are not finite. `effect_sets`
+    are all sets of effects that were refitted, `most_nats` the gain of a model that leaves nothing but the noise.
     """
 
     model: str
@@ -225,4 +239,6 @@ class DiagnosisResult(BaseModel):
     version: str
     data_hash: str
     notes: list[str]
+    effect_sets: list[EffectSetView] = Field(default_factory=list)
+    most_nats: float | None = None
     preprocessing: list[StepView] = Field(default_factory=list)

@@ -131,7 +131,7 @@ class GenerationView(BaseModel):
 class StructureView(BaseModel):
     """A model that the channels allow, fitted where none was named; `parameters` is how many were searched.
 
-    `values` are those of its parameters, SI.
+    `values` are those of its parameters, SI; `probability` is that of the model among those that were compared.
     """
 
     machine: str
@@ -139,6 +139,7 @@ class StructureView(BaseModel):
     parameters: int
     why: str
     values: dict[str, float] = Field(default_factory=dict)
+    probability: float | None = None
 
 
 class MachineView(BaseModel):

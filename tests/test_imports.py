@@ -108,8 +108,9 @@ def test_what_a_benchmark_or_a_picture_imports_is_there(file):
 
 
 ROOMS = (
-    "errors", "plain", "cached", "progress", "time_budget", "parallel", "unstable", "words", "beginning", "run",
-    "rig", "matrix", "parameter", "linear", "statistics", "equations", "units", "stages", "effects", "chain", "presets",
+    "errors", "plain", "cached", "progress", "time_budget", "parallel", "unstable", "words", "beginning", "slopes",
+    "run", "rig", "matrix", "parameter", "linear", "statistics", "equations", "units", "stages", "effects", "chain",
+    "presets",
     "foreign", "readers", "custom", "preprocessing", "noise", "checks", "drafts", "simulation", "fit", "comparison",
     "residuals", "design", "diagnosis", "bench", "hybrid", "export", "figures", "synthesis", "planning", "workflows",
 )  # fmt: skip
@@ -197,8 +198,8 @@ def test_there_is_no_loose_file_but_the_basic_words_and_the_workflows():
     """What belongs together stands in a folder."""
     loose = {file.stem for file in files("ident/*.py")} - {"__init__"}
     assert loose == {
-        "errors", "plain", "cached", "progress", "time_budget", "parallel", "unstable", "beginning", "run", "matrix",
-        "parameter", "linear", "workflows",
+        "errors", "plain", "cached", "progress", "time_budget", "parallel", "unstable", "beginning", "slopes", "run",
+        "matrix", "parameter", "linear", "workflows",
     }  # fmt: skip
 
 

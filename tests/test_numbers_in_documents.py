@@ -41,7 +41,6 @@ from ident.hybrid import (
     verdict,
     what_if,
 )
-from ident.noise import autoregression
 from ident.preprocessing import run_exclusion
 from ident.readers import run
 from ident.residuals import correlation, curves
@@ -77,28 +76,10 @@ def of_diagnosis() -> Iterator[Tie]:
     )
     yield (
         D,
-        "takes at least {} per cent off the error of the estimation data",
-        (word(100 * CRITERIA.significance.worthwhile),),
-    )
-    yield D, "and {} of it on held-out chunks, too", (PARTS[CRITERIA.significance.worthwhile_held_out],)
-    yield (
-        D,
         "the {} that predicted most are started from {} points",
         (word(CRITERIA.selection.global_restarts), CRITERIA.estimation.global_points),
     )
     yield D, "The {} best points of each take three steps", (word(CRITERIA.estimation.global_starts),)
-    yield (
-        D,
-        "differ by less than {} standard errors are indistinguishable",
-        (word(CRITERIA.significance.indistinguishable),),
-    )
-    yield (
-        D,
-        "white noise could not separate their outputs by {} either",
-        (word(CRITERIA.significance.indistinguishable),),
-    )
-    yield D, "a member explains at least {} of what the best explains", (PARTS[CRITERIA.ambiguity.nearly_as_much],)
-    yield D, "no more than {} of the unexplained power", (PARTS[CRITERIA.ambiguity.bias_of_missing],)
     yield (
         D,
         "started from strong effects. Then {} others of the first ranking are tried two at a time",
@@ -107,16 +88,11 @@ def of_diagnosis() -> Iterator[Tie]:
     yield D, "if the error is more than {} % above the noise floor", (per_cent(CRITERIA.noise.floor_excess),)
     yield D, "rises with it by more than {} of its standard errors", (word(CRITERIA.verification.deviations),)
     yield D, "a bootstrap over chunks of {} correlation times", (word(CRITERIA.verification.chunk_length),)
-    yield D, "Errors that differ by less than {} % are a tie", (per_cent(CRITERIA.significance.tie),)
+    yield D, "Errors that differ by less than {} % are a tie", (per_cent(CRITERIA.equality.tie),)
     yield (
         D,
         "whose errors differ by less than {} %: in a flat valley",
-        (beyond(CRITERIA.significance.practically_equal),),
-    )
-    yield (
-        D,
-        "An effect that is {} worse than another on whole runs, beyond chance",
-        (PARTS[CRITERIA.significance.dominated],),
+        (beyond(CRITERIA.equality.practically_equal),),
     )
     yield D, "Terms that explain the same (cosine above {})", (plain(CRITERIA.discovery.same_class),)
     yield D, "the best {} classes and {} pairs", (word(CRITERIA.discovery.classes), word(CRITERIA.discovery.pairs))
@@ -131,16 +107,17 @@ def of_diagnosis() -> Iterator[Tie]:
     yield D, "hats at {} quantiles of the signal", (word(len(CRITERIA.discovery.knots)),)
     yield D, "the {} groups that explain most are refitted", (word(CRITERIA.discovery.curves),)
     yield D, "of {}, {} or {} times its slowest other time constant", tuple(plain(t) for t in windows._TIMES)
-    yield D, "on held-out data exceeds {}, or where", (plain(CRITERIA.significance.log_likelihood_gain),)
-    yield D, "mean gain of a chunk exceeds {} of its standard errors", (plain(CRITERIA.significance.consistent),)
-    yield D, "must cost the others no more than {} of it", (PARTS[CRITERIA.significance.loss_ratio],)
-    yield D, "(of {} or more): their mean gain", (word(CRITERIA.significance.several_runs),)
-    yield D, "their mean gain has to be {} of its standard errors", (plain(CRITERIA.significance.run_consistency),)
-    yield D, "over its last {} samples", (autoregression._ORDER,)
-    yield D, "over {} nats (`evidence.unforetold_nats`)", (plain(CRITERIA.significance.gain_without_best),)
-    yield D, "less than {} of what is left is new", (PARTS[CRITERIA.significance.innovation_share],)
-    yield D, "and L over {} nats is enough by itself", (plain(CRITERIA.significance.innovation_gain),)
-    yield D, "whole runs, dealt into {} folds", (word(CRITERIA.cross_validation.folds),)
+    of = CRITERIA.evidence
+    yield D, "Of {} runs or more whole runs take turns", (word(CRITERIA.cross_validation.whole_runs),)
+    yield D, "in {} folds. Of a single run {} stretches do", (
+        word(CRITERIA.cross_validation.folds), word(CRITERIA.cross_validation.stretches),
+    )  # fmt: skip
+    yield D, "at most {} for a band, at most {} in all", (plain(of.degrees_of_a_band), plain(of.degrees_in_all))
+    yield D, "all effects gains of {} residuals", (of.surrogates,)
+    yield D, "What gains {} of all that can be gained", ({0.5: "half"}[of.reaches],)
+    yield D, "beyond a {} by its error", ({0.01: "hundredth"}[of.share],)
+    yield D, "blocks of {} correlation times", (word(of.correlation_times),)
+    yield D, "it is also a {} of the unexplained power", ({0.05: "twentieth"}[of.separation],)
 
 
 def of_others() -> Iterator[Tie]:

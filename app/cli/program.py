@@ -6,7 +6,7 @@ import io
 import sys
 from importlib import metadata
 from itertools import chain
-from typing import TYPE_CHECKING, Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
 from typer.core import TyperGroup
@@ -61,9 +61,6 @@ from app.cli.withdraw import withdraw
 from app.cli.worker import worker
 from app.cli.workers import workers
 
-if TYPE_CHECKING:
-    import click
-
 GROUPS = {
     "Data": (simulate, init, join, check),
     "Identification": (fit, compare, profile, diagnose, next_, plan, bench, write_report),
@@ -79,7 +76,7 @@ BELOW = {"Identification": ("effects",), "Service": ("token", "webhook")}
 class Grouped(TyperGroup):
     """Lists the commands by heading: forty of them in one list cannot be read."""
 
-    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002 - as click calls it
+    def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ARG002 - as click calls it, whose types are typer's own
         """A section for each heading."""
         for heading, functions in GROUPS.items():
             names = [function.__name__.rstrip("_") for function in functions] + [*BELOW.get(heading, ())]

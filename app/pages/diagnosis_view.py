@@ -18,6 +18,7 @@ from ident.words.engineering import quantity
 from ident.words.error import ErrorOf
 from ident.words.number import plain
 from ident.words.percent import percent_in_print
+from ident.words.probability import probability_said
 from ident.words.titles import title
 from schemas.fit import JobView
 from schemas.matrix import RunView
@@ -46,6 +47,7 @@ class Card:
     chosen: bool
     gauge: tuple[float, float, float]
     evidence: tuple[str, str] | None
+    probability: str
 
     @property
     def group(self) -> bool:
@@ -169,7 +171,17 @@ def _card(rank: int, together: list[Ranked], stored: Stored, run: RunView | None
         chosen=any(candidate.effect in found.verdict.effects for candidate in together),
         gauge=_gauge(best, found),
         evidence=evidence(best, stored, own.get(best.effect), run),
+        probability=_probability(found, together),
     )
+
+
+def _probability(found: Diagnosis, together: list[Ranked]) -> str:
+    """How probable it is that the effect, or one of the group, is missing; "" where an earlier version did not ask."""
+    verdict, names = found.verdict, {candidate.effect for candidate in together}
+    of_groups = zip(verdict.indistinguishable, verdict.group_probabilities, strict=False)
+    of_group = next((p for group, p in of_groups if names == {*group}), None)
+    known = together[0].probability if of_group is None else of_group
+    return "" if known is None else probability_said(known)
 
 
 def _gauge(best: Ranked, found: Diagnosis) -> tuple[float, float, float]:

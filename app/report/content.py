@@ -135,8 +135,8 @@ def _missing(diagnosis: Diagnosis, matrix: Matrix) -> Iterator[Block]:
     if steps := ladder_steps(diagnosis):
         chart = ladder(steps, diagnosis.noise_floor.get("fit"), matrix.actuator, look("light"))
         yield Figure("ladder", chart, "The error with each effect added")
-    header = ("Effect", "Predicted error", "Fit", "Held out", "Verify", "Why")
-    yield Table(header, candidate_rows(diagnosis), (1, 2, 3, 4))
+    header = ("Effect", "Probability", "Predicted error", "Fit", "Held out", "Verify", "Why")
+    yield Table(header, candidate_rows(diagnosis), (1, 2, 3, 4, 5))
 
 
 def _verdict(diagnosis: Diagnosis) -> str:

@@ -13,6 +13,7 @@ from ident.residuals.trends import Trend
 from ident.words.engineering import quantity
 from ident.words.error import error_in_print
 from ident.words.percent import percent_in_print
+from ident.words.probability import probability_said
 from ident.words.titles import title
 
 Row = tuple[str, ...]
@@ -71,9 +72,9 @@ def ladder_steps(diagnosis: Diagnosis) -> list[Step]:
 
 
 def candidate_rows(diagnosis: Diagnosis) -> tuple[Row, ...]:
-    """Effect, predicted error, errors, why."""
+    """Effect, probability, predicted error, errors, why."""
     return tuple(
-        (title(c.effect), error_in_print(c.predicted_error),
+        (title(c.effect), probability_said(c.probability), error_in_print(c.predicted_error),
          *(c.error_of(use).in_print() for use in ("fit", "held_out", "verify")), c.why)
         for c in diagnosis.candidates
     )  # fmt: skip

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from importlib.metadata import version
-from typing import Any
 
 import numpy as np
 
@@ -17,10 +16,10 @@ from ident.comparison.compare import fitted
 from ident.custom.definition import preset_with
 from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.evidence.comparison import compare, indistinguishable, worth_adding
 from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.diagnosis.result import Baseline, Diagnosis, Ranked, Rung
-from ident.diagnosis.sentences import verdict_text, why_of_gain
-from ident.diagnosis.significance import Improvement, improvement
+from ident.diagnosis.sentences import evidence_figures, verdict_text, why_of_evidence
 from ident.diagnosis.stages import FURTHER, not_looked_at
 from ident.diagnosis.unfitted import unranked
 from ident.diagnosis.verdict import Findings, Residual, conclude
@@ -111,7 +110,7 @@ class BenchDiagnoser:
         """Fill the first ranking, and the refits from the fitted model to the last, each with one effect more."""
         first += self.refitter.rank(steps[0], self._names(steps[0]), self._progress)
         ranking = first
-        while len(steps) <= self.course.most and ranking and ranking[0].gain.beyond_chance:
+        while len(steps) <= self.course.most and ranking and worth_adding(ranking[0].evidence):
             steps.append(ranking[0].refit)
             self._heard(first, steps)
             names = self._names(steps[-1])
@@ -166,16 +165,17 @@ class BenchDiagnoser:
 
     def _ranked(self, candidate: Candidate, group: tuple[str, ...], base: Refit, best: bool) -> Ranked:
         refit, effect = candidate.refit, self.refitter.effects[candidate.effect]
+        helps, errors = worth_adding(candidate.evidence), (base.held_out_error, refit.held_out_error)
         return Ranked(
             effect=candidate.effect, error=self._errors(refit), offset=self._offset(refit),
             predicted_error=candidate.predicted, parameters=self._parameters(refit), unstable=self._unstable(refit),
             group=group if candidate.effect in group and len(group) > 1 else (),
-            evidence=_evidence(candidate.gain, effect),
-            why=why_of_gain(candidate.gain, effect, (base.held_out_error, refit.held_out_error), None, best),
+            evidence=evidence_figures(candidate.evidence, effect, helps),
+            why=why_of_evidence(candidate.evidence, effect, errors, helps, None, best),
         )  # fmt: skip
 
     def _rung(self, step: Refit, before: Refit | None) -> Rung:
-        nats = None if before is None else improvement(before.held_out, step.held_out).log_likelihood_gain
+        nats = None if before is None else compare(before.held_out, step.held_out).gain
         added = None if before is None else step.effects[-1]
         return Rung(
             added=added, error=self._errors(step), offset=self._offset(step), nats=nats,
@@ -185,15 +185,7 @@ class BenchDiagnoser:
 
 def _alike(ranking: list[Candidate]) -> tuple[str, ...]:
     """The best and those that are worse by no more than chance, where the best helps."""
-    if not ranking or not ranking[0].gain.beyond_chance:
+    if not ranking or not worth_adding(ranking[0].evidence):
         return ()
     best = ranking[0].refit.held_out
-    return tuple(c.effect for c in ranking if c is ranking[0] or improvement(c.refit.held_out, best).within_chance)
-
-
-def _evidence(found: Improvement, effect: Effect) -> Mapping[str, Any]:
-    return {
-        "confirmed": True, "fall": found.reduction, "deviations": found.deviations, "nats": found.log_likelihood_gain,
-        "nats_without_best_run": found.log_likelihood_gain_without_best, "beyond_chance": found.beyond_chance,
-        "looks": effect.looks, "meaning": effect.meaning,
-    }  # fmt: skip
+    return tuple(c.effect for c in ranking if c is ranking[0] or indistinguishable(compare(c.refit.held_out, best)))

@@ -1,7 +1,7 @@
 """What the four blocks lack, ranked: each effect is refitted with every value of the model to every record.
 
 Ranked are the effects that the fast simulation knows, and the user's own. What is better beyond chance is judged as
-for any model, see :mod:`ident.diagnosis.significance`.
+for any model, see :mod:`ident.diagnosis.evidence.comparison`.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from ident.bench.observed import Observed, observe
 from ident.bench.records import Record
 from ident.bench.residual import Residual
 from ident.cached import cached_property
-from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.cross_validation import CrossValidation
-from ident.diagnosis.significance import Improvement, improvement
+from ident.diagnosis.cross_validation import fold_of_blocks
+from ident.diagnosis.evidence.comparison import Evidence, Residuals, compare
+from ident.diagnosis.evidence.energy_bands import EnergyBands
+from ident.diagnosis.evidence.energy_bands import Record as ComparedRecord
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect, off_values
 from ident.effects.second_lag import SECOND_LAG
 from ident.effects.spring_load import SPRING_LOAD
 from ident.fit.bounded_step import bounded_step
-from ident.noise.effective_sample_size import independent_samples
 from ident.parallel import each
 from ident.parameter import Starts
 from ident.presets import Preset
@@ -52,7 +52,7 @@ class Refit:
     solution: Solution
     error: float
     held_out_error: float
-    held_out: CrossValidation
+    held_out: Residuals
 
     @property
     def model(self) -> Model:
@@ -67,7 +67,7 @@ class Candidate:
     effect: str
     predicted: float
     refit: Refit
-    gain: Improvement
+    evidence: Evidence
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +127,7 @@ class Refitter:
         model = self._with(base.model, effects)
         best = with_effect(model, self.effects[name], self._coarse, (*CONSTANTS, *self._strengths(effects)))
         refit = self._refit(effects, best)
-        return Candidate(name, self._error(best), refit, improvement(base.held_out, refit.held_out))
+        return Candidate(name, self._error(best), refit, compare(base.held_out, refit.held_out))
 
     def _strengths(self, effects: Sequence[str]) -> tuple[str, ...]:
         return tuple(self.effects[name].added[0].in_equations for name in effects)
@@ -143,14 +143,18 @@ class Refitter:
         first = _longer_first(solve(Residual(start, self._coarse, names), steps=_FINAL).model)
         weighed = tuple(each(lambda one: one.weighed(first), self._fine))
         solution = solve(Residual(first, weighed, names), steps=_FINAL)
-        squares = self._squares(Residual(solution.model, weighed, names))
-        residual = self._positions(solution.model)
-        lengths = np.array([len(r) for r in residual])
-        sizes = np.array([one.power for one in self._shown])
-        held = np.sqrt(squares.sum(axis=1) / lengths / sizes)
-        judged = CrossValidation(squares, self._left * lengths, np.zeros(len(lengths)), int(lengths.sum()),
-                         sum(independent_samples(r) for r in residual))  # fmt: skip
-        return Refit(effects, solution, self._error(solution.model), float(held.mean()), judged)
+        held_out = self._out_of_fold(Residual(solution.model, weighed, names))
+        error = np.mean([np.sqrt(np.mean(r**2) / one.power) for r, one in zip(held_out, self._shown, strict=True)])
+        return Refit(effects, solution, self._error(solution.model), float(error), Residuals(held_out, self._bands))
+
+    @cached_property
+    def _bands(self) -> EnergyBands:
+        """Of the positions that are compared, each record over what the fitted model leaves of it."""
+        records = (
+            ComparedRecord(float(np.sqrt(left)), one.record.id)
+            for left, one in zip(self._left, self._shown, strict=True)
+        )
+        return EnergyBands(tuple(records), tuple(len(r) for r in self._positions(self.model)))
 
     def _positions(self, model: Model) -> list[Array]:
         return [one.residual(model) for one in self._shown]
@@ -160,21 +164,25 @@ class Refitter:
         pairs = zip(self._positions(model), self._shown, strict=True)
         return float(np.mean([np.sqrt(np.mean(r**2) / one.power) for r, one in pairs]))
 
-    def _squares(self, whole: Residual) -> Array:
-        """Σ of squares of the positions of each record and block, each block without having been fitted to."""
-        fitted, shown = whole.normal(whole.origin), replace(whole, observed=tuple(self._shown))
-        blocks = shown.normal(shown.origin).products
-        count = len(blocks) // len(self._shown)
-        squares = np.zeros(len(blocks))
-        folds = CRITERIA.cross_validation.folds
-        for fold in range(folds):
-            inside = np.arange(len(blocks)) % folds == fold
-            used = np.arange(len(fitted.products)) % folds != fold
-            total = fitted.products[used].sum(axis=0)
-            step = _bounded(total)
-            direction = np.append(step, 1.0)
-            squares[inside] = np.einsum("i,bij,j->b", direction, blocks[inside], direction)
-        return np.maximum(squares, 0.0).reshape(-1, count)
+    def _out_of_fold(self, whole: Residual) -> tuple[Array, ...]:
+        """The residuals (n,) of the positions that are compared, by models that were fitted without each fold."""
+        products, runs = whole.normal(whole.origin).products, len(self._fine)
+        folds = [fold_of_blocks(number, len(products) // runs, runs) for number in range(runs)]
+        of_block = np.concatenate(folds)
+        models = [
+            whole.at(whole.origin + _bounded(products[of_block != fold].sum(axis=0)))
+            for fold in range(of_block.max() + 1)
+        ]
+        shown = (folds[number] for number, one in enumerate(self._fine) if np.isfinite(one.position_scale))
+        return tuple(
+            _by_fold([one.residual(m) for m in models], of) for one, of in zip(self._shown, shown, strict=True)
+        )
+
+
+def _by_fold(residuals: Sequence[Array], folds: NDArray[np.intp]) -> Array:
+    """Of a record's residuals (n,), one of each fold, the one of the fold that each sample is in."""
+    n = len(residuals[0])
+    return np.asarray(np.array(residuals)[folds[np.arange(n) * len(folds) // n], np.arange(n)])
 
 
 def _longer_first(model: Model) -> Model:

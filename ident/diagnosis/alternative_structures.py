@@ -14,10 +14,10 @@ from dataclasses import dataclass, replace
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.model_comparison import better, indistinguishable
 from ident.diagnosis.ranking import rank
 from ident.diagnosis.result import Explanation
 from ident.diagnosis.selection import Selection
-from ident.diagnosis.significance import improvement
 from ident.effects.effect import Effect
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
@@ -38,16 +38,15 @@ class AlternativeModel:
         base = models.refit((), self.values)
         if not base.finite:
             return
-        alone = improvement(base.held_out, found.held_out)
-        if alone.within_chance and not alone.beyond_chance:
+        if indistinguishable(base, found):
             yield Explanation(models.given.model, (), base.errors)
             return
         ranking = rank(models, base, list(models.effects), report, thorough=False)
         refits = [one.refit for one in ranking if one.refit is not None and one.improves]
-        equal = [refit for refit in refits if improvement(refit.held_out, found.held_out).within_chance]
-        better = [refit for refit in equal if improvement(found.held_out, refit.held_out).beyond_chance]
-        for refit in (better or equal)[: CRITERIA.ambiguity.alternatives]:
-            yield Explanation(models.given.model, refit.effects, refit.errors, bool(better))
+        equal = [refit for refit in refits if indistinguishable(refit, found)]
+        preferred = [refit for refit in refits if better(found, refit)]
+        for refit in (preferred or equal)[: CRITERIA.ambiguity.alternatives]:
+            yield Explanation(models.given.model, refit.effects, refit.errors, bool(preferred))
 
 
 def alternative_models(matrix: Matrix, fit: FitResult, custom: Iterable[Effect]) -> tuple[AlternativeModel, ...]:

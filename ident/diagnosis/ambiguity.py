@@ -42,6 +42,7 @@ def challenged(
         alternatives=tuple(tuple(one.effect for one in group) for group in selection.alternatives.values()),
         lag_pairs=tuple(lag_pairs),
         residual=residual,
+        set_gains=in_time(selection.refitted_sets.gains),
         verify=verify or (),
         at_bound=tuple(name for name in selection.added if models.at_bound(fitted, name)),
         suspects=tuple(suspects),

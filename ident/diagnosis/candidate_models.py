@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.chain.channels import unmeasured
+from ident.diagnosis.compared_records import ComparedRecords
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
@@ -56,6 +57,8 @@ class CandidateModels:
     memory: float | None = None
     _known: dict[tuple[tuple[str, ...], int], SimulatedFitness] = field(default_factory=dict)
     _records: dict[int, tuple[Run, ...]] = field(default_factory=dict)
+    _compared: dict[int, ComparedRecords] = field(default_factory=dict)
+    bars: dict[tuple[str, ...], float] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -90,11 +93,11 @@ class CandidateModels:
 
     def without(self, runs: Iterable[str]) -> CandidateModels:
         """The same models, fitted to fewer runs."""
-        return replace(self, left_out=self.left_out | frozenset(runs), _known={}, _records={})
+        return replace(self, left_out=self.left_out | frozenset(runs), _known={}, _records={}, _compared={}, bars={})
 
     def over_windows(self, horizon: float | None, memory: float | None) -> CandidateModels:
         """The same models, fitted over other windows."""
-        return replace(self, horizon=horizon, memory=memory, _known={})
+        return replace(self, horizon=horizon, memory=memory, _known={}, _compared={}, bars={})
 
     def model(self, effects: Iterable[str]) -> Preset:
         """The preset with these effects, in the order of the catalogue."""
@@ -172,6 +175,14 @@ class CandidateModels:
         known = self._known[key]
         return known.fresh(known.runs)  # no search goes on from the first states in which another one ended
 
+    def compared_records(self, samples: int = 0) -> ComparedRecords:
+        """The records of at most so many samples in all, as models are compared on them."""
+        runs = self._shortened(samples) if samples else self.runs
+        return self._compared.setdefault(samples, self._compared.get(samples) or ComparedRecords(runs, self._floors))
+
+    def _floors(self) -> Floors:
+        return self.floors
+
     def _shortened(self, samples: int) -> tuple[Run, ...]:
         """The records at that length, the same ones for every model: what is known of a record is found once."""
         return self._records.setdefault(samples, self._records.get(samples) or shortened(self.runs, samples))
@@ -189,6 +200,11 @@ class CandidateModels:
     def floor(self) -> float | None:
         """The noise floor averaged over the runs that are fitted; None where it cannot be told of every run."""
         return self.floors.mean(self.runs)
+
+    def is_quick(self, fitted: FittedModel) -> bool:
+        """Whether a matrix is so small that refits take next to nothing."""
+        steps = int(fitted.fitness.steps(fitted.fitness.space.values(fitted.point[None])).max())
+        return steps * sum(run.length for run in self.runs) < CRITERIA.ranking.quick_steps
 
     def at_floor(self, refit: FittedModel) -> bool:
         """Whether the error of a refit is noise alone, as far as the floor is known; never where it cannot be told."""
@@ -288,7 +304,7 @@ class CandidateModels:
         point, here = fitness.optimum(point, way)
         off = {p.in_equations for name, e in self.effects.items() if name not in effects for p in e.added}
         values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}
-        return FittedModel(effects, values, fitness.space, point, here, fitness)
+        return FittedModel(effects, values, fitness.space, point, here, fitness, self.compared_records(samples))
 
     def continued(self, refit: FittedModel, way: Way, samples: int = 0) -> FittedModel:
         """First steps that are gone on with; as they are, where they came to an end too far off."""
@@ -304,6 +320,21 @@ class CandidateModels:
                 break
             refit = further
         return refit
+
+    def best_optimum(self, refit: FittedModel) -> FittedModel:
+        """The refit, or a better one from where else in the whole search space the error is least.
+
+        Looked for where refits take next to nothing and this one leaves more than noise.
+        """
+        if not refit.stable or not self.is_quick(refit) or not self.residual_above_noise(refit):
+            return refit
+        aim = CRITERIA.estimation.new_optimum * self.trial_error(refit)
+        others = [one for one in self.leading(self.global_starts(refit.effects), aim) if one.local.error < aim]
+        if not others:
+            return refit
+        best = stable_minimum(others, lambda one: one.local.error)
+        found = self.converged(self.refit(refit.effects, best.values))
+        return found if found.finite and found.local.error < refit.local.error else refit
 
     def trial_error(self, refit: FittedModel) -> float:
         """What a first refit has to beat: the error of a refit on the beginnings of the records."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ident.diagnosis.discovery.criteria import Discovery, TermShapes
+from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 from ident.fit.levenberg_marquardt import Way
 
 TINY: float = 1e-300
@@ -92,6 +93,9 @@ class StructureSelection:
     """[ratio of errors] Of another machine with its best effect to that of the first. Why: a machine with more
     parameters may have made up for a part of what is missing.
     Test: test_structure_selection.py::test_more_parameters_do_not_make_up_for_an_effect"""
+    longer_gain: float = 10.0
+    """[log-likelihood] That longer windows gain over the fitted ones, beyond the logarithm of the number of models.
+    Why: one in 20,000 by chance."""
     carried_models: int = 4
     """[models] Taken to the next longer windows. Why: the likeliest of each set of effects.
     Test: test_prediction_horizon.py::test_another_gain_each_way_is_judged_over_whole_runs"""
@@ -114,6 +118,12 @@ class Screening:
     strengths_of_many: tuple[float, ...] = (0.3,)
     """[of the way to each bound] At which each of many shapes is simulated. Why: the middle of the range by its
     logarithm."""
+    strengths_of_stop: tuple[float, ...] = (1.02, 1.08, 1.2, 1.4, 1.7)
+    """[of the inverse of the way that was covered] At which a stop is simulated. Why: one that gives way was passed.
+    Test: test_initial_guesses.py::test_a_stop_that_gives_way_lies_before_the_end_of_the_way"""
+    elsewhere: int = 3
+    """[places] Of its shapes from which a refit begins again, in addition to the one that promises most. Why: of four
+    places along a range. Test: test_free_shapes.py::test_an_end_above_its_prediction_is_begun_again"""
     max_scaling: float = 2.0
     """[ratio of strengths] By which a response may be scaled. Why: beyond it the response would be another
     strength's."""
@@ -213,7 +223,7 @@ class Ranking:
     """[rounds] Of continuing from a better optimum. Why: each begins around the last."""
     promising: float = 3e-3
     """[relative reduction] Of the score that is worth a refit. Why: three tenths of what is asked in the end
-    (significance.worthwhile)."""
+    (evidence.share)."""
     offset_gain: float = 3.0
     """[log-likelihood] Predicted gain of the runs' offsets that is worth a refit. Why: a third of what is asked in
     the end. Test: test_diagnose.py::test_a_null_bias_is_found_by_the_offsets"""
@@ -223,100 +233,48 @@ class Ranking:
 
 @dataclass(frozen=True)
 class CrossValidationFolds:
-    """Blocks of the records that take turns in being held out."""
+    """Stretches of records, or whole runs, that take turns in being left out of a fit."""
 
-    chunks: int = 8
-    """[chunks] Of each record. Why: each fold then has two of each record.
-    Test: test_cross_validation.py::test_held_out_errors_of_a_line_are_those_of_fits_without_each_fold"""
+    whole_runs: int = 4
+    """[runs] From which on whole runs are left out. Why: what only tells runs apart is then seen; of fewer a fit
+    without one knows too little.
+    Test: test_cross_validation.py::test_of_four_runs_whole_ones_are_left_out_of_fewer_stretches"""
     folds: int = 4
-    """[folds] A quarter of the data is held out at a time. Why: the fit without a fold is close to the fit of all.
-    Test: test_cross_validation.py::test_errors_between_runs_are_those_of_fits_without_each_fold_of_runs"""
-    chunks_of_few: int = 32
-    """[chunks] Of each record where there are fewer records than chunks. Why: the scatter of chunks is to be
-    known."""
+    """[folds] A quarter of the runs is left out at a time. Why: the fit without a fold is close to the fit of all.
+    Test: test_cross_validation.py::test_residuals_out_of_fold_are_those_of_fits_without_each_fold"""
+    stretches: int = 8
+    """[stretches] Of a single run, of which each is left out; half as many of each of two or three. Why: as many fits
+    as there are of many runs, twice, and each stretch long beside the machine's memory.
+    Test: test_cross_validation.py::test_of_four_runs_whole_ones_are_left_out_of_fewer_stretches"""
     seed: int = 0
     """[seed] By which runs are dealt to folds. Why: a matrix lists its runs in an order of its own."""
     max_step: float = 0.01
-    """[of an axis] That one linearisation is trusted over. Why: a longer step is fitted in full.
+    """[of an axis] That one linearisation is trusted over. Why: what acts in jumps is far from linear beyond.
     Test: test_cross_validation.py::test_a_step_stays_in_the_cube_and_the_rest_makes_up_for_it"""
-    effort: Way = Way(converged=1e-4, most=20)
-    """[Way] Of a fit without a fold. Why: it starts close by, and one linearisation ends it."""
+    longest_step: float = 0.1
+    """[of an axis] That a fold moves any parameter. Why: one that the other folds do not determine would go to a bound.
+    Test: test_cross_validation.py::test_a_step_that_is_too_long_is_shortened"""
+    step_shares: tuple[float, ...] = (1.0, 0.5, 0.2, 0.05)
+    """[of the step] Tried of a longer one, until the other folds are explained better. Why: each is a simulation,
+    and less than a twentieth moves nothing.
+    Test: test_cross_validation.py::test_a_step_that_is_too_long_is_shortened"""
     least_offset: float = 1e-9
     """[of the standard deviation] Of an offset in a score. Why: a logarithm needs one."""
+    conditions_of_an_octave: float = 2.0
+    """[steps] Of the size and the period of a command, by which tests are of one condition. Why: repetitions of a test
+    differ by less, levels of a test matrix by more."""
 
 
 @dataclass(frozen=True)
-class Significance:
-    """When one model is better than another beyond chance, and when the two are equal."""
+class Equality:
+    """When the order of two models is left to how they are listed."""
 
-    log_likelihood_gain: float = 10.0
-    """[log-likelihood] That a better model gains on held-out data. Why: one in 20,000 by chance, if only the best
-    of a large number could tell.
-    Test: test_cross_validation.py::test_what_one_run_alone_asks_for_is_not_beyond_chance"""
-    worthwhile: float = 1e-2
-    """[relative reduction] Of the error that is worth a parameter. Why: less is not worth one, however certain.
-    Test: test_cross_validation.py::
-    test_the_fitted_records_tell_whether_an_error_falls_enough_if_half_of_it_is_seen_held_out"""
-    worthwhile_held_out: float = 0.5
-    """[of the worthwhile] Reduction that is to be seen on held-out data, too. Why: fits in kinks end a little off
-    without a fold. Test: test_cross_validation.py::
-    test_the_fitted_records_tell_whether_an_error_falls_enough_if_half_of_it_is_seen_held_out"""
-    indistinguishable: float = 3.0
-    """[standard errors] Below which two models differ by chance. Why: one in 700 by chance.
-    Test: test_ranking.py::test_what_nothing_replaced_is_in_its_group"""
-    indistinguishable_offsets: float = 4.5
-    """[log-likelihood] Of the offsets below which two models differ by chance. Why: three standard deviations."""
-    indistinguishable_gain: float = 18.0
-    """[log-likelihood] Below which two models differ by chance. Why: 2 × 3²: white noise of σ separates the outputs
-    by three deviations, |f − g|² = 36 σ²."""
-    offset: float = 3e-4
-    """[of the standard deviation] Of an offset that matters. Why: less is nobody's concern.
-    Test: test_diagnose.py::test_a_null_bias_is_found_by_the_offsets"""
-    gain_without_best: float = 5.0
-    """[log-likelihood] That is to remain without the run that gains most, and the least of the innovations. Why:
-    what one run alone asks for is a question about that run.
-    Test: test_cross_validation.py::test_what_one_run_alone_asks_for_is_not_beyond_chance"""
-    innovation_gain: float = 15.0
-    """[log-likelihood] Of the innovations that is enough by itself over windows. Why: a drift that its past does
-    not quite predict makes ten. Test: test_cross_validation.py::test_over_windows_what_is_unforetold_decides"""
-    innovation_share: float = 0.2
-    """[of the residual's power] That is innovation where the innovations are asked. Why: less, and the residual is
-    no noise. Test: test_cross_validation.py::test_of_a_pattern_far_above_the_noise_its_past_is_no_judge"""
-    consistent: float = 3.0
-    """[standard errors] Of the mean gain of the chunks that is beyond chance by itself. Why: one in 700 by chance.
-    Test: test_cross_validation.py::test_a_slow_pattern_that_falls_is_nothing_where_the_data_become_no_likelier"""
-    consistent_without_best: float = 2.5
-    """[standard errors] That are to remain without the run that gains most. Why: one run fewer knows a little less.
-    Test: test_cross_validation.py::test_what_one_run_alone_asks_for_is_not_beyond_chance"""
-    run_consistency: float = 1.5
-    """[standard errors] Of the mean gain of the runs below which few of them gain. Why: what only some runs reach
-    is unsteady without being chance.
-    Test: test_cross_validation.py::test_what_differs_from_run_to_run_counts_by_runs"""
-    loss_ratio: float = 0.1
-    """[of the gains] That the other runs may lose where few gain. Why: more, and it is these runs against the
-    others. Test: test_cross_validation.py::test_what_differs_from_run_to_run_counts_by_runs"""
-    several_runs: int = 6
-    """[runs] From which on runs are counted, and not their chunks. Why: the scatter of fewer is not known.
-    Test: test_cross_validation.py::test_what_differs_from_run_to_run_counts_by_runs"""
-    hysteretic_scatter: float = 1.1
-    """[ratio of held-out errors] Within which refits with an effect that acts in jumps are equal. Why: a hysteretic
-    effect has a local optimum for each sequence of reversals.
-    Test: test_fitted_model.py::test_what_acts_in_jumps_is_as_good_as_what_leaves_some_per_cent_less"""
-    hysteretic_share: float = 0.5
-    """[of the best's reduction] That such a refit is to explain. Why: what explains less is another effect.
-    Test: test_fitted_model.py::test_what_acts_in_jumps_is_as_good_as_what_leaves_some_per_cent_less"""
-    dominated: float = 0.1
-    """[relative reduction] On whole runs by which one model dominates another. Why: equals whose fits end at other
-    optima lie some per cent apart there.
-    Test: test_ranking.py::test_what_ties_on_blocks_is_told_apart_by_whole_runs"""
     tie: float = 1e-4
     """[relative difference] Of two errors that rounding may decide. Why: refits end within about a hundredth of it.
     Test: test_tie_breaking.py::test_rounding_changes_no_order"""
     practically_equal: float = 1.02
     """[ratio of errors] Of two models that the data cannot tell apart, within which they tie. Why: in a flat valley
     rounding decides where a refit ends. Test: test_tie_breaking.py::test_rounding_changes_no_order"""
-    hysteretic_tie: float = 1.05
-    """[ratio of errors] Of two such models where one acts in jumps. Why: its refits end that far apart."""
 
 
 @dataclass(frozen=True)
@@ -345,13 +303,6 @@ class Selection:
 class Ambiguity:
     """What the data cannot tell apart."""
 
-    nearly_as_much: float = 0.9
-    """[of the best's reduction, in power] That a member of a group explains where something is unexplained. Why:
-    what is missing may be met a little more by one effect than by another.
-    Test: test_ranking.py::test_what_is_missing_tells_no_two_effects_apart"""
-    bias_of_missing: float = 0.05
-    """[of the unexplained power] That a member of a group may leave beyond the best. Why: an unmodelled effect can
-    bias the comparison by that much. Test: test_ranking.py::test_what_is_missing_tells_no_two_effects_apart"""
     alternatives: int = 3
     """[effects] Of one other model that are told. Why: a sentence holds no more."""
     delay_near: float = 1.05
@@ -429,8 +380,6 @@ class Conclusion:
     simpler_terms: float = 1.05
     """[ratio of errors] That terms alone may leave and still come before those with what was added. Why: they need
     one effect less. Test: test_stages.py::test_terms_of_the_first_search_stay_where_there_is_no_time_for_the_second"""
-    no_fall: float = 1e-3
-    """[relative reduction] Below which it is said that the error stays. Why: it is shown with three digits."""
 
 
 @dataclass(frozen=True)
@@ -445,7 +394,8 @@ class Criteria:
     free_widths: FreeWidths = FreeWidths()
     ranking: Ranking = Ranking()
     cross_validation: CrossValidationFolds = CrossValidationFolds()
-    significance: Significance = Significance()
+    evidence: EvidenceCriteria = EVIDENCE_CRITERIA
+    equality: Equality = Equality()
     selection: Selection = Selection()
     ambiguity: Ambiguity = Ambiguity()
     verification: Verification = Verification()

@@ -14,6 +14,7 @@ from ident.diagnosis.discovery.discover import INCOMPLETE, discovered, is_search
 from ident.diagnosis.discovery.discovery_result import DiscoveryResult
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.follow_up import error_budget, next_run
+from ident.diagnosis.free_shapes import from_the_start
 from ident.diagnosis.label_checks import label_suspects
 from ident.diagnosis.moves import Moves
 from ident.diagnosis.prediction_horizon import longer_horizon
@@ -114,9 +115,10 @@ class Diagnoser:
     def _moves(self, models: CandidateModels, begin: FittedModel | None = None) -> Moves:
         preset = models.model(self.fit.effects)
         start = {preset.parameter(name).in_equations: value for name, value in self.fit.values.items()}
-        base = models.refit(tuple(self.fit.effects), start)
+        base = models.best_optimum(models.converged(models.refit(tuple(self.fit.effects), start)))
         if not base.stable:
             raise Unusable("bad-fit", "the fitted model is unstable on a run", "fit", "fit the model to this matrix")
+        models = from_the_start(models, base)
         return Moves(models, base, self.budget.most, self.budget.report_progress, self._publish_step, begin)
 
     def _publish_step(self, selection: Selection) -> None:

@@ -4,24 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
+from ident.diagnosis.compared_records import ComparedRecords
 from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.cross_validation import CrossValidation, by_chunk, cross_validated, not_held_out
+from ident.diagnosis.cross_validation import OutOfFold, out_of_fold
+from ident.diagnosis.evidence.comparison import Residuals
 from ident.diagnosis.parameter_estimate import ParameterEstimate
-from ident.diagnosis.significance import improvement
-from ident.fit.fitness import STEP, Local, Worth
+from ident.fit.fitness import Local
 from ident.fit.result import Combination
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.slow_answer import slow_lag
 from ident.fit.space import Space
 from ident.fit.uncertainty import DETERMINED, Covariance, covariance
-from ident.noise.autoregression import prediction_errors
-from ident.noise.effective_sample_size import independent_samples
 from ident.run import Run, over_runs
 from ident.time_budget import in_time
 from ident.unstable import UNSTABLE
@@ -40,37 +39,54 @@ class FittedModel:
     point: Array
     local: Local
     fitness: SimulatedFitness = field(repr=False)
+    records: ComparedRecords = field(repr=False)
 
     @cached_property
-    def held_out(self) -> CrossValidation:
-        """Its errors on blocks that were left out in turn."""
-        found = cross_validated(self.point, self.local, self._evaluated, self._simulated.independent)
-        return self._with_innovations(found)
+    def held_out(self) -> OutOfFold:
+        """What it leaves of stretches, or of whole runs, that were left out in turn."""
+        lengths = [run.length for run in self.fitness.runs]
+        return self._residuals(out_of_fold(self.point, self.local, self._left_of, self._seen, lengths))
 
     @cached_property
-    def not_held_out(self) -> CrossValidation:
-        """The same with nothing left out: to compare models of as many parameters."""
-        return self._with_innovations(not_held_out(self.local, self._simulated.independent))
+    def residuals_held_out(self) -> Residuals:
+        """The same, to be compared with those of other models of these runs."""
+        return Residuals(self.held_out.residuals, self.records.bands, self.held_out.levels)
 
-    def _evaluated(self, point: Array, worth: Worth) -> Local:
-        return self.fitness.exact(point, worth=worth)
+    @cached_property
+    def residuals_fitted(self) -> Residuals:
+        """What it leaves of the runs with nothing left out: to compare models of as many parameters, at once."""
+        every = range(len(self.fitness.runs))
+        fitted = self._residuals(self._left_of(self.point, every))
+        return Residuals(fitted.residuals, self.records.bands, fitted.levels)
 
-    def _with_innovations(self, found: CrossValidation) -> CrossValidation:
-        innovations = self._simulated.innovations(found.squares.shape[1])
-        return replace(found, innovations=innovations, in_windows=self.fitness.horizon is not None)
+    def _left_of(self, point: Array, numbers: Sequence[int]) -> list[Array]:
+        """What the model at a point leaves of some runs, means and all."""
+        runs = tuple(self.fitness.runs[number] for number in numbers)
+        outputs = self.fitness.part(runs).outputs(point)
+        return [run.measured - outputs[run.id] for run in runs]
+
+    def _seen(self, number: int, residual: Array) -> Array:
+        """A residual of a run as eq. (17) sees it: less its mean, or over windows."""
+        run = self.fitness.runs[number]
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self.fitness.left(run, run.measured - residual)
+
+    def _residuals(self, whole: Sequence[Array]) -> OutOfFold:
+        """Residuals as eq. (17) sees them, and their means."""
+        runs = self.fitness.runs
+        with np.errstate(over="ignore", invalid="ignore"):
+            sizes = np.array([float(np.std(run.measured)) for run in runs])
+            means = np.array([float(r.mean()) for r in whole]) / sizes
+            seen = tuple(self._seen(number, r) for number, r in enumerate(whole))
+        if self.fitness.horizon is not None:
+            means = np.zeros(len(runs))
+        return OutOfFold(seen, sizes, means - means.mean(), np.array([run.share for run in runs]))
 
     def reordered(self, effects: tuple[str, ...]) -> FittedModel:
         """The same model with its effects in another order; what is known of it stays known."""
         other = copy(self)
         other.__dict__["effects"] = effects
         return other
-
-    @cached_property
-    def between_runs(self) -> CrossValidation | None:
-        """Its errors on whole runs that were left out in turn; None of a single run."""
-        if len(self.local.runs) < 2:
-            return None
-        return cross_validated(self.point, self.local, self._evaluated, self._simulated.independent, whole_runs=True)
 
     @property
     def stable(self) -> bool:
@@ -162,11 +178,6 @@ class FittedModel:
         outputs = self.fitness.fresh(tuple(runs)).outputs(self.point)
         return [self.fitness.left(run, outputs[run.id]) for run in runs]
 
-    @property
-    def hysteretic(self) -> frozenset[str]:
-        """Its effects that act in jumps."""
-        return frozenset(effect.name for effect in self.fitness.preset.effects if effect.stride > STEP)
-
     @cached_property
     def _known(self) -> Covariance:
         return covariance(self.local, self.point)
@@ -204,67 +215,15 @@ class FittedModel:
         return float(over_runs([run.offset for run in self.local.runs], self.local.runs))
 
 
-def improves(less: FittedModel, more: FittedModel) -> bool:
-    """Whether a model does better than another beyond chance, and what it has learned holds from run to run."""
-    return improvement(less.held_out, more.held_out).beyond_chance and generalises(less, more)
-
-
-def generalises(less: FittedModel, more: FittedModel) -> bool:
-    """Whether a model is no worse than another, but by chance, on whole runs that neither was fitted to.
-
-    What does better on blocks of runs that it has seen, and worse here, tells runs apart instead of explaining them.
-    """
-    return not dominated(more, less, share=-np.inf)
-
-
-def dominated(worse: FittedModel, better: FittedModel, share: float = CRITERIA.significance.dominated) -> bool:
-    """Whether of two models one is better beyond chance, and by a `share`, on whole runs that neither was fitted to.
-
-    Equals whose fits end at other optima lie some per cent apart there.
-    """
-    before, after = worse.between_runs, better.between_runs
-    if before is None or after is None:
-        return False
-    gain = improvement(before, after)
-    return gain.beyond_chance and gain.reduction > share
-
-
-def indistinguishable(best: FittedModel, other: FittedModel, base: FittedModel | None = None) -> bool:
-    """Whether of two refits the better one is better by chance only, or by no more than refits of it end apart.
-
-    What acts in jumps has an optimum behind every jump: moved by next to nothing it ends at another, some per cent off.
-    So far off is alike only what explains most of what the best explains of that which a `base` left.
-    """
-    if improvement(other.held_out, best.held_out).within_chance:
-        return True
-    least, left = best.held_out.score, other.held_out.score
-    most = (
-        np.inf
-        if base is None
-        else base.held_out.score - CRITERIA.significance.hysteretic_share * (base.held_out.score - least)
-    )
-    return best.hysteretic != other.hysteretic and left <= min(CRITERIA.significance.hysteretic_scatter * least, most)
-
-
-def distinguishable(worse: FittedModel, better: FittedModel) -> bool:
-    """Whether of two models of as many parameters, at the noise, one is likelier beyond chance, by however little."""
-    return (
-        not indistinguishable(better, worse)
-        and improvement(worse.held_out, better.held_out).likelihood_gain_significant
-    )
-
-
 @dataclass(frozen=True)
 class _Simulated:
-    """What a simulation leaves of runs: eq. (17) averaged over them, and how many of its samples tell something new.
+    """What a simulation leaves of runs: eq. (17) averaged over them.
 
-    `whole` (n,) is what it leaves of each from its first sample to its last, `with_mean` RMS(x − x_m)/std(x_m) of it,
-    averaged as the error is; `unstable` are the ids of the runs on which the model is.
+    `with_mean` is RMS(x − x_m)/std(x_m) of whole runs, averaged as the error is; `unstable` are the ids of the runs on
+    which the model is.
     """
 
     error: float
-    independent: float
-    whole_residuals: list[Array]
     with_mean: float
     unstable: tuple[str, ...]
 
@@ -277,12 +236,7 @@ class _Simulated:
         whole = [run.measured - outputs[run.id] for run in runs]
         with_mean = over_runs([_rms(r) / np.std(run.measured) for r, run in zip(whole, runs, strict=True)], runs)
         unstable = tuple(run.id for run, error in zip(runs, errors, strict=True) if not error < UNSTABLE)
-        independent = sum(map(independent_samples, left))
-        return cls(float(over_runs(errors, runs)), independent, whole, float(with_mean), unstable)
-
-    def innovations(self, chunks: int) -> Array:
-        """Σ of squares of what the past of each residual does not foretell, by chunk, (runs, chunks)."""
-        return by_chunk([prediction_errors(residual) for residual in self.whole_residuals], chunks)
+        return cls(float(over_runs(errors, runs)), float(with_mean), unstable)
 
 
 def _rms(residual: Array) -> float:

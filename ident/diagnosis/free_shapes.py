@@ -16,12 +16,12 @@ import numpy as np
 
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.fitted_model import FittedModel, improves
+from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.model_comparison import improves
 from ident.diagnosis.screening import Prediction, predict
 from ident.diagnosis.tie_breaking import stable_minimum
 from ident.effects.effect import Effect
 from ident.fit.given import effect_of
-from ident.fit.space import Space
 from ident.fit.uncertainty import DETERMINED
 from ident.parameter import Parameter, Starts
 
@@ -43,7 +43,14 @@ def freed(effect: Effect) -> Effect:
 def with_free_shapes(models: CandidateModels, names: Iterable[str]) -> CandidateModels:
     """The models with every width of these effects free."""
     effects = {name: freed(effect) if name in names else effect for name, effect in models.effects.items()}
-    return replace(models, effects=effects, _known={})
+    return replace(models, effects=effects, _known={}, bars={})
+
+
+def from_the_start(models: CandidateModels, base: FittedModel) -> CandidateModels:
+    """The models with every width free where the records are so short that it costs little."""
+    if not models.is_quick(base):
+        return models
+    return with_free_shapes(models, with_widths(models, [name for name in models.effects if name not in base.effects]))
 
 
 def with_widths(models: CandidateModels, names: Iterable[str]) -> list[str]:
@@ -66,7 +73,7 @@ def with_free_widths(
     promising = sorted(predict(free, base, names), key=lambda prediction: prediction.after.error)
     promising = [prediction for prediction in promising if prediction.after.error < asked][: CRITERIA.free_widths.tried]
     refits = [freed_refit(free, base, prediction) for prediction in promising]
-    better = [refit for refit in refits if refit is not None and improves(best, refit)]
+    better = [refit for refit in refits if refit is not None and improves(models, best, refit)]
     return stable_minimum(better, lambda refit: refit.held_out.score) if better else None
 
 
@@ -75,14 +82,22 @@ def freed_refit(models: CandidateModels, base: FittedModel, prediction: Predicti
 
     None where the data do not determine a width.
     """
-    name, effects = prediction.effect, (*base.effects, prediction.effect)
-    ends = [models.trial(effects, prediction.starts)]
-    starts = _elsewhere(models, ends[0], name)
-    while starts and not converged(ends, prediction):
-        ends.append(models.refit(effects, starts.pop(0), CRITERIA.estimation.trial_samples, CRITERIA.estimation.trial))
-    best = stable_minimum(ends, lambda end: end.local.error)
-    refit = models.converged(models.refit(effects, best.values)) if best.finite else best
-    return refit if refit.finite and determined(refit, models.effects[name]) else None
+    best = trial_from_everywhere(models, base, prediction)
+    refit = models.converged(models.refit(best.effects, best.values)) if best.finite else best
+    return refit if refit.finite and determined(refit, models.effects[prediction.effect]) else None
+
+
+def trial_from_everywhere(
+    models: CandidateModels, base: FittedModel, prediction: Prediction, aim: float = np.inf
+) -> FittedModel:
+    """The first refit with a predicted effect, begun again from other places of its shapes until two ends agree."""
+    effects = (*base.effects, prediction.effect)
+    ends = [models.trial(effects, prediction.starts, aim)]
+    for starts in prediction.elsewhere:
+        if converged(ends, prediction):
+            break
+        ends.append(models.trial(effects, starts, aim))
+    return stable_minimum(ends, lambda end: end.local.error)
 
 
 def determined(refit: FittedModel, effect: Effect) -> bool:
@@ -117,21 +132,3 @@ def converged(ends: Sequence[FittedModel], prediction: Prediction) -> bool:
         errors[1] <= (1.0 + CRITERIA.free_widths.agrees) * errors[0]
         and errors[0] <= CRITERIA.free_widths.missed * prediction.after.error
     )
-
-
-def _elsewhere(models: CandidateModels, refit: FittedModel, name: str) -> list[dict[str, float]]:
-    """The values of a refit with the widths of an effect at other places along their axes, the nearest first."""
-    space = refit.space
-    axes = [space.names.index(p.in_equations) for p in models.effects[name].added[1:] if _is_free(p, space)]
-    starts: list[tuple[float, dict[str, float]]] = []
-    for axis in axes:
-        for place in CRITERIA.initial_guesses.along_range:
-            point = refit.point.copy()
-            point[axis] = place
-            values = {key: float(value[0]) for key, value in space.values(point[None]).items()}
-            starts.append((abs(place - float(refit.point[axis])), {**refit.values, **values}))
-    return [start for _, start in sorted(starts, key=lambda start: start[0])]
-
-
-def _is_free(parameter: Parameter, space: Space) -> bool:
-    return parameter.searched and parameter.in_equations in space.names

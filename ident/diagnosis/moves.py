@@ -7,15 +7,16 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import combinations
-from math import inf
 
 from ident.diagnosis.candidate import Candidate, in_rank_order, indistinguishable_group
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.fitted_model import FittedModel, distinguishable, improves
+from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.free_shapes import with_free_shapes, with_free_widths
 from ident.diagnosis.ladder import Ladder, score, without_effect
+from ident.diagnosis.model_comparison import better, improves
 from ident.diagnosis.ranking import deepened, rank, rank_each
+from ident.diagnosis.refitted_sets import RefittedSets
 from ident.diagnosis.selection import Selection
 from ident.diagnosis.tie_breaking import stable_minimum
 from ident.errors import TimeIsUp
@@ -41,7 +42,10 @@ class Moves:
     _ranking_so_far: list[Candidate] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.latest = Selection(self.models, self.base, (self.base,), rungs=Ladder(self.models))
+        self.refitted_sets = RefittedSets(self.base)
+        self.latest = Selection(
+            self.models, self.base, (self.base,), rungs=Ladder(self.models), refitted_sets=self.refitted_sets
+        )
 
     def keep(self, selection: Selection) -> Selection:
         """Remember a selection as the latest."""
@@ -51,6 +55,7 @@ class Moves:
     def step(self, selection: Selection, fitted: FittedModel) -> Selection:
         """The selection with one more model on its path, refined until it stays."""
         selection = self.keep(replace(selection, path=(*selection.path, self.models.converged(fitted))))
+        self.refitted_sets.met([selection.fitted])
         self.listener(selection)
         return selection
 
@@ -70,7 +75,7 @@ class Moves:
             return selection
         base, listener = selection.base, self._keep_ranking
         ranking = rank(self.models, base, self._addable(base), self.report, listener=listener)
-        return self.keep(replace(selection, ranking=tuple(ranking)))
+        return self.keep(replace(selection, ranking=tuple(self._recorded(ranking))))
 
     def with_what_was_met(self, selection: Selection) -> Selection:
         """Rank by what was met on the path: an effect alone, at a better optimum than the ranking found for it.
@@ -90,7 +95,7 @@ class Moves:
         def by_path(candidate: Candidate) -> Candidate:
             met, known = alone.get(candidate.effect), candidate.refit
             better = met is not None and (known is None or met.held_out.score < known.held_out.score)
-            return candidate.refitted(base, met) if better and met is not None else candidate
+            return candidate.refitted(self.models, base, met) if better and met is not None else candidate
 
         return tuple(in_rank_order(self.models, map(by_path, selection.ranking)))
 
@@ -98,7 +103,12 @@ class Moves:
         self._ranking_so_far = candidates
 
     def _rank(self, base: FittedModel, thorough: bool, strong: bool = False) -> list[Candidate]:
-        return rank(self.models, base, self._addable(base), self.report, thorough, strong)
+        return self._recorded(rank(self.models, base, self._addable(base), self.report, thorough, strong))
+
+    def _recorded(self, ranking: list[Candidate]) -> list[Candidate]:
+        """The same ranking, its refits kept with those of all other sets of effects."""
+        self.refitted_sets.met(candidate.refit for candidate in ranking if candidate.refit is not None)
+        return ranking
 
     def _addable(self, base: FittedModel) -> list[str]:
         return [name for name in self.models.effects if name not in base.effects]
@@ -133,9 +143,9 @@ class Moves:
 
     def _from_start(self, selection: Selection, best: Candidate | None) -> Selection | None:
         """Begin with the model that was fitted before, where it is better than the best of the first ranking."""
-        if self.start is None or not self.start.finite or not improves(selection.fitted, self.start):
+        if self.start is None or not self.start.finite or not improves(self.models, selection.fitted, self.start):
             return None
-        if best is not None and best.refit is not None and improves(self.start, best.refit):
+        if best is not None and best.refit is not None and improves(self.models, self.start, best.refit):
             return None
         return self.step(selection, self.start)
 
@@ -146,7 +156,7 @@ class Moves:
             return None
         less = self.models.refit(refit.effects[:-1], without_effect(refit.values, name))
         worse = not less.finite or less.held_out.score >= selection.fitted.held_out.score
-        if worse or improves(less, refit):
+        if worse or improves(self.models, less, refit):
             return None
         base = less if less.effects == selection.base.effects else selection.base
         return self.step(replace(selection, base=base), less)
@@ -159,7 +169,7 @@ class Moves:
         removable = [name for name in selection.added if name != latest]
         while removable:
             here, tried = selection.fitted, each(partial(self._less, selection), removable)
-            needless = (i for i, less in enumerate(tried) if less.finite and not improves(less, here))
+            needless = (i for i, less in enumerate(tried) if less.finite and not improves(self.models, less, here))
             first = next(needless, None)
             if first is None:
                 break
@@ -188,7 +198,6 @@ class Moves:
         if len(selection.added) > 1:
             selection, _ = self._backward(selection)
         selection, here = replace(selection, alternatives={}), selection.fitted
-        noise = (self.models.floor or 0.0) if self.models.residual_above_noise(here) else inf
         selection, in_place = self._in_place_of_each(selection)
         for name, ranking in zip(selection.added, in_place, strict=True):
             best = next((c for c in ranking if c.refit is not None), None)
@@ -198,21 +207,14 @@ class Moves:
                 order = tuple(best.effect if one == name else one for one in here.effects)
                 changed = replace(selection, changes=selection.changes + 1)
                 return self._backward(self.step(changed, best.refit.reordered(order)), best.effect)[0]
-            alternatives = {**selection.alternatives, name: indistinguishable_group(name, here, ranking, noise)}
+            alternatives = {**selection.alternatives, name: indistinguishable_group(name, here, ranking)}
             selection = self.keep(replace(selection, alternatives=alternatives))
         return selection
 
     def _is_better(self, fitted: FittedModel, name: str, other: Candidate) -> bool:
-        """Whether another effect is better in the place of one: at the noise by however little, if beyond chance.
-
-        The same effect found again is at a better optimum.
-        """
+        """Whether another effect is better in the place of one; the same effect found again is at a better optimum."""
         assert other.refit is not None
-        if other.effect == name:
-            return True
-        simple = self.models.simplicity(other.effect)[0] <= self.models.simplicity(name)[0]
-        at_noise = simple and self.models.at_floor(fitted)
-        return improves(fitted, other.refit) or (at_noise and distinguishable(fitted, other.refit))
+        return other.effect == name or better(fitted, other.refit)
 
     def _in_place_of_each(self, selection: Selection) -> tuple[Selection, list[Sequence[Candidate]]]:
         """What could stand in the place of each added effect, ranked: for the first what it was chosen from.
@@ -222,14 +224,14 @@ class Moves:
         added, ranking = selection.added, selection.ranking
         if ranking and [*added] == [ranking[0].effect]:
             first, *others = ranking
-            again = [first.refitted(selection.base, selection.fitted), *others]
+            again = [first.refitted(self.models, selection.base, selection.fitted), *others]
             ranking = tuple(deepened(self.models, selection.base, again))
             return self.keep(replace(selection, ranking=ranking)), [ranking]
         bases = each(partial(self._less, selection), added)
         sound = [(base, self._addable(base)) for base in bases if base.finite]
         given = selection.fitted
         ranked = iter(rank_each(self.models, sound, self.report, thorough=False, incumbent=given) if sound else ())
-        return selection, [next(ranked) if base.finite else [] for base in bases]
+        return selection, [self._recorded(next(ranked)) if base.finite else [] for base in bases]
 
     def exchange_pass(self, selection: Selection) -> Selection | None:
         """Exchange among more effects than are compared every time, until none is exchanged."""
@@ -271,7 +273,7 @@ class Moves:
         if best is None or not best.local.error < self.models.trial_error(selection.fitted):
             return None
         refit = self.models.refit(best.effects, best.values)
-        if not refit.finite or not improves(selection.fitted, refit):
+        if not refit.finite or not improves(self.models, selection.fitted, refit):
             return None
         return self.step(selection, refit)
 
@@ -321,8 +323,8 @@ class Moves:
 
         The search continues with its models.
         """
-        fewer = len(after.added) < len(before.added) and not improves(after.fitted, before.fitted)
-        best = after if fewer or improves(before.fitted, after.fitted) else before
+        fewer = len(after.added) < len(before.added) and not improves(self.models, after.fitted, before.fitted)
+        best = after if fewer or improves(self.models, before.fitted, after.fitted) else before
         self.models = best.models
         return self.keep(best)
 
@@ -336,7 +338,7 @@ class Moves:
         for _, rung in selection.ladder()[1:-1]:
             judged = any(rung is fitted for fitted in selection.path)
             judged_again = rung.finite and (not judged or score(rung) < score(selection.fitted))
-            if judged_again and not improves(rung, selection.fitted):
+            if judged_again and not improves(self.models, rung, selection.fitted):
                 as_few = [fitted for fitted in selection.path if len(fitted.effects) <= len(rung.effects)]
                 back = stable_minimum([rung, *as_few], score)
                 kept = {name: of for name, of in selection.alternatives.items() if name in back.effects}

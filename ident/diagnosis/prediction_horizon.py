@@ -35,7 +35,7 @@ class LongerHorizon:
 def longer_horizon(moves: Moves, report: Report) -> LongerHorizon | None:
     """The models over windows by which, with one effect, the records are most likely, where those are longer ones.
 
-    Weighed are the finalists of the first ranking over the fitted windows, refitted over longer ones, and what ranks
+    SetGains are the finalists of the first ranking over the fitted windows, refitted over longer ones, and what ranks
     first of whole runs. More likely than by the fitted model they are to be beyond chance for the best of all that was
     looked at. None where the fitted windows stay, or leave nothing to explain. Raises TimeIsUp.
     """
@@ -45,7 +45,7 @@ def longer_horizon(moves: Moves, report: Report) -> LongerHorizon | None:
         return None
     ranking = moves.first_ranking(moves.latest).ranking
     carried = [base, *(one.refit for one in ranking if one.refit is not None)]
-    chance = CRITERIA.significance.log_likelihood_gain + float(np.log(len(models.effects) * len(horizons)))
+    chance = CRITERIA.structure.longer_gain + float(np.log(len(models.effects) * len(horizons)))
     asked = max(
         _log_likelihood(base, models.memory) + chance, *(_log_likelihood(one, models.memory) for one in carried)
     )

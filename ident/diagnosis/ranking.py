@@ -14,6 +14,7 @@ from ident.diagnosis.candidate import Candidate, in_rank_order
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.free_shapes import trial_from_everywhere
 from ident.diagnosis.screening import Prediction, predict
 from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
 from ident.parallel import each
@@ -132,7 +133,7 @@ def _joined(
     came = {one.effect: one for one in chain(*stages)}
     came |= {
         one.effect: one
-        for one in _incumbent_as_candidate(base, predicted, incumbent)
+        for one in _incumbent_as_candidate(models, base, predicted, incumbent)
         if not _is_better(came.get(one.effect), one)
     }
     return in_rank_order(models, [came.get(one.effect, Candidate(one)) for one in predicted])
@@ -140,7 +141,7 @@ def _joined(
 
 def deepened(models: CandidateModels, base: FittedModel, ranking: Sequence[Candidate]) -> list[Candidate]:
     """The ranking of a small matrix, once all its finalists are looked for elsewhere; as it is of a large one."""
-    if not _is_quick(models, base):
+    if not models.is_quick(base):
         return list(ranking)
     finalists, rest = ranking[: CRITERIA.ranking.finalists], ranking[CRITERIA.ranking.finalists :]
     restarted = each(partial(_multistart, models, {}, base), finalists[CRITERIA.ranking.multistart_finalists :])
@@ -149,7 +150,10 @@ def deepened(models: CandidateModels, base: FittedModel, ranking: Sequence[Candi
 
 def _tried(models: CandidateModels, base: FittedModel, prediction: Prediction, aim: float, strong: bool) -> Candidate:
     """A candidate after its first refit, which has to come below `aim`; from strong effects, too, where asked."""
-    refit = models.trial((*base.effects, prediction.effect), prediction.starts, aim)
+    if prediction.elsewhere and models.is_quick(base):
+        refit = trial_from_everywhere(models, base, prediction, aim)
+    else:
+        refit = models.trial((*base.effects, prediction.effect), prediction.starts, aim)
     if strong:
         other = models.multistart(refit, _strong_starts(models, base, refit), min(aim, refit.local.error))
         refit = stable_minimum([refit, other], lambda r: r.local.error)
@@ -160,7 +164,7 @@ def _confirmed(models: CandidateModels, base: FittedModel, candidate: Candidate)
     """A candidate refitted to every sample."""
     assert candidate.trial is not None
     refit = models.refit((*base.effects, candidate.effect), candidate.trial.values)
-    return candidate.refitted(base, refit) if refit.finite else replace(candidate, trial=None)
+    return candidate.refitted(models, base, refit) if refit.finite else replace(candidate, trial=None)
 
 
 def _side_by_side(
@@ -190,8 +194,8 @@ def _finalists(
     """
     best = tried[0].score if tried else 0.0
     as_last = (
-        CRITERIA.significance.practically_equal * tried[finalists_at_least - 1].score
-        if len(tried) > finalists_at_least and _is_quick(models, base)
+        CRITERIA.equality.practically_equal * tried[finalists_at_least - 1].score
+        if len(tried) > finalists_at_least and models.is_quick(base)
         else 0.0
     )
     good = min(
@@ -201,14 +205,14 @@ def _finalists(
 
 
 def _incumbent_as_candidate(
-    base: FittedModel, predictions: Sequence[Prediction], incumbent: FittedModel | None
+    models: CandidateModels, base: FittedModel, predictions: Sequence[Prediction], incumbent: FittedModel | None
 ) -> list[Candidate]:
     """The candidate, if any, with which a base is the model that stands beside it."""
     found = []
     for one in predictions:
         if incumbent is not None and _is_incumbent(base, one, incumbent):
             known = incumbent.reordered((*base.effects, one.effect))
-            found.append(Candidate(one, known).refitted(base, known))
+            found.append(Candidate(one, known).refitted(models, base, known))
     return found
 
 
@@ -265,15 +269,9 @@ def _few(models: CandidateModels, base: FittedModel) -> int:
     """How many contenders for a further effect there may be."""
     return (
         CRITERIA.ranking.contenders
-        if _is_quick(models, base)
+        if models.is_quick(base)
         else max(CRITERIA.ranking.further_contenders - 2 * len(base.effects), CRITERIA.ranking.finalists)
     )
-
-
-def _is_quick(models: CandidateModels, base: FittedModel) -> bool:
-    """Whether a matrix is so small that refits take next to nothing."""
-    steps = int(base.fitness.steps(base.fitness.space.values(base.point[None])).max())
-    return steps * sum(run.length for run in models.runs) < CRITERIA.ranking.quick_steps
 
 
 def _multistart(
@@ -292,7 +290,7 @@ def _multistart(
         if other is None:
             break
         refit, starts = other, _perturbed_starts(models, other)
-    return candidate if refit is candidate.refit else candidate.refitted(base, refit)
+    return candidate if refit is candidate.refit else candidate.refitted(models, base, refit)
 
 
 def _strong_starts(models: CandidateModels, base: FittedModel, refit: FittedModel) -> list[dict[str, float]]:
@@ -322,5 +320,5 @@ def _is_worth_a_trial(prediction: Prediction) -> bool:
     """Whether a prediction is worth a refit: by a part of what is asked for in the end."""
     return prediction.reduction > CRITERIA.ranking.promising or (
         prediction.offset_likelihood_gain > CRITERIA.ranking.offset_gain
-        and prediction.before.offset > CRITERIA.significance.offset
+        and prediction.before.offset > CRITERIA.evidence.level
     )

@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial
 from importlib.metadata import version
 from typing import Any
 
-from ident.diagnosis.candidate import Candidate
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.evidence.probability import SetGains
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.free_shapes import bounds_of_freed, held_widths
 from ident.diagnosis.ladder import Rungs
-from ident.diagnosis.result import NO_ERRORS, Baseline, Diagnosis, Errors, Ranked, Rung
+from ident.diagnosis.model_comparison import evidence
+from ident.diagnosis.result import NO_ERRORS, Baseline, Diagnosis, EffectSet, Errors, Ranked, Rung
 from ident.diagnosis.selection import Selection
-from ident.diagnosis.sentences import verdict_text, why
-from ident.diagnosis.significance import improvement
+from ident.diagnosis.sentences import evidence_figures, verdict_text, why
 from ident.diagnosis.verdict import Findings, conclude, contradiction
-from ident.effects.effect import Effect
 from ident.errors import TimeIsUp
 from ident.fit.result import FitResult
 from ident.parallel import each
@@ -43,7 +41,7 @@ def report(fit: FitResult, models: CandidateModels, selection: Selection, steps:
         horizon=selection.models.horizon,
         memory=selection.models.memory,
         left_out=tuple(run.id for run in models.matrix.runs if run.id in selection.models.left_out),
-        candidates=tuple(_ranked(selection, floor["fit"])),
+        candidates=tuple(_ranked(selection, floor["fit"], verdict.probabilities)),
         ladder=tuple(ladder),
         verdict=verdict,
         proposals=(),
@@ -54,7 +52,16 @@ def report(fit: FitResult, models: CandidateModels, selection: Selection, steps:
         preprocessing=models.matrix.preprocessing,
         settings=_settings(fit, models, selection),
         notes=_held(selection),
+        effect_sets=_effect_sets(found.set_gains, list(models.effects)),
+        most_nats=None if found.set_gains is None else found.set_gains.most,
     )
+
+
+def _effect_sets(found: SetGains | None, order: Sequence[str]) -> tuple[EffectSet, ...]:
+    """The sets of effects that were refitted, the likeliest first, each in the order of the catalogue."""
+    gains = {} if found is None else found.gains
+    sets = [EffectSet(tuple(sorted(effects, key=order.index)), nats) for effects, nats in gains.items()]
+    return tuple(sorted(sets, key=lambda one: -one.nats))
 
 
 def _settings(fit: FitResult, models: CandidateModels, selection: Selection) -> dict[str, Any]:
@@ -85,7 +92,7 @@ def _text(selection: Selection, steps: Rungs, found: Findings, floor: float | No
     return verdict_text(
         found.added, verdict.indistinguishable, found.suspects, verdict.unexplained, steps[-1][1].errors,
         selection.base.error, repeats is not False, floor, against, selection.complete, models.described,
-        found.at_bound, fewer, steps[-1][1].unstable.get("verify", ()),
+        found.at_bound, fewer, steps[-1][1].unstable.get("verify", ()), verdict.probabilities,
     )  # fmt: skip
 
 
@@ -98,18 +105,16 @@ def better_with_fewer(steps: Rungs) -> tuple[float, tuple[str, ...]] | None:
     return least, tuple(name for name, _ in steps[errors.index(least) + 1 :] if name)
 
 
-def _ranked(selection: Selection, floor: float | None) -> list[Ranked]:
+def _ranked(selection: Selection, floor: float | None, probabilities: Mapping[str, float]) -> list[Ranked]:
     base, models = selection.base, selection.models
     tied = tuple(candidate.effect for candidate in in_time(selection.tied_first) or ())
     group = tied if len(tied) > 1 else ()
-    in_question = in_time(selection.in_question) or frozenset()
     before = in_time(lambda: base.held_out.error) or 0.0  # without it nothing was refitted that it is compared with
     with suppress(TimeIsUp):  # side by side, not one by one below
-        each(lambda c: _judged(c, c.effect in in_question), selection.ranking)
+        each(lambda candidate: candidate.refit and candidate.refit.errors, selection.ranking)
     listed = []
     for i, candidate in enumerate(selection.ranking):
         refit, effect = candidate.refit, models.effects[candidate.effect]
-        asked = candidate.effect in in_question and in_time(partial(getattr, candidate, "generalises")) is not None
         listed.append(Ranked(
             effect=candidate.effect,
             error=refit.errors if refit else dict(NO_ERRORS),
@@ -117,35 +122,14 @@ def _ranked(selection: Selection, floor: float | None) -> list[Ranked]:
             predicted_error=base.error * candidate.prediction.remaining,
             parameters=refit.parameters if refit else {},
             group=group if candidate.effect in group else (),
+            probability=probabilities.get(candidate.effect),
             error_with_mean=refit.errors_with_mean if refit else {},
             unstable=refit.unstable if refit else {},
-            evidence=_evidence(candidate, effect, asked),
-            why=why(candidate, effect, before, floor, i == 0, asked),
+            evidence={"predicted_fall": candidate.prediction.reduction,
+                      **evidence_figures(candidate.evidence, effect, candidate.improves)},
+            why=why(candidate, effect, before, floor, i == 0),
         ))  # fmt: skip
     return listed
-
-
-def _judged(candidate: Candidate, in_question: bool) -> tuple[object, object]:
-    """What is told of a candidate and takes simulations, which it keeps."""
-    return candidate.refit and candidate.refit.errors, in_question and candidate.improves
-
-
-def _evidence(candidate: Candidate, effect: Effect, in_question: bool) -> dict[str, Any]:
-    """The figures behind a candidate; whether it holds from run to run is asked of those in question."""
-    gain = candidate.gain
-    return {
-        "predicted_fall": candidate.prediction.reduction,
-        "confirmed": candidate.refit is not None,
-        "fall": gain.reduction if gain else None,
-        "deviations": gain.deviations if gain else None,
-        "nats": gain.log_likelihood_gain if gain else None,
-        "nats_without_best_run": gain.log_likelihood_gain_without_best if gain else None,
-        "offset_nats": gain.offset_likelihood_gain if gain else None,
-        "unforetold_nats": gain.innovation_likelihood_gain if gain else None,
-        "beyond_chance": gain.beyond_chance if gain else None,
-        "carries_over": candidate.generalises if in_question and gain and gain.beyond_chance else None,
-        "looks": effect.looks,
-    }
 
 
 def _ladder(steps: Rungs, added: Sequence[str]) -> list[Rung]:
@@ -162,12 +146,12 @@ def _ladder(steps: Rungs, added: Sequence[str]) -> list[Rung]:
 def rung_of(added: str | None, before: FittedModel | None, refit: FittedModel) -> Rung:
     """One rung, on top of the one `before` where that is known."""
     compared = before is not None and before.stable and refit.stable
-    gain = in_time(lambda: improvement(before.held_out, refit.held_out)) if before and compared else None
+    found = in_time(lambda: evidence(before, refit)) if before and compared else None
     return Rung(
         added=added,
         error=refit.errors,
         offset=in_time(lambda: refit.held_out.offset) if refit.stable else None,
-        nats=gain.log_likelihood_gain if gain else None,
+        nats=found.gain if found else None,
         parameters=refit.parameters,
         error_with_mean=refit.errors_with_mean,
         unstable=refit.unstable,

@@ -61,6 +61,7 @@ class Ranked(Judged):
     predicted_error: float | None = None
     parameters: Mapping[str, ParameterEstimate] = field(default_factory=dict)
     group: tuple[str, ...] = ()
+    probability: float | None = None
     evidence: Mapping[str, float | str | bool | None] = field(default_factory=dict)
     why: str = ""
     error_with_mean: Errors = field(default_factory=dict, metadata=WHERE_KNOWN)
@@ -133,6 +134,8 @@ class Verdict:
     ended at a bound that the search set, `elsewhere` what other models explain as well. `stood_in` are effects of the
     ladder that are not named: beside terms that a search proposes the model does as well without them.
     `indistinguishable` are groups of which one is named, or two lags or delays that two others stand for as well.
+    `probability` is that of the verdict, None where it was not asked; `probabilities` those of each effect that was
+    refitted, of "nothing" and of something "unlisted", `group_probabilities` those of the groups.
     """
 
     effects: tuple[str, ...] = ()
@@ -145,6 +148,17 @@ class Verdict:
     at_bound: tuple[str, ...] = ()
     elsewhere: tuple[Explanation, ...] = ()
     stood_in: tuple[str, ...] = ()
+    probability: float | None = None
+    probabilities: Mapping[str, float] = field(default_factory=dict, metadata=WHERE_KNOWN)
+    group_probabilities: tuple[float, ...] = field(default=(), metadata=WHERE_KNOWN)
+
+
+@dataclass(frozen=True)
+class EffectSet:
+    """A set of effects that was refitted, and its gain over the fitted model, from which its probability follows."""
+
+    effects: tuple[str, ...] = ()
+    nats: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,7 +197,8 @@ class Diagnosis(Shown):
     been found when the search was stopped, or goes on; `not_looked_at` are the stages that are missing. `proposals`
     are terms that no list holds, of as many that were `looked_at`: they are no part of the verdict. `terms_left_out` of
     these no model can hold, or they are not finite. None is what an earlier version did not tell. `matrix` holds the
-    data, where the diagnosis was made here.
+    data, where the diagnosis was made here. `effect_sets` are all sets of effects that were refitted, `most_nats` the
+    gain of a model that leaves nothing but the noise.
     """
 
     model: str = "qian2014"
@@ -209,6 +224,8 @@ class Diagnosis(Shown):
     version: str = ""
     data_hash: str = ""
     notes: tuple[str, ...] = ()
+    effect_sets: tuple[EffectSet, ...] = field(default=(), metadata=WHERE_KNOWN)
+    most_nats: float | None = field(default=None, metadata=WHERE_KNOWN)
     preprocessing: tuple[StepOutcome, ...] = field(default=(), metadata=WHERE_KNOWN)
     matrix: Matrix | None = field(default=None, compare=False, repr=False, metadata=UNWRITTEN)
 
@@ -226,7 +243,7 @@ class Diagnosis(Shown):
         """A record an effect that was ranked, best first, for a data frame."""
         return [
             {
-                "effect": one.effect, "predicted_error": one.predicted_error,
+                "effect": one.effect, "probability": one.probability, "predicted_error": one.predicted_error,
                 **{use: one.error.get(use) for use in ("fit", "held_out", "verify")},
                 "strength": strength.value if (strength := one.strength) else None, "why": one.why,
             }

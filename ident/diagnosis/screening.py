@@ -19,6 +19,8 @@ from ident.cached import cached_property
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA, EPSILON
 from ident.diagnosis.cross_validation import scored, weight_of_offsets
+from ident.diagnosis.evidence.chance import bar
+from ident.diagnosis.evidence.comparison import Residuals, common_disturbance
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.initial_guesses import initial_guesses, strength_in_records
 from ident.fit.bounded_step import bounded_steps
@@ -46,7 +48,7 @@ class Prediction:
     All on the beginnings of the records; `runs` is their number. `starts` are the fitted model with the effect on, from
     the strength that was simulated to the share of it that fits best: what has a threshold needs the former, for a
     share of its response is not the response to a share; what is proportional the latter. Where the records show the
-    strength by themselves, that too.
+    strength by themselves, that too. `elsewhere` are the same from the other places of its shapes, the best first.
     """
 
     effect: str
@@ -54,6 +56,7 @@ class Prediction:
     before: PredictedFit
     runs: int
     starts: tuple[Mapping[str, float], ...]
+    elsewhere: tuple[tuple[Mapping[str, float], ...], ...] = ()
 
     @property
     def remaining(self) -> float:
@@ -78,31 +81,76 @@ def predict(models: CandidateModels, base: FittedModel, names: Sequence[str]) ->
     return sorted(chain.from_iterable(found), key=lambda prediction: names.index(prediction.effect))
 
 
+def gain_by_chance(models: CandidateModels, base: FittedModel, names: Sequence[str]) -> float:
+    """The gain (nats) that the best of these effects makes by chance, but for one in twenty: the bar of a gain.
+
+    On the shortened records, of the response to each effect half way along its range by the logarithm.
+    """
+    given = _Sensitivities.of(models, base)
+    found = each(lambda group: _response_of_each(given, base, group), models.groups(base.effects, names))
+    runs = given.sensitivities.fitness.runs
+    columns = [given.sensitivities.columns[run.id].Z for run in runs]
+    residuals, free = [Z[-1] for Z in columns], [Z[:-1].T for Z in columns]
+    candidates = [np.column_stack([part[run.id] for part in found]) for run in runs]
+    bands = models.compared_records(CRITERIA.screening.samples).bands
+    return bar(residuals, free, candidates, common_disturbance([Residuals(tuple(residuals), bands)]))
+
+
+def _response_of_each(given: _Sensitivities, base: FittedModel, names: Sequence[str]) -> dict[str, Array]:
+    """The response (n, effects) of each run, by its id, to each of some effects that one chain holds."""
+    models, fitness = given.models, given.models.fitness((*base.effects, *names), CRITERIA.screening.samples)
+    values = _values_without(models, base, fitness)
+    trials = [list(_trials(models, base, fitness.space, name, values)) for name in names]
+    middle = [each_of[len(each_of) // 2] for each_of in trials]
+    return given.sensitivities.series_beside(fitness, values, given.values_of(values, middle))
+
+
+def _values_without(models: CandidateModels, base: FittedModel, fitness: SimulatedFitness) -> dict[str, float]:
+    """The values of everything in a space, the effects that are not the model's own off."""
+    off = {symbol: value for symbol, value in models.off.items() if symbol not in base.values}
+    held = {name: value for name, value in fitness.space.fixed.items() if name not in base.values}
+    return {name: value for name, value in {**off, **base.values, **held}.items() if name in fitness.space.order}
+
+
 def _predicted(given: _Sensitivities, base: FittedModel, names: Sequence[str]) -> list[Prediction]:
     """The predictions of effects that one chain holds; strengths are added where a threshold was jumped over."""
     models, fitness = given.models, given.models.fitness((*base.effects, *names), CRITERIA.screening.samples)
-    off = {symbol: value for symbol, value in models.off.items() if symbol not in base.values}
-    held = {name: value for name, value in fitness.space.fixed.items() if name not in base.values}
-    known = {name: value for name, value in {**off, **base.values, **held}.items() if name in fitness.space.order}
-    trials = [trial for name in names for trial in _trials(models, base, fitness.space, name, known)]
-    found = given.with_effects(fitness, known, trials)
+    values = _values_without(models, base, fitness)
+    trials = [trial for name in names for trial in _trials(models, base, fitness.space, name, values)]
+    found = given.with_effects(fitness, values, trials)
     between = found.thresholds()
-    every = [found, given.with_effects(fitness, known, between)] if between else [found]
+    every = [found, given.with_effects(fitness, values, between)] if between else [found]
     before = given.before
-    best = {trial.effect: (before, np.zeros(len(base.point) + 1), trial) for trial in reversed(trials)}
+    nothing = {trial.effect: (before, np.zeros(len(base.point) + 1), trial) for trial in reversed(trials)}
+    best: dict[str, dict[tuple[float, ...], _Promise]] = {name: {} for name in names}
     for trial, after, step in chain.from_iterable(responses_of.predicted_fits() for responses_of in every):
-        if after.score < (1.0 - CRITERIA.screening.score_tolerance) * best[trial.effect][0].score:
-            best[trial.effect] = after, step, trial
+        of_shape, shape = best[trial.effect], tuple(trial.shape.values())
+        if (
+            after.score
+            < (1.0 - CRITERIA.screening.score_tolerance) * of_shape.get(shape, nothing[trial.effect])[0].score
+        ):
+            of_shape[shape] = after, step, trial
+    found_of = {name: sorted(best[name].values(), key=_score) or [nothing[name]] for name in names}
     return [
         Prediction(
             name,
-            after,
+            found_of[name][0][0],
             before,
             len(given.gram),
-            (*_refit_starts(models, base, trial, step), *_from_records(models, base, fitness.space, name, known)),
+            (
+                *_refit_starts(models, base, *found_of[name][0]),
+                *_from_records(models, base, fitness.space, name, values),
+            ),
+            tuple(
+                _refit_starts(models, base, *other) for other in found_of[name][1 : CRITERIA.screening.elsewhere + 1]
+            ),
         )
-        for name, (after, step, trial) in ((name, best[name]) for name in names)
+        for name in names
     ]
+
+
+def _score(promise: _Promise) -> float:
+    return promise[0].score
 
 
 @dataclass(frozen=True)
@@ -112,6 +160,10 @@ class _Trial:
     effect: str
     strength: float
     shape: Mapping[str, float]
+
+
+_Promise = tuple[PredictedFit, Array, _Trial]
+"""What a trial would leave, the step to there, and the trial."""
 
 
 @dataclass(frozen=True)
@@ -141,12 +193,16 @@ class _Sensitivities:
         self, fitness: SimulatedFitness, known: Mapping[str, float], trials: list[_Trial]
     ) -> _EffectResponses:
         """The model with each effect at its strength alone; `known` are its values without, by the equations' names."""
+        return _EffectResponses(self, trials, self.sensitivities.beside(fitness, known, self.values_of(known, trials)))
+
+    def values_of(self, known: Mapping[str, float], trials: Sequence[_Trial]) -> dict[str, Array]:
+        """The values of everything at each trial, (trials,), by the equations' names."""
         values = {name: np.full(len(trials), value) for name, value in known.items()}
         for i, trial in enumerate(trials):
             values[self.models.strength(trial.effect)][i] = trial.strength
             for name, value in trial.shape.items():
                 values[name][i] = value
-        return _EffectResponses(self, trials, self.sensitivities.beside(fitness, known, values))
+        return values
 
     @cached_property
     def before(self) -> PredictedFit:
@@ -200,7 +256,7 @@ class _EffectResponses:
 
 
 def _refit_starts(
-    models: CandidateModels, base: FittedModel, trial: _Trial, step: Array
+    models: CandidateModels, base: FittedModel, _after: PredictedFit, step: Array, trial: _Trial
 ) -> tuple[dict[str, float], ...]:
     """The values from which to refit with the effect: parts of the way to the prediction, and of the way back."""
     p, symbol = len(base.point), models.strength(trial.effect)
@@ -236,6 +292,7 @@ def _trials(
 ) -> Iterator[_Trial]:
     """The strengths to try, SI: shares of the way from off to each bound, from wherever the shapes may begin."""
     lower, upper = space.bounds(known)[models.strength(name)]
+    covered = strength_in_records(base, models.effects[name])
     shapes = initial_guesses(base, models.effects[name], space, known)
     shares = (
         CRITERIA.screening.strengths_of_many
@@ -244,6 +301,8 @@ def _trials(
         if space.scale_free
         else CRITERIA.screening.strengths
     )
+    if covered is not None:
+        shares, upper, lower = CRITERIA.screening.strengths_of_stop, min(covered, upper), 0.0
     for shape in shapes:
         for end in (upper, lower):
             yield from (_Trial(name, share * end, shape) for share in shares if end)

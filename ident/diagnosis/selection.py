@@ -7,8 +7,10 @@ from dataclasses import dataclass, field
 
 from ident.diagnosis.candidate import Candidate, not_dominated
 from ident.diagnosis.candidate_models import CandidateModels
-from ident.diagnosis.fitted_model import FittedModel, indistinguishable
+from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.ladder import Ladder, Rungs
+from ident.diagnosis.model_comparison import indistinguishable
+from ident.diagnosis.refitted_sets import RefittedSets
 
 
 @dataclass(frozen=True)
@@ -28,6 +30,7 @@ class Selection:
     changes: int = 0
     complete: bool = False
     rungs: Ladder = field(kw_only=True, compare=False, repr=False)
+    refitted_sets: RefittedSets = field(kw_only=True, compare=False, repr=False)
 
     @property
     def fitted(self) -> FittedModel:
@@ -52,9 +55,4 @@ class Selection:
         best = self.ranking[0].refit if self.ranking else None
         if best is None or not self.ranking[0].improves:
             return []
-        return not_dominated([c for c in self.ranking if c.refit and indistinguishable(best, c.refit, self.base)])
-
-    def in_question(self) -> frozenset[str]:
-        """The effects of the first ranking down to the first that improves, and those that tie with its best."""
-        first = next((i for i, candidate in enumerate(self.ranking) if candidate.improves), len(self.ranking))
-        return frozenset(candidate.effect for candidate in (*self.ranking[: first + 1], *self.tied_first()))
+        return not_dominated([c for c in self.ranking if c.refit and indistinguishable(best, c.refit)])

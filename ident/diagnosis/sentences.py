@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
 
 from ident.diagnosis.candidate import Candidate
-from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.proposal import Proposal
+from ident.diagnosis.evidence.comparison import HALVES, Evidence, generalises, losing_part, matters
+from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.result import Explanation, Suspect
-from ident.diagnosis.significance import Improvement
 from ident.diagnosis.total_delay import TotalDelay
 from ident.diagnosis.verification import Contradiction
 from ident.effects.effect import Effect
@@ -16,6 +18,7 @@ from ident.fit.result import Combination
 from ident.presets.record_units import SAMPLE
 from ident.words.error import error_said, unstable_on
 from ident.words.percent import percent
+from ident.words.probability import probability_said
 from ident.words.titles import title
 
 _BOUNDED = (
@@ -23,52 +26,55 @@ _BOUNDED = (
     "your own let it go farther."
 )
 
-_TELLS_APART = (
-    "It does better on stretches of the runs that it was fitted to, but on whole runs that were left out the error "
-    "rises from {} to {}: it tells runs apart, and does not explain them."
+_LOSES = "but it rises on {}: what only a part of the data asks for is not added."
+_TOO_LITTLE = (
+    "it explains {:.2g} ± {:.2g} % of what is above the noise, and that counts from {:.2g} % on, beyond the error. It "
+    "would show as: {}."
 )
-
-_DRIFT = (
-    "as much is left that the record's own past does not foretell: it follows a drift, or what disturbances added up "
-    "to, and does not explain it."
-)
+_CHANCE = "no more than the best of all effects takes by chance. It would show as: {}."
 
 
-def why(
-    candidate: Candidate, effect: Effect, before: float, floor: float | None, best: bool, in_question: bool = True
-) -> str:
-    """Why the data speak for or against an effect; `before` is the held-out error without it.
-
-    Of one that was not `weighed` nobody asked whether it holds from run to run.
-    """
-    if candidate.refit is None or candidate.gain is None:
+def why(candidate: Candidate, effect: Effect, before: float, floor: float | None, best: bool) -> str:
+    """Why the data speak for or against an effect; `before` is the held-out error without it."""
+    if candidate.refit is None or candidate.evidence is None:
         share = 100 * candidate.prediction.reduction
         return f"Predicted to take {share:.2g} % off the error, less than others; it was not refitted."
-    if in_question and candidate.gain.beyond_chance and not candidate.generalises:
-        return _TELLS_APART.format(*map(error_said, candidate.between_runs))
-    return why_of_gain(candidate.gain, effect, (before, candidate.refit.held_out.error), floor, best)
+    errors = before, candidate.refit.held_out.error
+    return why_of_evidence(candidate.evidence, effect, errors, candidate.improves, floor, best)
 
 
-def why_of_gain(
-    gain: Improvement, effect: Effect, errors: tuple[float, float], floor: float | None, best: bool
+def why_of_evidence(
+    found: Evidence, effect: Effect, errors: tuple[float, float], improves: bool, floor: float | None, best: bool
 ) -> str:  # fmt: skip
     """The same of an effect that was refitted; `errors` are those on held-out data without it and with it."""
     change = "On data held out from the fit the error goes from {} to {}".format(*map(error_said, errors))
-    if gain.tracks_drift and not gain.beyond_chance:
-        return f"{change}, but {_DRIFT}"
-    if not gain.beyond_chance:
-        return (
-            f"{change}, {gain.deviations:.1f} standard errors: no more than chance. It would show as: {effect.looks}."
-        )
+    if not matters(found):
+        share, error = 100 * found.share.mean, 100 * found.share.bound(EVIDENCE_CRITERIA)
+        return f"{change}: {_TOO_LITTLE.format(share, error, 100 * EVIDENCE_CRITERIA.share, effect.looks)}"
+    if not generalises(found):
+        return f"{change}, {_LOSES.format(_part_said(losing_part(found)))}"
+    if not improves:
+        return f"{change}: {_CHANCE.format(effect.looks)}"
     near = f", with the noise floor at {percent(floor)}" if floor is not None else ""
     first = "No other effect does better. " if best else ""
-    if gain.innovation_gain_significant and not gain.worthwhile:
-        nats = gain.innovation_likelihood_gain
-        of_innovations = f"of whole runs {nats:.3g} nats less is left that their own past does not foretell"
-        return f"{first}{change} over windows; {of_innovations}. It shows as: {effect.looks}."
-    if abs(gain.reduction) < CRITERIA.conclusion.no_fall:
-        return f"{first}The error stays, but the runs' offsets become explained: {effect.looks}."
     return f"{change}{near}. {first}It shows as: {effect.looks}."
+
+
+def _part_said(part: Hashable) -> str:
+    """A part of the data in words: a half of the records, or one condition of the test."""
+    return f"the {part} of the records" if part in HALVES else "one condition of the tests"
+
+
+def evidence_figures(found: Evidence | None, effect: Effect, improves: bool) -> dict[str, Any]:
+    """The figures behind an effect that was refitted, or only predicted."""
+    if found is None:
+        return {"confirmed": False, "looks": effect.looks}
+    return {
+        "confirmed": True, "nats": found.gain, "nats_without_best_run": found.without, "most_nats": found.most,
+        "share": found.share.mean, "share_error": found.share.error if found.share.blocks > 1 else None,
+        "distinct": found.distinct, "beyond_chance": improves, "carries_over": generalises(found),
+        "looks": effect.looks, "meaning": effect.meaning,
+    }  # fmt: skip
 
 
 def verdict_text(
@@ -76,13 +82,15 @@ def verdict_text(
     errors: Mapping[str, float | None], before: float, repeats: bool = True, floor: float | None = None,
     against: Sequence[Contradiction] = (), complete: bool = True, described: Callable[[str], str] = title,
     bounded: Sequence[str] = (), fewer: tuple[float, Sequence[str]] | None = None, unstable: Sequence[str] = (),
+    probabilities: Mapping[str, float] = MappingProxyType({}),
 ) -> str:  # fmt: skip
     """The verdict in a few sentences, what speaks against it first.
 
     Without `repeats` nobody knows how much noise lies in the command's band. Not `complete`, the search was stopped.
     `described` tells what an effect is the first time that it is named; `bounded` are those whose strength ended at the
     bound of its search. `fewer` is the error on verify runs without the last of what was added, where it is
-    smaller there; `unstable` are the verify runs on which the model is unstable with it.
+    smaller there; `unstable` are the verify runs on which the model is unstable with it. `probabilities` are those
+    of effects, of "nothing" and of something "unlisted".
     """
     named = _described_once(described)
     parts = [one.sentence(named(one.effect)) for one in against]
@@ -90,15 +98,18 @@ def verdict_text(
         parts.append("The search was not over: what else is missing, and what could stand in the place of what was "
                      "found, was not looked at.")  # fmt: skip
     if added:
-        parts.append(_improves([*map(named, added)], bool(against) or unexplained, before, errors, fewer,
-                            unstable))  # fmt: skip
+        said = [_probable(named(name), name, probabilities) for name in added]
+        parts.append(_improves(said, bool(against) or unexplained, before, errors, fewer, unstable))
     elif not complete:
         parts.append(f"No effect was confirmed that lowers the error of {error_said(before)}.")
     elif not unexplained and floor is None:
         parts.append(f"Nothing is seen to be missing: the residual, {error_said(before)}, has no memory from sample to "
                      "sample. How much of it is noise is not known.")  # fmt: skip
     elif not unexplained:
-        parts.append(f"Nothing is missing: the error of {error_said(before)} is the noise's.")
+        parts.append(
+            _probable("Nothing is missing", "nothing", probabilities)
+            + f": the error of {error_said(before)} is the noise's."
+        )
     else:
         parts.append(f"No effect of the catalogue lowers the error of {error_said(before)} beyond chance.")
     parts += [_BOUNDED.format(named(name)) for name in bounded]
@@ -110,13 +121,17 @@ def verdict_text(
     for suspect in suspects:
         parts.append(f"Run {suspect.run} is doubted ({suspect.what}): {suspect.evidence}.")
     if unexplained:
-        parts.append(
-            "Something is left that none of the listed effects explains." if complete else "Something is left."
-        )
+        left = "Something is left that none of the listed effects explains" if complete else "Something is left"
+        parts.append(_probable(left, "unlisted", probabilities) + ".")
         if not repeats:
             parts.append("No command was measured twice: part of it may be noise in the command's band, "
                          "which a repeated run would tell.")  # fmt: skip
     return " ".join(parts)
+
+
+def _probable(said: str, name: str, probabilities: Mapping[str, float]) -> str:
+    """What is said, and how probable it is where that is known."""
+    return f"{said} (probability {probability_said(probabilities[name])})" if name in probabilities else said
 
 
 def cannot_distinguish(group: Sequence[str], added: Sequence[str], described: Callable[[str], str] = title) -> str:

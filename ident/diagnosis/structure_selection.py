@@ -13,9 +13,11 @@ from dataclasses import dataclass, replace
 
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.evidence.comparison import common_disturbance, gain
+from ident.diagnosis.evidence.probability import structure_probabilities
 from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.model_comparison import better
 from ident.diagnosis.ranking import rank
-from ident.diagnosis.significance import improvement
 from ident.errors import Unusable
 from ident.fit.identification import Identification, StepwiseFit, completed
 from ident.fit.result import FitResult, Structure, Window
@@ -29,6 +31,7 @@ from ident.presets import Preset, preset
 from ident.presets.suited import in_question, told_by_following, unusual
 from ident.progress import Progress, Report, silent
 from ident.words.error import error_said
+from ident.words.probability import probability_said
 from ident.words.titles import title
 
 
@@ -84,8 +87,26 @@ def _compared(
     with_effects = _with_an_effect_each(first, tried, report)
     best, why = _preferred(with_effects[first.machine], list(with_effects.values()), strange)
     others = (with_effects.get(one.machine, one) for one in tried if one.machine != best.machine)
-    said = (best.structure(over, why), *(one.structure(over, "") for one in others))
-    return said, fitted[best.machine].fit
+    compared = [best, *others]
+    probable = _probabilities(compared)
+    said = (
+        model.structure(over, "" if number else why, probable.get(model.machine))
+        for number, model in enumerate(compared)
+    )
+    return tuple(said), fitted[best.machine].fit
+
+
+def _probabilities(compared: Sequence[_JudgedStructure]) -> dict[str, float]:
+    """How probable each model is among those that were compared, by its machine; each with its effect if it has one."""
+    sound = [model for model in compared if model.best.finite]
+    if len(sound) < 2:
+        return {}
+    sound.sort(key=lambda model: -model.error)  # the reference is what leaves most
+    residuals = [model.best.residuals_held_out for model in sound]
+    disturbance = common_disturbance(residuals)
+    gains = [gain(residuals[0], of, disturbance) for of in residuals]
+    counts = [model.parameters + len(model.best.effects) for model in sound]
+    return dict(zip((model.machine for model in sound), structure_probabilities(gains, counts), strict=True))
 
 
 def _with_an_effect_each(
@@ -122,7 +143,7 @@ def _preferred(
         if one.parameters < first.parameters
         and one.error <= CRITERIA.structure.worse * first.error
         and (one.machine in strange) <= (first.machine in strange)
-        and not improvement(one.best.held_out, first.best.held_out).beyond_chance
+        and not better(one.best, first.best)
     ]
     if first.with_effect is not None and simpler:
         return min(simpler, key=lambda one: one.parameters), "as little with one effect, and simpler"
@@ -300,15 +321,17 @@ class _JudgedStructure:
         refits = [one.refit for one in ranking if one.refit is not None and one.improves]
         return replace(self, with_effect=min(refits, key=_held_out, default=None))
 
-    def structure(self, over: str, more: str) -> Structure:
+    def structure(self, over: str, more: str, probability: float | None) -> Structure:
         """What is told of it, and `more` why it was taken."""
         alone = _held_out(self.refit)
         what = f"leaves {error_said(alone)} of held-out data{over} with {self.parameters} parameters"
         if self.with_effect is not None:
             what += f", {error_said(self.error)} with {title(self.with_effect.effects[-1])}"
+        if probability is not None:
+            what += f", probability {probability_said(probability)}"
         why = f"{what}: {more}" if more else what
         held_out = alone if self.refit.finite else None
-        return Structure(self.machine, {"held_out": held_out}, self.parameters, why, self.values)
+        return Structure(self.machine, {"held_out": held_out}, self.parameters, why, self.values, probability)
 
 
 def _held_out(refit: FittedModel) -> float:

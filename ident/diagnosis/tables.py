@@ -10,6 +10,7 @@ from ident.preprocessing.told import told
 from ident.words.error import error_said
 from ident.words.percent import percent
 from ident.words.plus_minus import UNDETERMINED, plus_minus_si
+from ident.words.probability import probability_said
 from ident.words.shown import Listing
 
 if TYPE_CHECKING:
@@ -24,8 +25,8 @@ def listings(found: Diagnosis) -> Iterator[Listing | str]:
     uses = tuple(USES.values())
     yield found.headline
     yield Listing("", (_measure(found), *uses), error_rows(found), uses)
-    header = ("effect", "predicted", "held out", "verify", "strength", "group")
-    yield Listing("", header, ranking_rows(found), header[1:4])
+    header = ("effect", "probability", "predicted", "held out", "verify", "strength", "group")
+    yield Listing("", header, ranking_rows(found), header[1:5])
     if rest := unconfirmed(found):
         yield rest
     steps = ("added", *uses, "floor", "evidence (nats)")
@@ -82,7 +83,13 @@ def ranking_rows(found: Diagnosis) -> Iterator[Row]:
             continue
         errors = (error_said(ranked.predicted_error), *(ranked.error_of(use).said() for use in ("held_out", "verify")))
         others = ", ".join(name for name in ranked.group if name != ranked.effect)
-        yield ranked.effect, *errors, strength(ranked), f"or {others}" if others else ""
+        yield (
+            ranked.effect,
+            probability_said(ranked.probability),
+            *errors,
+            strength(ranked),
+            f"or {others}" if others else "",
+        )
 
 
 def unconfirmed(found: Diagnosis) -> str:

@@ -43,4 +43,4 @@ def stable_minimum(items: Sequence[Item], size: Callable[[Item], float]) -> Item
 
 
 def _bound(least: float) -> float:
-    return least + CRITERIA.significance.tie * abs(least)
+    return least + CRITERIA.equality.tie * abs(least)

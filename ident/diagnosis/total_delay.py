@@ -15,9 +15,10 @@ from itertools import chain, combinations
 
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.fitted_model import FittedModel, indistinguishable
+from ident.diagnosis.evidence import comparison
+from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.ladder import without_effect
-from ident.diagnosis.significance import improvement
+from ident.diagnosis.model_comparison import indistinguishable
 from ident.fit.result import Combination
 from ident.fit.slow_answer import is_late
 from ident.parallel import each
@@ -62,11 +63,14 @@ def total_delay(models: CandidateModels, base: FittedModel, refit: FittedModel) 
     names = [name for name, effect in models.effects.items() if is_late(effect) and name not in refit.effects]
     names = [name for name in names if models.fit_together((*refit.effects, name))]
     tried = [one for one in each(other, names) if one.finite]
-    alike = tuple(
-        one.effects[-1] for one in tried if improvement(one.not_held_out, refit.not_held_out).within_chance
-    )  # a time constant less, a lag or delay more
+    alike = tuple(one.effects[-1] for one in tried if _alike(one, refit))  # a time constant less, a lag or delay more
     before = next(base.slow_lags(), None) if base is not refit else None
     return TotalDelay(found, constant, alike, before) if alike else None
+
+
+def _alike(first: FittedModel, second: FittedModel) -> bool:
+    """Whether the data of the fit leave open which of two models of as many parameters is right."""
+    return comparison.indistinguishable(comparison.compare(first.residuals_fitted, second.residuals_fitted))
 
 
 def _time_constants(models: CandidateModels, refit: FittedModel) -> Iterator[Parameter]:

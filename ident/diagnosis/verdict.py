@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from ident.diagnosis.criteria import CRITERIA, Criteria
+from ident.diagnosis.evidence.probability import NOTHING, Probabilities, SetGains, probabilities
 from ident.diagnosis.result import Explanation, Suspect, Verdict
 from ident.diagnosis.verification import Contradiction, Standing, VerifyChange
 
@@ -40,7 +41,8 @@ class Findings:
 
     `added` are the effects of the selection, in their order; `alternatives` for each the effects that are
     indistinguishable from it, itself included; `lag_pairs` two added lags with those that stand for both as well.
-    `residual` is None where there was no time to ask whether it is noise. `verify` has the change by each added effect;
+    `residual` is None where there was no time to ask whether it is noise; `set_gains` are the gains of all sets of
+    effects that were refitted. `verify` has the change by each added effect;
     `at_bound` are those whose strength ended at the bound of its search, `dispensable` those that the model does as
     well without beside confirmed terms. `suspects` are runs whose label is doubted, `elsewhere` what other machines
     explain as well.
@@ -50,6 +52,7 @@ class Findings:
     alternatives: Sequence[Names] = ()
     lag_pairs: Sequence[Names] = ()
     residual: Residual | None = None
+    set_gains: SetGains | None = None
     verify: Sequence[VerifyChange] = ()
     at_bound: Names = ()
     dispensable: Names = ()
@@ -80,17 +83,31 @@ def conclude(found: Findings, criteria: Criteria = CRITERIA) -> Verdict:
     named = tuple(name for name in found.added if name not in found.dispensable)
     contradicted = tuple(change.effect for change in found.verify if contradicts(change, criteria))
     against = tuple(name for name in contradicted if name not in found.dispensable)
+    groups = _groups(found)
+    of_sets = None if found.set_gains is None else probabilities(found.set_gains, criteria.evidence)
     return Verdict(
         effects=named,
         standing=_standing(found, named, against, bool(contradicted), criteria),
         contradicted_by=against,
-        indistinguishable=_groups(found),
+        indistinguishable=groups,
         suspects=tuple(found.suspects),
         unexplained=_unexplained(found, criteria),
         at_bound=found.at_bound,
         elsewhere=tuple(found.elsewhere),
         stood_in=found.dispensable,
+        probability=None if of_sets is None else _probability(found, of_sets, named, groups, criteria),
+        probabilities={} if of_sets is None else of_sets.named,
+        group_probabilities=() if of_sets is None else tuple(of_sets.of([group]) for group in groups),
     )
+
+
+def _probability(
+    found: Findings, of_sets: Probabilities, named: Names, groups: Sequence[Names], criteria: Criteria
+) -> float:
+    """How probable it is that the verdict is right: every name, or one of its group, acts; or what it says of none."""
+    if named:
+        return of_sets.of(next((group for group in groups if name in group), (name,)) for name in named)
+    return of_sets.with_unlisted[NOTHING] if _unexplained(found, criteria) else of_sets.nothing
 
 
 def _unexplained(found: Findings, criteria: Criteria) -> bool:

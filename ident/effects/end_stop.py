@@ -21,7 +21,7 @@ END_STOP = Effect(
     texts=("R = R + ks * sgn(x - xm) * max(abs(x - xm) - 1 / max(g, 1e-9), 0)",),
     units={"R": "N"},
     shape=(
-        Parameter("stiffness", "ks", "N/m", 1e5, 1e9, 1e7, "stiffness of the stop", searched=True),
+        Parameter("stiffness", "ks", "N/m", 1e3, 1e9, 1e7, "stiffness of the stop", searched=True),
         Parameter(
             "middle", "xm", "m", -10.0, 10.0, 0.0, "middle of the stroke", start=Starts.STROKE_MIDDLE, of_motion=True
         ),

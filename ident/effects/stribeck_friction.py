@@ -10,7 +10,7 @@ STRIBECK_FRICTION = Effect(
     strength=Parameter("force", "dF", "N", 0.0, 200.0, 0.0, "excess of the breakaway force"),
     texts=("Ff = Ff + dF * exp(-(v / vs)**2)",),
     units={"Ff": "N"},
-    shape=(Parameter("speed", "vs", "m/s", 1e-4, 0.5, 5e-3, "speed at which the excess falls to 1/e"),),
+    shape=(Parameter("speed", "vs", "m/s", 1e-4, 0.5, 5e-3, "speed at which the excess falls to 1/e", of_motion=True),),
     looks="sticking and jumps at small amplitudes and low frequency",
     source="Stribeck; Armstrong-Helouvry et al. 1994",
     steps=2,

@@ -126,6 +126,23 @@ class Sensitivities:
         each(of_share, todo)
         return found
 
+    def series_beside(
+        self, fitness: SimulatedFitness, known: Mapping[str, float], values: Mapping[str, Array]
+    ) -> dict[str, Array]:
+        """The changes of the output themselves, (samples, n) of each run by its id; zero where a run is unstable."""
+        fitness.begin(known)
+        lanes = {name: np.append(known[name], value) for name, value in values.items()}
+        steps = int(fitness.steps(values, kinks=False).max())
+        found: dict[str, Array] = {}
+        for runs in fitness.together(1 + len(next(iter(values.values()))), _LANES):
+            shown = fitness.outputs_of(fitness.simulation(runs, lanes, steps))
+            with np.errstate(over="ignore", invalid="ignore"):
+                rows = np.concatenate([part[:, :, 1:] - part[:, :, :1] for part, _, _ in shown])
+                sound = np.sum(rows**2, axis=0) < _LARGEST
+            rows = np.where(sound, rows, 0.0)
+            found |= {run.id: rows[:, i] for i, run in enumerate(runs)}
+        return found
+
     def _responses(
         self, runs: tuple[Run, ...], changes: int, shown: Iterable[tuple[Array, int, int]]
     ) -> tuple[Array, Array, Array]:

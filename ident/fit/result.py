@@ -96,7 +96,8 @@ class Generation:
 class Structure:
     """A model that the channels allow, fitted where none was named: its error, the parameters searched, what of it.
 
-    `values` are those of its parameters, SI.
+    `values` are those of its parameters, SI; `probability` is that of the model among those that were compared, None
+    where it was the only one.
     """
 
     machine: str
@@ -104,6 +105,7 @@ class Structure:
     parameters: int = 0
     why: str = ""
     values: Mapping[str, float] = field(default_factory=dict)
+    probability: float | None = None
 
 
 @dataclass(frozen=True)

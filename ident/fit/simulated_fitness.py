@@ -122,6 +122,10 @@ class SimulatedFitness(SimulatedRuns):
         """The same for other runs, which know nothing of this search."""
         return replace(self, runs=runs, starts=dict(self.known), evaluations=0, unstable=0)
 
+    def part(self, runs: tuple[Run, ...]) -> SimulatedFitness:
+        """The same for some of its runs, from the first states in which the search ended."""
+        return replace(self, runs=runs, starts=dict(self.starts), evaluations=0, unstable=0)
+
     def whole(self) -> Self:
         """The same over whole runs, as eq. (17) sees them: first states of windows are none of theirs."""
         found = super().whole()

@@ -7,14 +7,16 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain.chain import DISTURBANCE, FORCE, INPUT
+from ident.chain.chain import DISTURBANCE, FORCE, INPUT, INPUT_RATE
 from ident.chain.channels import BESIDE_MEAN, means
 from ident.chain.varying import MEASURED_CONDITIONS, is_measured
 from ident.run import DISTURBANCES, Run
 from ident.simulation.between import band_limited
+from ident.simulation.kernel.layout import BEYOND
+from ident.slopes import bends, bends_of_way, slopes
 
 Array = NDArray[np.float64]
-_KEPT = 4  # of a run: a search has models that differ by their steps side by side
+_KEPT = 8  # of a run: a search has models that differ by their steps side by side, each of two inputs or more
 _known: WeakKeyDictionary[Run, dict[tuple[str, int, int], Array]] = WeakKeyDictionary()
 """Of each run the inputs that were asked for last: a fit asks for the same one thousands of times."""
 
@@ -50,9 +52,9 @@ def _fine(run: Run, channel: str, steps: int, before: int) -> Array:
     if held:
         fine.reshape(-1, steps)[:] = samples[:, None]
     else:
-        between, slopes = fine[:-1].reshape(-1, steps), np.diff(samples) / steps
+        between, rise = fine[:-1].reshape(-1, steps), np.diff(samples) / steps if channel != BEYOND else 0.0
         for step in range(steps):
-            between[:, step] = samples[:-1] + step * slopes
+            between[:, step] = samples[:-1] + step * rise
         fine[-1] = samples[-1]
     if not first and channel == INPUT and run.begins == "at rest":
         whole[:lead] = 0.0
@@ -77,7 +79,14 @@ def _curved(run: Run, steps: int, before: int) -> Array:
 
 
 def _record(run: Run, name: str) -> Array:
-    """The samples of an input."""
+    """The samples of an input; of the rate of the command, what it is at each."""
+    if name == INPUT_RATE:
+        return slopes(run.command, order=1) * run.sample_rate
+    if name == BEYOND:
+        derived = "displacement" in run.channels and "velocity" not in run.channels
+        if not derived:
+            return bends(run.command)
+        return bends_of_way(run.channels["displacement"], run.command / run.sample_rate) * run.sample_rate
     if name == FORCE:
         return run.channels["force"]
     if name == DISTURBANCE:  # of a run that says nothing there was none

@@ -116,7 +116,7 @@ class Simulation:
             for name in self.chain.exponents
             if np.ptp(self.values[name]) == 0
         }
-        return kernel(self.chain, self.runs[0].output, frozenset(exponents))
+        return kernel(self.chain, self.runs[0].output, frozenset(exponents), recorded=True)
 
     def _lanes(self, lanes: int) -> dict[str, Array]:
         """Every symbol lane by lane, the spare lanes repeating the last."""

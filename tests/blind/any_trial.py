@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import argparse
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from ident.fit.settings import Settings
 from ident.workflows import diagnose, identify
 from tests.blind.any_machine import Lab, sound
 from tests.blind.campaign import add
+from tests.blind.sure import sure
 from tests.blind.table import LABS, interval
 from tests.blind.worth import COUNTS, TRUE, nats
 
@@ -37,6 +38,7 @@ class Outcome:
     standing: str | None
     group: tuple[str, ...]
     nats: float
+    sure: dict[str, object] = field(default_factory=dict)
 
     @property
     def counts(self) -> bool:
@@ -66,8 +68,8 @@ class Outcome:
     def row(self) -> dict[str, object]:
         """What is kept of it, plain."""
         of_lab = {name: getattr(self.lab, name) for name in ("seed", "structure", "kind", "hidden", "noise")}
-        own = {name: value for name, value in asdict(self).items() if name != "lab"}
-        return of_lab | own | {"right": self.structure_right, "named": self.named, "counts": self.counts}
+        own = {name: value for name, value in asdict(self).items() if name not in ("lab", "sure")}
+        return of_lab | own | self.sure | {"right": self.structure_right, "named": self.named, "counts": self.counts}
 
 
 def trial(seed: int, hidden: bool, seconds: float | None = None) -> Outcome:
@@ -80,7 +82,7 @@ def trial(seed: int, hidden: bool, seconds: float | None = None) -> Outcome:
     group = next((group for group in found.verdict.indistinguishable if lab.hidden in group), ())
     return Outcome(
         lab, fit.model, _differs(lab, fit.model), fit.error["fit"] or 0.0, found.ladder[-1].error["fit"] or 0.0,
-        found.verdict.effects, found.verdict.standing, group, worth,
+        found.verdict.effects, found.verdict.standing, group, worth, sure(found),
     )  # fmt: skip
 
 

@@ -23,6 +23,7 @@ from tests.blind.campaign import add, rows
 from tests.blind.periodic import MODELS, Test
 from tests.blind.periodic_class import Allowed, allowed
 from tests.blind.periodic_drawn import completed
+from tests.blind.sure import sure
 from tests.blind.table import PERIODIC, periodic
 
 _FLOOR = 1.05  # floors that a refit leaves, and is at the floor
@@ -88,6 +89,7 @@ def said(test: Test, decided: Allowed, found: Diagnosis) -> Row:
         "floor": round((found.noise_floor["fit"] or 0.0) / test.noise, 3),
         "linear": round((found.ladder[0].error.get("fit") or 0.0) / test.noise, 3),
         "right": right(named, groups, test.hidden, decided.names, decided.counts),
+        **sure(found),
     }  # fmt: skip
     return row | {"why": "" if row["right"] else why(test, decided, found, row)}
 

@@ -27,6 +27,7 @@ from tests.blind.machines import (
     strength_for,
 )  # fmt: skip
 from tests.blind.noises import NOISES, with_noise
+from tests.blind.sure import sure
 from tests.blind.written import written
 from tests.reference import qian_reference as linear
 from tests.reference.outside_reference import Outside, measure_all
@@ -178,6 +179,7 @@ def judged(
         "unexplained": found.verdict.unexplained, "proposed": [one.equation for one in found.proposals or ()],
         "suspects": [[s.run, s.what] for s in found.verdict.suspects],
         "named": named(found, set(hidden)), "seconds": round(time.perf_counter() - begun, 1),
+        **sure(found),
     }  # fmt: skip
 
 

@@ -118,7 +118,7 @@ def test_the_budget_adds_up_and_the_next_run_sharpens_what_was_settled(dead_zone
 def test_candidates_are_sorted_by_the_error_on_held_out_data(dead_zone):
     errors = [c.error["held_out"] for c in dead_zone.candidates if c.error["held_out"] is not None]
     assert len(errors) >= 5
-    assert all(before <= (1 + CRITERIA.significance.tie) * after for before, after in pairwise(errors))
+    assert all(before <= (1 + CRITERIA.equality.tie) * after for before, after in pairwise(errors))
     assert len(dead_zone.candidates) == len(EFFECTS) == 41
 
 

@@ -11,9 +11,10 @@ from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.diagnose import Diagnoser
 from ident.diagnosis.discovery.search import TermSearch
-from ident.diagnosis.fitted_model import FittedModel, indistinguishable
+from ident.diagnosis.evidence.comparison import Residuals
+from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
+from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.report import _ladder
-from ident.effects import effect
 from ident.fit.levenberg_marquardt import Way, promise
 
 MEASURED = np.sin(np.arange(1000) / 50.0)
@@ -31,7 +32,7 @@ def refit(begins: str, left: float, promised: float = 0.1) -> FittedModel:
     )
     fitness.fresh = lambda _runs: fitness
     here = SimpleNamespace(error=promised, runs=(SimpleNamespace(error=promised, offset=0.0, share=1.0),))
-    return FittedModel((), {}, None, np.zeros(1), here, fitness)
+    return FittedModel((), {}, None, np.zeros(1), here, fitness, None)
 
 
 @pytest.mark.parametrize(
@@ -114,49 +115,13 @@ def test_a_term_that_is_added_twice_is_tried_as_one_with_both_strengths(equation
     assert search.base.values["proposed_2__s"] == 2.0
 
 
-def judged(share: float, *effects: str) -> SimpleNamespace:
-    """A refit whose held-out error is so large a share of the record, the same all over it."""
-    squares = np.full((2, 16), share**2 * 0.5)
-    errors, totals = np.full(2, share), np.full(2, 8.0)
-    held_out = SimpleNamespace(
-        squares=squares,
-        totals=totals,
-        errors=errors,
-        means=np.zeros(2),
-        offset=0.0,
-        error=share,
-        score=share,
-        independent=1e5,
-        samples=1000,
-        innovations=None,
-        in_windows=False,
-        fitted_error=None,
-    )
-    jumping = FittedModel.hysteretic.fget(SimpleNamespace(fitness=SimpleNamespace(preset=SimpleNamespace(
-        effects=[effect(name) for name in effects]))))  # fmt: skip
-    return SimpleNamespace(held_out=held_out, hysteretic=jumping)
-
-
-@pytest.mark.parametrize(
-    ("better", "worse", "share", "same"),
-    [
-        (("backlash",), ("spool_stiction",), 1.08, True),  # refits with stiction end so far apart
-        (("spool_stiction",), ("backlash",), 1.08, True),
-        (("backlash",), ("spool_stiction",), 1.12, False),
-        (("backlash",), ("dead_zone",), 1.04, False),
-        (("backlash", "spool_stiction"), ("dead_zone", "spool_stiction"), 1.04, False),  # both scatter alike
-    ],
-)
-def test_what_acts_in_jumps_is_as_good_as_what_leaves_some_per_cent_less(better, worse, share, same):
-    """With 1e5 samples that tell something new, chance alone would tell a difference of a hundredth."""
-    assert indistinguishable(judged(0.1, *better), judged(0.1 * share, *worse)) is same
-
-
 def test_a_rung_at_which_the_model_is_unstable_tells_no_error_and_the_next_one_no_evidence(monkeypatch):
     """What two effects make stable one of them need not; asked for its held-out error it would know none."""
     monkeypatch.setattr(FittedModel, "parameters", {})
     sound, unstable = refit("at rest", 0.1), refit("at rest", np.inf, promised=np.inf)
-    sound.__dict__["held_out"] = judged(0.1).held_out
+    noise = 0.1 * np.random.default_rng(1).standard_normal(1000)
+    sound.__dict__["held_out"] = SimpleNamespace(offset=0.0, error=0.1, score=0.1)
+    sound.__dict__["residuals_held_out"] = Residuals((noise,), EnergyBands((Record(1.0),), (1000,)))
     course = SearchBudget(most=4)
     diagnoser = Diagnoser(None, None, None, (), course)
     steps = [(None, sound), ("dead_zone", unstable), ("backlash", sound), ("null_bias", sound)]

@@ -7,10 +7,18 @@ from types import SimpleNamespace
 
 import pytest
 
-from ident.diagnosis import candidate_models, moves
+from ident.diagnosis import candidate_models
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.free_shapes import converged, freed, freed_refit, is_width, with_free_shapes, with_widths
+from ident.diagnosis.free_shapes import (
+    converged,
+    freed,
+    freed_refit,
+    from_the_start,
+    is_width,
+    with_free_shapes,
+    with_widths,
+)
 from ident.diagnosis.screening import predict
 from ident.effects import CATALOGUE
 from ident.fit.settings import Settings
@@ -85,14 +93,22 @@ def test_a_width_that_the_data_do_not_determine_is_not_freed():
     assert freed_refit(free, base, prediction) is None
 
 
-def test_nothing_is_freed_where_the_usual_values_explain_the_data(monkeypatch):
+def test_the_usual_width_is_found_as_any_other():
     """A damper whose friction builds up over a fifth of its motion's deviation."""
     damper = Damper()
     damper = replace(damper, displacement=0.2 * damper.amplitude / 2**0.5)
-    monkeypatch.setattr(moves, "with_free_widths", lambda *_: pytest.fail("searched for nothing"))
     found = diagnose(damper.matrix(), identify(damper.matrix(), model="specimen"), propose=False)
     assert found.verdict.effects == ("presliding_friction",)
-    assert any(WAY in note and "Held" in note for note in found.notes)
+    assert found.candidates[0].parameters[WAY].value == pytest.approx(damper.displacement, rel=0.1)
+
+
+def test_where_records_are_long_widths_keep_their_usual_values_at_first(monkeypatch):
+    """A refit with a width costs as much as one from each of its places."""
+    models = CandidateModels.of(Damper().matrix(), Settings("specimen"))
+    base = models.refit((), {})
+    assert from_the_start(models, base).effects["presliding_friction"].has_searched_shapes
+    monkeypatch.setattr(CandidateModels, "is_quick", lambda *_: False)
+    assert from_the_start(models, base) is models
 
 
 def test_what_a_user_holds_stays_held():

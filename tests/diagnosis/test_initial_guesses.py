@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from ident.diagnosis.initial_guesses import spectral_lines
+from ident.diagnosis.screening import _trials
+from ident.effects.end_stop import END_STOP
 from ident.run import Run
 
 SECONDS, BAND = 8.0, 2 * np.pi * 40.0  # rad/s
@@ -47,3 +49,17 @@ def test_the_lines_of_what_does_not_pulsate_are_the_same_at_every_sample_rate():
         known.fitness.runs = (replace(run, channels=channels),)
         found.append(spectral_lines(known, 0.5, 100.0))
     assert found[1:] == [pytest.approx(found[0])] * 2
+
+
+def test_a_stop_that_gives_way_lies_before_the_end_of_the_way():
+    """Where the way ends nothing tells of a stop; without a record of the way its range is tried."""
+    space: Any = SimpleNamespace(bounds=lambda _: {"g": (0.0, 1000.0)}, names=(), scale_free=True)
+    models: Any = SimpleNamespace(effects={"end_stop": END_STOP}, strength=lambda _: "g")
+    x = 0.02 * np.sin(np.arange(100.0))
+    run = Run("run", "", 100.0, {"displacement": x})
+    base: Any = SimpleNamespace(fitness=SimpleNamespace(runs=(run,)))
+    ways = [1.0 / trial.strength for trial in _trials(models, base, space, "end_stop", {})]
+    assert 0.5 * 0.02 < min(ways) < 0.7 * 0.02
+    assert 0.9 * 0.02 < max(ways) < 0.02
+    base.fitness.runs = (replace(run, channels={"velocity": x}),)
+    assert len({trial.strength for trial in _trials(models, base, space, "end_stop", {})}) > len(ways)

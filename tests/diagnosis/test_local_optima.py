@@ -19,7 +19,7 @@ def refit(*effects: str, error: float) -> Any:
     """A refit of which the effects and the error count."""
     found = SimpleNamespace(
         effects=effects, error=error, local=SimpleNamespace(error=error), finite=True,
-        held_out=SimpleNamespace(score=error), hysteretic=frozenset(), between_runs=None,
+        held_out=SimpleNamespace(score=error, error=error),
     )  # fmt: skip
     found.reordered = lambda order: SimpleNamespace(**{**vars(found), "effects": order})
     return found
@@ -47,11 +47,12 @@ def test_a_model_that_is_known_is_found_anew_where_that_leads_to_a_better_optimu
     for name, made in {
         "_predictions": lambda *_: predictions, "_near": lambda *_: predictions, "_overlooked": lambda *_: [],
         "_tried": tried,
-        "_confirmed": lambda _models, base, one: one.refitted(base, one.trial),
+        "_confirmed": lambda models, base, one: one.refitted(models, base, one.trial),
         "_multistart": lambda _models, _asked, _base, one: one,
     }.items():  # fmt: skip
         monkeypatch.setattr(ranking, name, made)
-    monkeypatch.setattr(candidate, "improvement", lambda *_: None)
+    monkeypatch.setattr(candidate, "evidence", lambda *_: None)
+    monkeypatch.setattr(candidate, "dominated", lambda *_: False)
     monkeypatch.setattr(candidate, "indistinguishable", lambda *_: False)
     found = refit("saturation", "stiction", error=1.0)
     (ranked,) = rank_each(
@@ -71,8 +72,8 @@ def in_place(search: Moves, rankings: list[list[list[Any]]], monkeypatch: pytest
     rounds = iter(rankings)
     monkeypatch.setattr(search, "_in_place_of_each", lambda selection: (selection, next(rounds)))
     monkeypatch.setattr(search, "_backward", lambda selection, _latest="": (selection, False))
-    monkeypatch.setattr(moves, "improves", lambda less, more: more.error < 0.99 * less.error)
-    monkeypatch.setattr(moves, "indistinguishable_group", lambda name, _here, _ranking, _noise: [name])
+    monkeypatch.setattr(moves, "better", lambda one, other: other.error < 0.99 * one.error)
+    monkeypatch.setattr(moves, "indistinguishable_group", lambda name, _here, _ranking: [name])
 
 
 def test_what_replaces_an_effect_stands_on_its_rung_and_is_weighed_until_nothing_is_replaced(models, monkeypatch):

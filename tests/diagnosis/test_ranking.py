@@ -9,86 +9,71 @@ import numpy as np
 import pytest
 
 from ident.diagnosis.candidate import Candidate, in_rank_order, indistinguishable_group
-from ident.diagnosis.cross_validation import CrossValidation
+from ident.diagnosis.evidence.comparison import Residuals
+from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
 from ident.diagnosis.ranking import _finalists, rank_each
 
 MODELS: Any = SimpleNamespace(simplicity=lambda name: (1, name))
-RUNS, CHUNKS = 6, 8
+RUNS, N, NOISE = 6, 400, 0.01
+BANDS = EnergyBands(tuple(Record(1.0, run, floor=NOISE**2) for run in range(RUNS)), (N,) * RUNS)
 
 
-def left(error: float, effect: str) -> CrossValidation:
-    """What is left of runs of a power of one: as much of each chunk, but for a tenth that hangs on the effect."""
-    random = np.random.default_rng(list(effect.encode()))
-    squares = error**2 / CHUNKS * (1.0 + 0.1 * random.standard_normal((RUNS, CHUNKS)))
-    return CrossValidation(squares, np.ones(RUNS), np.zeros(RUNS), 6000, 300.0)
+def refit(**left: float) -> Any:
+    """A refit that leaves noise on six runs, and so much (of the output) of each of some patterns, by name."""
+    random = np.random.default_rng(7)
+    series = [NOISE * random.standard_normal(N) for _ in range(RUNS)]
+    for name, size in left.items():
+        of = np.random.default_rng(list(name.encode()))
+        series = [r + size * of.standard_normal(N) for r in series]
+    error = float(np.mean([np.std(r) for r in series]))
+    held_out = SimpleNamespace(score=error, error=error)
+    return SimpleNamespace(
+        held_out=held_out, error=error, effects=(), residuals_held_out=Residuals(tuple(series), BANDS)
+    )
 
 
-def candidate(effect: str, held_out: float, between_runs: float | None) -> Candidate:
-    """An effect that leaves so much of blocks, and of whole runs, that were left out."""
-    refit: Any = SimpleNamespace(
-        effects=(effect,), held_out=left(held_out, effect), error=held_out, hysteretic=frozenset(),
-        between_runs=None if between_runs is None else left(between_runs, effect),
-    )  # fmt: skip
+def candidate(effect: str, found: Any) -> Candidate:
+    """An effect with its refit."""
     prediction: Any = SimpleNamespace(effect=effect)
-    return Candidate(prediction, refit=refit)
+    return Candidate(prediction, refit=found)
 
 
-@pytest.mark.parametrize(
-    ("of_friction", "of_stop", "first"),
-    [
-        (0.30, 0.22, "stop"),  # told apart, though friction is listed first
-        (0.22, 0.22, "friction"),  # as good: as listed
-        (0.232, 0.22, "friction"),  # some per cent, however certain, tell no two optima apart
-        (None, None, "friction"),  # a single run
-    ],
-)
-def test_what_ties_on_blocks_is_told_apart_by_whole_runs(of_friction, of_stop, first):
-    friction, stop = candidate("friction", 0.2, of_friction), candidate("stop", 0.2001, of_stop)
-    in_order = [one.effect for one in in_rank_order(MODELS, [stop, friction])]
-    assert in_order[0] == first
-    named: Any = {"friction": friction, "stop": stop}[first]
-    as_good = [one.effect for one in indistinguishable_group(first, named.refit, [friction, stop], 0.2)]
-    assert as_good == (["stop"] if first == "stop" else ["friction", "stop"])
+def group(first: Candidate, *others: Candidate) -> list[str]:
+    """The names of what cannot be told from the first."""
+    return [one.effect for one in indistinguishable_group(first.effect, first.refit, [first, *others])]  # type: ignore[arg-type]
 
 
 def test_what_nothing_replaced_is_in_its_group():
     """By rounding it stands first, and just beyond chance behind the best."""
-    delay, lag = candidate("delay", 0.2, 0.2), candidate("lag", 0.1, 0.1)
-    assert [one.effect for one in indistinguishable_group("delay", delay.refit, [delay, lag], 0.1)] == ["delay", "lag"]  # type: ignore[arg-type]
+    assert group(candidate("delay", refit(a=0.2)), candidate("lag", refit(b=0.1))) == ["delay", "lag"]
 
 
 @pytest.mark.parametrize(
-    ("of_leak", "noise", "beside"),
+    ("own", "of_leak", "found"),
     [
-        (0.2015, 0.1, True),  # a hundredth more in power, beside three quarters that nothing explains
-        (0.2015, 0.2, False),  # noise: told apart, and nothing is missing that could have decided it
-        (0.206, 0.1, False),  # more than a twentieth of the rest
-        (0.2015, None, False),  # it takes less than nine tenths of what the other takes
+        (0.0, {"missing": 0.03}, ["asymmetry", "leak"]),  # the same output
+        (0.004, {"missing": 0.03, "other": 0.004}, ["asymmetry", "leak"]),  # so near that what both lack decides it
+        (0.02, {"missing": 0.03, "other": 0.02}, ["asymmetry"]),  # farther apart than a twentieth of that in power
+        (0.0, {"another": 0.03}, ["asymmetry"]),  # as much is left, of another pattern
+        (0.0, {"missing": 0.03, "other": 0.01}, ["asymmetry"]),  # near, and worse beyond chance
     ],
 )
-def test_what_is_missing_tells_no_two_effects_apart(of_leak, noise, beside):
-    """They differ beyond chance, chunk by chunk, and by less than what neither of them explains."""
-
-    def refit(error: float) -> Any:
-        squares = np.full((RUNS, CHUNKS), error**2 / CHUNKS)
-        held_out = CrossValidation(squares, np.ones(RUNS), np.zeros(RUNS), 60_000, 30_000.0)
-        return SimpleNamespace(held_out=held_out, error=error, between_runs=None, effects=(), hysteretic=frozenset())
-
-    without = refit(0.3 if noise else 0.204)
-    asymmetry, leak = (
-        Candidate(SimpleNamespace(effect=name), refit=refit(error), base=without)  # type: ignore[arg-type]
-        for name, error in (("asymmetry", 0.2), ("leak", of_leak))
-    )
-    found = indistinguishable_group("asymmetry", asymmetry.refit, [asymmetry, leak], noise or 0.1)  # type: ignore[arg-type]
-    assert ("leak" in [one.effect for one in found]) is beside
+def test_what_is_missing_tells_no_two_effects_apart(own, of_leak, found):
+    """Their outputs are nearer to each other than what neither of them explains could have made them."""
+    assert group(candidate("asymmetry", refit(missing=0.03, own=own)), candidate("leak", refit(**of_leak))) == found
 
 
-def test_what_is_better_on_blocks_comes_first_whatever_whole_runs_say():
-    """Whether it does harm there is asked where it is added."""
-    assert [one.effect for one in in_rank_order(MODELS, [candidate("a", 0.2, 0.2), candidate("b", 0.1, 0.3)])] == [
-        "b",
-        "a",
-    ]
+@pytest.mark.parametrize(("other", "first"), [(0.001, "a"), (0.02, "b")])
+def test_what_ties_stands_as_it_is_listed(other, first):
+    """A little more is left by the effect that is listed first, of which the data leave open whether it is right."""
+    ranked = in_rank_order(MODELS, [candidate("b", refit(missing=0.03)), candidate("a", refit(missing=0.03, x=other))])
+    assert ranked[0].effect == first
+
+
+def test_the_order_is_that_of_the_held_out_error():
+    """But for what ties, which stands as it is listed."""
+    ranked = in_rank_order(MODELS, [candidate("a", refit(x=0.2)), candidate("b", refit(y=0.1))])
+    assert [one.effect for one in ranked] == ["b", "a"]
 
 
 @pytest.mark.parametrize(("kept", "tried"), [(0.8, {"friction", "dead zone"}), (0.3, {"friction"})])
@@ -121,15 +106,14 @@ def test_where_the_boldest_promise_is_not_kept_more_is_tried(monkeypatch, kept, 
 
 
 @pytest.mark.parametrize(("quick", "refitted"), [(True, 6), (False, 5)])
-def test_what_leaves_as_much_as_the_last_finalist_is_one_in_a_small_matrix(monkeypatch, quick, refitted):
+def test_what_leaves_as_much_as_the_last_finalist_is_one_in_a_small_matrix(quick, refitted):
     """Else rounding would choose which of the two is refitted, and so may stand in a group: one leaves 1 % more."""
-    monkeypatch.setattr("ident.diagnosis.ranking._is_quick", lambda *_: quick)
     trials = [
         Candidate(SimpleNamespace(effect=f"n{n}"), SimpleNamespace(local=SimpleNamespace(error=error)))  # type: ignore[arg-type]
         for n, error in enumerate([0.3, 0.32, 0.36, 0.38, 0.4, 0.404, 0.409])
     ]
-    models: Any = SimpleNamespace(trial_error=lambda _base: 1.0)
+    models: Any = SimpleNamespace(trial_error=lambda _base: 1.0, is_quick=lambda _base: quick)
     base: Any = None
     assert len(_finalists(models, base, trials, finalists_at_least=5)) == refitted
-    nothing_more: Any = SimpleNamespace(trial_error=lambda _base: 0.404)
+    nothing_more: Any = SimpleNamespace(trial_error=lambda _base: 0.404, is_quick=lambda _base: quick)
     assert len(_finalists(nothing_more, base, trials, finalists_at_least=5)) == 5

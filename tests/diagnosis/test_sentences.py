@@ -10,9 +10,10 @@ import pytest
 
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.discovery.proposal import Proposal
+from ident.diagnosis.evidence.blocks import BlockMean
+from ident.diagnosis.evidence.comparison import Evidence
 from ident.diagnosis.report import better_with_fewer
-from ident.diagnosis.sentences import proposed_text, verdict_text, why_of_gain
-from ident.diagnosis.significance import Improvement
+from ident.diagnosis.sentences import proposed_text, verdict_text, why_of_evidence
 from ident.diagnosis.verification import Contradiction
 from ident.effects import EFFECTS
 from ident.fit.settings import Settings
@@ -81,31 +82,26 @@ def test_what_later_terms_bring_down_is_not_said_first(last, mended):
     assert text.startswith("With R = R + s * v the error on verify runs rises") is not mended
 
 
-def gained(innovations: float, innovations_without_best: float | None = None, **more: float | bool) -> Improvement:
-    """A fall of the error by a tenth, steady, of which few samples tell something new."""
-    plain = {
-        "reduction": 0.1, "log_likelihood_gain": 5.3, "log_likelihood_gain_without_best": 4.7, "deviations": 3.2,
-        "deviations_without_best": 3.1, "run_deviations": 3.0, "loss_ratio": 0.3, "offset_likelihood_gain": 0.0,
-        "offset_matters": False, "innovation_share": 0.4,
-    }  # fmt: skip
-    told = {
-        "innovation_likelihood_gain": innovations,
-        "innovation_likelihood_gain_without_best": innovations_without_best,
-    }
-    return Improvement(**{**plain, **told, **more})  # type: ignore[arg-type]
+def found(share: float, losing: bool = False) -> Evidence:
+    """An effect that takes a share of what is above the noise, and loses in one half or in none."""
+    sure, lost = BlockMean(share, 0.02, 20), BlockMean(-0.5, 0.01, 20)
+    return Evidence(
+        gain=20.0, without=20.0, most=100.0, distinct=50.0, before=0.01, after=0.008, noise=0.0001, difference=sure,
+        share=sure, parts={"second half": lost if losing else sure}, apart=0.001, resolved=1e-6,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(
-    ("gain", "said", "unsaid"),
+    ("evidence", "improves", "said", "unsaid"),
     [
-        (gained(-31.0, -30.0), "it follows a drift", "no more than chance"),
-        (gained(90.0, 80.0), "It shows as", "drift"),
-        (gained(-31.0, deviations=1.0), "no more than chance", "drift"),
-        (gained(21.4, 15.0, reduction=-0.4, in_windows=True), "of whole runs 21.4 nats", "offsets"),
+        (found(0.4), True, "It shows as", "chance"),
+        (found(0.4), False, "no more than the best of all effects takes by chance", "It shows"),
+        (found(0.03), False, "it explains 3 ± 4.2 % of what is above the noise", "chance"),
+        (found(0.4, losing=True), False, "it rises on the second half of the records", "chance"),
     ],
 )
-def test_an_effect_says_why_it_helps_or_does_not(gain, said, unsaid):
-    text = why_of_gain(gain, EFFECTS[0], (0.0275, 0.0249), 0.02, best=False)
+def test_an_effect_says_why_it_helps_or_does_not(evidence, improves, said, unsaid):
+    text = why_of_evidence(evidence, EFFECTS[0], (0.0275, 0.0249), improves, 0.02, best=False)
     assert said in text
     assert unsaid not in text
 

@@ -11,10 +11,10 @@ from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
 SIZES = {
     "a": 1.0,
     "b": 0.5,
-    "c": 0.5 * (1 - 0.3 * CRITERIA.significance.tie),
+    "c": 0.5 * (1 - 0.3 * CRITERIA.equality.tie),
     "d": 0.4999,
     "e": 0.7,
-    "f": 1.0 - 0.3 * CRITERIA.significance.tie,
+    "f": 1.0 - 0.3 * CRITERIA.equality.tie,
 }
 
 

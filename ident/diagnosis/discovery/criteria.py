@@ -15,6 +15,9 @@ class Discovery:
     most: int = 3
     """[terms] Proposed at most. Why: each is sought in addition to the last.
     Test: discovery/test_search.py::test_what_stood_in_for_a_term_is_left_out_again"""
+    worthwhile: float = 1e-2
+    """[relative reduction] Of the error that is worth a term. Why: less is not worth one, however certain.
+    Test: discovery/test_term_evidence.py::test_all_runs_gain_or_some_gain_much_and_none_loses"""
     log_likelihood_gain: float = 5.0
     """[log-likelihood] Beyond the logarithm of the number looked at. Why: one in 150 by chance, whatever the
     number. Test: discovery/test_search.py::test_noise_of_any_colour_is_no_physics"""

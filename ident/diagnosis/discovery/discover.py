@@ -74,4 +74,4 @@ def _is_a_selected_effect(alone: DiscoveryResult, selection: Selection) -> bool:
     """Whether the first term has the error of a selected effect alone: it is that effect, in other words."""
     named = (c.refit.error for c in selection.ranking if c.refit is not None and c.effect in selection.added)
     first = alone.found[0].error["fit"] if alone.found else None
-    return first is not None and any(abs(first - error) <= CRITERIA.significance.tie * error for error in named)
+    return first is not None and any(abs(first - error) <= CRITERIA.equality.tie * error for error in named)

@@ -35,8 +35,9 @@ from ident.diagnosis.discovery.term_to_effect import (
     lines_of,
     searched_bounds,
 )
-from ident.diagnosis.fitted_model import FittedModel, generalises
-from ident.diagnosis.significance import improvement
+from ident.diagnosis.evidence.comparison import generalises, matters
+from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.model_comparison import evidence, improves
 from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
 from ident.diagnosis.verdict import contradiction
 from ident.diagnosis.verification import Contradiction, verify_change
@@ -122,8 +123,8 @@ class TermSearch:
         few, bar = _few(self.models.runs), float(np.log(self.looked_at)) + CRITERIA.discovery.log_likelihood_gain
         candidate, refit, family = _chosen(base, tried, () if few else chosen_by)
         if few:
-            gain = improvement(base.held_out, refit.held_out)
-            gained, sound = gain.log_likelihood_gain, gain.beyond_chance and generalises(base, refit)
+            found = evidence(base, refit)
+            gained, sound = found.gain, matters(found) and generalises(found)
         else:
             integrated = self.models.horizon is not None
             told = term_evidence(
@@ -195,7 +196,7 @@ class TermSearch:
                 continue
             values = self._joined(latest, name)
             less = self.models.refit(tuple(e for e in self.base.effects if e != name), values)
-            if less.finite and not improvement(less.held_out, self.base.held_out).beyond_chance:
+            if less.finite and not improves(self.models, less, self.base):
                 self.base = less
         self.beside = tuple(name for name in self.beside if name in self.base.effects)
         self.found = [one for one in self.found if one.effect["name"] in self.base.effects]

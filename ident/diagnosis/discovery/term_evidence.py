@@ -67,7 +67,7 @@ class TermEvidence:
     @property
     def worthwhile(self) -> bool:
         """Whether the error falls by what is worth a term."""
-        return self.reduction > CRITERIA.significance.worthwhile
+        return self.reduction > CRITERIA.discovery.worthwhile
 
 
 def term_evidence(

@@ -8,7 +8,8 @@ spectrum common to all models (:mod:`ident.diagnosis.evidence.disturbance`),
 
     G = ν/2 ln(V before / V after)
 
-where ν counts what is distinct, never samples: five and a hundred periods of one sine have the same ν. It has to pass
+where ν counts what is distinct, never samples: five and a hundred periods of one sine have the same ν. The means of the
+runs, to which a waveform is blind, add (runs − 1)/2 ln(Σ before / Σ after) of their squares. It has to pass
 the bar, the 95 % point of the largest gain that any candidate makes of residuals with the same spectrum and random
 phases (:mod:`ident.diagnosis.evidence.chance`): that is the correction for the number of models looked at. Of four runs
 or more it has to pass without the run that gains most, too: what one run alone asks for is a doubt about that run.
@@ -26,22 +27,24 @@ comes from blocks of ten correlation times of the difference, or from whole runs
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import TypeVar
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.cached import cached_property
 from ident.diagnosis.criteria import TINY
 from ident.diagnosis.evidence.blocks import BlockMean, block_mean, block_ratio
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 from ident.diagnosis.evidence.disturbance import Disturbance
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
+from ident.noise.autoregression import prediction_errors
 from ident.noise.effective_sample_size import independent_samples
 
 Array = NDArray[np.float64]
-Model = TypeVar("Model", bound=Hashable)
+NO_DIFFERENCE = BlockMean(0.0, 0.0, 1)
+"""What is known of the means of two runs or one: nothing."""
 HALVES = ("first half", "second half")
 
 
@@ -53,7 +56,11 @@ class Evidence:
     but the noise, `distinct` ν. `before`, `after` and `noise` are powers of the error over that of the output, averaged
     over runs; `difference` is before − after and `share` ρ, with their errors; `parts` are the differences on each
     condition and each half. `apart` is the power between the two outputs, `resolved` that which the noise would tell
-    apart. `parameters` are the numbers of free parameters.
+    apart.
+
+    The means of the runs, less what they have in common, are judged by themselves: `level` is their root mean square
+    before, `levels_apart` that of what lies between the two models, over the outputs' deviations; `level_difference`
+    and `level_share` are of their squares, a run a block.
     """
 
     gain: float
@@ -68,7 +75,10 @@ class Evidence:
     parts: Mapping[Hashable, BlockMean]
     apart: float
     resolved: float
-    parameters: tuple[int, int] = (0, 0)
+    level: float = 0.0
+    levels_apart: float = 0.0
+    level_difference: BlockMean = NO_DIFFERENCE
+    level_share: BlockMean = NO_DIFFERENCE
 
     @property
     def explainable(self) -> float:
@@ -76,82 +86,198 @@ class Evidence:
         return max(self.before - self.noise, 0.0)
 
 
-def compare(
-    before: Sequence[Array], after: Sequence[Array], records: Sequence[Record], disturbance: Disturbance | None = None,
-    parameters: tuple[int, int] = (0, 0), criteria: EvidenceCriteria = EVIDENCE_CRITERIA,
-) -> Evidence:  # fmt: skip
-    """Compare two models by their residuals (n,) of each run on data that was left out of their fits.
+@dataclass(frozen=True, eq=False)
+class Residuals:
+    """What a model leaves of data that it was not fitted to: `series` (n,) of each run, in the unit of the outputs.
 
-    The residuals are in the unit of the outputs, less their mean where the zero is not known. `disturbance` is the
-    spectrum common to all models that are looked at, of which the two are members; without one these two are all.
-    Raises ValueError where the residuals are not those of the records.
+    They are less their mean where the zero is not known; `levels` (runs,), over the outputs' standard deviations, are
+    then what is known of the means: less what the runs have in common. `bands` are those of all models that are
+    compared.
     """
-    if not len(before) == len(after) == len(records):
-        raise ValueError(f"residuals of {len(before)} and {len(after)} runs, {len(records)} records")
-    if disturbance is None:
-        bands = EnergyBands(tuple(records), tuple(map(len, before)), criteria)
-        disturbance = Disturbance.of(bands, (before, after))
-    by_run = [disturbance.bands.by_run(residuals) for residuals in (before, after)]
-    energies = [of.sum(axis=0) for of in by_run]
-    scaled = [[r / of.size for r, of in zip(side, records, strict=True)] for side in (before, after)]
-    powers = [float(np.mean([np.mean(r**2) for r in side])) for side in scaled]
-    gained = [first**2 - second**2 for first, second in zip(*scaled, strict=True)]
-    between = [first - second for first, second in zip(*scaled, strict=True)]
-    noise = min(float(np.mean(disturbance.floors)), *powers)
-    excess = [residual**2 - floor for residual, floor in zip(scaled[0], disturbance.floors, strict=True)]
+
+    series: tuple[Array, ...]
+    bands: EnergyBands
+    levels: Array = field(default_factory=lambda: np.zeros(1))
+
+    @cached_property
+    def energies(self) -> Array:
+        """Those of each run in each band, (runs, bands)."""
+        return self.bands.by_run(self.series)
+
+    @cached_property
+    def scaled(self) -> list[Array]:
+        """The series over the standard deviations of the outputs."""
+        return [r / of.size for r, of in zip(self.series, self.bands.records, strict=True)]
+
+    @cached_property
+    def power(self) -> float:
+        """That of the error over that of the output, averaged over runs."""
+        return float(np.mean([np.mean(r**2) for r in self.scaled]))
+
+    @cached_property
+    def independent(self) -> float:
+        """How many of the samples tell something new."""
+        return max(sum(map(independent_samples, self.scaled)), 1.0)
+
+    @cached_property
+    def floors(self) -> Array:
+        """The variance of the noise of each run over the power of its output, if this is the best of the models.
+
+        As stated; of a periodic test what does not repeat; else what the past does not predict, which is less than the
+        noise where that is coloured. Never above what is left.
+        """
+        found, energies = [], self.energies.sum(axis=0)
+        for run, record, residual in zip(self.bands.runs, self.bands.records, self.scaled, strict=True):
+            if record.period is not None:
+                others = run.first + run.bands - 1
+                found.append(float(energies[others] / max(self.bands.degrees[others], 1.0)))
+            elif record.floor is not None:
+                found.append(record.floor)
+            else:
+                found.append(float(np.mean(prediction_errors(residual) ** 2)))
+        return np.minimum(found, [np.mean(r**2) for r in self.scaled])
+
+
+def common_disturbance(compared: Sequence[Residuals]) -> Disturbance:
+    """The spectrum common to models, the first of which is the reference: the model without any of the effects."""
+    energies = np.array([residuals.energies.sum(axis=0) for residuals in compared])
+    best = compared[int(np.argmin(energies.sum(axis=1)))]
+    return Disturbance.of_energies(best.bands, energies, best.floors)
+
+
+def compare(
+    before: Residuals, after: Residuals, disturbance: Disturbance | None = None,
+    criteria: EvidenceCriteria = EVIDENCE_CRITERIA,
+) -> Evidence:  # fmt: skip
+    """Compare two models by their residuals.
+
+    `disturbance` is the spectrum common to all models that are looked at, of which the two are members; without one
+    these two are all. Raises ValueError where the residuals are not of the same runs.
+    """
+    if not len(before.series) == len(after.series) == len(before.bands.records):
+        raise ValueError(f"residuals of {len(before.series)} and {len(after.series)} runs")
+    disturbance = disturbance or common_disturbance((before, after))
+    gained = [first**2 - second**2 for first, second in zip(before.scaled, after.scaled, strict=True)]
+    between = [first - second for first, second in zip(before.scaled, after.scaled, strict=True)]
+    noise = min(float(np.mean(disturbance.floors)), before.power, after.power)
+    excess = [residual**2 - floor for residual, floor in zip(before.scaled, disturbance.floors, strict=True)]
+    levels = [np.broadcast_to(side.levels, len(gained)) for side in (before, after)]
+    squares = [np.atleast_2d(of**2).T for of in levels]
+    better = before if before.power <= after.power else after
     return Evidence(
-        gain=disturbance.gain(energies[0], energies[1]),
-        without=_without(disturbance, by_run[0], by_run[1]),
-        most=disturbance.most(energies[0]),
+        gain=gain(before, after, disturbance),
+        without=_without(disturbance, before.energies, after.energies)
+        + _level_gain(*_without_best(squares[0][:, 0], squares[1][:, 0]), criteria),
+        most=most(before, disturbance),
         distinct=disturbance.distinct,
-        before=powers[0],
-        after=powers[1],
+        before=before.power,
+        after=after.power,
         noise=noise,
         difference=block_mean(gained, criteria),
         share=block_ratio(gained, excess, criteria),
-        parts=_parts(gained, records, criteria),
+        parts=_parts(gained, before.bands.records, criteria),
         apart=float(np.mean([np.mean(d**2) for d in between])),
-        resolved=criteria.resolution
-        * noise
-        / max(sum(map(independent_samples, scaled[int(powers[1] < powers[0])])), 1),
-        parameters=parameters,
+        resolved=criteria.resolution * noise / better.independent,
+        level=float(np.sqrt(squares[0].mean())),
+        levels_apart=float(np.sqrt(np.mean((levels[0] - levels[1]) ** 2))),
+        level_difference=block_mean(list(squares[0] - squares[1]), criteria),
+        level_share=block_ratio(list(squares[0] - squares[1]), list(squares[0]), criteria),
     )
 
 
-def improves(evidence: Evidence, bar: float, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
+def improves(evidence: Evidence, bar: Callable[[], float], criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
     """Whether the second model explains more than chance does, and a share that matters, beyond its error.
 
-    The `bar` is that of :func:`ident.diagnosis.evidence.chance.bar`. Where a residual has few harmonics a random
-    phase is often met by some candidate, and the bar comes near to all that can be gained: what
-    gains half of that passes, too, if that is worth its prior, η G > κ of :mod:`ident.diagnosis.evidence.probability`.
+    The gain is to be worth the prior of an effect, η G > κ of :mod:`ident.diagnosis.evidence.probability`, and to pass
+    the `bar` of :func:`ident.diagnosis.evidence.chance.bar`, asked for where nothing else decides. Where a
+    residual has few harmonics a random phase is often met by some candidate, and the bar comes near to all that can be
+    gained: what gains half of that passes, too.
     """
-    worth_its_prior = criteria.effect_prior / criteria.learning_rate
-    asked = min(bar, max(criteria.reaches * evidence.most, worth_its_prior))
-    return min(evidence.gain, evidence.without) > asked and evidence.share.above(criteria.share, criteria)
+    gain = min(evidence.gain, evidence.without)
+    if not matters(evidence, criteria) or criteria.learning_rate * gain <= criteria.effect_prior:
+        return False
+    return gain > criteria.reaches * evidence.most or gain > bar()
+
+
+def matters(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
+    """Whether the second model explains a share of the explainable power, or of the runs' means, that matters."""
+    of_levels = evidence.level > criteria.level and evidence.level_share.above(criteria.share, criteria)
+    return of_levels or evidence.share.above(criteria.share, criteria)
 
 
 def generalises(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
     """Whether no condition and no half loses beyond its error, and by a share of the explainable power that matters."""
-    least = -criteria.share * evidence.explainable
-    return not any(part.below(least, criteria) for part in evidence.parts.values())
+    return losing_part(evidence, criteria) is None
+
+
+def losing_part(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> Hashable | None:
+    """The first condition or half that loses so; None where none does."""
+    least, each = -criteria.share * evidence.explainable, criteria.of_several(len(evidence.parts))
+    return next((name for name, part in evidence.parts.items() if part.below(least, each)), None)
+
+
+def worth_adding(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
+    """Whether the second model improves and generalises where no bar is known: by half of what can be gained."""
+    return improves(evidence, lambda: float("inf"), criteria) and generalises(evidence, criteria)
+
+
+def better(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
+    """Whether the second of two models with as many parameters is more likely, beyond what the data leave open."""
+    differences = (evidence.difference, evidence.level_difference)
+    gains = evidence.gain >= 0 and any(of.above(0.0, criteria) for of in differences)
+    return gains and not indistinguishable(evidence, criteria)
 
 
 def indistinguishable(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
     """Whether the data leave open which model is right: as good but for chance, and outputs near to each other.
 
-    Near is what the noise does not separate, or a twentieth of what the better one leaves above the noise.
+    Near is what the noise does not separate, or a twentieth of what the better one leaves above the noise; the means of
+    the runs are to be as near as nobody cares about.
     """
     excess = max(min(evidence.before, evidence.after) - evidence.noise, 0.0)
     near = evidence.apart <= max(criteria.separation * excess, evidence.resolved)
     difference = evidence.difference
     as_good = not (difference.above(0.0, criteria) or difference.below(0.0, criteria))
-    return near and (as_good or evidence.apart <= evidence.resolved)
+    return near and evidence.levels_apart <= criteria.level and (as_good or evidence.apart <= evidence.resolved)
 
 
 def dominated(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether the second model is worse than the first beyond chance, by a share that matters of what it leaves."""
+    """Whether the second model is worse than the first beyond chance, by a share that matters of what it leaves.
+
+    Never where the noise hides what lies between the two.
+    """
     excess = max(evidence.after - evidence.noise, 0.0)
-    return evidence.difference.below(-criteria.share * excess, criteria)
+    by_levels = evidence.levels_apart > criteria.level and evidence.level_difference.below(0.0, criteria)
+    by_waveform = evidence.apart > evidence.resolved and evidence.difference.below(-criteria.share * excess, criteria)
+    return by_levels or by_waveform
+
+
+def gain(before: Residuals, after: Residuals, disturbance: Disturbance) -> float:
+    """G in nats, of the waveforms and of the means of the runs."""
+    first, second = (np.broadcast_to(side.levels, len(side.series)) ** 2 for side in (before, after))
+    waveform = disturbance.gain(before.energies.sum(axis=0), after.energies.sum(axis=0))
+    return waveform + _level_gain(first, second, disturbance.bands.criteria)
+
+
+def most(before: Residuals, disturbance: Disturbance) -> float:
+    """The gain of a model that leaves nothing but the noise, and no mean that matters."""
+    levels = np.broadcast_to(before.levels, len(before.series)) ** 2
+    of_levels = _level_gain(levels, np.zeros(len(levels)), disturbance.bands.criteria)
+    return disturbance.most(before.energies.sum(axis=0)) + of_levels
+
+
+def _level_gain(before: Array, after: Array, criteria: EvidenceCriteria) -> float:
+    """(runs − 1)/2 ln(Σ before / Σ after) of squares of the means, (runs,): the zero is one of as many observations."""
+    if len(before) < 2:
+        return 0.0
+    least = len(before) * criteria.level**2
+    return 0.5 * (len(before) - 1) * float(np.log((before.sum() + least) / (after.sum() + least)))
+
+
+def _without_best(before: Array, after: Array) -> tuple[Array, Array]:
+    """Squares of the means, (runs,), without the run that gains most."""
+    best = int(np.argmax(before - after))
+    return np.delete(before, best), np.delete(after, best)
 
 
 def _without(disturbance: Disturbance, before: Array, after: Array) -> float:

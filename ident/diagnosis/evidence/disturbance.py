@@ -14,14 +14,12 @@ level of the disturbance is not known.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.diagnosis.evidence.energy_bands import EnergyBands
-from ident.noise.autoregression import prediction_errors
 
 Array = NDArray[np.float64]
 
@@ -37,13 +35,6 @@ class Disturbance:
     energy: Array
     noise: Array
     floors: Array
-
-    @classmethod
-    def of(cls, bands: EnergyBands, compared: Sequence[Sequence[Array]], reference: int = 0) -> Disturbance:
-        """That of models by their residuals, one of them, the `reference`, the model without any of the effects."""
-        energies = np.array([bands.energies(residuals) for residuals in compared])
-        best = compared[int(np.argmin(energies.sum(axis=1)))]
-        return cls.of_energies(bands, energies, _floors(bands, energies.min(axis=0), best), reference)
 
     @classmethod
     def of_energies(cls, bands: EnergyBands, energies: Array, floors: Array, reference: int = 0) -> Disturbance:
@@ -92,20 +83,3 @@ class Disturbance:
         """The gain of a model that leaves nothing but the noise, as far as that is known for sure."""
         surely = self.bands.criteria.floor_margin**2 * self.noise
         return self.gain(np.maximum(before, surely), surely)
-
-
-def _floors(bands: EnergyBands, least: Array, best: Sequence[Array]) -> Array:
-    """f of each run: as stated; of a periodic test what does not repeat; else what the past does not predict.
-
-    The latter is of the residuals of the best model, and less than the noise where that is coloured.
-    """
-    found = []
-    for run, record, residual in zip(bands.runs, bands.records, best, strict=True):
-        if record.period is not None:
-            others = run.first + run.bands - 1
-            found.append(float(least[others] / max(bands.degrees[others], 1.0)))
-        elif record.floor is not None:
-            found.append(record.floor)
-        else:
-            found.append(float(np.mean(prediction_errors(residual / record.size) ** 2)))
-    return np.array(found)

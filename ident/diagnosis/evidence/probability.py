@@ -12,12 +12,11 @@ p is right.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ident.diagnosis.evidence.comparison import Evidence
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 
 Effects = frozenset[str]
@@ -25,36 +24,73 @@ NOTHING: Effects = frozenset()
 
 
 @dataclass(frozen=True)
-class Probabilities:
-    """Of each set of effects, whether something unlisted acts too or not; of something unlisted; and of neither."""
+class SetGains:
+    """The gains (nats) of sets of effects over the model without any of them, and of one that leaves only the noise.
 
-    models: Mapping[Effects, float]
-    unlisted: float
-    nothing: float
+    All are under one disturbance spectrum. The model without any effect is among them, with a gain of 0.
+    """
+
+    gains: Mapping[Effects, float]
+    most: float
+
+
+@dataclass(frozen=True)
+class Probabilities:
+    """Of each set of effects without and with something unlisted; they sum to one."""
+
+    alone: Mapping[Effects, float]
+    with_unlisted: Mapping[Effects, float]
+
+    @property
+    def unlisted(self) -> float:
+        """That something acts that no list holds."""
+        return sum(self.with_unlisted.values())
+
+    @property
+    def nothing(self) -> float:
+        """That nothing is missing."""
+        return self.alone[NOTHING]
 
     @property
     def effects(self) -> dict[str, float]:
         """Of each effect: that of all sets that hold it."""
-        names = sorted(set().union(*self.models))
-        return {name: sum(p for of, p in self.models.items() if name in of) for name in names}
+        return {name: self.of([(name,)]) for name in sorted(set().union(*self.alone))}
+
+    @property
+    def named(self) -> dict[str, float]:
+        """Those of each effect, of "nothing" and of something "unlisted"."""
+        return {**self.effects, "nothing": self.nothing, "unlisted": self.unlisted}
+
+    def of(self, groups: Iterable[Iterable[str]]) -> float:
+        """That of each of some groups an effect acts: of all sets that hold one of each."""
+        asked = [frozenset(group) for group in groups]
+        return sum(
+            p
+            for of in (self.alone, self.with_unlisted)
+            for held, p in of.items()
+            if all(held & group for group in asked)
+        )
 
 
-def probabilities(
-    compared: Mapping[Effects, Evidence], criteria: EvidenceCriteria = EVIDENCE_CRITERIA
-) -> Probabilities:  # fmt: skip
-    """The probabilities of models by what speaks for them against the model without any effect.
-
-    That model is among them, compared with itself. Raises ValueError where it is missing.
-    """
-    if NOTHING not in compared:
+def probabilities(sets: SetGains, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> Probabilities:
+    """The probabilities of sets of effects by their gains. Raises ValueError where that without any is missing."""
+    if NOTHING not in sets.gains:
         raise ValueError("the model without any effect is missing")
-    most = compared[NOTHING].most
-    gains = np.array([evidence.gain for evidence in compared.values()])
-    remaining = np.maximum(most - np.maximum(gains, 0.0), 0.0)
-    alone = criteria.learning_rate * gains - criteria.effect_prior * np.array([len(effects) for effects in compared])
+    gains = np.array(list(sets.gains.values()))
+    remaining = np.maximum(sets.most - np.maximum(gains, 0.0), 0.0)
+    counts = np.array([len(effects) for effects in sets.gains])
+    alone = criteria.learning_rate * gains - criteria.effect_prior * counts
     with_unlisted = alone + criteria.learning_rate * criteria.unlisted_share * remaining - criteria.unlisted_prior
     logs = np.array([alone, with_unlisted])
     weights = np.exp(logs - logs.max())
     weights /= weights.sum()
-    models = dict(zip(compared, weights.sum(axis=0).tolist(), strict=True))
-    return Probabilities(models, float(weights[1].sum()), float(weights[0, list(compared).index(NOTHING)]))
+    return Probabilities(*(dict(zip(sets.gains, of.tolist(), strict=True)) for of in weights))
+
+
+def structure_probabilities(
+    gains: Sequence[float], parameters: Sequence[int], criteria: EvidenceCriteria = EVIDENCE_CRITERIA
+) -> list[float]:
+    """The probabilities of models of a machine by their gains: a parameter is charged as an effect is, by κ."""
+    logs = criteria.learning_rate * np.array(gains) - criteria.effect_prior * np.array(parameters)
+    weights = np.exp(logs - logs.max())
+    return [float(weight) for weight in weights / weights.sum()]

@@ -14,7 +14,7 @@ from functools import lru_cache
 
 from ident.chain.chain import Chain
 from ident.chain.exact_lags import exact_lags, with_exact_lags
-from ident.simulation.kernel.layout import HELD, SHARE, Filter, Kernel
+from ident.simulation.kernel.layout import BEYOND, HELD, SHARE, Filter, Kernel
 from ident.simulation.kernel.machine_code import LANES, WIDE
 from ident.simulation.kernel.source import constant
 from ident.simulation.kernel.writer import Writer
@@ -22,14 +22,17 @@ from ident.simulation.kernel.writer import Writer
 
 @lru_cache(maxsize=64)
 def kernel(
-    chain: Chain, output: str, plain: frozenset[tuple[str, float]] = frozenset(), beside: tuple[str, ...] = ()
-) -> Kernel:
+    chain: Chain, output: str, plain: frozenset[tuple[str, float]] = frozenset(), beside: tuple[str, ...] = (),
+    recorded: bool = False,
+) -> Kernel:  # fmt: skip
     """The kernel of a chain for one output; `plain` are symbols that stand as numbers in the code.
 
-    Channels `beside` the output are left in rows of the buffer at every step.
+    Channels `beside` the output are left in rows of the buffer at every step. Where the command is `recorded`, an
+    output that reads its rate at once, as the force on a mass that is moved does, is given the rate at the samples, for
+    over the step that begins there it is that of half a step later, and where the command bends within a step.
     """
     written, followers = with_exact_lags(chain), exact_lags(chain)
-    return Writer(written, output, dict(plain), beside=beside, followers=followers).kernel()
+    return Writer(written, output, dict(plain), beside=beside, followers=followers, recorded=recorded).kernel()
 
 
-__all__ = ["HELD", "LANES", "SHARE", "WIDE", "Filter", "Kernel", "constant", "kernel"]
+__all__ = ["BEYOND", "HELD", "LANES", "SHARE", "WIDE", "Filter", "Kernel", "constant", "kernel"]

@@ -13,6 +13,9 @@ from ident.simulation.kernel.machine_code import WIDE, Advance, Fed, address, ad
 HELD, SHARE = "held", "share"
 """Rows that the packing fills: 1 where a lane's command is held between samples; the delay's fraction of a step."""
 
+BEYOND = "beyond"
+"""The input that says by how much the mean of the command over a step is beyond that of its ends: see ident.slopes."""
+
 
 @dataclass(frozen=True)
 class Filter:

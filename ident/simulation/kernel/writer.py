@@ -10,11 +10,12 @@ from ident.chain.chain import INPUT, INPUT_RATE, MEASURED, STEP
 from ident.chain.dry_friction import dry_friction
 from ident.equations.equation import Equation
 from ident.equations.grammar import TIME, tree_of
-from ident.simulation.kernel.layout import HELD, SHARE, Filter, Kernel, filter_rows
+from ident.simulation.kernel.layout import BEYOND, HELD, SHARE, Filter, Kernel, filter_rows
 from ident.simulation.kernel.machine_code import LANES
 from ident.simulation.kernel.source import Source, named
 
 STAGES = (1, 2, 3, 4)
+_GIVEN_RATE = "u_rate"
 
 
 @dataclass
@@ -27,6 +28,7 @@ class Writer(Source):
     beside: tuple[str, ...] = ()
     followers: frozenset[str] = frozenset()
     """States that the chain writes as lags: their rows are those of the filters."""
+    recorded: bool = False
 
     def kernel(self) -> Kernel:
         """The kernel of the chain for the output."""
@@ -35,7 +37,8 @@ class Writer(Source):
         states = {name: self._row() for name in chain.states}
         memories = {name: self._row() for name in chain.memories}
         read = frozenset().union(*(e.names for e in (*needed, *rates)))
-        inputs = {name: self._row(3) for name in (INPUT, *MEASURED) if name == INPUT or name in read}
+        given = {INPUT, *read.intersection(MEASURED), *({INPUT_RATE, BEYOND} if self._is_given(needed) else ())}
+        inputs = {name: self._row(3) for name in (INPUT, INPUT_RATE, BEYOND, *MEASURED) if name in given}
         shown, beside = self._row(), {channel: self._row() for channel in self.beside}
         body = self._body(needed, rates, states, memories, inputs, {self.output: shown} | beside)
         states |= {lag.target: self._row_of(lag) for lag in needed if lag.target in self.followers}
@@ -44,6 +47,12 @@ class Writer(Source):
             chain, self.output, (*loads, *body), self.rows, tuple(self.constants.values()),
             tuple(self.filters.values()), states, memories, inputs, self.shift, shown, beside,
         )  # fmt: skip
+
+    def _is_given(self, needed: Sequence[Equation]) -> bool:
+        """Whether rate and bends of the command are inputs: the output reads the rate, and no delay shifts it."""
+        shown = self.chain.signal(self.output)
+        of_output = any(equation.target == shown and INPUT_RATE in equation.names for equation in needed)
+        return self.recorded and of_output and not any("delay(" in ast.unparse(equation.tree) for equation in needed)
 
     def _row_of(self, lag: Equation) -> int:
         """The row of the state of an equation ``s = lag(E, T)``."""
@@ -115,13 +124,14 @@ class Writer(Source):
         """
         inverse = self._text(f"1.0 / {STEP}")
         held, share = self._constant(named(HELD)), self._constant(named(SHARE))
-        for name, row in inputs.items():
+        for name, row in sorted(inputs.items(), key=lambda one: one[0] == INPUT):  # its rate goes before it
             for i, part in enumerate(("before", "now", "then")):
                 self._write(f"{name}_{part}", f"b[{(row + i) * LANES} + lane]")
             if name == INPUT:
                 self._write(f"{name}_1", f"{name}_now + {share} * ({name}_before - {name}_now)")
                 self._write("u_end", f"{name}_then + {share} * ({name}_now - {name}_then)")
-                self._write("u_area", f"0.5 * ({name}_now + {share} * {name}_1 + (1.0 - {share}) * u_end)")
+                beyond = f" + {BEYOND}_now" if BEYOND in inputs else ""
+                self._write("u_area", f"0.5 * ({name}_now + {share} * {name}_1 + (1.0 - {share}) * u_end){beyond}")
                 self._write("u_middle", f"0.25 * (6.0 * u_area - {name}_1 - u_end)")
                 for stage, value in ((2, "u_middle"), (3, "u_middle"), (4, "u_end")):
                     self._write(f"{name}_{stage}", f"{value} + {held} * ({name}_1 - {value})")
@@ -130,12 +140,14 @@ class Writer(Source):
                 self._write("u_next", f"{inverse} * ({name}_then - {name}_now)")
                 between = "0.5 * (u_jump + u_next)"
                 for stage, value in ((1, "u_jump"), (2, between), (3, between), (4, "u_next")):
-                    self._write(f"{INPUT_RATE}_{stage}", f"u_rise + {held} * ({value} - u_rise)")
+                    rise = f"{_GIVEN_RATE}_{stage}" if INPUT_RATE in inputs else "u_rise"
+                    self._write(f"{INPUT_RATE}_{stage}", f"{rise} + {held} * ({value} - {rise})")
             else:
-                self._write(f"{name}_1", f"{name}_now")
-                self._write(f"{name}_2", f"0.5 * ({name}_now + {name}_then)")
-                self._write(f"{name}_3", f"{name}_2")
-                self._write(f"{name}_4", f"{name}_then")
+                of = _GIVEN_RATE if name == INPUT_RATE else name
+                self._write(f"{of}_1", f"{name}_now")
+                self._write(f"{of}_2", f"0.5 * ({name}_now + {name}_then)")
+                self._write(f"{of}_3", f"{of}_2")
+                self._write(f"{of}_4", f"{name}_then")
 
     def _time(self, step: str) -> None:
         """The time since the record's start at each stage."""

@@ -1,0 +1,64 @@
+"""Two fitted models compared by what they leave of data that neither was fitted to.
+
+What the answers mean, and by which numbers, stands in :mod:`ident.diagnosis.evidence.comparison`.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.evidence import comparison
+from ident.diagnosis.evidence.comparison import Evidence, compare
+from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.screening import gain_by_chance
+
+
+def evidence(before: FittedModel, after: FittedModel) -> Evidence:
+    """What speaks for the second model against the first."""
+    return compare(before.residuals_held_out, after.residuals_held_out)
+
+
+def improves(models: CandidateModels, less: FittedModel, more: FittedModel) -> bool:
+    """Whether a model with more effects is worth them: it gains beyond chance, by a share that matters, everywhere."""
+    if not (_is_finite(less) and _is_finite(more)):
+        return _is_finite(more)
+    return is_improvement(models, less, evidence(less, more))
+
+
+def is_improvement(models: CandidateModels, less: FittedModel, found: Evidence) -> bool:
+    """The same by what speaks for it."""
+    return comparison.improves(found, partial(bar, models, less)) and comparison.generalises(found)
+
+
+def better(before: FittedModel, after: FittedModel) -> bool:
+    """Whether the second of two models with as many effects is more likely, beyond what the data leave open."""
+    return _is_finite(after) and (not _is_finite(before) or comparison.better(evidence(before, after)))
+
+
+def dominated(worse: FittedModel, best: FittedModel) -> bool:
+    """Whether the first model is worse than the second beyond chance, by a share that matters of what it leaves."""
+    if worse is best or not _is_finite(best):
+        return False
+    return not _is_finite(worse) or comparison.dominated(evidence(best, worse))
+
+
+def indistinguishable(first: FittedModel, second: FittedModel) -> bool:
+    """Whether the data leave open which of two models is right."""
+    return first is second or (
+        _is_finite(first) and _is_finite(second) and comparison.indistinguishable(evidence(first, second))
+    )
+
+
+def bar(models: CandidateModels, base: FittedModel) -> float:
+    """The gain (nats) that the best of all effects beside those of a model makes by chance, but for one in twenty."""
+    if base.effects not in models.bars:
+        models.bars[base.effects] = gain_by_chance(models, base, [n for n in models.effects if n not in base.effects])
+    return models.bars[base.effects]
+
+
+def _is_finite(model: FittedModel) -> bool:
+    """Whether the model leaves something finite of every run."""
+    return bool(np.isfinite(model.held_out.error))
