@@ -225,8 +225,8 @@ class Ranking:
     """[relative reduction] Of the score that is worth a refit. Why: three tenths of what is asked in the end
     (evidence.share)."""
     offset_gain: float = 3.0
-    """[log-likelihood] Predicted gain of the runs' offsets that is worth a refit. Why: a third of what is asked in
-    the end. Test: test_diagnose.py::test_a_null_bias_is_found_by_the_offsets"""
+    """[log-likelihood] Predicted gain of the runs' offsets that is worth a refit. Why: about what the prior of an
+    effect asks for in the end. Test: test_diagnose.py::test_a_null_bias_is_found_by_the_offsets"""
     told_at_once: int = 5
     """[effects] Told as soon as they are predicted. Why: a page shows five."""
 

@@ -30,7 +30,7 @@ def improves(models: CandidateModels, less: FittedModel, more: FittedModel) -> b
 
 def is_improvement(models: CandidateModels, less: FittedModel, found: Evidence) -> bool:
     """The same by what speaks for it."""
-    return comparison.improves(found, partial(bar, models, less)) and comparison.generalises(found)
+    return comparison.worth_adding(found, partial(bar, models, less))
 
 
 def better(before: FittedModel, after: FittedModel) -> bool:

@@ -4,6 +4,9 @@ What is *named* is what the selection added, but for what the model does as well
 residual is *unexplained* unless it is noise. How the verdict stands: *nothing* is named; *contradicted* by runs to
 verify; *found*, the residual is noise; else a *stand_in*, for something remains. So it may where a strength ended at
 the bound of its search and no noise floor is known. A *group* are effects that the data cannot tell apart.
+
+Whether the residual is noise is a test of its size, and of its memory where no floor is known. How probable it is that
+something unlisted acts is another question, which the gains of the refitted models answer: the two may differ.
 """
 
 from __future__ import annotations

@@ -9,10 +9,11 @@ spectrum common to all models (:mod:`ident.diagnosis.evidence.disturbance`),
     G = ν/2 ln(V before / V after)
 
 where ν counts what is distinct, never samples: five and a hundred periods of one sine have the same ν. The means of the
-runs, to which a waveform is blind, add (runs − 1)/2 ln(Σ before / Σ after) of their squares. It has to pass
-the bar, the 95 % point of the largest gain that any candidate makes of residuals with the same spectrum and random
-phases (:mod:`ident.diagnosis.evidence.chance`): that is the correction for the number of models looked at. Of four runs
-or more it has to pass without the run that gains most, too: what one run alone asks for is a doubt about that run.
+runs, to which a waveform is blind, add (runs − 1)/2 ln(Σ before / Σ after) of their squares. It has to pass the bar,
+the 95 % point of the largest gain that any candidate makes of residuals with the same spectrum and random phases
+(:mod:`ident.diagnosis.evidence.chance`), or half of all that can be gained: that is the correction for the number of
+models looked at. Of four runs or more it has to pass without the run that gains most, too: what one run alone asks for
+is a doubt about that run.
 
 *Does it matter?* The share of the explainable power, that above the noise, which the change takes,
 
@@ -22,7 +23,8 @@ with P the power of the error over that of the output, averaged over runs: what 
 comes from blocks of ten correlation times of the difference, or from whole runs
 (:mod:`ident.diagnosis.evidence.blocks`).
 
-*Does it hold everywhere?* No condition of the tests, and neither half of the records, may lose beyond its error.
+*Does it hold everywhere?* No condition of the tests, and neither half of the records, may lose beyond its error and by
+a hundredth of the explainable power.
 """
 
 from __future__ import annotations
@@ -163,11 +165,11 @@ def compare(
     excess = [residual**2 - floor for residual, floor in zip(before.scaled, disturbance.floors, strict=True)]
     levels = [np.broadcast_to(side.levels, len(gained)) for side in (before, after)]
     squares = [np.atleast_2d(of**2).T for of in levels]
-    better = before if before.power <= after.power else after
+    best = before if before.power <= after.power else after
     return Evidence(
         gain=gain(before, after, disturbance),
         without=_without(disturbance, before.energies, after.energies)
-        + _level_gain(*_without_best(squares[0][:, 0], squares[1][:, 0]), criteria),
+        + _level_gain(*_without_best(squares[0][:, 0], squares[1][:, 0], criteria), criteria),
         most=most(before, disturbance),
         distinct=disturbance.distinct,
         before=before.power,
@@ -177,7 +179,7 @@ def compare(
         share=block_ratio(gained, excess, criteria),
         parts=_parts(gained, before.bands.records, criteria),
         apart=float(np.mean([np.mean(d**2) for d in between])),
-        resolved=criteria.resolution * noise / better.independent,
+        resolved=criteria.resolution * noise / best.independent,
         level=float(np.sqrt(squares[0].mean())),
         levels_apart=float(np.sqrt(np.mean((levels[0] - levels[1]) ** 2))),
         level_difference=block_mean(list(squares[0] - squares[1]), criteria),
@@ -216,9 +218,14 @@ def losing_part(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITER
     return next((name for name, part in evidence.parts.items() if part.below(least, each)), None)
 
 
-def worth_adding(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether the second model improves and generalises where no bar is known: by half of what can be gained."""
-    return improves(evidence, lambda: float("inf"), criteria) and generalises(evidence, criteria)
+def worth_adding(
+    evidence: Evidence, bar: Callable[[], float] = lambda: float("inf"), criteria: EvidenceCriteria = EVIDENCE_CRITERIA
+) -> bool:  # fmt: skip
+    """The rule by which an effect is added: the second model improves on the first, and generalises.
+
+    Without a `bar` it has to gain half of all that can be gained.
+    """
+    return improves(evidence, bar, criteria) and generalises(evidence, criteria)
 
 
 def better(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
@@ -274,8 +281,10 @@ def _level_gain(before: Array, after: Array, criteria: EvidenceCriteria) -> floa
     return 0.5 * (len(before) - 1) * float(np.log((before.sum() + least) / (after.sum() + least)))
 
 
-def _without_best(before: Array, after: Array) -> tuple[Array, Array]:
-    """Squares of the means, (runs,), without the run that gains most."""
+def _without_best(before: Array, after: Array, criteria: EvidenceCriteria) -> tuple[Array, Array]:
+    """Squares of the means, (runs,), without the run that gains most; of few runs all of them."""
+    if len(before) < criteria.whole_runs:
+        return before, after
     best = int(np.argmax(before - after))
     return np.delete(before, best), np.delete(after, best)
 
