@@ -12,6 +12,7 @@ from ident.figures import FIGURES, figures_of, words
 from ident.fit.result import FitResult
 from ident.presets import preset
 from ident.residuals.views import views
+from ident.words.uses import runs as data_runs
 from schemas.matrix import RunView
 
 Choices = tuple[tuple[str, str], ...]
@@ -80,7 +81,7 @@ def profile_form(fit: FitResult) -> FigureForm | None:
 
 def _bode(runs: Sequence[RunView]) -> tuple[Field, ...]:
     first = "verify" if any(run.use == "verify" for run in runs) else "fit"
-    others = tuple((use, f"{use} runs") for use in ("fit",) if first == "verify")
+    others = tuple((use, data_runs(use)) for use in ("fit",) if first == "verify")
     gains = _stated(runs, lambda run: run.gain, words.gain)
     units = {run.units.get("command", "1") for run in runs}
     unit = units.pop() if len(units) == 1 else "1"
@@ -88,7 +89,7 @@ def _bode(runs: Sequence[RunView]) -> tuple[Field, ...]:
     ordered = sorted(runs, key=lambda run: (run.mass or 0.0, run.stiffness or 0.0))
     specimens = dict.fromkeys(words.specimen(specimen_of(run)) for run in ordered if run.mass is not None)
     offered = (
-        Field("use", "Runs", (("", f"{first} runs"), *others, ("all", "all runs"))),
+        Field("use", "Runs", (("", data_runs(first)), *others, ("all", "all runs"))),
         Field("kp", "Gain", (("", "any"), *gains)),
         Field("amplitude", "Amplitude, RMS", (("", "any"), *amplitudes)),
         Field("specimen", "Specimen", (("", "any"), *((text, text) for text in specimens))),

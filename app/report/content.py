@@ -135,7 +135,7 @@ def _missing(diagnosis: Diagnosis, matrix: Matrix) -> Iterator[Block]:
     if steps := ladder_steps(diagnosis):
         chart = ladder(steps, diagnosis.noise_floor.get("fit"), matrix.actuator, look("light"))
         yield Figure("ladder", chart, "The error with each effect added")
-    header = ("Effect", "Probability", "Predicted error", "Fit", "Held out", "Verify", "Why")
+    header = ("Effect", "Probability", "Predicted error", "Estimation", "Held-out", "Validation", "Reason")
     yield Table(header, candidate_rows(diagnosis), (1, 2, 3, 4, 5))
 
 

@@ -22,6 +22,7 @@ from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.residuals.breakdown import Breakdown, breakdown, stated_amplitude
 from ident.run import Run
+from ident.words.uses import DATA
 
 MOST = 100  # rows
 _ROW = 9  # pixels
@@ -90,7 +91,7 @@ def _cells(found: Breakdown, runs: Mapping[str, Run], ends: Sequence[tuple[float
 
 def _errors(found: Breakdown, runs: Mapping[str, Run]) -> list[dict[str, Any]]:
     return [
-        {"r": run.id, "e": _short(100 * run.error), "u": run.use, "d": words.describe(runs[run.id])}
+        {"r": run.id, "e": _short(100 * run.error), "u": DATA[run.use], "d": words.describe(runs[run.id])}
         for run in found.runs
         if run.id in runs
     ]
@@ -152,8 +153,8 @@ def _bands(order: Sequence[str], ends: Sequence[tuple[float, float]], unit: str,
 def _totals(order: Sequence[str], look: Look, height: int) -> Panel:
     colour = alt.Color(
         "u:N",
-        scale=alt.Scale(domain=["fit", "verify"], range=list(look.series[:2])),
-        legend=alt.Legend(title="Runs to", orient="top", symbolType="square"),
+        scale=alt.Scale(domain=[DATA["fit"], DATA["verify"]], range=list(look.series[:2])),
+        legend=alt.Legend(title="Data", orient="top", symbolType="square"),
     )
     panel: Panel = (
         alt.Chart(alt.NamedData("totals"), width=look.across(120), height=height)

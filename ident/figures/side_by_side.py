@@ -11,6 +11,7 @@ from ident.figures import words
 from ident.figures.look import Look
 from ident.figures.render import Chart, datasets
 from ident.matrix import Actuator
+from ident.words.uses import DATA
 
 _STEP = 15  # pixels a run
 
@@ -24,7 +25,7 @@ def side_by_side(of: SideBySide, actuator: Actuator, look: Look) -> Chart:
     first = of.columns[0].runs
     order = sorted(of.uses, key=lambda run: -first.get(run, 0.0))
     rows: list[dict[str, Any]] = [
-        {"r": run, "u": of.uses[run], "e": float(f"{100 * error:.4g}"), "f": title}
+        {"r": run, "u": DATA[of.uses[run]], "e": float(f"{100 * error:.4g}"), "f": title}
         for column, title in zip(of.columns, titles, strict=True)
         for run, error in column.runs.items()
     ]
@@ -35,12 +36,12 @@ def side_by_side(of: SideBySide, actuator: Actuator, look: Look) -> Chart:
     colours = alt.Scale(domain=titles, range=list(look.series[: len(titles)]))
     colour = alt.Color("f:N", title=None, sort=titles, scale=colours, legend=legend)
     marks = alt.Legend(orient="bottom", symbolFillColor=look.ink, symbolStrokeColor=look.ink)
-    shapes = alt.Scale(domain=["fit", "verify"], range=["circle", "diamond"])
-    shape = alt.Shape("u:N", title="Run", scale=shapes, legend=marks)
+    shapes = alt.Scale(domain=[DATA["fit"], DATA["verify"]], range=["circle", "diamond"])
+    shape = alt.Shape("u:N", title="Data", scale=shapes, legend=marks)
     tip = [alt.Tooltip("r:N", title="Run"), alt.Tooltip("f:N", title="Fit"), alt.Tooltip("e:Q", title="Error (%)")]
     dots = alt.Chart(alt.NamedData("errors")).mark_point(size=42, opacity=1, filled=True)
-    errors = ", ".join(f"{column.name} fit {words.error(column.words['fit'])}" for column in of.columns)
-    title = alt.TitleParams(_headline(of, actuator), subtitle=[errors])
+    errors = ", ".join(f"{column.name} {words.error(column.words['fit'])}" for column in of.columns)
+    title = alt.TitleParams(_headline(of, actuator), subtitle=[f"error on estimation data: {errors}"])
     chart: Chart = alt.layer(
         dots.encode(x=x, y=y, color=colour, shape=shape, tooltip=tip),
         width=look.across(480), height=_STEP * len(order), datasets=datasets({"errors": rows}),

@@ -35,10 +35,10 @@ _SPECIMEN = stage(
         Quantity("F", "N", "force on the specimen"),
     ),
     ("xL = x", "the specimen moves with the rod"),
-    ("vL = v", "the specimen is as fast as the rod"),
+    ("vL = v", "the specimen has the speed of the rod"),
     ("xk = xL", "the spring has no play"),
     ("S = k * xk + cL * vL", "spring and damper of the specimen"),
-    ("F = S", "what a load cell between rod and specimen measures"),
+    ("F = S", "reading of a load cell between rod and specimen"),
 )
 """A specimen that a machine moves whatever it takes, as one without an equation of forces does."""
 

@@ -25,8 +25,8 @@ OPEN_LOOP = stage(
         Quantity("r", "1", "current as it acts, in the unit of the record"),
         Quantity("e", "1", "control signal, in rated currents"),
     ),
-    ("r = u", "the current acts at once"),
-    ("e = r / Ir", "it is counted in rated currents"),
+    ("r = u", "the current acts without delay"),
+    ("e = r / Ir", "unit: rated current"),
 )
 
 LAG_TIME = Parameter(
@@ -37,7 +37,7 @@ LAG = stage(
     "valve",
     (
         Quantity("q1", "1", "current behind the lag, in rated currents"),
-        Quantity("dq", "1/s", "its rate"),
+        Quantity("dq", "1/s", "rate of the command"),
         Quantity("q", "1", "output current of the valve, in rated currents"),
     ),
     ("dq = (e - q1) / T", "block a: T I' + I = Iin (Kononykhin, section 4)"),

@@ -13,10 +13,10 @@ PROPORTIONAL = stage(
         Quantity("v_in", "m/s", "rate of that position"),
         Quantity("e", "m", "drive signal, in metres times the dial of the gain"),
     ),
-    ("r = u", "the command acts at once"),
-    ("dr = du", "its rate"),
-    ("y_in = y_fb", "the controller uses the transducer's reading at once"),
-    ("v_in = v_fb", "and so its rate"),
+    ("r = u", "the command acts without delay"),
+    ("dr = du", "rate of the command"),
+    ("y_in = y_fb", "the controller reads the transducer without delay"),
+    ("v_in = v_fb", "rate of the same reading"),
     ("e = Kp * (r - y_in)", "proportional position loop with gain Kp (Qian et al. 2014, section 2.1.1)"),
 )
 
@@ -27,8 +27,8 @@ OPENED_BY_COMMAND = stage(
         Quantity("dr", "m/s", "rate of the command"),
         Quantity("e", "m", "drive signal: the opening that is asked for"),
     ),
-    ("r = u", "the command acts at once"),
-    ("dr = du", "its rate"),
+    ("r = u", "the command acts without delay"),
+    ("dr = du", "rate of the command"),
     ("e = r", "no loop: the command opens the valve"),
 )
 

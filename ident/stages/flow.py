@@ -26,7 +26,7 @@ SQUARE_ROOT_FLOW = LINEAR_FLOW.with_equations(
 FLOW_TO_SPEED = stage(
     "flow",
     (Quantity("Vq", "m/s", "speed of an incompressible flow"),),
-    ("Vq = Kv * w", "the flow moves the piston at once: oil and mass are stiff enough"),
+    ("Vq = Kv * w", "the flow sets the speed: compressibility and mass are neglected"),
     parameters=(
         Parameter("Kv", "K_v", "1/s", -1e9, 1e9, 1.0, "speed for each unit of the opening", ORDER_OF_MAGNITUDE),
     ),

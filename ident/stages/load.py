@@ -24,17 +24,17 @@ MASS_SPRING_DAMPER = stage(
         Quantity("X", "m", "position of what the transducer is fixed to"),
     ),
     ("xL = x", "the specimen moves with the rod"),
-    ("vL = v", "the specimen is as fast as the rod"),
+    ("vL = v", "the specimen has the speed of the rod"),
     ("xk = xL", "the spring has no play"),
     ("S = k * xk + cL * v", "spring and damper of the specimen"),
     ("R = c0 * v", "viscous damping of the actuator"),
     ("Ff = 0", "no dry friction"),
     ("M = m0 + mL", "rod and specimen stop together"),
-    ("f = dry(Ff, v, a, M)", "friction takes at most the momentum that is there"),
+    ("f = dry(Ff, v, a, M)", "friction stops a motion, but cannot reverse it"),
     ("a = (D - R - f - S) / (m0 + mL)", "rod and specimen move together (Qian et al. 2014, eq. 6)"),
     ("v' = a", "speed is the integral of acceleration"),
     ("x' = v", "position is the integral of speed"),
-    ("F = S + mL * a", "what a load cell between rod and specimen measures"),
+    ("F = S + mL * a", "reading of a load cell between rod and specimen"),
     ("X = x", "the transducer's frame is rigid"),
     parameters=(
         Parameter("m0", "m₀", "kg", 1e-2, 1e6, 1.0, "moving mass", ORDER_OF_MAGNITUDE),
@@ -44,8 +44,8 @@ MASS_SPRING_DAMPER = stage(
 )
 
 MEASURED_LOAD = MASS_SPRING_DAMPER.with_equations(
-    ("S = fm", "the load cell's force is what the specimen takes"),
-    ("M = m0", "what is beyond the load cell is in its force"),
+    ("S = fm", "the load cell measures the force on the specimen"),
+    ("M = m0", "the mass behind the load cell is part of its force"),
     ("a = (D - R - f - S) / m0", "the rod alone, against the measured force"),
     ("F = S", "the measured force"),
 )
@@ -86,7 +86,7 @@ BLOCKED = stage(
         Quantity("F", "N", "force on the stop"),
     ),
     ("v = 0", "a rigid stop holds the piston"),
-    ("F = D", "which takes the whole force"),
+    ("F = D", "the stop carries the whole force"),
 )
 
 FOLLOWING = stage(

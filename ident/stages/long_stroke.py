@@ -19,13 +19,13 @@ DRIVEN_VALVE = stage(
     (
         Quantity("vc", "m", "command of the driver to the valve, without its bias"),
         Quantity("q1", "m", "spool signal without the bias of the driver"),
-        Quantity("dq", "m/s", "its rate"),
+        Quantity("dq", "m/s", "rate of the command"),
         Quantity("q", "m", "spool signal"),
     ),
     ("vc = where(e >= 0, kep * e, ken * e)", "the driver, with another gain to either side (our reading)"),
     ("q1' = dq", "the spool integrates its rate"),
     ("dq' = wn**2 * (vc - q1) - 2 * xi * wn * dq", "second-order valve"),
-    ("q = q1 + ve0", "the driver's bias passes the valve as it is, for its static gain is 1: at rest it is there"),
+    ("q = q1 + ve0", "the bias of the driver passes the valve, whose static gain is 1"),
     parameters=(
         Parameter("ve0", "vₑ₀", "V", -1.0, 1.0, 0.05, "bias of the valve's driver", RATING),
         Parameter("kep", "kₑₚ", "1", 0.1, 2.0, 0.5, "gain of the driver for a positive command", RATING),

@@ -7,7 +7,7 @@ from ident.stages.stage import Quantity, stage
 TORQUE = stage(
     "pressure",
     (Quantity("D", "N", "force, or torque, that drives the load"),),
-    ("D = Kt * w", "in proportion to the drive signal; what the speed induces counts as damping"),
+    ("D = Kt * w", "proportional to the drive signal; the induced voltage counts as damping"),
     parameters=(
         Parameter("Kt", "K_t", "N/m", 1e-12, 1e12, 1.0, "force for each unit of the drive signal", ORDER_OF_MAGNITUDE),
     ),

@@ -8,7 +8,7 @@ FIRST_ORDER_VALVE = stage(
     "valve",
     (
         Quantity("q1", "m", "output of the pilot stage, in the unit of the drive signal"),
-        Quantity("dq", "m/s", "its rate"),
+        Quantity("dq", "m/s", "rate of the command"),
         Quantity("q", "m", "valve output, in the unit of the drive signal"),
     ),
     ("dq = (e - q1) / tau", "first-order lag of the pilot stage, gain moved into Z0 (Qian et al. 2014, eq. 1)"),
@@ -26,12 +26,12 @@ SECOND_ORDER_VALVE = stage(
     "valve",
     (
         Quantity("q1", "m", "output of the pilot stage, in the unit of the drive signal"),
-        Quantity("dq", "m/s", "its rate"),
+        Quantity("dq", "m/s", "rate of the command"),
         Quantity("q", "m", "valve output, in the unit of the drive signal"),
     ),
     ("q1' = dq", "the pilot stage integrates its rate"),
     ("dq' = wv**2 * (e - q1) - 2 * zv * wv * dq", "second-order valve (Merritt 1967, section 7-4)"),
-    ("q = q1", "nothing behind it"),
+    ("q = q1", "no additional valve dynamics"),
     parameters=(
         Parameter("wv", "ω_v", "1/s", 1e-1, 1e5, 1e3, "natural frequency of the valve", ORDER_OF_MAGNITUDE),
         Parameter("zv", "ζ_v", "1", 5e-2, 5e0, 0.7, "damping ratio of the valve", ORDER_OF_MAGNITUDE),
@@ -42,5 +42,5 @@ SECOND_ORDER_VALVE = stage(
 INSTANT_VALVE = stage(
     "valve",
     (Quantity("q", "m", "output of valve or amplifier, in the unit of the drive signal"),),
-    ("q = e", "it follows at once"),
+    ("q = e", "the valve follows without delay"),
 )

@@ -170,7 +170,7 @@ def test_the_way_is_drawn_with_its_errors_and_the_floor(service, mended):
     spec = service.get(f"{API}/fits/{mended}/figures/ladder.json").json()
     rows = spec["datasets"]["steps"]
     assert [row["step"].rpartition(". ")[2] for row in rows[2:]] == ["dead zone", "dead zone"]
-    assert {row["u"] for row in rows} == {"runs to fit", "runs to verify"}
+    assert {row["u"] for row in rows} == {"estimation data", "validation data"}
     assert "noise floor 0." in str(spec["title"])
     for kind, start in (("svg", b"<svg"), ("png", b"\x89PNG"), ("pdf", b"%PDF")):
         assert service.get(f"{API}/fits/{mended}/figures/ladder.{kind}").content.startswith(start)

@@ -117,7 +117,8 @@ def test_what_goes_is_shown_then_removed_and_says_so(lab: TestClient) -> None:
             assert f"removed by the rule on {day}" in gone.json()["detail"]
         assert lab.get(f"{API}/fits/{fit}").json()["result"]["parameters"]
         page = lab.get(f"/matrices/{matrix}")
-        assert f"on {day}Raw data deleted by the retention rule" in page.text
+        assert "Raw data deleted by the retention rule" in page.text
+        assert f"on {day}. Fits and results are kept." in page.text
         assert "data-start" not in page.text
         assert lab.get(f"/fits/{fit}").status_code == 200
         assert lab.get(f"/matrices/{matrix}/thumbnails/0.svg").status_code == 410
@@ -167,4 +168,4 @@ def test_without_a_rule_nothing_goes(tmp_path: Path) -> None:
         assert (found["days"], found["items"], found["bytes"]) == (None, [], 0)
         refused = client.post(f"{API}/retention", json={"digest": found["digest"]})
         assert (refused.status_code, refused.json()["code"]) == (409, "no-rule")
-        assert "every raw run is kept" in client.get("/retention").text
+        assert "all raw data are kept" in client.get("/retention").text
