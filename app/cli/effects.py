@@ -63,7 +63,7 @@ def show(found: dict[str, Any]) -> None:
         header = ("own effect", "place", "equation", "meaning", "origin", "model")
         console.print(table(header, own_rows(found["own"]), numbers=()))
     else:
-        console.print("no effect of your own is kept: servoident effects keep EFFECT.yaml", markup=False)
+        console.print("no own effects yet; save one by: servoident effects keep EFFECT.yaml", markup=False)
     rows = ((one["name"], one["place"], equations(one), one["meaning"]) for one in found["catalogue"])
     console.print(table(("effect library", "place", "equation", "meaning"), rows, numbers=()))
 

@@ -40,7 +40,7 @@ def keep(
         return
     answer = request(server, token, "POST", "/own-effects", json=body(source, name, proposal))
     stored = answer.json()
-    print(f"{stored['name']} {'is kept' if answer.status_code == 201 else 'was kept already'} by {server}")
+    print(f"{stored['name']} {'is saved' if answer.status_code == 201 else 'was already saved'} by {server}")
 
 
 def given(file: Path, name: str, proposal: int) -> Kept:
@@ -70,6 +70,6 @@ def body(source: str, name: str, proposal: int) -> dict[str, Any]:
     if kept is not None:
         return {"name": name or kept.name, "definition": dict(kept.definition), "model": kept.model}
     if not name:
-        raise Unusable("no-name", "neither a file nor kept here; a term of a diagnosis has no name yet", source,
+        raise Unusable("no-name", "neither a file nor a saved effect; a term of a diagnosis has no name yet", source,
                        "give a file, or the id of a diagnosis and --name")  # fmt: skip
     return {"name": name, "diagnosis": source, "proposal": proposal}

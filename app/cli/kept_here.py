@@ -54,7 +54,7 @@ def find(name: str) -> Kept:
     if not file.is_file():
         remedy = "see `servoident effects` for the names, or name a file that is there"
         kept = (one.stem for one in sorted(folder().glob("*.json")))
-        raise Unusable("no-such-effect", "no effect is kept under this name", name, did_you_mean(name, kept, remedy))
+        raise Unusable("no-such-effect", "no effect is saved under this name", name, did_you_mean(name, kept, remedy))
     return _read(file)
 
 
@@ -66,7 +66,7 @@ def keep(kept: Kept) -> bool:
     file = _file(kept.name)
     if file.is_file():
         if _read(file).definition != kept.definition:
-            raise Unusable("name-in-use", f"another effect is kept as {kept.name}", str(file),
+            raise Unusable("name-in-use", f"another effect is saved as {kept.name}", str(file),
                            f"give it another --name, or `servoident effects drop {kept.name}` first")  # fmt: skip
         return False
     file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -100,5 +100,5 @@ def _read(file: Path) -> Kept:
     except (ValueError, RecursionError, Misfit):
         found = None
     if found is None or found.name != file.stem:
-        raise Unusable("not-an-effect", "not an effect that was kept", str(file), "remove the file, and keep it again")
+        raise Unusable("not-an-effect", "not a saved effect", str(file), "remove the file, and save the effect again")
     return found

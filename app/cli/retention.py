@@ -40,7 +40,7 @@ def retention(
     if json == STANDARD_OUTPUT:
         return
     if found["days"] is None:
-        print("there is no rule: raw runs are kept; servoident serve --keep-raw DAYS sets one")
+        print("no retention rule: all raw data are kept; set one by servoident serve --keep-raw DAYS")
         return
     rows = [
         (one["matrix"], one["serial"], one["created_at"][:10], one["why"], f"{one['bytes'] / 1e6:.3f}")

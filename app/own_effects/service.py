@@ -55,7 +55,7 @@ def keep(context: Context, request: OwnEffectRequest, effect_id: str) -> tuple[O
         pass
     there = _find(context, wanted.name)
     if there.definition != wanted.definition:
-        raise Failure(409, "name-in-use", f"another effect is kept as {wanted.name}", "name",
+        raise Failure(409, "name-in-use", f"another effect is saved as {wanted.name}", "name",
                       "give it another name, or DELETE the one there first")  # fmt: skip
     with context.sessions() as session:
         return view(there), repository.known(session, effect_id) is not None

@@ -41,7 +41,7 @@ def evolution(
     """
     if not fit.evolution:
         raise Unusable(
-            "no-evolution", "no generations are kept in this fit", "figure evolution", "fit with free parameters"
+            "no-evolution", "this fit has stored no generations", "figure evolution", "fit with free parameters"
         )
     panels: list[Panel | alt.HConcatChart] = []
     tables: dict[str, list[dict[str, Any]]] = {"history": _history_rows(fit)}

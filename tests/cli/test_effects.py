@@ -76,12 +76,12 @@ def refused(done, *said: str) -> None:
 
 def test_an_effect_is_kept_listed_and_dropped(servoident, lapped, data):
     """In the data folder of the user, called after its file; the catalogue stands beside it."""
-    assert "no effect of your own is kept" in servoident("effects").stdout
+    assert "no own effects yet" in servoident("effects").stdout
     done = servoident("effects", "keep", lapped)
     assert done.returncode == 0, done.stderr
-    assert "lapped is kept" in done.stdout
+    assert "lapped is saved" in done.stdout
     assert (data / "effects" / "lapped.json").is_file()
-    assert "was kept already" in servoident("effects", "keep", lapped).stdout
+    assert "was already saved" in servoident("effects", "keep", lapped).stdout
     told = servoident("effects").stdout
     for text in ("lapped", "w = w - clip(w, -h, h)", "the lands overlap", "written", "coulomb_friction"):
         assert text in told
@@ -90,13 +90,13 @@ def test_an_effect_is_kept_listed_and_dropped(servoident, lapped, data):
     assert kept["created_at"]
     assert servoident("effects", "drop", "lapped").returncode == 0
     assert listed(servoident) == {}
-    refused(servoident("effects", "drop", "lapped"), "lapped: no effect is kept under this name")
+    refused(servoident("effects", "drop", "lapped"), "lapped: no effect is saved under this name")
 
 
 def test_another_effect_does_not_take_the_name(servoident, lapped):
     servoident("effects", "keep", lapped)
     lapped.write_text(LAPPED.replace("w - clip", "w - 2 * clip"))
-    refused(servoident("effects", "keep", lapped), "another effect is kept as lapped", "drop lapped")
+    refused(servoident("effects", "keep", lapped), "another effect is saved as lapped", "drop lapped")
     assert servoident("effects", "keep", lapped, "--name", "twice_lapped").returncode == 0
     assert listed(servoident).keys() == {"lapped", "twice_lapped"}
 
@@ -111,7 +111,7 @@ def test_a_kept_effect_is_named_without_its_file(servoident, few, lapped, tmp_pa
     fit = json.loads(fitted.read_text())
     assert fit["effects"] == ["lapped"]
     assert fit["settings"]["custom"][0]["equation"] == "w = w - clip(w, -h, h)"
-    refused(servoident("fit", few, "--custom", "loped", *asked), "loped: no effect is kept", "did you mean lapped?")
+    refused(servoident("fit", few, "--custom", "loped", *asked), "loped: no effect is saved", "did you mean lapped?")
 
 
 def test_a_diagnosis_ranks_what_is_kept_where_it_is_asked_to(lapped, servoident):
@@ -180,7 +180,7 @@ def test_what_cannot_be_done_is_one_line(servoident, lapped, arguments, said):
 def test_a_spoilt_file_is_named(servoident, lapped, data):
     servoident("effects", "keep", lapped)
     (data / "effects" / "lapped.json").write_text('{"name": "other"}')
-    refused(servoident("effects"), "lapped.json", "not an effect that was kept")
+    refused(servoident("effects"), "lapped.json", "not a saved effect")
 
 
 def test_a_service_keeps_what_this_machine_has(servoident, service, lapped, diagnosis):
@@ -189,8 +189,8 @@ def test_a_service_keeps_what_this_machine_has(servoident, service, lapped, diag
     for source in (lapped, "leak"):
         done = servoident("effects", "keep", source, *service.options)
         assert done.returncode == 0, done.stderr
-        assert f"is kept by {service.address}" in done.stdout
-    assert "was kept already" in servoident("effects", "keep", "leak", *service.options).stdout
+        assert f"is saved by {service.address}" in done.stdout
+    assert "was already saved" in servoident("effects", "keep", "leak", *service.options).stdout
     there = listed(servoident, *service.options)
     assert there.keys() == {"lapped", "leak"}
     assert (there["leak"]["origin"], there["leak"]["model"]) == ("proposed by search", "qian2014")

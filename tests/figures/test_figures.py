@@ -62,7 +62,7 @@ def test_every_figure_names_serial_model_and_error_and_is_below_300_kb(name, the
     spec = drawn(name, matrix, fit, theme)
     assert spec["title"]["text"].startswith("SW-910D-0001")
     assert "qian2014" in spec["title"]["subtitle"][0]
-    assert "0.512 % fit, 0.507 % verify" in spec["title"]["subtitle"][0]
+    assert "0.512 % estimation, 0.507 % validation" in spec["title"]["subtitle"][0]
     assert spec["config"]["background"] == LOOKS[theme].ground
     assert len(json.dumps(spec)) < 300_000
 
