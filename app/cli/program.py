@@ -76,7 +76,7 @@ BELOW = {"Identification": ("effects",), "Service": ("token", "webhook")}
 class Grouped(TyperGroup):
     """Lists the commands by heading: forty of them in one list cannot be read."""
 
-    def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ARG002 - as click calls it, whose types are typer's own
+    def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ARG002 - both of the click that typer brings
         """A section for each heading."""
         for heading, functions in GROUPS.items():
             names = [function.__name__.rstrip("_") for function in functions] + [*BELOW.get(heading, ())]

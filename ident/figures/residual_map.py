@@ -154,7 +154,7 @@ def _totals(order: Sequence[str], look: Look, height: int) -> Panel:
     colour = alt.Color(
         "u:N",
         scale=alt.Scale(domain=[DATA["fit"], DATA["verify"]], range=list(look.series[:2])),
-        legend=alt.Legend(title="Data", orient="top", symbolType="square"),
+        legend=alt.Legend(title="Data", orient="top", symbolType="square", columns=1),
     )
     panel: Panel = (
         alt.Chart(alt.NamedData("totals"), width=look.across(120), height=height)
