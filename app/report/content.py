@@ -28,9 +28,9 @@ from ident.workflows import compare, study
 
 CAPTIONS = {
     "bode": "Frequency response, measured and model",
-    "residual-map": "Where the error is: runs over frequency",
+    "residual-map": "Error of each run over frequency",
     "residual-curve": "Missing nonlinearity versus internal signals",
-    "time": "A stretch of one run",
+    "time": "Time record, part of one run",
 }
 
 
@@ -43,7 +43,7 @@ def content(matrix: Matrix, fit: FitResult, diagnosis: Diagnosis | None = None) 
         *([Text(_verdict(diagnosis), "verdict")] if diagnosis else ()),
         *_error(fit, found.budget),
         *_parameters(fit),
-        Heading("Model and measurement"),
+        Heading("Measurement and model"),
         _drawn("bode", matrix, fit),
         _drawn("time", matrix, fit),
         *_failing(matrix, fit, found),
@@ -64,7 +64,7 @@ def _error(fit: FitResult, budget: Budget | None) -> Iterator[Block]:
     rows = tuple((f"{row.runs} {row.use}", row.error, row.floor, row.ratio, row.offset, row.size) for row in listed)
     yield Table(("Runs", "Error", "Noise floor", "Ratio", "Offset", "RMSE"), rows, (1, 2, 3, 4, 5))
     if budget:
-        yield Heading("What it is made of", 3)
+        yield Heading("Error budget", 3)
         yield Table(("Part", "Meaning", "Size", "At least", "At most"), budget_rows(budget), (2, 3, 4))
         square = "The squares of the sizes add up to the square of the error on estimation data."
         yield Text(" ".join((square, *budget.notes)), "faint")
@@ -79,14 +79,14 @@ def _parameters(fit: FitResult) -> Iterator[Block]:
     )
     yield Table(header, rows, (2, 3, 5, 6, 7))
     if fit.determined:
-        yield Heading("What these data determine", 3)
+        yield Heading("Identifiable combinations", 3)
         combined = tuple(
             (Formula(row.expression, printed_unit(entry.expression)), row.value, row.relative)
             for row, entry in zip(combination_rows(fit), fit.determined, strict=True)
         )
         yield Table(("Combination", "Value", "Relative std error"), combined, (1, 2))
     if fit.undetermined:
-        yield Heading("Not determined", 3)
+        yield Heading("Not identifiable", 3)
         symbols = {p.name: p.symbol for p in known}
         yield Facts(tuple((symbols.get(entry.name, entry.name), entry.reason) for entry in fit.undetermined))
     if fit.notes:
@@ -95,9 +95,9 @@ def _parameters(fit: FitResult) -> Iterator[Block]:
 
 
 def _failing(matrix: Matrix, fit: FitResult, found: Survey) -> Iterator[Block]:
-    yield Heading("Where the model fails")
+    yield Heading("Residual analysis")
     yield _drawn("residual-curve", matrix, fit)
-    header = ("Curve", "Shows", "Against", "Explained of the residual's power")
+    header = ("Curve", "Shows", "Internal signal", "Share of the residual variance")
     yield Table(header, curve_rows(found.curves), (3,))
     yield _drawn("residual-map", matrix, fit)
     yield Tables(
@@ -110,22 +110,22 @@ def _failing(matrix: Matrix, fit: FitResult, found: Survey) -> Iterator[Block]:
             for by, groups in group_tables(found.where).items()
         )
     )
-    yield Heading("Parameters that follow a condition", 3)
+    yield Heading("Parameters that depend on a condition", 3)
     trends = trend_rows(found.trends)
     if trends:
-        alone = "What the runs of each condition would have alone, every other parameter held"
-        yield Text(f"{alone}: a constant of physics would not move.")
+        alone = "Estimate from the runs of each condition alone, with all other parameters fixed"
+        yield Text(f"{alone}. A physical constant would not change: the model is missing an effect.")
         yield Table(("Parameter", "Against", "Values", "p"), trends, (3,))
     else:
-        yield Text("None beyond chance.")
+        yield Text("No significant dependence.")
 
 
 def _missing(diagnosis: Diagnosis, matrix: Matrix) -> Iterator[Block]:
     verdict = diagnosis.verdict
-    yield Heading("What is missing")
+    yield Heading("Missing effects")
     yield Text(_verdict(diagnosis), "verdict")
     if verdict.unexplained:
-        yield Text("No listed effect brings the error near the noise floor.")
+        yield Text("No effect in the library brings the error near the noise floor.")
     for group in verdict.indistinguishable:
         yield Text(f"These data {cannot_distinguish(group, verdict.effects)}.")
     for suspect in verdict.suspects:
@@ -148,7 +148,7 @@ def _data(matrix: Matrix) -> Iterator[Block]:
     found = check(matrix)
     if found:
         rows = tuple((level(entry.severity), entry.run or "all", entry.text) for entry in found)
-        yield Table(("Severity", "Run", "Finding"), rows, marked=0)
+        yield Table(("Level", "Run", "Finding"), rows, marked=0)
     else:
         yield Text("No errors, no warnings.")
 

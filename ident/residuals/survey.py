@@ -35,7 +35,8 @@ class Survey(Shown):
         for trend in self.trends:
             if trend.clear:
                 values = " → ".join(f"{point.value:.4g}" for point in trend.points)
-                yield f"{trend.parameter} follows the {trend.condition}: {values} {trend.unit} (p = {trend.p:.2g})"
+                change = f"{values} {trend.unit} (p = {trend.p:.2g})"
+                yield f"{trend.parameter} depends on the {trend.condition}: {change}; the model is missing an effect"
         if self.budget is not None:
             yield from self.budget.listings()
 

@@ -78,8 +78,8 @@ def test_without_a_diagnosis_it_is_a_report_of_the_fit():
     """No empty chapter."""
     base = compared("dead_zone")
     said = document(base.matrix, base.fit)
-    assert "Where the model fails" in said
-    assert "What is missing" not in said
+    assert "Residual analysis" in said
+    assert "Missing effects" not in said
 
 
 @pytest.mark.parametrize("text", ["no json", "{}", json.dumps({**DIAGNOSIS, "candidates": 3})])
