@@ -57,7 +57,7 @@ def test_three_raw_files_become_a_fit_without_a_description(page, watch, site, t
     page.get_by_label("Piston area").fill("497 mm^2")
     page.get_by_label("Piston area").press("Tab")
     expect(missing).to_have_count(0, timeout=60_000)  # a process of its own reads and checks the files
-    expect(page.locator("[data-findings]")).to_contain_text("specimen is not stated")
+    expect(page.locator("[data-findings]")).to_contain_text("specimen is not given")
     everywhere(page, screenshots, "raw-files-described")
 
     assert not watch.complaints

@@ -70,7 +70,7 @@ def an_own_effect_is_tried(page, watch):
 def the_first_page_says_what_to_do(page, screenshots):
     """A line for each of the two actuators, which changes by itself when a fit ends; the page of the failing fit."""
     sound, failing = (page.locator("tbody tr").filter(has_text=serial).locator(".next") for serial in (SOUND, LACKING))
-    expect(page.locator("#main")).to_contain_text("simulated, not measured")
+    expect(page.locator("#main")).to_contain_text("actuators below are simulated")
     expect(sound).to_contain_text("The error is at the noise floor", timeout=story.LONG)
     expect(failing).to_contain_text(re.compile("The error is 2[0-9] times the noise floor"), timeout=story.LONG)
     everywhere(page, screenshots, "first")

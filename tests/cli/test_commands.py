@@ -18,8 +18,8 @@ def test_check_describes_the_matrix_and_finds_no_fault(servoident, matrix):
     """The runs by use, and exit status 0."""
     done = servoident("check", matrix)
     assert done.returncode == 0, done.stderr
-    assert "fit: 63 runs (blwn), Kp 5, 7, 10" in done.stdout
-    assert "verify: 21 runs (blwn), Kp 6" in done.stdout
+    assert "estimation data: 63 runs (blwn), Kp 5, 7, 10" in done.stdout
+    assert "validation data: 21 runs (blwn), Kp 6" in done.stdout
     assert "0 errors" in done.stdout
 
 
