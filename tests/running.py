@@ -1,24 +1,32 @@
-"""The service in processes of its own: as one that can be killed, and as the commands that serve."""
+"""The service in processes of its own: as one that can be killed, and as the commands that serve.
+
+They are forks of one that has imported the program (tests/nursery.py), once a worker of the tests; a command is started
+`anew`, by an interpreter of its own, where its start is what is tested.
+"""
 
 from __future__ import annotations
 
+import atexit
 import os
 import re
 import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import httpx
 
+from tests.nursery import WAIT, Nursery
+
 CHROMIUM = "/usr/bin/chromium"
 TOKEN = "a-token-for-tests"
-WAIT = 240  # s, for a machine that is busy with other things
 ENDED = ("succeeded", "failed", "cancelled")
 SERVE = """
 import sys
@@ -67,6 +75,14 @@ class Service:
         raise TimeoutError(f"job {job} did not end")
 
 
+@cache
+def nursery() -> Nursery:
+    """What all processes of these tests are forked from."""
+    made = Nursery(os.environ)
+    atexit.register(made.close)
+    return made
+
+
 class Process(Service):
     """A service that runs in a process of this one; it answers once it is made."""
 
@@ -77,21 +93,22 @@ class Process(Service):
 
     def start(self) -> None:
         """Start it on its data folder: also again, after it was killed."""
-        command = [sys.executable, "-c", SERVE, str(self.data), str(self.port), TOKEN]
-        self.process = subprocess.Popen(command, start_new_session=True)
+        said = self.data.with_name(f"{self.data.name}.log")
+        given = (str(self.data), str(self.port), TOKEN)
+        self.number = nursery().start(said, *given, code=SERVE, environment=os.environ)
         deadline = time.monotonic() + WAIT
         while time.monotonic() < deadline:
             try:
                 if self.client.get("/ready").status_code == 200:
                     return
             except httpx.TransportError:
-                time.sleep(0.1)
-        raise TimeoutError("the service did not start")
+                time.sleep(0.02)
+        raise TimeoutError(f"the service did not start: {said.read_text(encoding='utf-8')}")
 
     def kill(self) -> None:
         """End it in the middle of whatever it does."""
-        os.killpg(self.process.pid, signal.SIGKILL)
-        self.process.wait()
+        os.killpg(self.number, signal.SIGKILL)
+        nursery().ended(self.number)
 
 
 @contextmanager
@@ -105,16 +122,71 @@ def process(data: Path) -> Iterator[Process]:
         service.client.close()
 
 
+class Forked:
+    """A command in a process that may be stopped, continued and killed; what it printed is in the file `said`."""
+
+    def __init__(self, arguments: Sequence[object], environment: Mapping[str, str], stderr: Path | None) -> None:
+        self.folder = tempfile.TemporaryDirectory(prefix="command-")
+        self.said = Path(self.folder.name) / "said"
+        self.errors = stderr or self.said.with_name("errors")
+        self.pid = nursery().start(self.said, *map(str, arguments), stderr=self.errors, environment=environment)
+        self.status: int | None = None
+
+    def line(self, until: str) -> str:
+        """The line that has `until` in it, as soon as it is printed. Raises AssertionError where it ends before."""
+        while True:
+            ended = self._has_ended()
+            lines = self.said.read_text(encoding="utf-8").splitlines(keepends=True)
+            found = next((line for line in lines if until in line and line.endswith("\n")), "")
+            if found:
+                return found
+            assert not ended, f"{until!r} is not in {lines}: {self.errors.read_text(encoding='utf-8')}"
+            time.sleep(0.02)
+
+    def _has_ended(self) -> bool:
+        try:
+            self.wait(0.0)
+        except TimeoutError:
+            return False
+        return True
+
+    def send_signal(self, what: signal.Signals) -> None:
+        """As to any process."""
+        os.kill(self.pid, what)
+
+    def wait(self, within: float = WAIT) -> int:
+        """Its exit status when it has ended. Raises TimeoutError."""
+        if self.status is None:
+            self.status = nursery().ended(self.pid, within)
+        return self.status
+
+    def kill(self) -> None:
+        """End it, whatever it does."""
+        if self.status is None:
+            os.kill(self.pid, signal.SIGKILL)
+            self.wait()
+        self.folder.cleanup()
+
+
+@contextmanager
+def forked(
+    *arguments: object, until: str, stderr: Path | None = None, **environment: str
+) -> Iterator[tuple[Forked, str]]:
+    """A command that has said `until`, and the line in which it did."""
+    made = Forked(arguments, _own(environment), stderr)
+    try:
+        yield made, made.line(until)
+    finally:
+        made.kill()
+
+
 @contextmanager
 def started(
-    *arguments: object, until: str, within: Sequence[str] = (), stderr: IO[str] | None = None, **environment: str
+    *arguments: object, until: str, within: Sequence[str] = (), **environment: str
 ) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    """A command that has said `until`, in a process that may be stopped, continued and killed, and what it said.
-
-    `within` is a command that runs another: with another clock, in another network.
-    """
+    """The same by an interpreter of its own; `within` runs a command: in another network, on one core."""
     called = [*within, sys.executable, "-m", "app.cli", *map(str, arguments)]
-    process = subprocess.Popen(called, stdout=subprocess.PIPE, stderr=stderr, text=True, env=os.environ | environment)
+    process = subprocess.Popen(called, stdout=subprocess.PIPE, text=True, env=_own(environment))
     try:
         assert process.stdout is not None
         line = next((line for line in process.stdout if until in line), "")
@@ -126,26 +198,17 @@ def started(
 
 
 @contextmanager
-def command(*arguments: object, until: str) -> Iterator[str]:
+def command(*arguments: object, until: str, anew: bool = False) -> Iterator[str]:
     """A command that serves; gives the line that has `until` in it, and ends the command as Ctrl-C does."""
-    environment = {name: value for name, value in os.environ.items() if name != "SERVOIDENT_TOKEN"}
-    called = [sys.executable, "-m", "app.cli", *map(str, arguments)]
-    started = subprocess.Popen(called, stdout=subprocess.PIPE, text=True, env=environment)
-    try:
-        assert started.stdout is not None
-        lines = []
-        for line in started.stdout:
-            lines.append(line)
-            if until in line:
-                break
-        else:
-            raise AssertionError(f"{until!r} is not in {lines}")
+    with (started if anew else forked)(*arguments, until=until) as (process, line):
         yield line
-        started.send_signal(signal.SIGINT)
-        assert started.wait(WAIT) == 0
-    finally:
-        started.kill()
-        started.wait()
+        process.send_signal(signal.SIGINT)
+        assert process.wait(WAIT) == 0
+
+
+def _own(environment: Mapping[str, str]) -> dict[str, str]:
+    """A command's environment: that of the tests, without their token, and more."""
+    return {name: value for name, value in os.environ.items() if name != "SERVOIDENT_TOKEN"} | dict(environment)
 
 
 def free_port() -> int:

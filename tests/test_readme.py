@@ -36,7 +36,7 @@ def environment(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, 
             own.delenv(name, raising=False)
         for name, value in named.items():
             own.setenv(name, value)
-        with command("demo", "--port", free_port(), until="token="):
+        with command("demo", "--port", free_port(), until="token=", anew=True):
             yield {**os.environ}
 
 

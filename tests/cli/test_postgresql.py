@@ -89,7 +89,7 @@ def test_a_service_and_a_worker_share_the_queue(servoident, database, few, tmp_p
     place = ("--database", database, "--data", tmp_path)
     with (
         command("serve", "--port", free_port(), *place, until="token=") as line,
-        command("worker", "--executor", "second", *place, until="waiting for jobs"),
+        command("worker", "--executor", "second", *place, until="waiting for jobs", anew=True),
     ):
         service = Service.that_said(line)
         nul = service.client.get("/actuators/%00")

@@ -11,8 +11,9 @@ from typing import Any
 
 import pytest
 
+from benchmarks.process import family
 from tests.app.conftest import zipped
-from tests.running import Service, command, free_port, started
+from tests.running import Service, forked, free_port
 from tests.running_postgresql import MISSING, SERVERS, postgresql
 
 pytestmark = pytest.mark.skipif(not SERVERS, reason=MISSING)
@@ -45,15 +46,18 @@ def test_what_a_frozen_worker_had_goes_on_elsewhere_and_once(tmp_path: Path) -> 
     """Every process that works is stopped but one; whichever had the job, another ends it as if nothing had been."""
     with ExitStack() as stack:
         place = ("--database", stack.enter_context(postgresql()).url, "--data", tmp_path)
-        line = stack.enter_context(command("serve", "--port", free_port(), *place, until="token="))
+        serving, line = stack.enter_context(forked("serve", "--port", free_port(), *place, until="token="))
         service = Service.that_said(line)
         matrix = service.client.post("/matrices", files={"files": ("a.zip", zipped())}).json()["id"]
         undisturbed = service.fit(matrix, **SHORT)
         assert service.ended(undisturbed)["state"] == "succeeded"
         busy = service.fit(matrix, **SEARCH)  # keeps the service's own process from taking what follows
         assert at_work(service, busy) == "servoident-1"
+        for beside in set(family(serving.pid)) - {serving.pid}:  # it stays busy, and its core is there for the others
+            os.kill(beside, signal.SIGSTOP)
+            stack.callback(os.kill, beside, signal.SIGCONT)
         workers = {
-            name: stack.enter_context(started("worker", "--executor", name, *place, until="waiting"))[0]
+            name: stack.enter_context(forked("worker", "--executor", name, *place, until="waiting"))[0]
             for name in NAMES
         }
         long = service.fit(matrix, **SEARCH)

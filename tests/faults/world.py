@@ -16,7 +16,7 @@ import httpx
 
 from benchmarks.process import family
 from tests.faults.disk import Disk, disk
-from tests.faults.nursery import Nursery
+from tests.nursery import Nursery
 from tests.running import TOKEN, free_port
 from tests.running_postgresql import Postgres, postgresql
 from tests.running_s3 import S3, s3

@@ -59,8 +59,8 @@ def run(folder: Path, files: int, seed: int) -> Counted:
             if status >= 500 or taken > LATEST:
                 wrong.append(f"file {number}, {what}: {status} after {taken:.1f} s")
             if number == min(SETTLED, files):
-                settled = resident(service.process.pid)
-        held = resident(service.process.pid)
+                settled = resident(service.number)
+        held = resident(service.number)
         left = left_behind(service)
     return Counted(files, dict(statuses), wrong, slowest, settled, held, left)
 

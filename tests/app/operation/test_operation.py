@@ -6,7 +6,6 @@ import json
 import shutil
 import signal
 import sqlite3
-import subprocess
 import threading
 import time
 from collections.abc import Iterator
@@ -21,7 +20,7 @@ from sqlalchemy import event
 
 from app.operation import reserve
 from tests.app.conftest import zipped
-from tests.running import Service, free_port, started
+from tests.running import Forked, Service, forked, free_port
 
 API = "/api/v1"
 WARM = {"options": {"generations": 5}}
@@ -86,13 +85,12 @@ def test_below_the_reserve_uploads_are_refused_and_reading_goes_on(service, matr
 
 
 @pytest.fixture(scope="module")
-def logged(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Service, subprocess.Popen[str], Path]]:
+def logged(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Service, Forked, Path]]:
     """A service that logs in JSON, its process, and its log."""
     folder = tmp_path_factory.mktemp("logged")
-    with (folder / "log").open("w", encoding="utf-8") as log:
-        place = ("--port", free_port(), "--data", folder / "data", "--log", "json")
-        with started("serve", *place, until="token=", stderr=log) as (process, line):
-            yield Service.that_said(line), process, folder / "log"
+    place = ("--port", free_port(), "--data", folder / "data", "--log", "json")
+    with forked("serve", *place, until="token=", stderr=folder / "log") as (process, line):
+        yield Service.that_said(line), process, folder / "log"
 
 
 def test_a_job_s_whole_story_is_found_by_its_id(logged):

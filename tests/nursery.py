@@ -1,0 +1,159 @@
+"""Processes of the program that start within a tenth of a second: all that they import was imported once.
+
+Each is a fork of one that has done nothing yet but import, with a life, memory, environment and threads of its own, so
+that a start and a kill cost what they do and not what the imports do: five seconds of a core, with the processes in
+which a service works things out. Requests are lines of JSON on standard input, and so are answers on standard output.
+"""
+
+from __future__ import annotations
+
+import gc
+import importlib
+import json
+import multiprocessing.util
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from multiprocessing import forkserver, resource_tracker
+from pathlib import Path
+from typing import Any
+
+IMPORTED = ("app.cli.program", "app.main", "app.operation.migration", "ident.workflows", "uvicorn.protocols.http.auto",
+            "uvicorn.loops.auto", "uvicorn.lifespan.on", "psycopg", "obstore", "dbos", "app.fits.work",
+            "app.diagnoses.work", "app.jobs.kinds")  # fmt: skip
+COMMAND = "from app.cli.program import main; main()"
+WAIT = 240.0  # s, for a machine that is busy with other things
+
+
+class Nursery:
+    """Starts them; `environment` is that of all."""
+
+    def __init__(self, environment: Mapping[str, str]) -> None:
+        called = [sys.executable, "-m", "tests.nursery"]
+        self._turn = threading.Lock()
+        self._parent = subprocess.Popen(
+            called, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=dict(environment), text=True
+        )
+        self.used = 0.0
+        """Seconds of the processor that those took which have ended."""
+
+    def start(
+        self, log: Path, *arguments: str, code: str = COMMAND, stderr: Path | None = None,
+        environment: Mapping[str, str] | None = None,
+    ) -> int:  # fmt: skip
+        """A new process, as ``python -c CODE ARGUMENTS``: by default a command; its number.
+
+        What it says goes to `log`, and its errors to `stderr` where they are to be apart.
+        """
+        for written in (log, stderr or log):
+            written.touch()
+        asked = {"code": code, "arguments": arguments, "out": str(log), "err": str(stderr or log)}
+        number: int = self._ask(asked | ({"environment": dict(environment)} if environment is not None else {}))
+        return number
+
+    def ended(self, number: int, within: float = WAIT) -> int:
+        """The exit status of a process when it has ended. Raises TimeoutError."""
+        found: tuple[int, float] | None = self._ask({"ended": number, "within": within})
+        if found is None:
+            raise TimeoutError(f"process {number} goes on")
+        status, used = found
+        self.used += used
+        return status
+
+    def kill(self, number: int) -> None:
+        """End one in the middle of whatever it does; it is gone afterwards."""
+        with suppress(ProcessLookupError):
+            os.kill(number, signal.SIGKILL)
+            self.ended(number)
+
+    def close(self) -> None:
+        """Start no more."""
+        self._parent.kill()
+        self._parent.wait()
+
+    def _ask(self, asked: dict[str, Any]) -> Any:
+        assert self._parent.stdin is not None
+        assert self._parent.stdout is not None
+        with self._turn:
+            print(json.dumps(asked), file=self._parent.stdin, flush=True)
+            return json.loads(self._parent.stdout.readline())
+
+
+def main() -> None:
+    """Do what is asked for until nobody asks any more."""
+    gc.disable()
+    for name in IMPORTED:
+        importlib.import_module(name)
+    gc.freeze()
+    gc.enable()
+    resource_tracker.ensure_running()
+    for line in sys.stdin:
+        asked = json.loads(line)
+        if "ended" in asked:
+            print(json.dumps(_ended(asked["ended"], asked["within"])), flush=True)
+            continue
+        number = os.fork()
+        if number == 0:
+            _become(**asked)
+            break
+        print(number, flush=True)
+
+
+def _ended(number: int, within: float) -> tuple[int, float] | None:
+    """Exit status and seconds of the processor of a process that ended, None where it goes on."""
+    deadline = time.monotonic() + within
+    while True:
+        found, status, used = os.wait4(number, os.WNOHANG)
+        if found:
+            return os.waitstatus_to_exitcode(status), used.ru_utime + used.ru_stime
+        if time.monotonic() > deadline:
+            return None
+        time.sleep(0.005)
+
+
+def _become(
+    code: str, arguments: Sequence[str], out: str, err: str, environment: Mapping[str, str] | None = None
+) -> None:
+    """This fork, as the process would be that was started by itself."""
+    os.setsid()
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    said, complained = (os.open(name, os.O_WRONLY | os.O_CREAT | os.O_APPEND) for name in (out, err))
+    for own, other in ((0, nothing), (1, said), (2, complained)):
+        os.dup2(other, own)
+    if environment is not None:
+        os.environ.clear()
+        os.environ.update(environment)
+    with suppress(AttributeError):
+        _serve_forks()
+    sys.argv = ["-c", *arguments]
+    exec(code, {"__name__": "__main__"})
+
+
+def _serve_forks() -> None:
+    """The process from which a service forks those that work things out: a fork, too, instead of one that imports."""
+    spawned = multiprocessing.util.spawnv_passfds
+
+    def forked(_: str, called: Sequence[str], kept: Sequence[int]) -> int:
+        number = os.fork()
+        if number:
+            return number
+        first = 3
+        for held in sorted(kept):
+            os.closerange(first, held)
+            first = held + 1
+        os.closerange(first, os.sysconf("SC_OPEN_MAX"))
+        exec(called[-1], {"__name__": "__main__"})
+        os._exit(0)
+
+    multiprocessing.util.spawnv_passfds = forked
+    forkserver.ensure_running()
+    multiprocessing.util.spawnv_passfds = spawned
+
+
+if __name__ == "__main__":
+    main()
