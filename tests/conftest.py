@@ -15,6 +15,11 @@ from typing import Any
 
 import pytest
 
+from tests.dearest import (  # noqa: F401  hooks
+    pytest_runtest_logstart,
+    pytest_runtest_makereport,
+    pytest_terminal_summary,
+)
 from tests.rounding import rounded_otherwise
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -26,13 +31,16 @@ sys.dont_write_bytecode = False
 # A warning of a number ends the processes that tests start, too; those of the tests themselves: pyproject.toml.
 os.environ["PYTHONWARNINGS"] = "error::RuntimeWarning"
 
-# With all tests in memory, each search of the collector through everything takes a tenth of a second and more.
+# What is imported and collected stays, and with all tests in memory each search of the collector through everything
+# takes a tenth of a second and more.
+gc.disable()
 gc.set_threshold(50_000, 20, 50)
 
 
 def pytest_collection_finish() -> None:
     """What is there before the first test stays: the collector need not look through it again."""
     gc.freeze()
+    gc.enable()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -21,7 +21,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from multiprocessing import forkserver, resource_tracker
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 IMPORTED = ("app.cli.program", "app.main", "app.operation.migration", "ident.workflows", "uvicorn.protocols.http.auto",
             "uvicorn.loops.auto", "uvicorn.lifespan.on", "psycopg", "obstore", "dbos", "app.fits.work",
@@ -33,14 +33,16 @@ WAIT = 240.0  # s, for a machine that is busy with other things
 class Nursery:
     """Starts them; `environment` is that of all."""
 
+    used: ClassVar[float] = 0.0
+    """Seconds of the processor that those took which have ended, of all nurseries that are open."""
+
     def __init__(self, environment: Mapping[str, str]) -> None:
         called = [sys.executable, "-m", "tests.nursery"]
         self._turn = threading.Lock()
         self._parent = subprocess.Popen(
             called, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=dict(environment), text=True
         )
-        self.used = 0.0
-        """Seconds of the processor that those took which have ended."""
+        self._own = 0.0
 
     def start(
         self, log: Path, *arguments: str, code: str = COMMAND, stderr: Path | None = None,
@@ -62,7 +64,8 @@ class Nursery:
         if found is None:
             raise TimeoutError(f"process {number} goes on")
         status, used = found
-        self.used += used
+        self._own += used
+        Nursery.used += used
         return status
 
     def kill(self, number: int) -> None:
@@ -75,6 +78,7 @@ class Nursery:
         """Start no more."""
         self._parent.kill()
         self._parent.wait()
+        Nursery.used -= self._own  # which counts for the parent from here on, and so for this process
 
     def _ask(self, asked: dict[str, Any]) -> Any:
         assert self._parent.stdin is not None

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 import time
 import zipfile
 from collections.abc import Iterator
@@ -25,8 +23,7 @@ from tests.app.test_idempotency import context_of, posts_at_once
 from tests.app.test_own_effects import kept_at_once
 from tests.app.webhooks.receiver import receiver
 from tests.app.webhooks.test_webhooks import told_once
-from tests.conftest import ROOT
-from tests.running import Service, command, free_port
+from tests.running import Service, command, free_port, nursery
 from tests.running_postgresql import MISSING, SERVERS, postgresql
 
 pytestmark = pytest.mark.skipif(not SERVERS, reason=MISSING)
@@ -41,9 +38,11 @@ def database() -> Iterator[str]:
 
 def test_processes_that_start_together_on_an_empty_database_make_it_once(database, tmp_path):
     """A service and its workers, brought up at one moment: one makes the tables, the others find them made."""
-    migrate = [sys.executable, "-m", "app.cli", "migrate", "--database", database, "--data", str(tmp_path)]
-    together = [subprocess.Popen(migrate, stderr=subprocess.PIPE, cwd=ROOT) for _ in range(3)]
-    assert [(said, process.returncode) for process in together for _, said in [process.communicate()]] == [(b"", 0)] * 3
+    migrate = ("migrate", "--database", database, "--data", str(tmp_path))
+    errors = [tmp_path / f"errors-{number}" for number in range(3)]
+    together = [nursery().start(tmp_path / "said", *migrate, stderr=to) for to in errors]
+    assert [nursery().ended(process) for process in together] == [0, 0, 0]
+    assert [said.read_text() for said in errors] == ["", "", ""]
 
 
 def test_the_schema_is_made_and_made_again(servoident, database, tmp_path):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -43,9 +45,15 @@ def cylinder(low: float = LOW, high: float = HIGH, stops: bool = True) -> Matrix
     return Matrix(Actuator("CYLINDER"), tuple(runs))
 
 
+@cache
+def stopped() -> FitResult:
+    """The fit of a motor with stops to it."""
+    return identify(cylinder(), Settings(model="motor", effects=("end_stop",)))
+
+
 def test_stops_at_both_ends_are_found_wherever_the_transducer_has_its_zero():
     """A symmetric stop about the transducer's zero meets one of them at most."""
-    fit = identify(cylinder(), Settings(model="motor", effects=("end_stop",)))
+    fit = stopped()
     assert fit.parameters["end_stop.middle"].value == pytest.approx((LOW + HIGH) / 2, abs=2e-3)
     assert 1.0 / fit.parameters["end_stop.inverse_way"].value == pytest.approx((HIGH - LOW) / 2, abs=5e-3)
     assert fit.error["fit"] < 0.02
@@ -61,7 +69,7 @@ def test_where_nothing_stops_a_machine_its_zero_is_the_middle_where_it_was_cover
 
 def test_the_middle_goes_with_the_fit_to_runs_that_cover_another_way():
     """What was found of the machine holds for its other records: the middle is a value of the fit, not of the data."""
-    fit = identify(cylinder(), Settings(model="motor", effects=("end_stop",)))
+    fit = stopped()
     part = cylinder().runs[0].part(0, int(2 * RATE))
     found = compare(Matrix(Actuator("CYLINDER"), (part,)), fit)
     assert found.runs[0].error < 0.02
@@ -69,7 +77,9 @@ def test_the_middle_goes_with_the_fit_to_runs_that_cover_another_way():
 
 def test_a_fit_of_stops_that_knew_no_middle_can_be_read_and_has_it_at_zero():
     matrix = cylinder(-0.25, 0.25)
-    fit = identify(matrix, Settings(model="motor", effects=("end_stop",), fixed={"end_stop.middle": 0.0}))
+    fixed = {**stopped().values, "end_stop.middle": 0.0}  # the same machine, its transducer mounted in the middle
+    fit = identify(matrix, Settings(model="motor", effects=("end_stop",), fixed=fixed))
+    assert fit.error["fit"] < 0.02
     data = fit.to_json()
     del data["parameters"]["end_stop.middle"]
     found = compare(matrix, FitResult.from_json(data))

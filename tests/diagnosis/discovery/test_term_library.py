@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -33,12 +35,14 @@ def signals() -> dict[str, np.ndarray]:
     }
 
 
-def every() -> list[Term]:
+@cache
+def every() -> tuple[Term, ...]:
     """The whole library."""
     library = TermLibrary(_PLACES, _there(MODEL, _PLACES, _SIGNALS), signals(), UNITS, BAND, SECONDS, ("Kp", "mL", "k"))
-    return list(library.terms())
+    return tuple(library.terms())
 
 
+@cache
 def terms() -> dict[tuple[str, str], Term]:
     """The first of each form at each place; what the transducer reads is one of its own."""
     listed = every()
@@ -46,12 +50,15 @@ def terms() -> dict[tuple[str, str], Term]:
     return {("reading" if term.at == "y_fb" else term.place, term.kind): term for term in reversed(listed)}
 
 
-TERMS = terms()
+@pytest.mark.parametrize("place", sorted({*_PLACES.values(), "reading"}))
+def test_each_term_of_a_place_is_worked_out_and_is_an_effect(place):
+    of_place = {form: term for form, term in terms().items() if form[0] == place}
+    assert of_place
+    for term in of_place.values():
+        is_worked_out_and_is_an_effect(term, signals())
 
 
-@pytest.mark.parametrize("form", TERMS, ids=" ".join)
-def test_a_term_is_worked_out_and_is_an_effect(form):
-    term, known = TERMS[form], signals()
+def is_worked_out_and_is_an_effect(term: Term, known: dict[str, np.ndarray]) -> None:
     samples = term.samples(known, RATE)
     assert samples.shape == (400,)
     assert np.all(np.isfinite(samples))
@@ -73,7 +80,7 @@ def test_the_unit_of_a_strength_is_that_of_its_place_over_that_of_the_term():
 
 @pytest.mark.parametrize("kind", ["lag", "play"])
 def test_what_remembers_is_worked_out_by_hand(kind):
-    term, known = TERMS["spool", kind], signals()
+    term, known = terms()["spool", kind], signals()
     x, (shape,) = known["w"], term.shapes
     state, expected = 0.0, []
     for now in x:
@@ -87,7 +94,7 @@ def test_what_remembers_is_worked_out_by_hand(kind):
 
 def test_what_a_controller_makes_of_its_error_is_worked_out_by_hand_and_has_a_state_of_its_own():
     known = signals()
-    summed, changing = (TERMS["controller", kind] for kind in ("integral", "rate"))
+    summed, changing = (terms()["controller", kind] for kind in ("integral", "rate"))
     assert summed.samples(known, RATE)[9] == pytest.approx(known["e"][:10].sum() / RATE)
     assert changing.samples(known, RATE)[5] == pytest.approx((known["e"][6] - known["e"][4]) * RATE / 2)
     own = definition("proposed_1", (summed,), (1.0,), 0.3, known, UNITS)
@@ -103,7 +110,7 @@ def test_what_a_controller_makes_of_its_error_is_worked_out_by_hand_and_has_a_st
 
 def test_what_yields_follows_the_way_at_first_and_then_gives_no_more_than_its_reach():
     """z' = v − |v| z / b on a ramp from rest: z = b (1 − exp(−x / b)), and back from its reach twice as far."""
-    term = TERMS["load", "yields"]
+    term = terms()["load", "yields"]
     assert (term.text, term.state) == ("z", "v - abs(v) * z / b")
     (b,) = (shape.value for shape in term.shapes)
     x = np.concatenate([np.linspace(0.0, 20.0 * b, 500), np.linspace(20.0 * b, 18.0 * b, 500)])
@@ -116,7 +123,7 @@ def test_what_yields_follows_the_way_at_first_and_then_gives_no_more_than_its_re
 
 def test_a_definition_is_restated_as_the_last_refit_left_it():
     """Later terms move the shape of an earlier one, and its strength beyond ten times its first estimate."""
-    own = definition("proposed_1", (TERMS["load", "yields"],), (1.0,), 1e-9, signals(), UNITS)
+    own = definition("proposed_1", (terms()["load", "yields"],), (1.0,), 1e-9, signals(), UNITS)
     effect = read_effect(own, model="qian2014")
     strength, b = effect.added
     far = 3.0 * own["strength"]["upper"]
