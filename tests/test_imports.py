@@ -7,6 +7,7 @@ import importlib
 import importlib.util
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,7 @@ OWN = {"ident", "app", "schemas", "migrations", "tests", "benchmarks"}
 STANDARD = set(sys.stdlib_module_names) | {"__future__"}
 
 
+@cache
 def imports(file: Path) -> set[str]:
     """Every module that a file imports anywhere, in full; also one that it asks for by its name as a text."""
     return imported(file.read_text(encoding="utf-8"), str(file))

@@ -123,7 +123,7 @@ def test_every_figure_is_drawn(service, simulation, controller, fitted, matrix):
 def test_what_a_feedforward_is_worth_is_kept_and_drawn(service, tmp_path):
     """Of a rig of fifth order of which two parameters are fitted: limit, draws and their band; figure and page."""
     truth = rig.machine(0)
-    folder = rig.written(tmp_path, truth, 0)
+    folder = rig.written(tmp_path, truth, 0, seconds=3.0)
     archive = archived({path.name: path.read_bytes() for path in folder.iterdir()})
     matrix = service.post(f"{API}/matrices", files={"file": ("rig.zip", archive)}).json()["id"]
     few = {"population": 16, "generations": 3, "elite": 3}

@@ -60,9 +60,9 @@ def matrix(of: reference.Machine, seed: int, outputs=ALL, seconds: float = SECON
     return Matrix(Actuator("RIG", piston_area=reference.AREA), run.of_outputs(outputs))
 
 
-def written(folder: Path, of: reference.Machine, seed: int, **described) -> Path:
+def written(folder: Path, of: reference.Machine, seed: int, seconds: float = SECONDS, **described) -> Path:
     """The same as a folder with a matrix.yaml, pressures in bar."""
-    told = columns(of, seed)
+    told = columns(of, seed, seconds)
     told |= {name: 1e-5 * told[name] for name in ("pa", "pb", "ps")}
     np.savez(folder / "rig.npz", **told)
     channel = {

@@ -35,7 +35,7 @@ def speed(seed: int) -> np.ndarray:
 def dahl(v: np.ndarray, force: float, way: float) -> np.ndarray:
     """Dahl's friction by its own differential equation, z' = (v − |v| z)/x_s, in a hundred Euler steps a sample."""
     z, out = 0.0, np.zeros(len(v))
-    for k in range(1, len(v)):
+    for k in range(1, len(v) if force else 0):
         for part in range(100):
             now = v[k - 1] + (part + 0.5) / 100 * (v[k] - v[k - 1])
             z += (now - abs(now) * z) / way / RATE / 100
