@@ -32,10 +32,10 @@ from tests.reference.outside_reference import Outside, measure_all
 PLANT, NOISE = linear.Plant(), 0.005
 
 
-def machine(seed: int, **hidden: float) -> Matrix:
-    """Twelve runs of half a second to fit and three to verify."""
+def machine(seed: int, count: int = 6, **hidden: float) -> Matrix:
+    """So many runs of half a second to fit and three to verify; a search parts six and more."""
     trials = linear.trials()
-    chosen = [trial for trial in trials if trial.use == "fit"][::6][:12] + trials[-3:]
+    chosen = [trial for trial in trials if trial.use == "fit"][:72 : 72 // count] + trials[-3:]
     return matrix_of(measure_all(Outside(**hidden), chosen, PLANT, seconds=0.5, noise=NOISE, seed=seed), PLANT)
 
 
@@ -68,7 +68,7 @@ def test_the_equation_that_no_list_holds_is_found(kind, full):
     if not full and kind not in ("unequal_areas", "position_friction"):
         pytest.skip("ten seconds each: run with --full")
     strength, equation, true = TRUTHS[kind]
-    found = proposed(machine(2, **{kind: strength}))
+    found = proposed(machine(2, 12 if full else 6, **{kind: strength}))
     (term,) = found.proposals
     at, _, text = equation.partition(" = ")
     text = text.partition("s * (")[2].removesuffix(")")
@@ -185,7 +185,7 @@ def test_the_strength_comes_with_its_standard_error():
 def test_noise_of_any_colour_is_no_physics(colour, seed, full):
     if not full and (colour, seed) != ("slow", 1):
         pytest.skip("some seconds each: run with --full")
-    matrix = machine(seed)
+    matrix = machine(seed, 12)
     runs = []
     for number, run in enumerate(matrix.runs):
         rng = np.random.default_rng([9, seed, number])
