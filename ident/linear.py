@@ -68,9 +68,12 @@ class LinearModel:
         with np.errstate(all="ignore"):
             drive = -B[..., kept, None] * np.asarray(u)[..., None, None]
             driving = A[..., kept[:, None], kept]
-            singular = np.linalg.slogdet(driving).sign == 0  # which a solution refuses
-            driving = np.where(singular[..., None, None], np.nan, driving)
-            z[..., kept] = np.linalg.solve(driving, drive)[..., 0]
+            try:
+                z[..., kept] = np.linalg.solve(driving, drive)[..., 0]
+            except np.linalg.LinAlgError:  # one of them is singular, for which all are refused
+                singular = np.linalg.slogdet(driving).sign == 0
+                driving = np.where(singular[..., None, None], np.nan, driving)
+                z[..., kept] = np.linalg.solve(driving, drive)[..., 0]
         z = np.where(np.isfinite(z), z, 0.0)
         left, shown = np.asarray(y) - (C * z).sum(axis=-1) - self.D * u, np.broadcast_to(C, z.shape)[..., idle]
         z[..., idle] = np.divide(left[..., None], shown, out=np.zeros(shown.shape), where=shown != 0)
