@@ -35,7 +35,7 @@ PLANT, NOISE = linear.Plant(), 0.005
 def machine(seed: int, count: int = 6, **hidden: float) -> Matrix:
     """So many runs of half a second to fit and three to verify; a search parts six and more."""
     trials = linear.trials()
-    chosen = [trial for trial in trials if trial.use == "fit"][:72 : 72 // count] + trials[-3:]
+    chosen = [trial for trial in trials if trial.use == "fit"][: 72 : 72 // count] + trials[-3:]
     return matrix_of(measure_all(Outside(**hidden), chosen, PLANT, seconds=0.5, noise=NOISE, seed=seed), PLANT)
 
 
