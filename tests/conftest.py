@@ -33,14 +33,13 @@ os.environ["PYTHONWARNINGS"] = "error::RuntimeWarning"
 
 # What is imported and collected stays, and with all tests in memory each search of the collector through everything
 # takes a tenth of a second and more.
-gc.disable()
-gc.set_threshold(50_000, 20, 50)
+gc.set_threshold(1_000_000, 20, 50)
 
 
 def pytest_collection_finish() -> None:
     """What is there before the first test stays: the collector need not look through it again."""
     gc.freeze()
-    gc.enable()
+    gc.set_threshold(50_000, 20, 50)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
