@@ -49,6 +49,7 @@ class Prediction:
     the strength that was simulated to the share of it that fits best: what has a threshold needs the former, for a
     share of its response is not the response to a share; what is proportional the latter. Where the records show the
     strength by themselves, that too. `elsewhere` are the same from the other places of its shapes, the best first.
+    `simulated` are those strengths that promise most as they were simulated: a share of a threshold may be none.
     """
 
     effect: str
@@ -57,6 +58,7 @@ class Prediction:
     runs: int
     starts: tuple[Mapping[str, float], ...]
     elsewhere: tuple[tuple[Mapping[str, float], ...], ...] = ()
+    simulated: tuple[Mapping[str, float], ...] = ()
 
     @property
     def remaining(self) -> float:
@@ -123,30 +125,36 @@ def _predicted(given: _Sensitivities, base: FittedModel, names: Sequence[str]) -
     before = given.before
     nothing = {trial.effect: (before, np.zeros(len(base.point) + 1), trial) for trial in reversed(trials)}
     best: dict[str, dict[tuple[float, ...], _Promise]] = {name: {} for name in names}
+    all_of: dict[str, list[_Promise]] = {name: [] for name in names}
     for trial, after, step in chain.from_iterable(responses_of.predicted_fits() for responses_of in every):
         of_shape, shape = best[trial.effect], tuple(trial.shape.values())
+        all_of[trial.effect].append((after, step, trial))
         if (
             after.score
             < (1.0 - CRITERIA.screening.score_tolerance) * of_shape.get(shape, nothing[trial.effect])[0].score
         ):
             of_shape[shape] = after, step, trial
-    found_of = {name: sorted(best[name].values(), key=_score) or [nothing[name]] for name in names}
-    return [
-        Prediction(
+    few = slice(CRITERIA.screening.elsewhere)
+
+    def prediction(name: str) -> Prediction:
+        first, *others = sorted(best[name].values(), key=_score) or [nothing[name]]
+        recorded = _from_records(models, base, fitness.space, name, values)
+        return Prediction(
             name,
-            found_of[name][0][0],
+            first[0],
             before,
             len(given.gram),
-            (
-                *_refit_starts(models, base, *found_of[name][0]),
-                *_from_records(models, base, fitness.space, name, values),
-            ),
-            tuple(
-                _refit_starts(models, base, *other) for other in found_of[name][1 : CRITERIA.screening.elsewhere + 1]
-            ),
+            (*_refit_starts(models, base, *first), *recorded),
+            tuple(_refit_starts(models, base, *other) for other in others[few]),
+            tuple(_as_simulated(models, base, trial) for _, _, trial in sorted(all_of[name], key=_score)[few]),
         )
-        for name in names
-    ]
+
+    return [prediction(name) for name in names]
+
+
+def _as_simulated(models: CandidateModels, base: FittedModel, trial: _Trial) -> dict[str, float]:
+    """The fitted model with the effect as it was simulated."""
+    return {**base.values, **trial.shape, models.strength(trial.effect): trial.strength}
 
 
 def _score(promise: _Promise) -> float:

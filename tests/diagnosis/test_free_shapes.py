@@ -16,6 +16,7 @@ from ident.diagnosis.free_shapes import (
     freed_refit,
     from_the_start,
     is_width,
+    keeps,
     with_free_shapes,
     with_widths,
 )
@@ -83,8 +84,16 @@ def test_two_searches_from_other_places_end_alike(share):
 def test_an_end_above_its_prediction_is_begun_again(errors, predicted, over):
     """Alone, alike and as predicted, not alike, alike but a quarter above what was predicted."""
     ends = [SimpleNamespace(local=SimpleNamespace(error=error)) for error in errors]
-    prediction = SimpleNamespace(after=SimpleNamespace(error=predicted))
+    prediction = SimpleNamespace(after=SimpleNamespace(error=predicted), before=SimpleNamespace(error=1.0))
     assert converged(ends, prediction) is over
+
+
+def test_an_end_that_keeps_less_than_half_of_a_small_promise_is_begun_again():
+    ends = [SimpleNamespace(local=SimpleNamespace(error=0.98))]
+    promised = SimpleNamespace(after=SimpleNamespace(error=0.95), before=SimpleNamespace(error=1.0))
+    assert not keeps(ends, promised)
+    ends[0].local.error = 0.97
+    assert keeps(ends, promised)
 
 
 def test_a_width_that_the_data_do_not_determine_is_not_freed():
