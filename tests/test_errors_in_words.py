@@ -92,7 +92,12 @@ def test_offset_stands_in_the_first_line_in_tables_json_page_figures_and_report(
     first, *rest = capsys.readouterr().out.splitlines()
     for text in (first, str(off).splitlines()[0], ident.compare(shifted, off).headline):
         assert re.search(r"0\.\d+ % \(with the mean .+ times, RMSE 830\.0 m\)", text)
-    assert any("RMSE" in line and "830.0 m" in line for line in rest)
+    errors = next(i for i, line in enumerate(rest) if line.startswith("error "))
+    assert [line.split("  ")[0] for line in rest[errors + 1 : errors + 4]] == ["RMSE", "with the mean", "eq. (17)"]
+    assert "830.0 m" in rest[errors + 1]
+    (table,) = [one for one in ident.compare(shifted, off).listings() if not isinstance(one, str)]
+    assert table.header[2:5] == ("RMSE", "with the mean", "eq. (17)")
+    assert table.rows[0][2] == "830.0 m"
     data = FitResultView(**off.to_json()).model_dump()
     assert data["rmse"]["fit"] == pytest.approx(OFFSET, rel=1e-3)
     assert data["runs"][0]["error_with_mean"] == pytest.approx(off.runs[0].offset, rel=1e-3)

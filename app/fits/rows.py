@@ -44,7 +44,8 @@ class ParameterRow:
 class ErrorRow:
     """Errors of one use of runs; `sized` is the use under which their sizes in the output's unit are told.
 
-    `error` has the mean beside it where it counts, and the runs on which the model is unstable; `size` is the RMSE.
+    `size` is the RMSE, `with_mean` the error with the mean counted, `error` eq. (17), with the mean beside it where it
+    counts, and the runs on which the model is unstable.
     """
 
     use: str
@@ -55,6 +56,7 @@ class ErrorRow:
     offset: str
     sized: str = ""
     size: str = "–"
+    with_mean: str = "–"
 
 
 @dataclass(frozen=True)
@@ -127,6 +129,7 @@ def _errors(
             offset=percent_in_print(offset.get(use), 2) if offset and not unstable else "–",
             sized="" if over else use,
             size="–" if over else whole.rmse or "–",
+            with_mean="–" if over else whole.counted(percent_in_print),
         )
 
 

@@ -59,10 +59,15 @@ def content(matrix: Matrix, fit: FitResult, diagnosis: Diagnosis | None = None) 
 
 def _error(fit: FitResult, budget: Budget | None) -> Iterator[Block]:
     yield Heading("Error")
-    yield Text("Mean over runs of std(measured − model) / std(measured), eq. (17).")
+    whole = "Means over runs of RMS(measured − model), of the same over std(measured),"
+    yield Text(f"{whole} and of std(measured − model) / std(measured), eq. (17).")
     listed = error_rows(fit)
-    rows = tuple((f"{row.runs} {row.use}", row.error, row.floor, row.ratio, row.offset, row.size) for row in listed)
-    yield Table(("Runs", "Error", "Noise floor", "Ratio", "Offset", "RMSE"), rows, (1, 2, 3, 4, 5))
+    rows = tuple(
+        (f"{row.runs} {row.use}", row.size, row.with_mean, row.error, row.floor, row.ratio, row.offset)
+        for row in listed
+    )
+    header = ("Runs", "RMSE", "With the mean", "Eq. (17)", "Noise floor", "Ratio", "Offset")
+    yield Table(header, rows, (1, 2, 3, 4, 5, 6))
     if budget:
         yield Heading("Error budget", 3)
         yield Table(("Part", "Meaning", "Size", "At least", "At most"), budget_rows(budget), (2, 3, 4))

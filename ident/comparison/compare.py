@@ -36,7 +36,7 @@ Complex = NDArray[np.complex128]
 Simulator = Callable[[Preset, Mapping[str, float], Matrix], dict[str, Array]]
 """A model, its values by the equations' names and a matrix in; the output of every run out, by the run's id."""
 _HUGE = 1e100  # of a signal: its square is still a number
-_NUMBERS = ("error", "offset", "RMSE", "MAE")
+_NUMBERS = ("RMSE", "with the mean", "eq. (17)", "offset", "MAE")
 _WINDOW = 1.0  # s: the length of a window of the spectral estimate, and with it its resolution of 1 Hz
 
 
@@ -57,10 +57,10 @@ class RunComparison(Shown):
 
     @property
     def row(self) -> tuple[str, ...]:
-        """Id, use, error, offset, RMSE and mean size of the residual."""
-        offset = "–" if self.unstable else percent(self.offset)
-        sizes = ("–" if size is None else quantity(size, self.unit) for size in (self.rmse, self.mae))
-        return (self.run.id, self.run.use, self.words.said(), offset, *sizes)
+        """Id, use, RMSE, the error with the mean counted, eq. (17), offset and mean size of the residual."""
+        offset, of = "–" if self.unstable else percent(self.offset), self.words
+        mean_size = "–" if self.mae is None else quantity(self.mae, self.unit)
+        return (self.run.id, self.run.use, of.rmse or "–", of.counted(), of.alone(), offset, mean_size)
 
     @cached_property
     def error(self) -> float:
@@ -201,7 +201,11 @@ class Comparison(Shown):
         yield self.headline
         rows = [one.row for one in self.runs]
         means = {use: self.error_of(use) for use in USES}
-        rows += [("mean", use, of.said(), "", "", "") for use, of in means.items() if of.error is not None]
+        rows += [
+            ("mean", use, of.rmse or "–", of.counted(), of.alone(), "", "")
+            for use, of in means.items()
+            if of.error is not None
+        ]
         yield Listing("", ("run", "use", *_NUMBERS), rows, _NUMBERS)
 
     def records(self) -> list[dict[str, Any]]:

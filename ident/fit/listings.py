@@ -24,7 +24,7 @@ def listings(result: FitResult) -> Iterator[Listing | str]:
     title = " + ".join((result.model, *result.effects))
     yield result.headline
     yield Listing(title, header, parameter_rows(result.parameters), header[1:3])
-    yield Listing("", ("error (eq. 17)", *USES), error_rows(result), USES)
+    yield Listing("", ("error", *USES), error_rows(result), USES)
     yield from remarks(result)
 
 
@@ -51,12 +51,12 @@ def parameter_rows(parameters: Mapping[str, Estimate]) -> Iterator[tuple[str, ..
 
 
 def error_rows(result: FitResult) -> Iterator[tuple[str, ...]]:
-    """Error, its size where the mean counts, offset and noise floor by use."""
+    """The error by use: in the output's unit and with the mean counted, then eq. (17), noise floor and offset."""
     uses = ("fit", "held_out", "verify")
     errors = [result.error_of(use) for use in uses]
-    yield "model", *(of.said() for of in errors)
-    if any(of.mean_counts for of in errors):
-        yield "RMSE", *(of.rmse or "–" for of in errors)
+    yield "RMSE", *(of.rmse or "–" for of in errors)
+    yield "with the mean", *(of.counted() for of in errors)
+    yield "eq. (17)", *(of.alone() for of in errors)
     if result.window:
         over = result.window.error
         between = {use: " to ".join(map(error_said, ends)) for use, ends in result.window.free_run.items()}

@@ -55,6 +55,14 @@ class ErrorOf:
         """The same as pages and reports set it."""
         return self.said(percent_in_print)
 
+    def alone(self, number: Callable[[float | None], str] = percent) -> str:
+        """Eq. (17) in a table that has the mean beside it."""
+        return unstable_on(self.unstable) if self.is_unstable else number(self.error)
+
+    def counted(self, number: Callable[[float | None], str] = percent) -> str:
+        """The error with the mean counted, in a table; "–" where it is not known."""
+        return unstable_on(self.unstable) if self.is_unstable else number(self.with_mean)
+
     def headline(self, number: Callable[[float | None], str] = percent) -> str:
         """The same for a first line: "2.82 % (with the mean 45.0 times, RMSE 830.0 m)"."""
         return self._said(number, f", RMSE {self.rmse}" if self.rmse else "")

@@ -210,8 +210,8 @@ def test_a_value_is_copied_with_its_unit_and_a_table_with_tabs(page, site, fitte
     table.get_by_role("button", name=re.compile("Copy the table")).click()
     expect(page.locator("[role=status]", has_text="The table is copied")).to_have_count(1)
     rows = [line.split("\t") for line in page.evaluate("navigator.clipboard.readText()").splitlines()]
-    assert rows[0] == ["Runs", "Error", "Noise floor", "Ratio", "Offset", "RMSE", "MAE"]
-    assert {len(row) for row in rows} == {7}
+    assert rows[0] == ["Runs", "RMSE", "With the mean", "Eq. (17)", "Noise floor", "Ratio", "Offset", "MAE"]
+    assert {len(row) for row in rows} == {8}
 
 
 def test_an_own_effect_has_other_parameters_and_a_state(page, site, watch, fitted):

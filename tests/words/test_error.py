@@ -58,6 +58,8 @@ def test_the_mean_stands_beside_an_error_from_one_and_a_half_times_on():
     assert ErrorOf(0.02, with_mean=0.03).said() == "2.00 %"
     beyond = ErrorOf(0.0282, with_mean=45.0, rmse="830.0 m")
     assert beyond.said() == "2.82 % (with the mean 45.0 times)"
+    assert (beyond.counted(), beyond.alone()) == ("45.0 times", "2.82 %")
+    assert ErrorOf(0.02).counted() == "–"
     assert beyond.headline() == "2.82 % (with the mean 45.0 times, RMSE 830.0 m)"
     assert ErrorOf(0.02, with_mean=None).said() == "2.00 %"
 
