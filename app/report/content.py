@@ -128,7 +128,9 @@ def _failing(matrix: Matrix, fit: FitResult, found: Survey) -> Iterator[Block]:
 def _missing(diagnosis: Diagnosis, matrix: Matrix) -> Iterator[Block]:
     verdict = diagnosis.verdict
     yield Heading("Missing effects")
-    yield Text(_verdict(diagnosis), "verdict")
+    for line in diagnosis.summary:
+        yield Text(line, "verdict")
+    yield Text(_verdict(diagnosis))
     if verdict.unexplained:
         yield Text("No effect in the library brings the error near the noise floor.")
     for group in verdict.indistinguishable:

@@ -8,6 +8,7 @@ from typing import Any
 
 from ident.diagnosis.discovery.proposal import Proposal, from_json
 from ident.diagnosis.parameter_estimate import ParameterEstimate
+from ident.diagnosis.summary import summary
 from ident.diagnosis.tables import listings
 from ident.diagnosis.verification import Standing
 from ident.errors import Unusable
@@ -235,8 +236,13 @@ class Diagnosis(Shown):
         of = {use: self.baseline.error_of(use) for use in USES}
         return first_line(" + ".join((self.model, *self.effects)), of)
 
+    @property
+    def summary(self) -> tuple[str, str, str]:
+        """The verdict in three lines: what is missing, what it does to the error, what to do next."""
+        return summary(self)
+
     def listings(self) -> Iterable[Listing | str]:
-        """Errors, ranking, ladder, suspects, proposals, verdict."""
+        """Errors, ranking, ladder, suspects, proposals, verdict and its three lines."""
         return listings(self)
 
     def records(self) -> list[dict[str, Any]]:

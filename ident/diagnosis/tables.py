@@ -44,6 +44,7 @@ def listings(found: Diagnosis) -> Iterator[Listing | str]:
     for said in told(found.preprocessing, found.notes):
         yield f"preprocessing: {said}"
     yield found.verdict.text
+    yield "\n".join(found.summary)
 
 
 def proposals_listing(found: Diagnosis) -> Listing:

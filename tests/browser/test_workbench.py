@@ -104,7 +104,7 @@ def test_a_new_user_finds_what_is_missing_adds_it_and_sees_the_error_fall(page, 
     the_first_page_says_what_to_do(page, screenshots)
     before = page.url
     card = story.search(page, screenshots and screenshots / "searching.png")
-    expect(page.locator(".verdict")).to_contain_text("The model lacks coulomb friction and dead zone")
+    expect(page.locator(".verdict")).to_contain_text(re.compile("Missing: coulomb friction .* and dead zone"))
     expect(card).to_contain_text("coulomb friction")
     expect(card.locator(".evidence canvas")).to_be_visible(timeout=story.LONG)
     expect(

@@ -1,0 +1,73 @@
+"""The verdict in three lines, of findings of every standing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ident.diagnosis.parameter_estimate import ParameterEstimate
+from ident.diagnosis.result import Baseline, Diagnosis, NextRun, Rung, Suspect, Verdict
+
+STRENGTH = {"dead_zone.half_width": ParameterEstimate(8e-5, "m", 2e-7, "δ")}
+FOUND = Diagnosis(
+    baseline=Baseline(error={"fit": 0.12}),
+    noise_floor={"fit": 0.005, "verify": 0.005},
+    candidates=(),
+    ladder=(
+        Rung(error={"fit": 0.12, "held_out": 0.13, "verify": 0.11}),
+        Rung(added="dead_zone", error={"fit": 0.005, "held_out": 0.0052, "verify": 0.0051}, parameters=STRENGTH),
+    ),
+    verdict=Verdict(effects=("dead_zone",), standing="found", probabilities={"dead_zone": 0.999}),
+)
+
+
+def lines(**verdict: object) -> tuple[str, str, str]:
+    """Those of the findings above with another verdict."""
+    return replace(FOUND, verdict=replace(FOUND.verdict, **verdict)).summary  # type: ignore[arg-type]
+
+
+def test_what_was_found_is_named_with_its_size_and_probability_its_errors_and_the_next_step():
+    assert FOUND.summary == (
+        "Missing: dead zone (80.00 ± 0.20 µm, probability over 99 %).",
+        "The error on validation data goes from 11.0 % to 0.510 %; the noise floor is 0.500 %.",
+        "Next: add it to the model, and compare the fits.",
+    )
+
+
+def test_a_group_has_one_probability_and_the_run_that_tells_it_apart():
+    group = ("dead_zone", "underlap")
+    told = lines(indistinguishable=(group,), group_probabilities=(0.95,))
+    assert told[0] == "Missing: dead zone or underlap (probability 95 %)."
+    experiment = NextRun(amplitude=1e-3, signal="blwn", frequency=10.0, seconds=5.0, sample_rate=1000.0)
+    grouped = replace(FOUND.verdict, indistinguishable=(group,), group_probabilities=(0.95,))
+    assert (
+        replace(FOUND, verdict=grouped, next_experiment=experiment)
+        .summary[2]
+        .startswith("Next: record the proposed run")
+    )
+
+
+def test_nothing_something_unlisted_and_what_is_contradicted_are_said():
+    nothing = replace(
+        FOUND, ladder=FOUND.ladder[:1], verdict=Verdict(standing="nothing", probabilities={"nothing": 0.97})
+    )
+    assert nothing.summary[0] == "Nothing is missing (probability 97 %)."
+    assert nothing.summary[1] == "The error on validation data is 11.0 %; the noise floor is 0.500 %."
+    assert nothing.summary[2] == "Next: use the model as it is."
+    unlisted = replace(nothing, verdict=Verdict(unexplained=True, probabilities={"unlisted": 0.9}))
+    assert unlisted.summary[0] == "Missing: something that no listed effect explains (probability 90 %)."
+    against = lines(standing="contradicted", contradicted_by=("dead_zone",))
+    assert against[0].endswith("but validation data contradict it.")
+    assert against[2] == "Next: compare the validation runs with and without dead zone."
+
+
+def test_a_wrong_label_and_a_search_that_was_stopped_come_first():
+    assert lines(suspects=(Suspect("run-3"),))[2] == "Next: correct the label of run run-3, and fit again."
+    stopped = replace(FOUND, complete=False, verdict=Verdict())
+    assert stopped.summary[::2] == (
+        "Nothing was found so far: the search was stopped.",
+        "Next: search again with more time.",
+    )
+
+
+def test_a_diagnosis_of_an_earlier_version_has_them_without_probabilities():
+    assert lines(probabilities={})[0] == "Missing: dead zone (80.00 ± 0.20 µm)."
