@@ -162,7 +162,7 @@ class Client:
         return DraftView.model_validate_json(answer.content)
 
     def matrix_of_draft(self, draft: str, **answers: Any) -> MatrixView:
-        """Make the matrix of a draft with these answers; the draft is no more."""
+        """Create the data set of a draft with these answers. The draft is deleted."""
         answer = self.request("POST", f"/drafts/{_segment(draft)}/matrix", json=answers)
         return MatrixView.model_validate_json(answer.content)
 

@@ -41,7 +41,7 @@ class AnswersRequest(BaseModel):
     hold: str = Field(
         default="",
         max_length=_LINE,
-        description="The command between samples: linear, zoh or band-limited; empty: as it looks",
+        description="The command between samples: linear, zoh or band-limited; empty: detected automatically",
     )
     files: dict[str, FileAnswersRequest] = Field(
         default_factory=dict,

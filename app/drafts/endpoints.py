@@ -54,7 +54,7 @@ def answer_draft(here: Here, draft: str, answers: AnswersRequest) -> DraftView:
 
 @router.post("/{draft}/matrix", dependencies=[LAB], status_code=201, response_model=MatrixView, responses=_KNOWN)
 def make_matrix(here: Here, draft: str, answers: AnswersRequest, key: Key = None) -> Response:
-    """Make the matrix, as an upload of matrix.yaml and the files does; the draft is no more."""
+    """Create the data set, like an upload of matrix.yaml and the files. The draft is deleted."""
 
     def act(_: str) -> tuple[int, dict[str, object], str]:
         stored, new = service.make(here, draft, answers)

@@ -209,7 +209,8 @@ class BenchIdentification:
         if error is None or error < HARDLY:
             return []
         far = list(far_from(self.settings, self.preset, {}))
-        return [f"The model leaves {percent(error)} of the output. Likely cause: {'; '.join(far)}."] if far else []
+        said = f"The model explains almost nothing: the error is {percent(error)} of the output."
+        return [f"{said} Likely cause: {'; '.join(far)}."] if far else []
 
     @property
     def _doubts(self) -> list[str]:

@@ -39,7 +39,7 @@ _AT_BOUND = "the estimate is at its bound: the best value is outside it"
 _VAGUE = "its standard error is {:.3g} times its value"
 _FELT = 1.001  # times the error: a strength that is not off by chance
 HARDLY = 0.8  # of the output left: no fit to be trusted
-_HARDLY_SAID = "The model leaves"
+_HARDLY_SAID = "The model explains almost nothing"
 Array = NDArray[np.float64]
 
 
@@ -323,17 +323,13 @@ def _hardly_explained(settings: Settings, objective: Fitness, error: float) -> I
         return
     causes = [
         *far,
-        "a channel with the wrong sign, or of another run",
-        f"another structure than {preset.name} (--model)",
+        "a channel with the wrong sign, or from another run",
+        f"the wrong model (--model, now {preset.name})",
         *unit_causes(objective.matrix.runs),
     ]
     if integrates(preset.chain, runs, objective.matrix.actuator):
-        causes.insert(
-            len(far), "a command that is not zero where the machine stands, which the machine integrates (null_bias)"
-        )
-    yield f"{_HARDLY_SAID} {error_said(error)} of the output: hardly better than none. Likely causes: " + (
-        "; ".join(causes) + "."
-    )
+        causes.insert(len(far), "a command offset at rest, which the machine integrates (null_bias)")
+    yield f"{_HARDLY_SAID}: the error is {error_said(error)} of the output. Likely causes: {'; '.join(causes)}."
 
 
 def _fast_modes(objective: Fitness, point: Array, state: Mapping[str, Any]) -> Iterator[str]:

@@ -140,7 +140,7 @@ def test_a_fit_that_explains_hardly_anything_says_so_first():
     wrong = replace(first, channels={**first.channels, "command": second.command})
     fit = identify(replace(matrix, runs=(wrong,)), Settings(model="motor"))
     assert fit.error["fit"] > 0.8
-    assert fit.notes[0].startswith("The model leaves ")
+    assert fit.notes[0].startswith("The model explains almost nothing")
     assert "wrong sign" in fit.notes[0]
 
 
