@@ -132,6 +132,8 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     if all(run.stepped for run in runs):
         band /= _OF_STEPS
     typical = sizes_of(matrix, runs, band)
+    if preset.driven_by == "velocity":
+        typical["V"] = typical["U"]  # the speed is prescribed, whether it was recorded or not
     force = _acting(runs, "force" if settings.load == "force" else "load_disturbance")
     if force:  # a mass that would need it
         typical["mL"] = force / (typical["V"] * band)
