@@ -66,6 +66,7 @@ FEATURES = (
     "catalogue",
     "own_effects",
     "hybrid",
+    "plans",
     "stream",
     "workers",
     "operation",

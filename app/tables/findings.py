@@ -1,4 +1,4 @@
-"""What is made of a fit: diagnoses, controllers, hybrid simulations, profiles, effects of the lab."""
+"""What is made of a fit: diagnoses, controllers, hybrid simulations, profiles, plans, effects of the lab."""
 
 from __future__ import annotations
 
@@ -59,6 +59,16 @@ class ProfileRow(Base):
     fit: Mapped[str] = mapped_column(ForeignKey("fits.id"), index=True)
     parameter: Mapped[str] = mapped_column(String(200))
     created_at: Mapped[str] = mapped_column(String(40), default=now)
+    result: Mapped[dict[str, Any]]
+
+
+class PlanRow(Base):
+    """A test plan for a rig, of a fit or of none: what its command files are made from."""
+
+    __tablename__ = "plans"
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    fit: Mapped[str | None] = mapped_column(ForeignKey("fits.id"), index=True)
+    created_at: Mapped[str] = mapped_column(String(40), default=now, index=True)
     result: Mapped[dict[str, Any]]
 
 

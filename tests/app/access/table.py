@@ -131,6 +131,10 @@ OF_API = (
     read("/hybrid-simulations"),
     read("/hybrid-simulations/{simulation}"),
     read("/hybrid-simulations/{simulation}/" + FIGURE),
+    Call("POST", "/plans", LAB, {"program": {"amplitudes": ["1 mm"], "seconds": "1 s"}}, changes=True),
+    read("/plans"),
+    read("/plans/{plan}"),
+    read("/plans/{plan}.zip"),
     read("/stream/ekf"),
 )  # fmt: skip
 """Below /api/v1."""
@@ -139,6 +143,7 @@ PAGES = (
     read("/"),
     read("/actuators/{serial}"),
     Call("GET", "/upload", LAB),
+    read("/plan"),
     Call("GET", "/drafts/{draft}", LAB),
     Call("GET", "/drafts/{draft}/{file}/{column}.svg", LAB),
     read("/matrices/{matrix}"),

@@ -74,7 +74,7 @@ def asked(service: TestClient, call: Call, headers: dict[str, str]) -> int:
     """The status of an answer to a call whose subject does not exist."""
     path = call.path.replace("{vega}", VEGA.rpartition("/")[2])
     for name in ("matrix", "fit", "job", "diagnosis", "controller", "simulation", "token", "serial", "edition", "path",
-                 "draft", "webhook"):  # fmt: skip
+                 "draft", "webhook", "plan"):  # fmt: skip
         path = path.replace(f"{{{name}}}", "nothing")
     path = (
         path.replace("/manual/{name}", "/manual/index")
