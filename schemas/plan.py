@@ -33,7 +33,7 @@ class PlanRequest(BaseModel):
     seed: int = Field(default=0, ge=0, lt=2**31)
 
 
-class SignalView(BaseModel):
+class PlannedSignalView(BaseModel):
     """A command: its kind, RMS in `unit`, frequency or upper edge (Hz), length (s), the share of its ramps."""
 
     kind: str
@@ -77,7 +77,7 @@ class PlannedRunView(BaseModel):
     size: float
     scale: float
     words: str
-    signal: SignalView | None = None
+    signal: PlannedSignalView | None = None
     law: LawView | None = None
     specimen: MovedView | None = None
     gain: float | None = None
