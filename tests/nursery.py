@@ -37,10 +37,10 @@ class Nursery:
     """Seconds of the processor that those took which have ended, of all nurseries that are open."""
 
     def __init__(self, environment: Mapping[str, str]) -> None:
-        called = [sys.executable, "-m", "tests.nursery"]
+        called, root = [sys.executable, "-m", "tests.nursery"], Path(__file__).resolve().parents[1]
         self._turn = threading.Lock()
         self._parent = subprocess.Popen(
-            called, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=dict(environment), text=True
+            called, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=dict(environment), text=True, cwd=root
         )
         self._own = 0.0
 
@@ -54,7 +54,8 @@ class Nursery:
         """
         for written in (log, stderr or log):
             written.touch()
-        asked = {"code": code, "arguments": arguments, "out": str(log), "err": str(stderr or log)}
+        said = {"out": str(log.resolve()), "err": str((stderr or log).resolve())}
+        asked = {"code": code, "arguments": arguments, "folder": os.getcwd(), **said}
         number: int = self._ask(asked | ({"environment": dict(environment)} if environment is not None else {}))
         return number
 
@@ -121,10 +122,11 @@ def _ended(number: int, within: float) -> tuple[int, float] | None:
 
 
 def _become(
-    code: str, arguments: Sequence[str], out: str, err: str, environment: Mapping[str, str] | None = None
+    code: str, arguments: Sequence[str], folder: str, out: str, err: str, environment: Mapping[str, str] | None = None
 ) -> None:
     """This fork, as the process would be that was started by itself."""
     os.setsid()
+    os.chdir(folder)
     nothing = os.open(os.devnull, os.O_RDONLY)
     said, complained = (os.open(name, os.O_WRONLY | os.O_CREAT | os.O_APPEND) for name in (out, err))
     for own, other in ((0, nothing), (1, said), (2, complained)):
