@@ -44,7 +44,8 @@ class CandidateModels:
     """The models of a preset for the fit runs of a matrix, with effects of the catalogue and of the user.
 
     `given` are what the user holds fixed or bounds; `left_out` the ids of runs that are not fitted; `horizon` (s) the
-    length of the windows over which a machine that integrates is fitted, None for whole runs, `memory` (s) as there.
+    length of the windows over which a machine that integrates is fitted, None for whole runs, `memory` (s) as there. Of
+    the runs that are `doubted` no noise floor is known: a fitted model leaves less than what was told.
     """
 
     preset: Preset
@@ -59,6 +60,7 @@ class CandidateModels:
     _records: dict[int, tuple[Run, ...]] = field(default_factory=dict)
     _compared: dict[int, ComparedRecords] = field(default_factory=dict)
     bars: dict[tuple[str, ...], float] = field(default_factory=dict)
+    doubted: frozenset[str] = frozenset()
 
     @classmethod
     def of(
@@ -94,6 +96,13 @@ class CandidateModels:
     def without(self, runs: Iterable[str]) -> CandidateModels:
         """The same models, fitted to fewer runs."""
         return replace(self, left_out=self.left_out | frozenset(runs), _known={}, _records={}, _compared={}, bars={})
+
+    def doubting(self, fitted: FittedModel) -> CandidateModels:
+        """The same models, without the noise floors that a fitted model comes below."""
+        told, ratio = self.floors.by_run, CRITERIA.noise.floor_contradicted
+        left = {run.id: found.error for run, found in zip(fitted.fitness.runs, fitted.local.runs, strict=True)}
+        doubted = frozenset(run for run, error in left.items() if (floor := told[run]) and floor > ratio * error)
+        return replace(self, doubted=doubted, _known={}, _compared={}, bars={}) if doubted else self
 
     def over_windows(self, horizon: float | None, memory: float | None) -> CandidateModels:
         """The same models, fitted over other windows."""
@@ -191,6 +200,7 @@ class CandidateModels:
     def floors(self) -> Floors:
         """The noise floors of all runs of the matrix; over windows with what the noise adds where each begins."""
         floors = noise_floors(self.matrix.runs, self.band, self.left_out)
+        floors = replace(floors, by_run={run: None if run in self.doubted else f for run, f in floors.by_run.items()})
         if self.horizon is None or floors.measured:
             return floors
         begun = SimulatedRuns(self.preset, self.matrix, (), self.band, horizon=self.horizon, memory=self.memory)
@@ -203,8 +213,16 @@ class CandidateModels:
 
     def is_quick(self, fitted: FittedModel) -> bool:
         """Whether a matrix is so small that refits take next to nothing."""
+        return self._steps(fitted) < CRITERIA.ranking.quick_steps
+
+    def is_short(self, fitted: FittedModel) -> bool:
+        """Whether records are so short that each refit may begin from many places."""
+        return self._steps(fitted) < CRITERIA.free_widths.short_steps
+
+    def _steps(self, fitted: FittedModel) -> int:
+        """The simulation steps of all runs."""
         steps = int(fitted.fitness.steps(fitted.fitness.space.values(fitted.point[None])).max())
-        return steps * sum(run.length for run in self.runs) < CRITERIA.ranking.quick_steps
+        return steps * sum(run.length for run in self.runs)
 
     def at_floor(self, refit: FittedModel) -> bool:
         """Whether the error of a refit is noise alone, as far as the floor is known; never where it cannot be told."""
@@ -324,9 +342,9 @@ class CandidateModels:
     def best_optimum(self, refit: FittedModel) -> FittedModel:
         """The refit, or a better one from where else in the whole search space the error is least.
 
-        Looked for where refits take next to nothing and this one leaves more than noise.
+        Looked for where the records are short and this one leaves more than noise.
         """
-        if not refit.stable or not self.is_quick(refit) or not self.residual_above_noise(refit):
+        if not refit.stable or not self.is_short(refit) or not self.residual_above_noise(refit):
             return refit
         aim = CRITERIA.estimation.new_optimum * self.trial_error(refit)
         others = [one for one in self.leading(self.global_starts(refit.effects), aim) if one.local.error < aim]

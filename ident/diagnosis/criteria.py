@@ -73,6 +73,10 @@ class Noise:
     floor_excess: float = 0.02
     """[of the floor] By which an error may exceed the noise floor, in addition to chance. Why: the floor itself is
     an estimate. Test: test_diagnose.py::test_what_the_catalogue_does_not_hold_is_called_unexplained"""
+    floor_contradicted: float = 1.2
+    """[ratio] Of a noise floor to what the fitted model leaves, above which the floor is not believed. Why: samples of
+    one phase differ where a motion jumps between two of them.
+    Test: test_free_shapes.py::test_a_floor_that_a_fitted_model_comes_below_is_none"""
     floor_deviations: float = 3.0
     """[standard deviations] Of the noise floor that the error may exceed it by. Why: one in 700 by chance."""
     bench_excess: float = 0.25
@@ -182,6 +186,10 @@ class FreeWidths:
     missed: float = 1.1
     """[ratio of errors] Of a refit over its prediction, above which it is begun again elsewhere. Why: a prediction is
     a step towards an optimum. Test: test_free_shapes.py::test_an_end_above_its_prediction_is_begun_again"""
+    short_steps: int = 50_000
+    """[simulation steps] Of all runs below which widths are free from the start and refits begin again. Why: a single
+    test has a tenth of the samples of a test matrix, and tells less of where to begin.
+    Test: test_free_shapes.py::test_where_records_are_long_widths_keep_their_usual_values_at_first"""
     tried: int = 3
     """[effects] That promise most with free widths and are refitted. Why: each is refitted from several places."""
 

@@ -48,7 +48,7 @@ def with_free_shapes(models: CandidateModels, names: Iterable[str]) -> Candidate
 
 def from_the_start(models: CandidateModels, base: FittedModel) -> CandidateModels:
     """The models with every width free where the records are so short that it costs little."""
-    if not models.is_quick(base):
+    if not models.is_short(base):
         return models
     return with_free_shapes(models, with_widths(models, [name for name in models.effects if name not in base.effects]))
 

@@ -150,7 +150,7 @@ def deepened(models: CandidateModels, base: FittedModel, ranking: Sequence[Candi
 
 def _tried(models: CandidateModels, base: FittedModel, prediction: Prediction, aim: float, strong: bool) -> Candidate:
     """A candidate after its first refit, which has to come below `aim`; from strong effects, too, where asked."""
-    if models.is_quick(base):
+    if models.is_short(base):
         refit = trial_from_everywhere(models, base, prediction, aim)
     else:
         refit = models.trial((*base.effects, prediction.effect), prediction.starts, aim)

@@ -116,8 +116,17 @@ def test_where_records_are_long_widths_keep_their_usual_values_at_first(monkeypa
     models = CandidateModels.of(Damper().matrix(), Settings("specimen"))
     base = models.refit((), {})
     assert from_the_start(models, base).effects["presliding_friction"].has_searched_shapes
-    monkeypatch.setattr(CandidateModels, "is_quick", lambda *_: False)
+    monkeypatch.setattr(CandidateModels, "is_short", lambda *_: False)
     assert from_the_start(models, base) is models
+
+
+def test_a_floor_that_a_fitted_model_comes_below_is_none():
+    """The two differ by chance by some per cent."""
+    models = CandidateModels.of(Damper().matrix(), Settings("specimen"))
+    base = models.refit((), {})
+    for ratio, believed in ((1.1, True), (2.0, False)):
+        models.__dict__["floors"] = replace(models.floors, by_run={"fit": ratio * base.error, "verify": 0.1})
+        assert (models.doubting(base).floor is not None) is believed
 
 
 def test_what_a_user_holds_stays_held():
